@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/cell.hpp"
+
+#include "core/trigonometry.hpp"
+
+namespace shearcell {
+
+WallPose wall_pose(const Cell& cell, double theta, double wall_height) {
+  const SineCosine sc = sine_cosine(theta);
+  WallPose pose;
+  pose.tan_theta = sc.sine / sc.cosine;
+  pose.cos_theta = sc.cosine;
+  pose.sin_theta = sc.sine;
+  pose.bottom = cell.moving == MovingWall::bottom ? wall_height : cell.bottom;
+  pose.top = cell.moving == MovingWall::top ? wall_height : cell.top;
+  return pose;
+}
+
+Eigen::Vector3d wall_grain_position(const Cell& cell, const WallPose& pose,
+                                    const WallGrain& grain) {
+  Eigen::Vector3d p = grain.position;
+  switch (grain.side) {
+    case WallSide::left:
+    case WallSide::right:
+      p.x() += (p.y() - pose.top) * pose.tan_theta;
+      break;
+    case WallSide::bottom:  // moves as one body with the plane's height
+      p.x() += (pose.bottom - pose.top) * pose.tan_theta;
+      p.y() += pose.bottom - cell.bottom;
+      break;
+    case WallSide::top:
+      p.y() += pose.top - cell.top;
+      break;
+  }
+  return p;
+}
+
+Eigen::Matrix3Xd wall_grain_positions(const Cell& cell, const WallPose& pose) {
+  Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(cell.wall_grains.size()));
+  Eigen::Index column = 0;
+  for (const WallGrain& grain : cell.wall_grains) {
+    positions.col(column++) = wall_grain_position(cell, pose, grain);
+  }
+  return positions;
+}
+
+}  // namespace shearcell

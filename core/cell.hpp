@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The box that holds the grains: four walls, two of which tilt, one of which moves; periodic in z.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace shearcell {
+
+enum class WallSide : std::uint8_t { left = 0, right = 1, bottom = 2, top = 3 };
+enum class WallTexture : std::uint8_t { rough, smooth };
+enum class MovingWall : std::uint8_t { bottom, top };
+
+/// A fixed sphere of diameter d set into a rough wall. It never moves relative to its wall.
+struct WallGrain {
+  WallSide side;
+  /// Centre [d] in the untilted cell, with its wall plane at the height it has in `Cell`.
+  Eigen::Vector3d position;
+};
+
+/// Geometry that stays the same during a run. Lengths in grain diameters d.
+///
+/// x is the shear direction, y points up, z is the depth and periodic. In the untilted cell the
+/// side planes lie at x = 0 and x = width, the horizontal planes at y = bottom and y = top.
+struct Cell {
+  double width = 0;   ///< L, distance of the side planes [d]
+  double depth = 0;   ///< period in z [d]
+  double bottom = 0;  ///< height of the bottom plane before it moves [d]
+  double top = 0;     ///< height of the top plane before it moves [d]
+  MovingWall moving = MovingWall::bottom;
+  std::vector<WallGrain> wall_grains;  ///< empty when the walls are smooth; order is permanent
+};
+
+/// Where the walls are at one instant. The side walls tilt about the top wall, which never moves
+/// in x: a wall point at height y is displaced by (y - top) tan(theta).
+struct WallPose {
+  double tan_theta = 0;
+  double cos_theta = 1;
+  double sin_theta = 0;
+  double bottom = 0;  ///< height of the bottom plane [d]
+  double top = 0;     ///< height of the top plane [d]
+};
+
+/// Tilt angle [rad] and height [d] of the moving plane -> pose. Portable to the last bit.
+WallPose wall_pose(const Cell& cell, double theta, double wall_height);
+
+/// Centre of one wall grain in a pose [d].
+Eigen::Vector3d wall_grain_position(const Cell& cell, const WallPose& pose, const WallGrain& grain);
+
+/// Centres of all wall grains in a pose, 3 x n [d], in their permanent order.
+Eigen::Matrix3Xd wall_grain_positions(const Cell& cell, const WallPose& pose);
+
+}  // namespace shearcell

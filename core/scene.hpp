@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What acts on the grains, in units of the grain diameter d, the grain mass m and the second.
+#pragma once
+
+#include <cstdint>
+
+namespace shearcell {
+
+/// The fluid's velocity in the Stokes drag -b (v - v_fluid). Supplement B.3.
+enum class Fluid : std::uint8_t { still, cell };
+
+struct Scene {
+  double stiffness = 0;     ///< k/m [1/s^2]
+  double drag_rate = 0;     ///< b/m [1/s]
+  double gravity = 0;       ///< g/d [1/s^2]; 0 is off
+  double pressure = 0;      ///< P d/m [1/s^2]: force on one d^2 of the moving wall
+  double wall_mass = 10;    ///< M_w per d^2 of wall [m]
+  double wall_drag = 1000;  ///< B_w per d^2 of wall [m/s]
+  double time_step = 0;     ///< [s]
+  Fluid fluid = Fluid::still;
+};
+
+/// The tilt theta(t) = A sin(omega t), by whole steps so that a cycle ends at theta = 0 exactly.
+/// After each cycle the walls may rest for `pause_steps` (periodically paused shear, B.5).
+struct Drive {
+  double amplitude = 0;  ///< A [rad]; 0 keeps the walls upright
+  std::uint64_t steps_per_cycle = 1;
+  std::uint64_t pause_steps = 0;
+};
+
+/// Lengths, masses and times of the outside world: SI value of d, m and the second.
+struct Units {
+  double diameter_m = 3e-3;
+  double mass_kg = 2e-5;
+};
+
+}  // namespace shearcell
