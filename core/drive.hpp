@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tilt of the side walls as a function of the integer step: theta(t) = A sin(omega t).
+#pragma once
+
+#include <cstdint>
+
+#include "core/scene.hpp"
+
+namespace shearcell {
+
+struct Tilt {
+  double theta = 0;  ///< [rad]
+  double rate = 0;   ///< dtheta / d(omega t) [rad]; the caller multiplies by omega
+};
+
+/// Tilt at a step since the stage began; exactly zero at the end of each cycle and while paused.
+Tilt tilt(const Drive& drive, std::uint64_t step);
+
+/// Steps of one cycle with its pause.
+inline std::uint64_t cycle_steps(const Drive& drive) {
+  return drive.steps_per_cycle + drive.pause_steps;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/filling.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "core/linked_cells.hpp"
+#include "core/random.hpp"
+
+namespace shearcell {
+namespace {
+
+constexpr double kGrainVolume = std::numbers::pi / 6;
+constexpr double kGrainArea = std::numbers::pi / 4;
+// One rough wall's grains reach into the cell by this much volume per area: 0.66 grains per d^2,
+// each a cap whose mean volume over recesses of 0 to d/4 is 0.17 d^3, and the gaps under them.
+constexpr double kRoughLayer = 0.175;
+constexpr std::uint32_t kFillStream = 4;  // after the four wall sides
+
+double wrapped_difference(double dz, double depth) {
+  return dz - depth * std::nearbyint(dz / depth);
+}
+
+// Random numbers for one attempt: they depend on the seed, the number of grains, what is being
+// placed and the number of the attempt.
+std::array<double, 4> draw(std::uint64_t seed, std::size_t grains, std::uint32_t stream,
+                           std::uint64_t attempt) {
+  const auto n = static_cast<std::uint32_t>(grains);
+  const auto low = static_cast<std::uint32_t>(attempt);
+  const auto high = static_cast<std::uint32_t>(attempt >> 32);
+  const auto a = uniform_pair({low, high, n, 2 * stream}, seed);
+  const auto b = uniform_pair({low, high, n, 2 * stream + 1}, seed);
+  return {a[0], a[1], b[0], b[1]};
+}
+
+// Random sequential addition of discs of diameter d on a wall of `length` by `depth`, periodic
+// along the depth; each becomes a wall grain through `place(along, z, recess)`.
+template <class Place>
+void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side, double length,
+                     double depth, Place&& place) {
+  const double area = length * depth;
+  const auto target =
+      static_cast<std::size_t>(geometry.wall_grain_area_fraction * area / kGrainArea);
+  // Close to jamming (0.547) the waiting time diverges; a wall that falls short is still rough.
+  const auto attempts = static_cast<std::uint64_t>(4000.0 * area);
+  LinkedCells near(length, 0.0, 1.0, depth, 1.0);
+  std::vector<Eigen::Vector2d> placed;
+  for (std::uint64_t attempt = 0; attempt < attempts && placed.size() < target; ++attempt) {
+    const auto u = draw(seed, geometry.grains, static_cast<std::uint32_t>(side), attempt);
+    const Eigen::Vector2d p(u[0] * length, u[1] * depth);
+    bool free = true;
+    near.for_each_near(p.x(), 0.5, p.y(), [&](std::int32_t j) {
+      const Eigen::Vector2d& q = placed[static_cast<std::size_t>(j)];
+      const double dx = p.x() - q.x();
+      const double dz = wrapped_difference(p.y() - q.y(), depth);
+      free = free && dx * dx + dz * dz >= 1.0;
+    });
+    if (!free) continue;
+    near.insert(static_cast<std::int32_t>(placed.size()), p.x(), 0.5, p.y());
+    placed.push_back(p);
+    place(p.x(), p.y(), u[2] * geometry.wall_grain_recess);
+  }
+}
+
+}  // namespace
+
+double cell_width(const Geometry& geometry) {
+  const double volume =
+      static_cast<double>(geometry.grains) * kGrainVolume / geometry.nominal_packing_fraction;
+  const double layers = geometry.walls == WallTexture::rough ? 2 * kRoughLayer : 0.0;
+  double low = layers;
+  double high = std::cbrt(volume) + 1.0 + layers;
+  for (int i = 0; i < 200 && low < high; ++i) {
+    const double width = 0.5 * (low + high);
+    const double free = (width - layers) * (geometry.height_over_width * width - layers) * width;
+    (free < volume ? low : high) = width;
+  }
+  return 0.5 * (low + high);
+}
+
+Cell make_cell(const Geometry& geometry, std::uint64_t seed) {
+  Cell cell;
+  cell.width = cell.depth = cell_width(geometry);
+  cell.moving = geometry.moving;
+  if (!(cell.depth >= 3.0)) {
+    throw GeometryError("a cell for " + std::to_string(geometry.grains) + " grains is only " +
+                        std::to_string(cell.depth) +
+                        " d deep; the periodic depth must be at least 3 d, so that no grain meets "
+                        "another through both seams: use more grains");
+  }
+  const double inset = geometry.walls == WallTexture::rough ? kRoughLayer : 0.0;
+  cell.bottom = 0;
+  cell.top = static_cast<double>(geometry.grains) * kGrainVolume /
+                 (geometry.fill_packing_fraction * cell.depth * (cell.width - 2 * inset)) +
+             2 * inset;
+  if (geometry.walls == WallTexture::smooth) return cell;
+
+  const double height = cell.top;
+  const auto add = [&](WallSide side, double length, auto&& centre) {
+    add_wall_grains(geometry, seed, side, length, cell.depth,
+                    [&](double along, double z, double recess) {
+                      cell.wall_grains.push_back({side, centre(along, z, recess)});
+                    });
+  };
+  using V = Eigen::Vector3d;
+  add(WallSide::left, height, [](double s, double z, double u) { return V(-u, s, z); });
+  add(WallSide::right, height,
+      [&](double s, double z, double u) { return V(cell.width + u, s, z); });
+  add(WallSide::bottom, cell.width, [](double s, double z, double u) { return V(s, -u, z); });
+  add(WallSide::top, cell.width, [&](double s, double z, double u) { return V(s, height + u, z); });
+  return cell;
+}
+
+State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed) {
+  State state;
+  const auto n = static_cast<Eigen::Index>(geometry.grains);
+  state.position.resize(3, n);
+  state.velocity = Eigen::Matrix3Xd::Zero(3, n);
+  state.wall_height = cell.moving == MovingWall::bottom ? cell.bottom : cell.top;
+
+  // Wall grains come first in `sites`, so that one search serves both.
+  std::vector<Eigen::Vector3d> sites;
+  LinkedCells near(cell.width, cell.bottom, cell.top, cell.depth, 1.0);
+  const auto keep = [&](const Eigen::Vector3d& p) {
+    near.insert(static_cast<std::int32_t>(sites.size()), p.x(), p.y(), p.z());
+    sites.push_back(p);
+  };
+  for (const WallGrain& grain : cell.wall_grains) keep(grain.position);
+
+  const std::uint64_t attempts = 200000 + 20000 * std::uint64_t{geometry.grains};
+  std::uint64_t attempt = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (bool free = false; !free; ++attempt) {
+      if (attempt == attempts) {
+        throw GeometryError("only " + std::to_string(i) + " of " + std::to_string(n) +
+                            " grains found a place in the loose filling: lower "
+                            "fill_packing_fraction");
+      }
+      const auto u = draw(seed, geometry.grains, kFillStream, attempt);
+      const Eigen::Vector3d p(0.5 + u[0] * (cell.width - 1.0),
+                              cell.bottom + 0.5 + u[1] * (cell.top - cell.bottom - 1.0),
+                              u[2] * cell.depth);
+      free = true;
+      near.for_each_near(p.x(), p.y(), p.z(), [&](std::int32_t j) {
+        Eigen::Vector3d r = p - sites[static_cast<std::size_t>(j)];
+        r.z() = wrapped_difference(r.z(), cell.depth);
+        free = free && r.squaredNorm() >= 1.0;
+      });
+      if (free) {
+        keep(p);
+        state.position.col(i) = p;
+      }
+    }
+  }
+  return state;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cell and the loose grains that a run begins with, from seed, grain number and geometry alone.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+
+#include "core/cell.hpp"
+#include "core/state.hpp"
+
+namespace shearcell {
+
+/// Thrown when the asked geometry cannot hold the grains; the message says what to change.
+class GeometryError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Geometry {
+  std::size_t grains = 0;
+  double height_over_width = 1.675;        ///< of the settled cell (supplement E)
+  double nominal_packing_fraction = 0.64;  ///< sets the width for a given number of grains
+  double fill_packing_fraction = 0.28;     ///< of the loose initial grains; sets the fill height
+  WallTexture walls = WallTexture::rough;
+  double wall_grain_area_fraction = 0.52;  ///< aimed at by the sequential addition
+  double wall_grain_recess = 0.25;         ///< largest depth of a centre behind its plane [d]
+  MovingWall moving = MovingWall::bottom;
+};
+
+/// Width L [d] of a cell of height_over_width * L by L by L that holds the grains at the nominal
+/// packing fraction. Rough walls take up a layer of 0.175 d each: the volume of their grains.
+double cell_width(const Geometry& geometry);
+
+/// The cell at its fill height, with its wall grains placed by random sequential addition.
+/// Throws GeometryError.
+Cell make_cell(const Geometry& geometry, std::uint64_t seed);
+
+/// Grains at rest at random places, none touching another, a wall grain or a plane.
+/// Throws GeometryError when they cannot be placed.
+State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed);
+
+}  // namespace shearcell

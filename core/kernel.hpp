@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The three loops over neighbours that take nearly all of the time, as plain functions over arrays.
+//
+// Each exists as a scalar text, which is the specification, and as a vector text that must give the
+// same bits. Properties that make that possible:
+//  1. One grain per lane: a grain's force is summed by its own lane, over its neighbours in
+//     ascending permanent id. No sum crosses lanes.
+//  2. A neighbour that does not touch, and padding, adds +0 to the sum, which changes no bit. So
+//     the result does not depend on which non-touching neighbours a list happens to hold.
+//  3. A position is a row {x, y, z, 0} of four doubles. Lanes load whole rows and transpose them in
+//     registers: no gathers, and nothing is written but a grain's own row.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace shearcell {
+
+/// Arrays over grains are padded to a multiple of the widest vector.
+constexpr std::size_t padded(std::size_t grains) {
+  return (grains + 7) / 8 * 8;
+}
+
+/// Offset of the row, just behind the padded grains, of a place that nothing touches.
+constexpr std::int32_t padding_offset(std::size_t grains) {
+  return static_cast<std::int32_t>(4 * padded(grains));
+}
+
+/// Neighbours as row offsets (4 * index, in doubles): `list[g * stride + k]`, k < slots[g / lanes].
+/// Rows shorter than their block's `slots` are padded with the offset of a row that touches
+/// nothing.
+struct NeighbourRows {
+  const std::int32_t* list = nullptr;
+  std::size_t stride = 0;
+  const std::uint16_t* slots = nullptr;  ///< one per block of `lanes` grains
+};
+
+/// One time step of the leapfrog for every grain of a range of blocks.
+struct StepTask {
+  std::size_t grains = 0;
+  const double* rows = nullptr;    ///< positions at this step [d], rows of 4
+  double* next_rows = nullptr;     ///< positions at the next step
+  double* velocity[3] = {};        ///< [d/s], half a step before -> half a step after
+  const double* wall_sum[3] = {};  ///< sum over wall contacts of overlap times normal [d]
+  NeighbourRows neighbours;
+  double depth = 0, per_depth = 0;
+  double keep = 0;  ///< (1 - b dt / 2m) / (1 + b dt / 2m)
+  double kick = 0;  ///< dt k/m / (1 + b dt / 2m)
+  double fall = 0;  ///< -dt g / (1 + b dt / 2m)
+  double flow = 0;  ///< dt b/m du/dy / (1 + b dt / 2m), for the fluid that follows the walls
+  double time_step = 0;
+  double top = 0;  ///< height at which that fluid stands still
+  /// Where each grain was when the list was made, in the frame that moves with the shear.
+  const double* reference[3] = {};
+  double next_shear = 0, next_top = 0;  ///< tan(theta) and top wall at the next step
+};
+
+/// Contacts of the grains near one wall with its plane and its wall grains.
+struct WallTask {
+  const double* rows = nullptr;
+  const std::int32_t* members = nullptr;  ///< row offsets of grains near this wall, ascending id,
+                                          ///< padded to whole blocks
+  std::size_t count = 0;                  ///< members without the padding
+  const double* wall_rows = nullptr;      ///< wall grains
+  NeighbourRows neighbours;               ///< member -> wall grains
+  double point[2] = {}, normal[2] = {};   ///< the plane, and its normal into the cell
+  double depth = 0, per_depth = 0;
+  double* wall_sum[3] = {};  ///< added to, per grain
+  double* push = nullptr;    ///< y component of each member's sum, or null
+};
+
+/// The inner list from the outer: neighbours within `cutoff` now.
+struct PruneTask {
+  std::size_t grains = 0;
+  const double* rows = nullptr;
+  const std::int32_t* outer = nullptr;
+  std::size_t outer_stride = 0;
+  const std::uint16_t* outer_count = nullptr;  ///< per grain
+  std::int32_t* inner = nullptr;
+  std::size_t inner_stride = 0;
+  std::uint16_t* slots = nullptr;  ///< per block
+  std::int32_t padding = 0;
+  double depth = 0, per_depth = 0;
+  double cutoff_squared = 0;
+};
+
+/// One implementation of the loops.
+struct Kernels {
+  const char* name;
+  std::size_t lanes;
+  /// Indexed [gravity on][fluid moves]. Returns the largest squared displacement from `reference`.
+  double (*step[2][2])(const StepTask&, std::size_t first_block, std::size_t last_block);
+  void (*walls)(const WallTask&);
+  /// Returns false, leaving the inner list unusable, when a row outgrows inner_stride.
+  bool (*prune)(const PruneTask&, std::size_t first_block, std::size_t last_block);
+};
+
+enum class Simd { best, scalar, avx2, avx512 };
+
+/// The implementation asked for; null where this machine lacks the instructions.
+const Kernels* find_kernels(Simd simd);
+
+const Kernels& scalar_kernels();
+
+}  // namespace shearcell

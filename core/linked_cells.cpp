@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/linked_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shearcell {
+namespace {
+
+// Clamped in floating point, so that a wild coordinate (or NaN) lands in a border cell.
+int clamp_to_cell(double scaled, int cells) {
+  if (!(scaled > 0)) return 0;
+  return static_cast<int>(std::min(scaled, static_cast<double>(cells - 1)));
+}
+
+}  // namespace
+
+LinkedCells::LinkedCells(double width, double low, double high, double depth, double reach,
+                         std::size_t max_cells)
+    : low_(low), depth_(depth) {
+  double size = reach;
+  double cells = 0;
+  const auto count = [&size](double length) {
+    return std::max(1.0, std::min(std::floor(length / size), 1e6));
+  };
+  for (;; size *= 1.26) {  // a sparse or stretched cell gets wider cells, not more memory
+    cells = count(width) * count(high - low) * count(depth);
+    if (cells <= static_cast<double>(max_cells)) break;
+  }
+  nx_ = static_cast<int>(count(width));
+  ny_ = static_cast<int>(count(high - low));
+  nz_ = static_cast<int>(count(depth));
+  per_x_ = nx_ / width;
+  per_y_ = ny_ / (high - low);
+  per_z_ = nz_ / depth;
+  head_.assign(static_cast<std::size_t>(cells), -1);
+}
+
+int LinkedCells::column(double x) const {
+  return clamp_to_cell(x * per_x_, nx_);
+}
+int LinkedCells::row(double y) const {
+  return clamp_to_cell((y - low_) * per_y_, ny_);
+}
+int LinkedCells::layer(double z) const {
+  return clamp_to_cell((z - depth_ * std::floor(z / depth_)) * per_z_, nz_);
+}
+
+void LinkedCells::insert(std::int32_t point, double x, double y, double z) {
+  const auto slot = static_cast<std::size_t>(point);
+  if (next_.size() <= slot) next_.resize(std::max(slot + 1, 2 * next_.size()), -1);
+  std::int32_t& head = head_[cell_of(x, y, z)];
+  next_[slot] = head;
+  head = point;
+}
+
+}  // namespace shearcell

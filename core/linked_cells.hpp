@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points in a grid of cells no narrower than a search distance: all near points lie in 27 cells.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace shearcell {
+
+/// A grid over [0, width] x [low, high] x [0, depth), periodic in z. Points outside in x or y are
+/// kept in the border cells, which stays correct as long as nothing is farther out than a cell.
+class LinkedCells {
+ public:
+  /// Cells are at least `reach` wide. Lengths [d]; the number of cells is bounded by `max_cells`.
+  LinkedCells(double width, double low, double high, double depth, double reach,
+              std::size_t max_cells = std::size_t{1} << 26);
+
+  /// Adds point `index`; a later point of a cell is visited before an earlier one.
+  void insert(std::int32_t index, double x, double y, double z);
+
+  /// Calls visit(index) for every point in the cell of (x, y, z) and its neighbours, once each.
+  template <class Visit>
+  void for_each_near(double x, double y, double z, Visit&& visit) const {
+    const int cx = column(x), cy = row(y), cz = layer(z);
+    // With fewer than three layers the neighbours above and below coincide.
+    const int layers = nz_ < 3 ? nz_ : 3;
+    for (int iy = cy > 0 ? cy - 1 : 0; iy <= cy + 1 && iy < ny_; ++iy) {
+      for (int k = 0; k < layers; ++k) {
+        const int iz = nz_ < 3 ? k : (cz + k - 1 + nz_) % nz_;
+        for (int ix = cx > 0 ? cx - 1 : 0; ix <= cx + 1 && ix < nx_; ++ix) {
+          for (std::int32_t p = head_[index(ix, iy, iz)]; p >= 0;
+               p = next_[static_cast<std::size_t>(p)]) {
+            visit(p);
+          }
+        }
+      }
+    }
+  }
+
+  /// Rank of the cell of a point along a path through memory that keeps neighbours close.
+  std::size_t cell_of(double x, double y, double z) const {
+    return index(column(x), row(y), layer(z));
+  }
+
+ private:
+  std::size_t index(int ix, int iy, int iz) const {
+    return (static_cast<std::size_t>(iy) * static_cast<std::size_t>(nz_) +
+            static_cast<std::size_t>(iz)) *
+               static_cast<std::size_t>(nx_) +
+           static_cast<std::size_t>(ix);
+  }
+  int column(double x) const;
+  int row(double y) const;
+  int layer(double z) const;
+
+  double low_, depth_;
+  double per_x_, per_y_, per_z_;
+  int nx_, ny_, nz_;
+  std::vector<std::int32_t> head_;
+  std::vector<std::int32_t> next_;
+};
+
+}  // namespace shearcell

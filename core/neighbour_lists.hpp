@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which grains may touch: an outer list found in linked cells, and an inner one pruned from it.
+//
+// Bursts of fast grains make any single thin skin expire every few dozen steps, so the costly
+// search is done at a wide cutoff and the list that the kernel walks is often cut down from that.
+// Both lists are valid as long as no pair outside them can touch. Displacements are counted in the
+// frame that moves with the affine shear; the shear itself is bounded by the strain since the list
+// was made. The choice of cutoffs never changes a result (kernel.hpp).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/aligned.hpp"
+#include "core/cell.hpp"
+#include "core/kernel.hpp"
+#include "core/linked_cells.hpp"
+
+namespace shearcell {
+
+/// How the lists are kept. These change the speed, never the bits.
+struct ListSettings {
+  double outer_cutoff = 1.35;  ///< [d]
+  double inner_cutoff = 1.08;  ///< [d]
+  bool rebuild_every_step = false;
+  bool sort_memory = true;  ///< keep grains that are near in space near in memory
+};
+
+/// Positions and pose that displacements are counted from.
+class Reference {
+ public:
+  void set(const double* rows, std::size_t grains, const WallPose& pose);
+  /// Largest distance [d] that a grain has moved since, apart from the affine shear.
+  double farthest(const double* rows, std::size_t grains, const WallPose& pose) const;
+  /// Largest distance that a wall grain or wall plane has moved since, apart from the shear.
+  double wall_travel(const WallPose& pose) const;
+  /// Lower bound of what a separation of length 1 has shrunk to by the affine shear since.
+  double stretch(const WallPose& pose) const;
+  const double* data(std::size_t axis) const { return at_[axis].data(); }
+
+ private:
+  std::array<AlignedVector<double>, 3> at_;  // x is that in the untilted frame, top wall as origin
+  WallPose pose_;
+};
+
+class NeighbourLists {
+ public:
+  NeighbourLists(const Kernels& kernels, const ListSettings& settings, double depth);
+
+  /// False when, at the cutoff of the inner list, a pair outside it may touch now.
+  bool inner_valid(double farthest, const WallPose& pose) const;
+  /// False when a pair outside the outer list may come within the inner cutoff now.
+  bool outer_valid(const double* rows, std::size_t grains, const WallPose& pose) const;
+
+  /// Finds all pairs within the outer cutoff. `near` holds the grains; `id` orders each row.
+  void build(const double* rows, std::size_t grains, const std::vector<std::int32_t>& id,
+             const LinkedCells& near, const WallPose& pose);
+  /// Cuts the inner list from the outer one.
+  void prune(const double* rows, std::size_t grains, const WallPose& pose);
+
+  NeighbourRows rows() const { return {inner_.data(), inner_stride_, slots_.data()}; }
+  const Reference& reference() const { return inner_reference_; }
+  std::size_t bytes() const;
+
+ private:
+  const Kernels& kernels_;
+  ListSettings settings_;
+  double depth_;
+  Reference outer_reference_, inner_reference_;
+  std::size_t outer_stride_ = 32, inner_stride_ = 16;
+  AlignedVector<std::int32_t> outer_, inner_;
+  std::vector<std::uint16_t> outer_count_, slots_;
+};
+
+}  // namespace shearcell

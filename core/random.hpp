@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Counter-based random numbers: the value at a counter depends on key and counter alone, so no
+// generator state has to be stored, shared or split.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace shearcell {
+
+/// Philox4x32-10 (Salmon, Moraes, Dror, Shaw: "Parallel random numbers: as easy as 1, 2, 3", SC11).
+std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
+                                        std::array<std::uint32_t, 2> key);
+
+/// Two uniform numbers in [0, 1) with 53 random bits each.
+std::array<double, 2> uniform_pair(std::array<std::uint32_t, 4> counter, std::uint64_t seed);
+
+}  // namespace shearcell

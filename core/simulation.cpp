@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace shearcell {
+namespace {
+
+// Outer builds between two sorts of the memory: grains diffuse slowly.
+constexpr std::uint64_t kBuildsPerSort = 64;
+
+const Kernels& require_kernels(Simd simd) {
+  const Kernels* kernels = find_kernels(simd);
+  if (kernels == nullptr) {
+    throw std::invalid_argument("this machine lacks the instructions of the kernel asked for");
+  }
+  return *kernels;
+}
+
+}  // namespace
+
+Simulation::Simulation(Cell cell, const Scene& scene, const State& state, EngineSettings settings)
+    : cell_(std::move(cell)),
+      scene_(scene),
+      settings_(settings),
+      kernels_(require_kernels(settings.simd)),
+      lists_(kernels_, settings.lists, cell_.depth),
+      walls_(kernels_, cell_) {
+  if (state.position.cols() == 0 || state.position.cols() != state.velocity.cols()) {
+    throw std::invalid_argument("a simulation needs as many velocities as positions, and a grain");
+  }
+  // A grain must not meet a neighbour through both seams.
+  if (!(cell_.depth > 2 * settings.lists.outer_cutoff)) {
+    throw std::invalid_argument("the depth of the cell, " + std::to_string(cell_.depth) +
+                                " d, is less than twice the cutoff of the neighbour list");
+  }
+  load(state);
+  set_constants();
+}
+
+void Simulation::load(const State& state) {
+  const auto grains = static_cast<std::size_t>(state.position.cols());
+  const std::size_t room = padded(grains);
+  step_ = state.step;
+  wall_height_ = state.wall_height;
+  wall_velocity_ = state.wall_velocity;
+  id_.resize(grains);
+  std::iota(id_.begin(), id_.end(), 0);
+  for (auto& axis : velocity_) axis.assign(room, 0.0);
+  for (auto& axis : wall_sum_) axis.assign(room, 0.0);
+  // Spare lanes sit far off on one side and the padding of the lists far off on the other, so that
+  // neither touches anything (nor each other, for which NaN would not be safe: 0 * NaN).
+  for (auto& rows : rows_) {
+    rows.assign(4 * (room + 1), 0.0);
+    for (std::size_t g = grains; g < room; ++g) rows[4 * g] = 1e30;
+    rows[4 * room] = -1e30;
+  }
+  for (std::size_t g = 0; g < grains; ++g) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      rows_[0][4 * g + axis] = state.position(a, static_cast<Eigen::Index>(g));
+      velocity_[axis][g] = state.velocity(a, static_cast<Eigen::Index>(g));
+    }
+  }
+}
+
+void Simulation::set_constants() {
+  const double half = 0.5 * scene_.drag_rate * scene_.time_step;
+  const double implicit = 1 / (1 + half);
+  task_.grains = id_.size();
+  task_.depth = cell_.depth;
+  task_.per_depth = 1 / cell_.depth;
+  task_.keep = (1 - half) * implicit;
+  task_.kick = scene_.time_step * scene_.stiffness * implicit;
+  task_.fall = -scene_.time_step * scene_.gravity * implicit;
+  task_.time_step = scene_.time_step;
+}
+
+void Simulation::begin_stage(const Scene& scene) {
+  scene_ = scene;
+  step_ = 0;
+  set_constants();
+}
+
+WallPose Simulation::pose_at(const Drive& drive, std::uint64_t step) const {
+  return wall_pose(cell_, tilt(drive, step).theta, wall_height_);
+}
+
+void Simulation::advance(const Drive& drive, std::uint64_t steps) {
+  if (steps == 0) return;
+  pose_ = pose_at(drive, step_);
+  if (counts_.builds == 0) rebuild_lists();
+  for (std::uint64_t n = 0; n < steps; ++n) step_once(drive);
+}
+
+void Simulation::step_once(const Drive& drive) {
+  const double push = walls_.evaluate(rows_[0].data(), pose_, wall_sum_);
+  move_wall(push);
+  const WallPose next = pose_at(drive, step_ + 1);
+
+  const bool flow = scene_.fluid == Fluid::cell && drive.amplitude != 0;
+  if (flow) {
+    // du/dy of Eq. S5 with the height counted from the top wall: theta' sec^2(theta).
+    const double omega =
+        2 * std::numbers::pi / (static_cast<double>(drive.steps_per_cycle) * scene_.time_step);
+    const double shear_rate = tilt(drive, step_).rate * omega / (pose_.cos_theta * pose_.cos_theta);
+    task_.flow = scene_.time_step * scene_.drag_rate * shear_rate /
+                 (1 + 0.5 * scene_.drag_rate * scene_.time_step);
+    task_.top = pose_.top;
+  }
+  task_.rows = rows_[0].data();
+  task_.next_rows = rows_[1].data();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    task_.velocity[axis] = velocity_[axis].data();
+    task_.wall_sum[axis] = wall_sum_[axis].data();
+    task_.reference[axis] = lists_.reference().data(axis);
+  }
+  task_.neighbours = lists_.rows();
+  task_.next_shear = next.tan_theta;
+  task_.next_top = next.top;
+  const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;
+  const double square = kernels_.step[scene_.gravity != 0][flow](task_, 0, blocks);
+
+  std::swap(rows_[0], rows_[1]);
+  ++step_;
+  pose_ = next;
+  if (!lists_.inner_valid(std::sqrt(square), pose_)) refresh_lists();
+}
+
+void Simulation::move_wall(double push) {
+  // Contacts push the wall by minus what they push the grains by. The pressure points inwards.
+  const double area = cell_.width * cell_.depth;
+  const double inwards = cell_.moving == MovingWall::bottom ? 1.0 : -1.0;
+  const double force = inwards * scene_.pressure * area - scene_.stiffness * push;
+  const double mass = scene_.wall_mass * area;
+  const double half = 0.5 * scene_.time_step * scene_.wall_drag / scene_.wall_mass;
+  wall_velocity_ = ((1 - half) * wall_velocity_ + scene_.time_step * (force / mass)) / (1 + half);
+  wall_height_ += scene_.time_step * wall_velocity_;
+}
+
+void Simulation::refresh_lists() {
+  if (!lists_.outer_valid(rows_[0].data(), id_.size(), pose_)) {
+    rebuild_lists();
+    return;
+  }
+  lists_.prune(rows_[0].data(), id_.size(), pose_);
+  ++counts_.prunes;
+}
+
+void Simulation::rebuild_lists() {
+  const double cutoff = settings_.lists.outer_cutoff;
+  const auto fill = [&] {
+    LinkedCells near(cell_.width, pose_.bottom, pose_.top, cell_.depth,
+                     cutoff * std::sqrt(1 + pose_.tan_theta * pose_.tan_theta));
+    for (std::size_t g = id_.size(); g-- > 0;) {
+      const double* p = rows_[0].data() + 4 * g;
+      near.insert(static_cast<std::int32_t>(g), p[0] - pose_.tan_theta * (p[1] - pose_.top), p[1],
+                  p[2]);
+    }
+    return near;
+  };
+  LinkedCells near = fill();
+  if (settings_.lists.sort_memory && counts_.builds % kBuildsPerSort == 0) {
+    sort_memory(near);
+    near = fill();
+  }
+  lists_.build(rows_[0].data(), id_.size(), id_, near, pose_);
+  walls_.build(rows_[0].data(), id_.size(), id_, pose_, cutoff);
+  for (auto& axis : wall_sum_) std::fill(axis.begin(), axis.end(), 0.0);
+  lists_.prune(rows_[0].data(), id_.size(), pose_);
+  ++counts_.builds;
+  ++counts_.prunes;
+}
+
+void Simulation::sort_memory(const LinkedCells& near) {
+  const std::size_t grains = id_.size();
+  std::vector<std::size_t> rank(grains), order(grains);
+  for (std::size_t g = 0; g < grains; ++g) {
+    const double* p = rows_[0].data() + 4 * g;
+    rank[g] = near.cell_of(p[0] - pose_.tan_theta * (p[1] - pose_.top), p[1], p[2]);
+  }
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return rank[a] != rank[b] ? rank[a] < rank[b] : id_[a] < id_[b];
+  });
+  const auto old_id = id_;
+  const auto old_velocity = velocity_;
+  for (std::size_t g = 0; g < grains; ++g) {
+    const std::size_t from = order[g];
+    id_[g] = old_id[from];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      rows_[1][4 * g + axis] = rows_[0][4 * from + axis];
+      velocity_[axis][g] = old_velocity[axis][from];
+    }
+  }
+  std::swap(rows_[0], rows_[1]);
+}
+
+State Simulation::state() const {
+  State state;
+  state.step = step_;
+  state.wall_height = wall_height_;
+  state.wall_velocity = wall_velocity_;
+  const auto grains = static_cast<Eigen::Index>(id_.size());
+  state.position.resize(3, grains);
+  state.velocity.resize(3, grains);
+  for (std::size_t g = 0; g < id_.size(); ++g) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      state.position(a, id_[g]) = rows_[0][4 * g + axis];
+      state.velocity(a, id_[g]) = velocity_[axis][g];
+    }
+  }
+  return state;
+}
+
+std::size_t Simulation::bytes() const {
+  return 8 * (rows_[0].size() + rows_[1].size() + 3 * (velocity_[0].size() + wall_sum_[0].size())) +
+         4 * id_.size() + lists_.bytes() + walls_.bytes();
+}
+
+}  // namespace shearcell

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One cell being simulated: the time loop over contacts, drag, gravity, drive and moving wall.
+//
+// The integrator is the leapfrog with the drag taken implicitly: with v at half steps,
+//   v' = [(1 - b dt/2m) v + dt (F/m + b/m u)] / (1 + b dt/2m),   x' = x + dt v',
+// where F depends on positions alone and u is the fluid's velocity. The moving wall obeys the same
+// scheme. It is velocity Verlet seen at half steps; a restart from (x, v, step) is exact.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/aligned.hpp"
+#include "core/cell.hpp"
+#include "core/drive.hpp"
+#include "core/kernel.hpp"
+#include "core/neighbour_lists.hpp"
+#include "core/scene.hpp"
+#include "core/state.hpp"
+#include "core/wall_contacts.hpp"
+
+namespace shearcell {
+
+/// How fast a simulation runs, never what it computes.
+struct EngineSettings {
+  Simd simd = Simd::best;
+  ListSettings lists;
+};
+
+/// How often the lists were made anew.
+struct ListCounts {
+  std::uint64_t builds = 0;
+  std::uint64_t prunes = 0;
+};
+
+class Simulation {
+ public:
+  /// Takes the state over. Throws std::invalid_argument when the sizes disagree, the cell is too
+  /// shallow for the cutoffs, or the machine lacks the SIMD asked for.
+  Simulation(Cell cell, const Scene& scene, const State& state, EngineSettings settings = {});
+
+  /// Advances by `steps` time steps. Throws NumericalFailure (watchdog.hpp).
+  void advance(const Drive& drive, std::uint64_t steps);
+
+  /// The state in the order of the permanent ids.
+  State state() const;
+  std::uint64_t step() const { return step_; }
+  const Cell& cell() const { return cell_; }
+  const Scene& scene() const { return scene_; }
+  std::size_t grains() const { return id_.size(); }
+  const ListCounts& list_counts() const { return counts_; }
+  const char* simd_name() const { return kernels_.name; }
+  /// Memory held for grains, walls and lists [bytes].
+  std::size_t bytes() const;
+
+  /// Starts a new stage: the step count returns to zero, and the time step may change.
+  void begin_stage(const Scene& scene);
+
+ private:
+  void load(const State& state);
+  void set_constants();
+  void rebuild_lists();
+  void refresh_lists();
+  void sort_memory(const LinkedCells& near);
+  void step_once(const Drive& drive);
+  void move_wall(double push);
+  WallPose pose_at(const Drive& drive, std::uint64_t step) const;
+
+  Cell cell_;
+  Scene scene_;
+  EngineSettings settings_;
+  const Kernels& kernels_;
+  std::uint64_t step_ = 0;
+  double wall_height_ = 0, wall_velocity_ = 0;
+  std::vector<std::int32_t> id_;  // permanent id of each grain in memory
+  std::array<AlignedVector<double>, 2> rows_;
+  std::array<AlignedVector<double>, 3> velocity_, wall_sum_;
+  NeighbourLists lists_;
+  WallContacts walls_;
+  WallPose pose_;  // at step_
+  StepTask task_;
+  ListCounts counts_;
+};
+
+}  // namespace shearcell
