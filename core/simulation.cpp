@@ -14,6 +14,9 @@ namespace {
 // Outer builds between two sorts of the memory: grains diffuse slowly.
 constexpr std::uint64_t kBuildsPerSort = 64;
 
+// Steps between two looks of the watchdog, which cost less than two steps each.
+constexpr std::uint64_t kWatchInterval = 1024;
+
 const Kernels& require_kernels(Simd simd) {
   const Kernels* kernels = find_kernels(simd);
   if (kernels == nullptr) {
@@ -81,9 +84,8 @@ void Simulation::set_constants() {
   task_.time_step = scene_.time_step;
 }
 
-void Simulation::begin_stage(const Scene& scene) {
+void Simulation::set_scene(const Scene& scene) {
   scene_ = scene;
-  step_ = 0;
   set_constants();
 }
 
@@ -130,6 +132,18 @@ void Simulation::step_once(const Drive& drive) {
   ++step_;
   pose_ = next;
   if (!lists_.inner_valid(std::sqrt(square), pose_)) refresh_lists();
+  if (step_ % kWatchInterval == 0) watch();
+}
+
+void Simulation::watch() const {
+  WatchTask task;
+  task.rows = rows_[0].data();
+  for (std::size_t axis = 0; axis < 3; ++axis) task.velocity[axis] = velocity_[axis].data();
+  task.id = &id_;
+  task.neighbours = lists_.rows();
+  task.lanes = kernels_.lanes;
+  task.step = step_;
+  check_grains(task, cell_, scene_, pose_, settings_.limits);
 }
 
 void Simulation::move_wall(double push) {

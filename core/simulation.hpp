@@ -21,6 +21,7 @@
 #include "core/scene.hpp"
 #include "core/state.hpp"
 #include "core/wall_contacts.hpp"
+#include "core/watchdog.hpp"
 
 namespace shearcell {
 
@@ -28,6 +29,7 @@ namespace shearcell {
 struct EngineSettings {
   Simd simd = Simd::best;
   ListSettings lists;
+  WatchdogLimits limits;  ///< these decide where a run fails, not what it computes until then
 };
 
 /// How often the lists were made anew.
@@ -56,8 +58,8 @@ class Simulation {
   /// Memory held for grains, walls and lists [bytes].
   std::size_t bytes() const;
 
-  /// Starts a new stage: the step count returns to zero, and the time step may change.
-  void begin_stage(const Scene& scene);
+  /// Other forces from here on; the state stays as it is.
+  void set_scene(const Scene& scene);
 
  private:
   void load(const State& state);
@@ -67,6 +69,7 @@ class Simulation {
   void sort_memory(const LinkedCells& near);
   void step_once(const Drive& drive);
   void move_wall(double push);
+  void watch() const;
   WallPose pose_at(const Drive& drive, std::uint64_t step) const;
 
   Cell cell_;

@@ -2,20 +2,22 @@
 // Stops a simulation that has gone wrong, with the numbers that say why.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/cell.hpp"
+#include "core/kernel.hpp"
 #include "core/scene.hpp"
-#include "core/state.hpp"
 
 namespace shearcell {
 
-/// A run left the range in which its results mean anything.
+/// A run left the range in which its results mean anything. what() says what to change.
 class NumericalFailure : public std::runtime_error {
  public:
-  NumericalFailure(const std::string& quantity, double value, double limit, std::int64_t grain,
+  NumericalFailure(std::string quantity, double value, double limit, std::int64_t grain,
                    std::uint64_t step, const std::string& remedy);
   std::string quantity;
   double value;
@@ -26,13 +28,23 @@ class NumericalFailure : public std::runtime_error {
 
 struct WatchdogLimits {
   double overlap = 0.1;  ///< largest overlap of two grains [d]
-  double escape = 0.5;   ///< farthest a centre may be outside a wall plane [d]
+  double escape = 0.5;   ///< farthest a centre may be behind a wall plane [d]
 };
 
-/// Checks that every number is finite, every grain inside the walls, no overlap above its limit and
-/// no grain faster than a free one that all its contact energy at that limit could have thrown.
-/// Cost: about that of two time steps. Throws NumericalFailure.
-void check_state(const Cell& cell, const Scene& scene, const State& state, const WallPose& pose,
-                 const WatchdogLimits& limits);
+/// What the watchdog looks at; arrays as in kernel.hpp.
+struct WatchTask {
+  const double* rows = nullptr;
+  const double* velocity[3] = {};
+  const std::vector<std::int32_t>* id = nullptr;
+  NeighbourRows neighbours;
+  std::size_t lanes = 1;
+  std::uint64_t step = 0;
+};
+
+/// Checks that every number is finite, every grain inside the walls, no overlap above its limit,
+/// and no grain faster than all the energy of twelve contacts at that limit could have thrown it.
+/// Costs less than two time steps. Throws NumericalFailure for the first grain in memory found so.
+void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, const WallPose& pose,
+                  const WatchdogLimits& limits);
 
 }  // namespace shearcell

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one error that analysis raises: the input is no packing that can be measured.
+#pragma once
+
+#include <stdexcept>
+
+namespace shearcell {
+
+/// Says which grain, figure or file is at fault, and why.
+class AnalysisError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace shearcell

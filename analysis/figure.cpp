@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/figure.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "analysis/error.hpp"
+#include "analysis/figures/figures.hpp"
+
+namespace shearcell {
+namespace {
+
+constexpr std::array figures = {
+    Figure{"S2", "Still fluid and fluid that moves with the cell", figure_s2},
+};
+
+constexpr int significant_digits = 9;
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c;
+  }
+  return result + '"';
+}
+
+template <typename... Format>
+std::string digits(Format... value_and_format) {
+  std::array<char, 32> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value_and_format...);
+  return {buffer.data(), end.ptr};
+}
+
+struct FieldText {
+  std::string operator()(std::monostate) const { return {}; }
+  std::string operator()(double value) const {
+    if (!std::isfinite(value)) return {};
+    return digits(value == 0 ? 0.0 : value, std::chars_format::general, significant_digits);
+  }
+  std::string operator()(std::int64_t value) const { return digits(value); }
+  std::string operator()(const std::string& value) const { return quoted(value); }
+};
+
+}  // namespace
+
+TableValue table_value(const std::optional<double>& value) {
+  if (value) return *value;
+  return std::monostate{};
+}
+
+std::string to_csv(const FigureTable& table) {
+  std::string text;
+  const auto end_field = [&](std::size_t k, std::size_t count) {
+    text += k + 1 < count ? ',' : '\n';
+  };
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    text += quoted(table.columns[k]);
+    end_field(k, table.columns.size());
+  }
+  for (const std::vector<TableValue>& row : table.rows) {
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      text += std::visit(FieldText{}, row[k]);
+      end_field(k, row.size());
+    }
+  }
+  return text;
+}
+
+std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / (table.name + ".csv");
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << to_csv(table);
+  file.close();
+  if (!file) throw AnalysisError("cannot write " + path.string());
+  return path;
+}
+
+std::span<const Figure> all_figures() {
+  return figures;
+}
+
+const Figure* find_figure(std::string_view name) {
+  const auto* found = std::find_if(figures.begin(), figures.end(),
+                                   [&](const Figure& figure) { return figure.name == name; });
+  return found == figures.end() ? nullptr : found;
+}
+
+}  // namespace shearcell

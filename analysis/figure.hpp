@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a figure is: measured runs in, tables with a plot script out. The same runs give the same
+// bytes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "analysis/measures.hpp"
+
+namespace shearcell {
+
+struct CheckpointMeasures {
+  double cycle = 0;  ///< cycles since the stage began
+  std::uint64_t step = 0;
+  std::string sha256;  ///< of the checkpoint file
+  Measures measures;
+};
+
+/// One run as a figure sees it.
+struct FigureRun {
+  std::string run_id;
+  std::string variant;    ///< the curve that it belongs to, as the manifest names it
+  nlohmann::json labels;  ///< the swept parameters of the run
+  std::uint64_t seed = 0;
+  std::vector<CheckpointMeasures> checkpoints;  ///< by cycle
+};
+
+/// Empty (not measured, or no error from one run), a number, a whole number, or text.
+using TableValue = std::variant<std::monostate, double, std::int64_t, std::string>;
+
+TableValue table_value(const std::optional<double>& value);
+
+/// One panel: its data and how gnuplot draws them.
+struct FigureTable {
+  std::string name;                  ///< "S2a": letters, digits, '-' and '_'
+  std::vector<std::string> columns;  ///< with the unit at the end where there is one
+  std::vector<std::vector<TableValue>> rows;
+  /// gnuplot commands that read the variable `data`, the table's CSV file; draw_svg() sets it, the
+  /// terminal and the output.
+  std::string plot;
+};
+
+/// RFC 4180 with a header row and "\n" line ends. Numbers carry nine significant digits, which is
+/// more than any measure is good for and the same on every machine; a number that is not finite
+/// leaves its field empty.
+std::string to_csv(const FigureTable& table);
+
+/// Writes FOLDER/NAME.csv and returns its path. Throws AnalysisError when it cannot.
+std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder);
+
+/// A figure of the supplement: its panels in order.
+struct Figure {
+  std::string_view name;
+  std::string_view title;
+  std::vector<FigureTable> (*make)(std::span<const FigureRun> runs);
+};
+
+/// Every figure that can be made, in the order of the supplement.
+std::span<const Figure> all_figures();
+
+/// The figure with that name ("S2"), or null.
+const Figure* find_figure(std::string_view name);
+
+}  // namespace shearcell

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/measures.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "analysis/bond_order.hpp"
+#include "analysis/packing_fraction.hpp"
+#include "analysis/voronoi.hpp"
+
+namespace shearcell {
+namespace {
+
+/// Mean surface [d^2] of the selected cells; 0 when none is selected, and then nothing uses it.
+double mean_surface(const std::vector<double>& surface, const std::vector<std::uint8_t>& selected) {
+  double sum = 0;
+  double count = 0;
+  for (std::size_t i = 0; i < selected.size(); ++i) {
+    if (selected[i] == 0) continue;
+    sum += surface[i];
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+void find_structures(GrainMeasures& grains) {
+  const std::size_t count = grains.q6.size();
+  grains.phi_local.resize(count);
+  grains.structure.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    grains.phi_local[i] = local_packing_fraction(grains.largest_overlap[i], grains.cell_volume[i]);
+    grains.structure[i] = structure(grains.phi_local[i], grains.q6[i]);
+  }
+}
+
+void find_crystallites(const VoronoiDiagram& diagram, Analysis& analysis) {
+  GrainMeasures& grains = analysis.grains;
+  std::vector<std::uint8_t> crystalline(grains.structure.size());
+  double fcc = 0;
+  double hcp = 0;
+  for (std::size_t i = 0; i < crystalline.size(); ++i) {
+    if (grains.interior[i] == 0) continue;
+    crystalline[i] = grains.structure[i] == Structure::disordered ? 0 : 1;
+    fcc += grains.structure[i] == Structure::fcc ? 1 : 0;
+    hcp += grains.structure[i] == Structure::hcp ? 1 : 0;
+  }
+  grains.crystallites =
+      crystallites(diagram, crystalline, mean_surface(grains.cell_surface, grains.interior));
+  Measures& all = analysis.measures;
+  const auto interior = static_cast<double>(all.interior_grains);
+  all.fcc_percent = 100 * fcc / interior;
+  all.hcp_percent = 100 * hcp / interior;
+  all.crystalline_percent = 100 * (fcc + hcp) / interior;
+  all.crystallites = grains.crystallites.size.size();
+  all.largest_crystallite = static_cast<std::size_t>(grains.crystallites.largest);
+}
+
+}  // namespace
+
+Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions) {
+  Analysis analysis;
+  Measures& all = analysis.measures;
+  GrainMeasures& grains = analysis.grains;
+
+  VoronoiDiagram diagram = voronoi(cell, pose, positions);
+  grains.q6 = bond_order_q6(diagram);
+  grains.cell_volume = std::move(diagram.volume);
+  grains.cell_surface = std::move(diagram.surface);
+  Overlaps contact = overlaps(cell, pose, positions);
+  grains.largest_overlap = std::move(contact.largest);
+  grains.interior = interior_grains(cell, pose, positions);
+
+  all.grains = grains.q6.size();
+  all.interior_grains = static_cast<std::size_t>(
+      std::count(grains.interior.begin(), grains.interior.end(), std::uint8_t{1}));
+  const PackingFractions fractions =
+      packing_fractions(grains.largest_overlap, grains.cell_volume, grains.interior);
+  all.phi = fractions.phi;
+  all.phi_uncorrected = fractions.phi_uncorrected;
+  all.mean_overlap = contact.mean;
+  const auto contacts =
+      std::accumulate(contact.contacts.begin(), contact.contacts.end(), std::int64_t{0});
+  all.contacts_per_grain = static_cast<double>(contacts) / static_cast<double>(all.grains);
+
+  find_structures(grains);
+  find_crystallites(diagram, analysis);
+  return analysis;
+}
+
+Analysis analyse(const Checkpoint& checkpoint) {
+  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  return analyse(checkpoint.cell, pose, checkpoint.state.position);
+}
+
+Measures measure(const Checkpoint& checkpoint) {
+  return analyse(checkpoint).measures;
+}
+
+}  // namespace shearcell

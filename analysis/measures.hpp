@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything that is measured on one checkpoint.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "analysis/crystal.hpp"
+#include "provenance/checkpoint.hpp"
+
+namespace shearcell {
+
+/// Of one packing. Means over no grain at all are not a number.
+struct Measures {
+  std::size_t grains = 0;               ///< N
+  std::size_t interior_grains = 0;      ///< N_inves, at least 1.5 d from the wall surfaces
+  double phi = 0;                       ///< Eq. S4 over interior grains
+  double phi_uncorrected = 0;           ///< phi_u, Eq. S2 over interior grains
+  double crystalline_percent = 0;       ///< of interior grains [%]
+  double fcc_percent = 0;               ///< of interior grains [%]
+  double hcp_percent = 0;               ///< of interior grains [%]
+  double mean_overlap = 0;              ///< Eq. S3 over all pairs of grains [d]
+  double contacts_per_grain = 0;        ///< with grains and wall grains, over all grains
+  std::size_t crystallites = 0;         ///< of interior grains
+  std::size_t largest_crystallite = 0;  ///< grains in it
+};
+
+/// One entry per grain, by grain id.
+struct GrainMeasures {
+  std::vector<double> cell_volume;      ///< [d^3]
+  std::vector<double> cell_surface;     ///< [d^2]
+  std::vector<double> largest_overlap;  ///< delta_max,i [d]
+  std::vector<double> phi_local;
+  std::vector<double> q6;
+  std::vector<Structure> structure;    ///< of every grain, near the walls too
+  std::vector<std::uint8_t> interior;  ///< 1 or 0
+  Crystallites crystallites;           ///< of crystalline interior grains
+};
+
+struct Analysis {
+  Measures measures;
+  GrainMeasures grains;
+};
+
+/// Measures of a packing and of each of its grains. Throws AnalysisError as voronoi() does.
+Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions);
+Analysis analyse(const Checkpoint& checkpoint);
+
+/// The same without the per-grain arrays.
+Measures measure(const Checkpoint& checkpoint);
+
+}  // namespace shearcell

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plain facts about a state, each by the most direct route: what a run records as it goes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "core/cell.hpp"
+#include "core/scene.hpp"
+#include "core/state.hpp"
+
+namespace shearcell {
+
+/// One touch of a grain. `other` is a grain (kind grain), a wall grain's place in
+/// Cell::wall_grains (wall_grain), or a WallSide (wall_plane).
+struct Contact {
+  enum class Kind : std::uint8_t { grain, wall_grain, wall_plane };
+  Kind kind;
+  std::int32_t grain;
+  std::int32_t other;
+  WallSide side;           ///< of a wall contact
+  double overlap;          ///< [d]
+  Eigen::Vector3d normal;  ///< unit vector towards `grain`
+};
+
+/// Calls visit for every contact; a pair of grains once, with grain < other.
+void for_each_contact(const Cell& cell, const State& state, const WallPose& pose,
+                      const std::function<void(const Contact&)>& visit);
+
+struct Diagnostics {
+  double kinetic_energy = 0;      ///< per grain, at the half step [m d^2/s^2]
+  double mean_overlap = 0;        ///< Eq. S3 over pairs of grains [d]
+  double largest_overlap = 0;     ///< of two spheres [d]
+  double contacts_per_grain = 0;  ///< touches of a grain with grains, wall grains and planes
+  double wall_imbalance = 0;      ///< (P A_w - contact force on the moving wall) / (P A_w)
+};
+
+/// Facts about a state. With P = 0 the imbalance is relative to k d^2 instead.
+Diagnostics diagnose(const Cell& cell, const Scene& scene, const State& state,
+                     const WallPose& pose);
+
+}  // namespace shearcell

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the subcommands share: where the store is, how to print, and how the program ends.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "provenance/store.hpp"
+
+namespace shearcell::cli {
+
+enum ExitCode : int {
+  kDone = 0,
+  kOtherError = 1,
+  kUsageError = 2,  ///< usage or manifest
+  kRunFailed = 3,   ///< a run failed numerically
+  kStoreDamaged = 4,
+  kInterrupted = 85,  ///< resumable
+};
+
+/// Filled in by the options, read by the subcommands.
+struct Context {
+  std::string store = "shearcell-store";
+  bool json = false;
+  int exit_code = kDone;
+};
+
+/// Each subcommand lives in a file of its own and adds itself here.
+void add_plan(CLI::App& app, Context& context);
+void add_run(CLI::App& app, Context& context);
+void add_status(CLI::App& app, Context& context);
+void add_log(CLI::App& app, Context& context);
+void add_show(CLI::App& app, Context& context);
+void add_verify(CLI::App& app, Context& context);
+void add_figures(CLI::App& app, Context& context);
+
+/// --store DIR, and --json where the subcommand prints facts.
+void add_common_options(CLI::App& command, Context& context, bool with_json);
+
+/// Prints facts for programs: one JSON value, indented by two.
+void print_json(const nlohmann::json& facts);
+
+/// Prints rows under a header, each column as wide as its longest cell; numbers to the right.
+void print_table(const std::vector<std::string>& header,
+                 const std::vector<std::vector<std::string>>& rows);
+
+/// "12.3 kB".
+std::string format_bytes(double bytes);
+
+}  // namespace shearcell::cli

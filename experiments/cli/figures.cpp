@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `figures`: regenerates figures from stored checkpoints.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/report/regenerate.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+struct FigureOptions {
+  std::vector<std::string> names;
+  bool all = false;
+  std::string out = "shearcell-figures";
+  std::optional<std::string> scale;
+};
+
+std::string known_figures() {
+  std::string names;
+  for (const Figure& figure : all_figures()) names += " " + std::string(figure.name);
+  return names;
+}
+
+void complain(const RegeneratedFigure& result) {
+  for (const std::string& line : result.damage) fmt::print(stderr, "left out: {}\n", line);
+  if (!result.plot_error.empty()) fmt::print(stderr, "no plot: {}\n", result.plot_error);
+}
+
+nlohmann::json facts(const RegeneratedFigure& result) {
+  nlohmann::json files = nlohmann::json::array();
+  for (const auto& file : result.files) files.push_back(file.string());
+  return {{"figure", result.name}, {"scale", result.scale},
+          {"runs", result.runs},   {"checkpoints", result.checkpoints},
+          {"files", files},        {"damage", result.damage}};
+}
+
+void figures(const FigureOptions& options, Context& context) {
+  Store store(context.store, Access::write);
+  const std::vector<std::string> names =
+      options.all || options.names.empty() ? figures_of_store(store) : options.names;
+  for (const std::string& name : names) {
+    if (find_figure(name) == nullptr) {
+      throw NotFound("there is no figure " + name + "; known are" + known_figures());
+    }
+  }
+  RegenerateOptions how;
+  how.folder = options.out;
+  how.scale = options.scale;
+  how.workers = std::max(1U, std::thread::hardware_concurrency());
+  if (isatty(STDERR_FILENO) != 0) {
+    how.report = [](std::size_t done, std::size_t total) {
+      fmt::print(stderr, "\rmeasuring checkpoint {} of {}{}", done, total,
+                 done == total ? "\n" : "");
+    };
+  }
+  nlohmann::json list = nlohmann::json::array();
+  for (const std::string& name : names) {
+    const RegeneratedFigure result = regenerate(store, *find_figure(name), how);
+    complain(result);
+    if (!result.damage.empty()) context.exit_code = kStoreDamaged;
+    if (!result.plot_error.empty() && context.exit_code == kDone) context.exit_code = kOtherError;
+    list.push_back(facts(result));
+    if (context.json) continue;
+    fmt::print("{} ({} scale): {} runs, {} checkpoints\n", result.name,
+               result.scale.empty() ? "base" : result.scale, result.runs, result.checkpoints);
+    for (const auto& file : result.files) fmt::print("  {}\n", file.string());
+  }
+  if (context.json) print_json({{"figures", list}});
+}
+
+}  // namespace
+
+void add_figures(CLI::App& app, Context& context) {
+  auto options = std::make_shared<FigureOptions>();
+  CLI::App* command = app.add_subcommand("figures", "Regenerate figures from the store alone");
+  command->add_option("figure", options->names, "Figures, as S2 (default: all)");
+  command->add_flag("--all", options->all, "All that the store's manifests ask for");
+  command->add_option("--out", options->out, "Folder to write to")
+      ->capture_default_str()
+      ->type_name("DIR");
+  command->add_option("--scale", options->scale, "Scale of the runs (default: declared last)");
+  add_common_options(*command, context, true);
+  command->footer(
+      "Writes CSV and SVG for each panel, and NAME.lineage.json: which checkpoints they came "
+      "from.\n"
+      "Examples:\n  shearcell figures S2 --out figures\n  shearcell figures --all");
+  command->callback([options, &context] { figures(*options, context); });
+}
+
+}  // namespace shearcell::cli

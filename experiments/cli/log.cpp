@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `log`: the events, of the whole store or of one run, oldest first.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "experiments/cli/command.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+// The one fact of an event that a person looks for.
+std::string gist(const Event& event) {
+  const nlohmann::json body = event.body();
+  for (const char* key : {"why", "error", "cycle", "attempt", "experiment", "path", "kind"}) {
+    if (!body.contains(key)) continue;
+    const nlohmann::json& value = body[key];
+    return fmt::format("{} {:.60}", key,
+                       value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return "";
+}
+
+void print_log(const std::string& run, Context& context) {
+  const Store store(context.store, Access::read);
+  const std::string stream = run.empty() ? "" : "run/" + store.find_run(run).id;
+  const std::vector<Event> events = store.events(stream);
+  if (context.json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Event& event : events) {
+      list.push_back({{"seq", event.seq},
+                      {"stream", event.stream},
+                      {"version", event.version},
+                      {"type", event.type},
+                      {"recorded_at", event.recorded_at},
+                      {"payload", event.body()},
+                      {"hash", event.hash}});
+    }
+    print_json({{"events", list}});
+    return;
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const Event& event : events) {
+    const auto slash = event.stream.find('/');
+    rows.push_back({std::to_string(event.seq), event.recorded_at.substr(0, 19),
+                    event.stream.substr(0, slash + 9), event.type, gist(event)});
+  }
+  print_table({"seq", "UTC", "stream", "event", ""}, rows);
+}
+
+}  // namespace
+
+void add_log(CLI::App& app, Context& context) {
+  auto run = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("log", "List the events of the store or of one run");
+  command->add_option("run", *run, "Run id, or a unique beginning of it");
+  add_common_options(*command, context, true);
+  command->footer("Examples:\n  shearcell log\n  shearcell log 3f9a --json");
+  command->callback([run, &context] { print_log(*run, context); });
+}
+
+}  // namespace shearcell::cli

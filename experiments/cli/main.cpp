@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program: reads the command line and turns whatever goes wrong into a message and a code.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "core/filling.hpp"
+#include "core/watchdog.hpp"
+#include "experiments/cli/command.hpp"
+#include "experiments/manifest/manifest.hpp"
+#include "experiments/runner/host.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+constexpr const char* kDescription =
+    "Discrete element experiments on cyclically sheared frictionless grains:\n"
+    "YAML manifests expand into seeded runs, a store keeps every checkpoint, and figures are\n"
+    "regenerated from the store alone.";
+
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  shearcell plan experiments/drag.yaml --scale desk\n"
+    "  shearcell run experiments/drag.yaml --scale smoke\n"
+    "  shearcell figures S2 --out figures\n"
+    "  shearcell resume\n"
+    "\n"
+    "Exit codes: 0 done; 2 usage or manifest error; 3 a run failed numerically;\n"
+    "4 the store is damaged; 85 interrupted, resumable.";
+
+std::string version_text() {
+  const nlohmann::json facts = host_facts();
+  const nlohmann::json& build = facts["build"];
+  return fmt::format("shearcell {} ({})\n{} {}, {}", build["version"].get<std::string>(),
+                     build["commit"].get<std::string>(), build["compiler"].get<std::string>(),
+                     build["type"].get<std::string>(), facts["simd"].get<std::string>());
+}
+
+int complain(int code, const char* what) {
+  fmt::print(stderr, "shearcell: {}\n", what);
+  return code;
+}
+
+int run(int argc, char** argv) {
+  Context context;
+  CLI::App app{kDescription, "shearcell"};
+  app.footer(kFooter);
+  app.set_version_flag("--version", version_text());
+  app.require_subcommand(1);
+  for (const auto add :
+       {add_plan, add_run, add_status, add_log, add_show, add_verify, add_figures}) {
+    add(app, context);
+  }
+  try {
+    app.parse(argc, argv);
+    return context.exit_code;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kUsageError;
+  } catch (const ManifestError& error) {
+    return complain(kUsageError, error.what());
+  } catch (const NotFound& error) {
+    return complain(kUsageError, error.what());
+  } catch (const GeometryError& error) {
+    return complain(kUsageError, error.what());
+  } catch (const NumericalFailure& error) {
+    return complain(kRunFailed, error.what());
+  } catch (const StoreDamaged& error) {
+    return complain(kStoreDamaged, error.what());
+  } catch (const std::exception& error) {
+    return complain(kOtherError, error.what());
+  }
+}
+
+}  // namespace
+}  // namespace shearcell::cli
+
+int main(int argc, char** argv) {
+  return shearcell::cli::run(argc, argv);
+}

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `plan`: what a manifest expands to, what of it is done, and what the rest will cost.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/manifest/expand.hpp"
+#include "experiments/runner/cost.hpp"
+#include "experiments/runner/progress.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+struct PlanOptions {
+  std::string manifest;
+  ExpandOptions expand;
+};
+
+std::optional<Store> open_if_there(const std::string& folder) {
+  if (!std::filesystem::exists(folder)) return std::nullopt;
+  return std::optional<Store>(std::in_place, folder, Access::read);
+}
+
+// Stages of the plan, each once, with what the store holds of them.
+struct Line {
+  const PlannedRun* run;
+  const StageSpec* stage;
+  std::string state = "to do";
+  double cycle = 0;
+  StageCost left;
+};
+
+std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store) {
+  std::vector<RunRecord> known;
+  if (store) known = store->runs();
+  std::vector<Line> lines;
+  std::set<std::string> seen;
+  for (const PlannedRun& run : plan.runs) {
+    for (const StageSpec* stage : {&run.prepare, &run.shear}) {
+      if (!seen.insert(stage->key).second) continue;
+      Line line{&run, stage, "to do", 0, {}};
+      for (const RunRecord& record : known) {
+        if (record.id != stage->key) continue;
+        line.cycle = record.cycle;
+        const bool reached =
+            stage->stage == Stage::prepare || record.cycle >= static_cast<double>(run.cycles);
+        line.state = record.state == RunState::completed && reached ? "done"
+                     : record.attempts > 0                          ? name_of(record.state)
+                                                                    : "to do";
+        if (line.state == "completed") line.state = "to extend";
+      }
+      if (line.state != "done") line.left = stage_cost(run, *stage, line.cycle);
+      lines.push_back(line);
+    }
+  }
+  return lines;
+}
+
+void plan(const PlanOptions& options, Context& context) {
+  const Manifest manifest = load_manifest(options.manifest);
+  const Plan expanded = expand(manifest, options.expand);
+  for (const std::string& warning : expanded.warnings) {
+    fmt::print(stderr, "warning: {}\n", warning);
+  }
+  const std::optional<Store> store = open_if_there(context.store);
+  const std::vector<Line> lines = lines_of(expanded, store);
+  const Rate rate = expected_rate(store ? store->runs() : std::vector<RunRecord>{});
+  StageCost left;
+  for (const Line& line : lines) {
+    left.particle_steps += line.left.particle_steps;
+    left.bytes += line.left.bytes;
+  }
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  const double seconds = left.particle_steps / (rate.particle_steps_per_second * cores);
+
+  if (context.json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Line& line : lines) {
+      list.push_back({{"id", line.stage->key},
+                      {"parent", line.stage->parent},
+                      {"stage", stage_name(line.stage->stage)},
+                      {"variant", line.run->variant},
+                      {"seed", line.run->seed},
+                      {"N", line.run->grains},
+                      {"cycles", line.run->cycles},
+                      {"state", line.state},
+                      {"particle_steps_left", line.left.particle_steps},
+                      {"bytes_left", line.left.bytes}});
+    }
+    print_json({{"experiment", expanded.experiment},
+                {"scale", expanded.scale},
+                {"runs", expanded.runs.size()},
+                {"stages", list},
+                {"particle_steps_left", left.particle_steps},
+                {"bytes_left", left.bytes},
+                {"seconds_left", seconds},
+                {"cores", cores},
+                {"particle_steps_per_second_and_core", rate.particle_steps_per_second},
+                {"rate_measured", rate.measured}});
+    return;
+  }
+  fmt::print("{} at scale {}: {} runs, {} stages\n\n", expanded.experiment,
+             expanded.scale.empty() ? "base" : expanded.scale, expanded.runs.size(), lines.size());
+  std::vector<std::vector<std::string>> rows;
+  for (const Line& line : lines) {
+    const bool prepare = line.stage->stage == Stage::prepare;
+    rows.push_back({line.stage->key.substr(0, 8), std::string(stage_name(line.stage->stage)),
+                    prepare ? "" : line.run->variant, std::to_string(line.run->seed),
+                    std::to_string(line.run->grains),
+                    prepare ? "" : fmt::format("{:.4g}/{}", line.cycle, line.run->cycles),
+                    line.state});
+  }
+  print_table({"run", "stage", "variant", "seed", "N", "cycle", "state"}, rows);
+  fmt::print(
+      "\nleft: {:.3g} particle-steps, about {} on {} cores at {:.0f} M particle-steps/s each ({}),"
+      "\n      about {} on disk\n",
+      left.particle_steps, format_duration(seconds), cores, rate.particle_steps_per_second * 1e-6,
+      rate.measured ? "measured in this store" : "assumed until a run has been measured",
+      format_bytes(left.bytes));
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, Context& context) {
+  auto options = std::make_shared<PlanOptions>();
+  CLI::App* command = app.add_subcommand(
+      "plan", "Show the runs of a manifest, what is done, and the cost of the rest");
+  command->add_option("manifest", options->manifest, "YAML manifest")->required();
+  command->add_option("--scale", options->expand.scale, "Named size (default: desk)");
+  command->add_option("--cycles", options->expand.cycles, "Cycles instead of the manifest's");
+  command->add_option("--seeds", options->expand.seeds,
+                      "Number of seeds instead of the manifest's");
+  add_common_options(*command, context, true);
+  command->footer("Examples:\n  shearcell plan experiments/drag.yaml --scale paper");
+  command->callback([options, &context] { plan(*options, context); });
+}
+
+}  // namespace shearcell::cli

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `run` and `resume`: compute what is not done yet.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/manifest/expand.hpp"
+#include "experiments/runner/campaign.hpp"
+#include "experiments/runner/stop.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+struct RunOptions {
+  std::vector<std::string> manifests;
+  ExpandOptions expand;
+  std::size_t jobs = 0;
+  bool quiet = false;
+};
+
+std::size_t workers(std::size_t asked) {
+  return asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
+}
+
+void report(const CampaignResult& result, Context& context) {
+  if (context.json) {
+    print_json({{"completed", result.completed},
+                {"already_done", result.already},
+                {"failed", result.failed},
+                {"interrupted", result.interrupted},
+                {"not_begun", result.blocked},
+                {"damaged", result.damaged},
+                {"messages", result.messages}});
+  } else {
+    fmt::print(
+        "{} stages computed, {} were done already, {} failed, {} interrupted, {} not begun\n",
+        result.completed, result.already, result.failed, result.interrupted, result.blocked);
+  }
+  if (result.damaged > 0) {
+    context.exit_code = kStoreDamaged;
+  } else if (result.failed > 0) {
+    context.exit_code = kRunFailed;
+  } else if (result.interrupted > 0 || stop_requested()) {
+    context.exit_code = kInterrupted;
+    fmt::print(stderr, "Interrupted. Continue with: shearcell resume --store {}\n", context.store);
+  }
+}
+
+void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options,
+             Context& context) {
+  catch_stop_signals();
+  Progress progress(jobs.size(), options.quiet);
+  report(run_campaign(store, jobs, workers(options.jobs), progress), context);
+}
+
+void run(const RunOptions& options, Context& context) {
+  // All manifests are read before anything is written.
+  std::vector<Manifest> manifests;
+  std::vector<Plan> plans;
+  for (const std::string& path : options.manifests) {
+    manifests.push_back(load_manifest(path));
+    plans.push_back(expand(manifests.back(), options.expand));
+    for (const std::string& warning : plans.back().warnings) {
+      fmt::print(stderr, "warning: {}\n", warning);
+    }
+  }
+  Store store(context.store, Access::create);
+  std::vector<StageJob> jobs;
+  for (std::size_t m = 0; m < manifests.size(); ++m) {
+    for (StageJob& job : declare(store, manifests[m], plans[m])) {
+      const bool known = std::any_of(jobs.begin(), jobs.end(),
+                                     [&](const StageJob& other) { return other.id == job.id; });
+      if (!known) jobs.push_back(std::move(job));
+    }
+  }
+  compute(store, jobs, options, context);
+}
+
+void add_worker_options(CLI::App& command, RunOptions& options) {
+  command.add_option("--jobs,-j", options.jobs, "Runs at a time (default: one per core)")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("J");
+  command.add_flag("--quiet,-q", options.quiet, "No progress");
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Context& context) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Compute the runs of manifests");
+  command->add_option("manifest", options->manifests, "YAML manifests")->required();
+  command->add_option("--scale", options->expand.scale, "Named size (default: desk)");
+  command->add_option("--cycles", options->expand.cycles, "Cycles instead of the manifest's");
+  command->add_option("--seeds", options->expand.seeds,
+                      "Number of seeds instead of the manifest's");
+  add_worker_options(*command, *options);
+  add_common_options(*command, context, true);
+  command->footer(
+      "Examples:\n"
+      "  shearcell run experiments/drag.yaml --scale smoke\n"
+      "  shearcell run experiments/drag.yaml --scale desk --cycles 100   # extend\n"
+      "\n"
+      "What the store holds already is not computed again. Ctrl-C writes checkpoints and ends\n"
+      "with code 85; run again, or resume, to continue bit for bit.");
+  command->callback([options, &context] { run(*options, context); });
+
+  auto resume_options = std::make_shared<RunOptions>();
+  CLI::App* resume = app.add_subcommand("resume", "Continue unfinished runs");
+  resume->add_option("run", resume_options->manifests,
+                     "Run ids, or unique beginnings of them (default: all)");
+  add_worker_options(*resume, *resume_options);
+  add_common_options(*resume, context, true);
+  resume->footer("Examples:\n  shearcell resume\n  shearcell resume 3f9a");
+  resume->callback([resume_options, &context] {
+    Store store(context.store, Access::write);
+    compute(store, unfinished(store, resume_options->manifests), *resume_options, context);
+  });
+}
+
+}  // namespace shearcell::cli

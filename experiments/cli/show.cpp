@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `show`: everything the store knows about one run, checkpoint or figure.
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/runner/progress.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+nlohmann::json facts(const CheckpointRecord& c) {
+  return {{"run", c.run},
+          {"cycle", c.cycle},
+          {"step", c.step},
+          {"time_s", c.time_s},
+          {"file", c.file},
+          {"size", c.size},
+          {"sha256", c.sha256},
+          {"state_hash", c.state_hash},
+          {"rejected", c.state == CheckpointState::rejected},
+          {"observables", c.observables}};
+}
+
+void show_run(const Store& store, const RunRecord& run, Context& context) {
+  const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, true);
+  if (context.json) {
+    nlohmann::json members = nlohmann::json::array();
+    for (const Membership& m : run.memberships) {
+      members.push_back({{"experiment", m.experiment},
+                         {"scale", m.scale},
+                         {"variant", m.variant},
+                         {"seed", m.seed},
+                         {"manifest", m.manifest}});
+    }
+    nlohmann::json list = nlohmann::json::array();
+    for (const CheckpointRecord& c : checkpoints) list.push_back(facts(c));
+    print_json({{"id", run.id},
+                {"parent", run.parent},
+                {"kind", run.kind},
+                {"state", name_of(run.state)},
+                {"resolved", run.resolved},
+                {"attempts", run.attempts},
+                {"memberships", members},
+                {"checkpoints", list},
+                {"error", run.error}});
+    return;
+  }
+  fmt::print("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {} attempts\n",
+             run.id, run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state), run.cycle,
+             run.target_cycles, run.attempts);
+  if (!run.error.empty()) fmt::print("error    {}\n", run.error);
+  for (const Membership& m : run.memberships) {
+    fmt::print("part of  {} ({}) {} seed {}\n", m.experiment, m.scale.empty() ? "base" : m.scale,
+               m.variant, m.seed);
+  }
+  fmt::print("\n");
+  for (const auto& [key, value] : run.resolved.items()) {
+    if (value.is_object()) {
+      for (const auto& [name, inner] : value.items()) fmt::print("{:<32} {}\n", name, inner.dump());
+    } else {
+      fmt::print("{:<32} {}\n", key, value.dump());
+    }
+  }
+  fmt::print("\n");
+  std::vector<std::vector<std::string>> rows;
+  for (const CheckpointRecord& c : checkpoints) {
+    rows.push_back({fmt::format("{:g}", c.cycle), std::to_string(c.step), c.sha256.substr(0, 12),
+                    c.state_hash.substr(0, 12), format_bytes(static_cast<double>(c.size)),
+                    c.state == CheckpointState::rejected ? "rejected" : ""});
+  }
+  print_table({"cycle", "step", "checkpoint", "state", "size", ""}, rows);
+}
+
+void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
+  const Checkpoint checkpoint = store.load_checkpoint(record);
+  if (context.json) {
+    nlohmann::json all = facts(record);
+    all["grains"] = checkpoint.state.position.cols();
+    all["wall_grains"] = checkpoint.cell.wall_grains.size();
+    print_json(all);
+    return;
+  }
+  fmt::print("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
+             record.run);
+  fmt::print("file        {} ({}, hash verified)\n", record.file,
+             format_bytes(static_cast<double>(record.size)));
+  fmt::print("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step,
+             record.time_s);
+  fmt::print("grains      {} and {} wall grains\n", checkpoint.state.position.cols(),
+             checkpoint.cell.wall_grains.size());
+  for (const auto& [name, value] : record.observables) fmt::print("{:<42} {:.6g}\n", name, value);
+}
+
+std::optional<CheckpointRecord> find_checkpoint(const Store& store, const std::string& prefix) {
+  std::optional<CheckpointRecord> found;
+  for (const RunRecord& run : store.runs()) {
+    for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
+      if (record.sha256.rfind(prefix, 0) != 0) continue;
+      if (found) throw NotFound("several checkpoints begin with " + prefix + "; give more digits");
+      found = record;
+    }
+  }
+  return found;
+}
+
+void show(const std::string& name, Context& context) {
+  const Store store(context.store, Access::read);
+  for (const FigureRecord& figure : store.figures()) {
+    if (figure.name == name) return print_json(figure.provenance);
+  }
+  if (name.size() >= 4) {
+    if (const auto checkpoint = find_checkpoint(store, name)) {
+      return show_checkpoint(store, *checkpoint, context);
+    }
+  }
+  show_run(store, store.find_run(name), context);
+}
+
+}  // namespace
+
+void add_show(CLI::App& app, Context& context) {
+  auto name = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("show", "Show one run, checkpoint or figure");
+  command->add_option("name", *name, "Run id, checkpoint SHA-256 (or beginnings), or a figure")
+      ->required();
+  add_common_options(*command, context, true);
+  command->footer("Examples:\n  shearcell show 3f9a\n  shearcell show S2");
+  command->callback([name, &context] { show(*name, context); });
+}
+
+}  // namespace shearcell::cli

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/manifest/conversion.hpp"
+
+#include <cmath>
+
+namespace shearcell {
+Units units(const Parameters& p) {
+  return {.diameter_m = p.diameter_m, .mass_kg = p.mass_kg};
+}
+
+Scene shear_scene(const Parameters& p) {
+  return {.stiffness = p.stiffness_N_per_m / p.mass_kg,
+          .drag_rate = p.drag_kg_per_s / p.mass_kg,
+          .gravity = p.gravity_m_per_s2 / p.diameter_m,
+          .pressure = p.pressure_Pa * p.diameter_m / p.mass_kg,
+          .wall_mass = p.wall_mass_grains_per_d2,
+          .wall_drag = p.wall_drag_grains_per_d2_s,
+          .time_step = shear_time_step_s(p),
+          .fluid = p.fluid};
+}
+
+Scene settle_scene(const Parameters& p) {
+  Scene scene = shear_scene(p);
+  scene.time_step = p.settle_time_step_s;
+  scene.fluid = Fluid::still;
+  return scene;
+}
+
+Drive drive(const Parameters& p) {
+  return {.amplitude = p.amplitude_rad, .steps_per_cycle = p.steps_per_cycle, .pause_steps = 0};
+}
+
+Geometry geometry(const Parameters& p) {
+  return {.grains = static_cast<std::size_t>(p.grains),
+          .height_over_width = p.height_over_width,
+          .nominal_packing_fraction = p.nominal_packing_fraction,
+          .fill_packing_fraction = p.fill_packing_fraction,
+          .walls = p.walls,
+          .wall_grain_area_fraction = p.wall_grain_area_fraction,
+          .wall_grain_recess = p.wall_grain_recess_diameters,
+          .moving = p.moving_wall};
+}
+
+double shear_time_step_s(const Parameters& p) {
+  return p.period_s / static_cast<double>(p.steps_per_cycle);
+}
+
+double stability_limit_s(const Parameters& p) {
+  return 2 / std::sqrt(8 * p.stiffness_N_per_m / p.mass_kg);
+}
+
+bool pressure_lifts_column(const Parameters& p) {
+  if (p.gravity_m_per_s2 == 0 || p.moving_wall == MovingWall::top) return true;
+  constexpr double grains_per_d3 = 1.2;
+  const double height = p.height_over_width * cell_width(geometry(p));
+  const Scene scene = shear_scene(p);
+  return scene.pressure > grains_per_d3 * height * scene.gravity;
+}
+
+}  // namespace shearcell

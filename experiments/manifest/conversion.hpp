@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one place where SI parameters become the engine's units (grain diameter d, grain mass m,
+// second), and what follows from them before anything is simulated.
+#pragma once
+
+#include "core/filling.hpp"
+#include "core/scene.hpp"
+#include "experiments/manifest/parameters.hpp"
+
+namespace shearcell {
+
+Units units(const Parameters& parameters);
+
+/// What acts on the grains under shear; time step = period / steps per cycle.
+Scene shear_scene(const Parameters& parameters);
+
+/// What acts on them while they settle: upright walls, a fluid at rest, its own time step.
+Scene settle_scene(const Parameters& parameters);
+
+Drive drive(const Parameters& parameters);
+
+/// What the cell is built and filled from.
+Geometry geometry(const Parameters& parameters);
+
+double shear_time_step_s(const Parameters& parameters);
+
+/// Largest stable time step [s]: 2/omega_max of the leapfrog, with omega_max^2 = 8 k/m. An FCC
+/// contact network, the densest there is, has its fastest mode there (twelve springs, the zone
+/// boundary X, longitudinal); looser or disordered packings vibrate more slowly.
+double stability_limit_s(const Parameters& parameters);
+
+/// Whether the pressure under a moving bottom wall can carry the grains' weight:
+/// P d^2 > 1.2 (h/d) m g, with 1.2 grains per d^3. A moving top wall has nothing to lift.
+bool pressure_lifts_column(const Parameters& parameters);
+
+}  // namespace shearcell

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/manifest/document.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+namespace shearcell {
+namespace {
+
+using std::string_view;
+
+Position position(const YAML::Mark& mark) {
+  return mark.is_null() ? Position{1, 1} : Position{mark.line + 1, mark.column + 1};
+}
+
+[[noreturn]] void refuse(string_view file, Position at, std::string problem, std::string remedy,
+                         std::string key = {}) {
+  throw ManifestError(
+      {{std::string(file), at, std::move(key), std::move(problem), "", std::move(remedy)}});
+}
+
+// Length of the UTF-8 sequence at the start of `text`; 0 when it is not one. Overlong forms,
+// surrogates and code points beyond U+10FFFF are none.
+std::size_t utf8_length(string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  if (first < 0xC2 || first > 0xF4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  }
+  const unsigned second = byte(1);
+  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
+  const bool beyond = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
+  return overlong || beyond ? 0 : length;
+}
+
+// yaml-cpp replaces bad bytes silently and takes U+0004 for the end of the text.
+void check_characters(string_view text, string_view file) {
+  Position at{1, 1};
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const char c = text.front();
+    if (length == 0) refuse(file, at, "is not valid UTF-8", "Save the file as UTF-8 text.");
+    if ((c >= 0 && c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7F) {
+      refuse(file, at, fmt::format("holds the control character 0x{:02x}", static_cast<int>(c)),
+             "A manifest is plain text.");
+    }
+    at = c == '\n' ? Position{at.line + 1, 1} : Position{at.line, at.column + 1};
+    text.remove_prefix(length);
+  }
+}
+
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  explicit TreeBuilder(string_view file) : file_(file) {}
+
+  Node take() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (started_) {
+      refuse(file_, position(mark), "a second YAML document begins",
+             "Write one manifest per file.");
+    }
+    started_ = true;
+  }
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
+    add({.kind = Node::Kind::null, .at = position(mark)});
+  }
+  void OnAnchor(const YAML::Mark& mark, const std::string& name) override {
+    refuse_reference(mark, "&" + name);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { refuse_reference(mark, "*"); }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                const std::string& value) override {
+    check_tag(mark, tag);
+    add({.kind = Node::Kind::scalar, .at = position(mark), .text = value, .quoted = tag == "!"});
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    check_tag(mark, tag);
+    open({.kind = Node::Kind::list, .at = position(mark)});
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    check_tag(mark, tag);
+    open({.kind = Node::Kind::map, .at = position(mark)});
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  // A list or map whose end has not been seen yet.
+  struct Open {
+    Node node;
+    std::set<std::string> keys;
+    bool awaits_value = false;
+  };
+
+  [[noreturn]] void refuse_reference(const YAML::Mark& mark, const std::string& name) {
+    refuse(file_, position(mark), "anchors and aliases are not read", "Write the value out.",
+           printable(name));
+  }
+
+  void check_tag(const YAML::Mark& mark, const std::string& tag) {
+    if (tag == "?" || tag == "!" || tag.empty()) return;  // none written; plain or quoted
+    refuse(file_, position(mark), fmt::format("the tag {} is not read", printable(tag)),
+           "Remove the tag; the key decides the type.");
+  }
+
+  void open(Node node) {
+    if (open_.size() >= ManifestLimits::depth) {
+      refuse(file_, node.at, fmt::format("nested deeper than {} levels", ManifestLimits::depth),
+             "");
+    }
+    if (!open_.empty() && awaits_key()) refuse_key(node.at);
+    count(node.at);
+    open_.push_back({.node = std::move(node), .keys = {}});
+  }
+
+  void close() {
+    Node node = std::move(open_.back().node);
+    open_.pop_back();
+    place(std::move(node));
+  }
+
+  void add(Node node) {
+    count(node.at);
+    if (!open_.empty() && awaits_key()) {
+      add_key(std::move(node));
+    } else {
+      place(std::move(node));
+    }
+  }
+
+  void add_key(Node key) {
+    if (key.kind != Node::Kind::scalar) refuse_key(key.at);
+    Open& map = open_.back();
+    if (!map.keys.insert(key.text).second) {
+      refuse(file_, key.at, "appears twice in one map", "Keep one of them.", printable(key.text));
+    }
+    map.node.entries.emplace_back(std::move(key), Node{});
+    map.awaits_value = true;
+  }
+
+  void place(Node node) {
+    if (open_.empty()) {
+      root_ = std::move(node);
+    } else if (open_.back().node.kind == Node::Kind::list) {
+      open_.back().node.items.push_back(std::move(node));
+    } else {
+      auto& [key, value] = open_.back().node.entries.back();
+      // What is not there is best looked for where its key stands.
+      if (node.kind == Node::Kind::null) node.at = key.at;
+      value = std::move(node);
+      open_.back().awaits_value = false;
+    }
+  }
+
+  bool awaits_key() const {
+    return open_.back().node.kind == Node::Kind::map && !open_.back().awaits_value;
+  }
+
+  [[noreturn]] void refuse_key(Position at) { refuse(file_, at, "a key must be a plain name", ""); }
+
+  void count(Position at) {
+    if (++nodes_ > ManifestLimits::nodes) {
+      refuse(file_, at, fmt::format("holds more than {} values", ManifestLimits::nodes), "");
+    }
+  }
+
+  std::string file_;
+  bool started_ = false;
+  std::size_t nodes_ = 0;
+  std::vector<Open> open_;
+  Node root_;
+};
+
+// The first line up to `last` that is indented with a tab; 0 when none is. The parser's own words
+// for it differ from place to place.
+int tab_indented_line(string_view text, int last) {
+  for (int line = 1; line <= last && !text.empty(); ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::size_t indent = std::min(text.find_first_not_of(" \t"), end);
+    if (text.substr(0, indent).find('\t') != string_view::npos) return line;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return 0;
+}
+
+std::string syntax_remedy(string_view text, const YAML::Exception& error) {
+  if (error.msg.find("anchor") != std::string::npos) {
+    return "Anchors and aliases are not read; write the value out.";
+  }
+  const int line = tab_indented_line(text, position(error.mark).line);
+  return line == 0 ? "" : fmt::format("Line {} is indented with a tab; use spaces.", line);
+}
+
+}  // namespace
+
+Node read_document(string_view text, string_view file) {
+  if (text.size() > ManifestLimits::bytes) {
+    refuse(file, {}, fmt::format("is larger than {} bytes", ManifestLimits::bytes),
+           "A manifest is a short text.");
+  }
+  check_characters(text, file);
+  std::istringstream stream{std::string(text)};
+  TreeBuilder builder(file);
+  try {
+    YAML::Parser parser(stream);
+    if (!parser.HandleNextDocument(builder)) {
+      refuse(file, {1, 1}, "the manifest is empty", "It needs at least `experiment` and `base`.");
+    }
+    parser.HandleNextDocument(builder);
+  } catch (const YAML::Exception& error) {
+    refuse(file, position(error.mark), fmt::format("is not valid YAML: {}", error.msg),
+           syntax_remedy(text, error));
+  }
+  return builder.take();
+}
+
+std::string printable(string_view text, std::size_t longest) {
+  std::string result;
+  while (!text.empty()) {
+    if (result.size() >= longest) return result + "...";
+    const std::size_t length = utf8_length(text);
+    const auto c = static_cast<unsigned char>(text.front());
+    if (length == 0 || c < 0x20 || c == 0x7F) {
+      result += fmt::format("\\x{:02x}", c);
+    } else {
+      result += text.substr(0, length);
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return result;
+}
+
+}  // namespace shearcell

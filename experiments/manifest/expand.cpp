@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/manifest/expand.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/document.hpp"
+#include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/suggest.hpp"
+#include "experiments/manifest/variants.hpp"
+
+namespace shearcell {
+namespace {
+
+constexpr std::string_view kDefaultScale = "desk";
+
+[[noreturn]] void refuse(const Manifest& manifest, std::string option, std::string problem,
+                         std::string got, std::string remedy) {
+  throw ManifestError({{manifest.file,
+                        {},
+                        std::move(option),
+                        std::move(problem),
+                        std::move(got),
+                        std::move(remedy)}});
+}
+
+// The scale to run, or null for a manifest without scales.
+const Scale* choose_scale(const Manifest& manifest, const std::optional<std::string>& wanted) {
+  if (manifest.scales.empty()) {
+    if (!wanted) return nullptr;
+    refuse(manifest, "scale", "the manifest has no scales", printable(*wanted), "Leave it out.");
+  }
+  const std::string name = wanted.value_or(std::string(kDefaultScale));
+  const auto found = std::ranges::find(manifest.scales, name, &Scale::name);
+  if (found != manifest.scales.end()) return &*found;
+  std::vector<std::string_view> names;
+  for (const Scale& scale : manifest.scales) names.push_back(scale.name);
+  const std::string known = fmt::format("It has {}.", fmt::join(names, ", "));
+  if (!wanted) {
+    refuse(manifest, "scale", fmt::format("there is no scale {} to take by default", name), "",
+           fmt::format("Name one. {}", known));
+  }
+  const Suggestion near = suggest_name(name, names);
+  refuse(manifest, "scale",
+         near.name.empty() ? "is unknown" : fmt::format("is unknown, the nearest is {}", near.name),
+         printable(name), known);
+}
+
+std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& stated,
+                                        const std::optional<std::uint64_t>& wanted) {
+  if (!wanted) return stated.values;
+  const std::string got = std::to_string(*wanted);
+  if (*wanted == 0 || *wanted > ManifestLimits::runs) {
+    refuse(manifest, "seeds", "is out of range", got,
+           fmt::format("It takes an integer from 1 to {}.", ManifestLimits::runs));
+  }
+  if (stated.counted) {
+    std::vector<std::uint64_t> seeds(*wanted);
+    std::iota(seeds.begin(), seeds.end(), 1);
+    return seeds;
+  }
+  if (*wanted > stated.values.size()) {
+    refuse(manifest, "seeds", fmt::format("the manifest lists {} seeds only", stated.values.size()),
+           got, "List more, or state a count.");
+  }
+  return {stated.values.begin(), stated.values.begin() + static_cast<std::ptrdiff_t>(*wanted)};
+}
+
+void add_warnings(const Variant& variant, Plan& plan) {
+  const Parameters& p = variant.parameters;
+  if (pressure_lifts_column(p)) return;
+  std::string warning = fmt::format(
+      "{}: variant {}: the pressure of {} Pa cannot lift the grains above the moving bottom wall "
+      "(N = {}). Turn gravity off, raise pressure_Pa, move the top wall, or choose a lower cell "
+      "(height_over_width).",
+      plan.experiment, variant.name(), p.pressure_Pa, p.grains);
+  plan.warnings.push_back(std::move(warning));
+}
+
+}  // namespace
+
+Plan expand(const Manifest& manifest, const ExpandOptions& options) {
+  const Scale* scale = choose_scale(manifest, options.scale);
+  AtScale resolved = at_scale(manifest, scale);
+  if (options.cycles) {
+    const Setting cycles{*options.cycles, {}};
+    if (const auto wrong = check_value(*find_field("cycles"), cycles.value)) {
+      refuse(manifest, "cycles", wrong->problem, cycles.value.dump(), wrong->remedy);
+    }
+    resolved.settings["cycles"] = cycles;
+  }
+  const std::vector<std::uint64_t> seeds = choose_seeds(manifest, *resolved.seeds, options.seeds);
+  if (variant_count(*resolved.sweep) > ManifestLimits::runs / seeds.size()) {
+    refuse(manifest, "seeds",
+           fmt::format("the manifest expands to more than {} runs", ManifestLimits::runs), "",
+           "Use fewer seeds.");
+  }
+
+  Plan plan{manifest.experiment, scale == nullptr ? "" : scale->name, {}, {}};
+  for_each_variant(resolved, [&](const Variant& variant) {
+    add_warnings(variant, plan);
+    for (const std::uint64_t seed : seeds) {
+      PlannedRun run;
+      run.experiment = plan.experiment;
+      run.scale = plan.scale;
+      run.variant = variant.name();
+      run.labels = variant.labels();
+      run.seed = seed;
+      run.prepare = prepare_stage(variant.parameters, seed);
+      run.shear = shear_stage(variant.parameters, seed, run.prepare);
+      run.cycles = variant.parameters.cycles;
+      run.checkpoint_every = resolved.checkpoint_every;
+      run.grains = static_cast<std::size_t>(variant.parameters.grains);
+      run.parameters = variant.parameters;
+      plan.runs.push_back(std::move(run));
+    }
+  });
+  return plan;
+}
+
+}  // namespace shearcell

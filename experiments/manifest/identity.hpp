@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run is called: the SHA-256 of the values that decide its bits, and of nothing else.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "experiments/manifest/parameters.hpp"
+
+namespace shearcell {
+
+enum class Stage : std::uint8_t { prepare, shear };
+std::string_view stage_name(Stage stage);
+
+/// One link in a run's chain. Equal keys mean equal trajectories, so a stage is computed once.
+struct StageSpec {
+  Stage stage = Stage::prepare;
+  std::string key;          ///< 64 hex digits
+  std::string parent;       ///< key of the stage that it continues; empty for `prepare`
+  nlohmann::json resolved;  ///< exactly what `key` is the hash of; `read_stage` reads it back
+};
+
+/// What a stage is, as its `resolved` record says. Parameters that it does not feel, and `cycles`,
+/// are at their defaults.
+struct StageRecord {
+  Stage stage = Stage::prepare;
+  std::string parent;
+  std::uint64_t seed = 0;
+  Parameters parameters;
+};
+
+/// Seeded preparation: everything that settling feels.
+StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed);
+
+/// Shear of the packing that `parent` prepared.
+StageSpec shear_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent);
+
+/// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. A reader recomputes it to
+/// check that a recorded run is what it is called.
+std::string stage_key(const nlohmann::json& resolved);
+
+/// The record is not trusted: throws std::runtime_error that names the key when something is
+/// missing, unknown or out of range. Compare stage_key(resolved) with the run's id as well.
+StageRecord read_stage(const nlohmann::json& resolved);
+
+/// JSON without whitespace, keys sorted by their bytes, doubles as the shortest digits that read
+/// back to the same value: one text for one value. Throws std::invalid_argument on NaN or infinity.
+std::string canonical_json(const nlohmann::json& json);
+
+}  // namespace shearcell

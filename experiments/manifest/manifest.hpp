@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A manifest: one experiment as a YAML text, read and checked as a whole. Whatever its bytes are,
+// reading it ends in a Manifest or in a ManifestError that says where and how to mend it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace shearcell {
+
+/// Limits of what is read; they keep hostile input from costing more than a moment.
+struct ManifestLimits {
+  static constexpr std::size_t bytes = 1 << 20;
+  static constexpr std::size_t nodes = 100'000;
+  static constexpr std::size_t depth = 16;
+  static constexpr std::size_t values_per_list = 1'000;
+  static constexpr std::size_t scales = 16;
+  static constexpr std::uint64_t runs = 10'000;  ///< of all scales together
+};
+
+/// Place in the manifest's text, counted from 1; line 0 means the file as a whole.
+struct Position {
+  int line = 0;
+  int column = 0;
+};
+
+struct ManifestProblem {
+  std::string file;
+  Position at;
+  std::string key;      ///< path to the key, as in "scales.smoke.grains"; may be empty
+  std::string problem;  ///< what is wrong
+  std::string got;      ///< the offending value as written; may be empty
+  std::string remedy;   ///< what to do, a sentence; may be empty
+
+  /// "file:line:column: key: problem (got VALUE). remedy"
+  std::string text() const;
+};
+
+/// All problems of one manifest; what() has one per line, in the order of the text.
+class ManifestError : public std::runtime_error {
+ public:
+  explicit ManifestError(std::vector<ManifestProblem> problems);
+  const std::vector<ManifestProblem>& problems() const { return problems_; }
+
+ private:
+  std::vector<ManifestProblem> problems_;
+};
+
+/// A checked value and where it was written.
+struct Setting {
+  nlohmann::json value;
+  Position at;
+};
+using Settings = std::map<std::string, Setting, std::less<>>;
+
+struct SweepAxis {
+  std::string key;
+  Position at;
+  std::vector<Setting> values;
+};
+
+/// Variants: every combination of the `grid` axes (the first varies slowest), each with every row
+/// of the `zip` axes (which advance together).
+struct Sweep {
+  std::vector<SweepAxis> grid;
+  std::vector<SweepAxis> zip;
+  bool empty() const { return grid.empty() && zip.empty(); }
+};
+
+/// 1..n when a manifest states a count, or the seeds that it lists.
+struct Seeds {
+  std::vector<std::uint64_t> values = {1};
+  bool counted = true;
+};
+
+/// A named size of the experiment. What it does not state is as in the manifest itself.
+struct Scale {
+  std::string name;
+  Position at;
+  Settings settings;
+  std::optional<Sweep> sweep;
+  std::optional<Seeds> seeds;
+  std::optional<std::uint64_t> checkpoint_every;
+};
+
+struct Manifest {
+  std::string file;  ///< name for messages
+  std::string text;  ///< the bytes that were read
+  std::string experiment;
+  std::string question;
+  std::vector<std::string> figures;
+  Position base_at;
+  Settings base;
+  Sweep sweep;
+  Seeds seeds;
+  std::uint64_t checkpoint_every = 1;  ///< cycles
+  std::vector<Scale> scales;           ///< in the order of the text
+};
+
+/// Reads a file. Throws ManifestError.
+Manifest load_manifest(const std::filesystem::path& path);
+
+/// Reads a text; `file` is its name in messages. Every scale is checked through to the time step of
+/// every variant. Throws ManifestError.
+Manifest parse_manifest(std::string_view text, std::string_view file);
+
+}  // namespace shearcell

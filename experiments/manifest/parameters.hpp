@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The resolved parameters of one run, in SI units: every key of a manifest's `base`, typed, with
+// its default. The schema (schema.hpp) says what each one means and which values it may take.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/cell.hpp"
+#include "core/scene.hpp"
+
+namespace shearcell {
+
+struct Parameters {
+  // Grains and what acts on them (Table I).
+  std::uint64_t grains = 7900;
+  double mass_kg = 2.0e-5;
+  double diameter_m = 3.0e-3;
+  double stiffness_N_per_m = 654;
+  double drag_kg_per_s = 1.28e-3;
+  Fluid fluid = Fluid::still;
+  double gravity_m_per_s2 = 9.81;
+  double pressure_Pa = 954;
+
+  // The cell.
+  WallTexture walls = WallTexture::rough;
+  MovingWall moving_wall = MovingWall::bottom;
+  double height_over_width = 1.675;
+  double nominal_packing_fraction = 0.64;
+  double wall_grain_area_fraction = 0.52;
+  double wall_grain_recess_diameters = 0.25;
+  double wall_mass_grains_per_d2 = 10;
+  double wall_drag_grains_per_d2_s = 1000;
+
+  // Preparation.
+  double fill_packing_fraction = 0.28;
+  double settle_time_step_s = 2.0 / 45600;
+  double settle_force_tolerance = 1e-3;
+  double settle_kinetic_tolerance = 1e-8;
+  double settle_time_limit_s = 60;
+
+  /// A run whose largest overlap exceeds this stops as failed, in any stage.
+  double max_overlap_diameters = 0.1;
+
+  // Shear.
+  std::string protocol = "continuous";
+  double amplitude_rad = 0.0833;
+  double period_s = 2;
+  std::uint64_t steps_per_cycle = 45600;
+
+  /// How far to go; a longer run is the same run, extended.
+  std::uint64_t cycles = 200;
+
+  bool operator==(const Parameters&) const = default;
+};
+
+/// All keys of the schema with their values, SI units.
+nlohmann::json to_json(const Parameters& parameters);
+
+/// The inverse. The JSON is not trusted: throws std::runtime_error that names the key when one is
+/// missing, unknown, of the wrong type or out of range.
+Parameters parameters_from_json(const nlohmann::json& json);
+
+}  // namespace shearcell

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/manifest/problems.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/suggest.hpp"
+
+namespace shearcell {
+
+using std::string;
+using std::string_view;
+
+std::span<const string_view> manifest_sections() {
+  static constexpr std::array<string_view, 8> sections = {
+      "experiment", "question", "figures", "base", "sweep", "seeds", "checkpoints", "scales"};
+  return sections;
+}
+
+void ProblemList::add(Position at, string key, string problem, string got, string remedy) {
+  problems_.push_back(
+      {file_, at, std::move(key), std::move(problem), std::move(got), std::move(remedy)});
+}
+
+void ProblemList::add_type(const Node& node, string key, string_view wanted, string remedy) {
+  add(node.at, std::move(key), fmt::format("is not {}", wanted), shown(node), std::move(remedy));
+}
+
+void ProblemList::add_unknown(const Node& key, string_view path,
+                              std::span<const string_view> allowed) {
+  const string full = join_path(path, key.text);
+  const bool at_top = path.empty();
+  const bool section =
+      std::ranges::find(manifest_sections(), key.text) != manifest_sections().end();
+  if (key.text == "<<") return add(key.at, full, "merge keys are not read", "", "Write it out.");
+  if (at_top && find_field(key.text) != nullptr) {
+    return add(key.at, full, "is a parameter", "", "Move it under `base:`.");
+  }
+  if (section) return add(key.at, full, "does not belong here", "", "Move it to the top level.");
+
+  const Suggestion near = suggest_name(key.text, allowed);
+  if (near.missing_unit) {
+    add(key.at, full, "is written without its unit", "", fmt::format("Write {}.", near.name));
+  } else if (!near.name.empty()) {
+    add(key.at, full, "is an unknown key", "", fmt::format("The nearest is {}.", near.name));
+  } else if (allowed.size() <= manifest_sections().size()) {
+    add(key.at, full, "is an unknown key", "",
+        fmt::format("Known here: {}.", fmt::join(allowed, ", ")));
+  } else {
+    add(key.at, full, "is an unknown key", "", "experiments/manifest/README.md lists the keys.");
+  }
+}
+
+void ProblemList::raise() {
+  if (!problems_.empty()) throw ManifestError(std::move(problems_));
+}
+
+string join_path(string_view path, string_view key) {
+  const string last = printable(key);
+  return path.empty() ? last : fmt::format("{}.{}", path, last);
+}
+
+string shown(const Node& node) {
+  switch (node.kind) {
+    case Node::Kind::null:
+      return "nothing";
+    case Node::Kind::list:
+      return node.items.empty() ? "an empty list" : "a list";
+    case Node::Kind::map:
+      return node.entries.empty() ? "an empty map" : "a map";
+    case Node::Kind::scalar:
+      break;
+  }
+  return node.quoted ? fmt::format("\"{}\"", printable(node.text)) : printable(node.text);
+}
+
+}  // namespace shearcell

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Collects what is wrong with a manifest, so that its writer sees all of it at once.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/manifest/document.hpp"
+#include "experiments/manifest/manifest.hpp"
+
+namespace shearcell {
+
+class ProblemList {
+ public:
+  explicit ProblemList(std::string_view file) : file_(file) {}
+
+  void add(Position at, std::string key, std::string problem, std::string got, std::string remedy);
+  /// The node is not what is `wanted`, as in "a list".
+  void add_type(const Node& node, std::string key, std::string_view wanted,
+                std::string remedy = {});
+  /// A key that is not `allowed` in the map at `path`; says which name is meant.
+  void add_unknown(const Node& key, std::string_view path,
+                   std::span<const std::string_view> allowed);
+
+  /// Throws ManifestError when there are any.
+  void raise();
+
+ private:
+  std::string file_;
+  std::vector<ManifestProblem> problems_;
+};
+
+/// Keys at the top level of a manifest.
+std::span<const std::string_view> manifest_sections();
+
+/// "scales.smoke" and "grains" -> "scales.smoke.grains".
+std::string join_path(std::string_view path, std::string_view key);
+
+/// A node as it is quoted in a message.
+std::string shown(const Node& node);
+
+}  // namespace shearcell

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/manifest/read_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <numeric>
+#include <set>
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+using std::string;
+using std::string_view;
+
+// Counts that a reader of the store in any language holds exactly.
+constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
+
+std::optional<SweepAxis> read_axis(const Node& key, const Node& values, const string& path,
+                                   ProblemList& problems) {
+  const string full = join_path(path, key.text);
+  const Field* field = find_field(key.text);
+  if (field == nullptr) {
+    problems.add_unknown(key, path, field_names());
+    return std::nullopt;
+  }
+  if (field->identity == Identity::none) {
+    problems.add(key.at, full, "cannot be swept, since another value does not make another run", "",
+                 "Set it in `base` or in a scale.");
+    return std::nullopt;
+  }
+  SweepAxis axis{key.text, key.at, {}};
+  for (const Node& item : read_list(values, full, "[1, 2]", problems)) {
+    if (auto value = read_parameter(*field, item, full, problems)) {
+      axis.values.push_back({std::move(*value), item.at});
+    }
+  }
+  return axis;
+}
+
+std::vector<SweepAxis> read_axes(const Node& node, const string& path, ProblemList& problems) {
+  std::vector<SweepAxis> axes;
+  if (node.kind != Node::Kind::map || node.entries.empty()) {
+    problems.add(node.at, path, "sweeps nothing", shown(node), "It takes `{key: [values]}`.");
+    return axes;
+  }
+  for (const auto& [key, values] : node.entries) {
+    if (auto axis = read_axis(key, values, path, problems)) axes.push_back(std::move(*axis));
+  }
+  return axes;
+}
+
+void check_grid(const Sweep& sweep, const string& path, ProblemList& problems) {
+  for (const SweepAxis& axis : sweep.grid) {
+    const string full = fmt::format("{}.grid.{}", path, axis.key);
+    std::set<json> seen;
+    for (const Setting& setting : axis.values) {
+      if (seen.insert(setting.value).second) continue;
+      problems.add(setting.at, full, "repeats a value", setting.value.dump(), "Keep one of them.");
+    }
+    if (std::ranges::find(sweep.zip, axis.key, &SweepAxis::key) != sweep.zip.end()) {
+      problems.add(axis.at, full, "is in both grid and zip", "", "Keep one of them.");
+    }
+  }
+}
+
+void check_zip(const std::vector<SweepAxis>& zip, const string& path, ProblemList& problems) {
+  if (zip.empty()) return;
+  const std::size_t rows = zip.front().values.size();
+  for (const SweepAxis& axis : zip) {
+    if (axis.values.size() == rows) continue;
+    problems.add(axis.at, fmt::format("{}.zip.{}", path, axis.key),
+                 fmt::format("differs in length from {}, which has {}", zip.front().key, rows),
+                 fmt::format("{} values", axis.values.size()),
+                 "The lists of a zip advance together; make them equally long.");
+    return;
+  }
+  std::set<json> seen;
+  for (std::size_t row = 0; row < rows; ++row) {
+    json values = json::array();
+    for (const SweepAxis& axis : zip) values.push_back(axis.values[row].value);
+    if (seen.insert(values).second) continue;
+    problems.add(zip.front().values[row].at, fmt::format("{}.zip", path), "repeats a row of values",
+                 printable(values.dump()), "Keep one of them.");
+  }
+}
+
+}  // namespace
+
+std::optional<json> read_parameter(const Field& field, const Node& node, const string& key,
+                                   ProblemList& problems) {
+  if (node.kind != Node::Kind::scalar) {
+    problems.add_type(node, key, "a single value",
+                      fmt::format("It takes {}.", expected_values(field)));
+    return std::nullopt;
+  }
+  std::variant<json, ValueProblem> read = read_value(field, node.text, node.quoted);
+  std::optional<ValueProblem> wrong;
+  if (auto* value = std::get_if<json>(&read)) {
+    wrong = check_value(field, *value);
+    if (!wrong) return std::move(*value);
+  } else {
+    wrong = std::get<ValueProblem>(read);
+  }
+  problems.add(node.at, key, wrong->problem, shown(node), wrong->remedy);
+  return std::nullopt;
+}
+
+std::optional<std::uint64_t> read_count(const Node& node, const string& key, std::uint64_t largest,
+                                        ProblemList& problems) {
+  if (node.kind == Node::Kind::scalar && !node.quoted && !node.text.starts_with('0')) {
+    std::uint64_t value = 0;
+    const char* end = node.text.data() + node.text.size();
+    const auto [stop, error] = std::from_chars(node.text.data(), end, value);
+    if (stop == end && error == std::errc() && value <= largest) return value;
+  }
+  problems.add(node.at, key, fmt::format("is not an integer from 1 to {}", largest), shown(node),
+               "");
+  return std::nullopt;
+}
+
+std::span<const Node> read_list(const Node& node, const string& key, string_view example,
+                                ProblemList& problems) {
+  const string remedy = fmt::format("It takes a list such as {}.", example);
+  if (node.kind != Node::Kind::list) {
+    problems.add_type(node, key, "a list", remedy);
+    return {};
+  }
+  if (node.items.empty()) problems.add(node.at, key, "is an empty list", "", remedy);
+  if (node.items.size() > ManifestLimits::values_per_list) {
+    problems.add(node.at, key,
+                 fmt::format("has more than {} values", ManifestLimits::values_per_list),
+                 fmt::format("{} values", node.items.size()), "Shorten the list.");
+    return {};
+  }
+  return node.items;
+}
+
+Sweep read_sweep(const Node& node, const string& path, ProblemList& problems) {
+  constexpr std::array<string_view, 2> kinds = {"grid", "zip"};
+  const string remedy = "It takes `grid: {key: [values]}` or `zip: {key: [values]}`.";
+  Sweep sweep;
+  if (node.kind != Node::Kind::map || node.entries.empty()) {
+    problems.add(node.at, path, "sweeps nothing", shown(node), remedy);
+    return sweep;
+  }
+  for (const auto& [key, value] : node.entries) {
+    if (key.text == "grid") {
+      sweep.grid = read_axes(value, join_path(path, "grid"), problems);
+    } else if (key.text == "zip") {
+      sweep.zip = read_axes(value, join_path(path, "zip"), problems);
+    } else if (find_field(key.text) != nullptr) {
+      problems.add(key.at, join_path(path, key.text), "must stand under `grid` or `zip`", "",
+                   remedy);
+    } else {
+      problems.add_unknown(key, path, kinds);
+    }
+  }
+  check_grid(sweep, path, problems);
+  check_zip(sweep.zip, path, problems);
+  return sweep;
+}
+
+Seeds read_seeds(const Node& node, const string& key, ProblemList& problems) {
+  Seeds seeds;
+  if (node.kind != Node::Kind::list) {
+    seeds.values.resize(read_count(node, key, ManifestLimits::runs, problems).value_or(1));
+    std::iota(seeds.values.begin(), seeds.values.end(), 1);
+    return seeds;
+  }
+  seeds = {.values = {}, .counted = false};
+  for (const Node& item : read_list(node, key, "[3, 5]", problems)) {
+    const auto seed = read_count(item, key, kLargestSeed, problems);
+    if (!seed) continue;
+    if (std::ranges::find(seeds.values, *seed) != seeds.values.end()) {
+      problems.add(item.at, key, "repeats a seed", shown(item), "Keep one of them.");
+    }
+    seeds.values.push_back(*seed);
+  }
+  return seeds;
+}
+
+}  // namespace shearcell

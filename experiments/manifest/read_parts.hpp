@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parts that manifests are made of: values, counts, lists, sweeps. What is wrong goes to a
+// ProblemList, and reading goes on.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "experiments/manifest/document.hpp"
+#include "experiments/manifest/manifest.hpp"
+#include "experiments/manifest/problems.hpp"
+#include "experiments/manifest/schema.hpp"
+
+namespace shearcell {
+
+/// The value of a parameter, of its type and in its range.
+std::optional<nlohmann::json> read_parameter(const Field& field, const Node& node,
+                                             const std::string& key, ProblemList& problems);
+
+/// A whole number from 1 to `largest`.
+std::optional<std::uint64_t> read_count(const Node& node, const std::string& key,
+                                        std::uint64_t largest, ProblemList& problems);
+
+/// The items of a list that is neither empty nor over-long; none when it is.
+std::span<const Node> read_list(const Node& node, const std::string& key, std::string_view example,
+                                ProblemList& problems);
+
+Sweep read_sweep(const Node& node, const std::string& path, ProblemList& problems);
+
+Seeds read_seeds(const Node& node, const std::string& key, ProblemList& problems);
+
+}  // namespace shearcell

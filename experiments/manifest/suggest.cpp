@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/manifest/suggest.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "experiments/manifest/schema.hpp"
+
+namespace shearcell {
+namespace {
+
+using std::string_view;
+
+constexpr std::size_t kLongestName = 64;
+
+std::string lower(string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  }
+  return result;
+}
+
+// Insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`.
+std::size_t edit_distance(string_view a, string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+Suggestion suggest_name(string_view unknown, std::span<const string_view> candidates) {
+  if (unknown.empty() || unknown.size() > kLongestName) return {};
+  const std::string written = lower(unknown);
+  std::vector<string_view> with_unit;
+  for (const string_view candidate : candidates) {
+    const Field* field = find_field(candidate);
+    if (field != nullptr && field->symbol == unknown) return {std::string(candidate), false};
+    if (lower(candidate).starts_with(written + "_")) with_unit.push_back(candidate);
+  }
+  // `settle` begins several names; then none of them lacks just its unit.
+  if (with_unit.size() == 1) return {std::string(with_unit.front()), true};
+
+  const std::size_t allowed = std::max<std::size_t>(2, written.size() / 3);
+  std::size_t nearest = allowed + 1;
+  Suggestion best;
+  for (const string_view candidate : candidates) {
+    const std::size_t distance = edit_distance(written, lower(candidate));
+    // Three letters wrong in a name of three is another name, not a slip.
+    if (distance < nearest && distance < candidate.size()) {
+      nearest = distance;
+      best.name = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guesses the name that a writer of a manifest meant.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace shearcell {
+
+struct Suggestion {
+  std::string name;           ///< empty when nothing is near
+  bool missing_unit = false;  ///< the name was written without the unit that belongs to it
+};
+
+/// The nearest of `candidates`: by the symbol of a parameter (`N`), by a name whose unit was left
+/// out (`mass`), or by spelling (up to about a third of the letters wrong).
+Suggestion suggest_name(std::string_view unknown, std::span<const std::string_view> candidates);
+
+}  // namespace shearcell

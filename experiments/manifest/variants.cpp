@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/manifest/variants.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "experiments/manifest/schema.hpp"
+
+namespace shearcell {
+namespace {
+
+std::string value_text(const nlohmann::json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
+  return value.dump();
+}
+
+void apply(const std::string& key, const Setting& setting, Parameters& parameters) {
+  set_value(*find_field(key), setting.value, parameters);
+}
+
+}  // namespace
+
+AtScale at_scale(const Manifest& manifest, const Scale* scale) {
+  AtScale result{manifest.base, &manifest.sweep, &manifest.seeds, manifest.checkpoint_every};
+  if (scale == nullptr) return result;
+  for (const auto& [key, setting] : scale->settings) result.settings[key] = setting;
+  if (scale->sweep) result.sweep = &*scale->sweep;
+  if (scale->seeds) result.seeds = &*scale->seeds;
+  if (scale->checkpoint_every) result.checkpoint_every = *scale->checkpoint_every;
+  return result;
+}
+
+std::string Variant::name() const {
+  if (swept.empty()) return "base";
+  std::string text;
+  for (const auto& [key, setting] : swept) {
+    text += fmt::format("{}{}={}", text.empty() ? "" : ",", key, value_text(setting->value));
+  }
+  return text;
+}
+
+nlohmann::json Variant::labels() const {
+  nlohmann::json labels = nlohmann::json::object();
+  for (const auto& [key, setting] : swept) labels[key] = setting->value;
+  return labels;
+}
+
+std::uint64_t variant_count(const Sweep& sweep) {
+  std::uint64_t count = sweep.zip.empty() ? 1 : sweep.zip.front().values.size();
+  for (const SweepAxis& axis : sweep.grid) {
+    const std::uint64_t size = axis.values.size();
+    if (size != 0 && count > std::numeric_limits<std::uint64_t>::max() / size) {
+      return std::numeric_limits<std::uint64_t>::max();
+    }
+    count *= size;
+  }
+  return count;
+}
+
+void for_each_variant(const AtScale& scale, const std::function<void(const Variant&)>& visit) {
+  Parameters base;
+  for (const auto& [key, setting] : scale.settings) apply(key, setting, base);
+  const std::vector<SweepAxis>& grid = scale.sweep->grid;
+  const std::vector<SweepAxis>& zip = scale.sweep->zip;
+  const std::uint64_t rows = zip.empty() ? 1 : zip.front().values.size();
+  const std::uint64_t count = variant_count(*scale.sweep);
+  for (std::uint64_t index = 0; index < count; ++index) {
+    Variant variant;
+    variant.parameters = base;
+    // The number `index`, read with one digit for each axis.
+    std::uint64_t rest = index / rows;
+    std::vector<std::size_t> digit(grid.size());
+    for (std::size_t axis = grid.size(); axis-- > 0;) {
+      digit[axis] = rest % grid[axis].values.size();
+      rest /= grid[axis].values.size();
+    }
+    for (std::size_t axis = 0; axis < grid.size(); ++axis) {
+      variant.swept.emplace_back(grid[axis].key, &grid[axis].values[digit[axis]]);
+    }
+    for (const SweepAxis& axis : zip) {
+      variant.swept.emplace_back(axis.key, &axis.values[index % rows]);
+    }
+    for (const auto& [key, setting] : variant.swept) apply(key, *setting, variant.parameters);
+    visit(variant);
+  }
+}
+
+}  // namespace shearcell

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The variants of an experiment at one scale: what base, scale and sweep come to together.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/manifest/manifest.hpp"
+#include "experiments/manifest/parameters.hpp"
+
+namespace shearcell {
+
+/// A manifest as one of its scales has it. Points into the manifest.
+struct AtScale {
+  Settings settings;  ///< base, overridden by the scale
+  const Sweep* sweep = nullptr;
+  const Seeds* seeds = nullptr;
+  std::uint64_t checkpoint_every = 1;
+};
+
+/// `scale` may be null: the manifest without any.
+AtScale at_scale(const Manifest& manifest, const Scale* scale);
+
+struct Variant {
+  std::vector<std::pair<std::string, const Setting*>> swept;  ///< in the order of the manifest
+  Parameters parameters;
+
+  std::string name() const;       ///< "fluid=cell", "base" when nothing is swept
+  nlohmann::json labels() const;  ///< swept keys and values
+};
+
+/// How many there are; saturates at 2^64 - 1.
+std::uint64_t variant_count(const Sweep& sweep);
+
+/// In manifest order: the first grid axis varies slowest, the rows of the zip fastest.
+void for_each_variant(const AtScale& scale, const std::function<void(const Variant&)>& visit);
+
+/// Time steps, units and geometry of every variant of every scale, and how many runs there are.
+/// Only for a manifest that is well formed otherwise.
+std::vector<ManifestProblem> check_variants(const Manifest& manifest);
+
+}  // namespace shearcell

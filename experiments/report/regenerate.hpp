@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Makes a figure again from stored checkpoints alone: nothing is simulated.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/figure.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+struct RegenerateOptions {
+  std::filesystem::path folder;      ///< made when missing
+  std::optional<std::string> scale;  ///< default: the one that was declared last
+  std::size_t workers = 1;
+  std::function<void(std::size_t done, std::size_t total)> report;  ///< may be empty
+};
+
+struct RegeneratedFigure {
+  std::string name;
+  std::string scale;
+  std::size_t runs = 0;
+  std::size_t checkpoints = 0;
+  std::vector<std::filesystem::path> files;  ///< CSV and SVG of each panel, then the lineage
+  std::vector<std::string> damage;           ///< checkpoints that could not be read, one line each
+  std::string plot_error;                    ///< why there is no SVG; empty when there is
+};
+
+/// Names of the figures that some registered manifest asks for.
+std::vector<std::string> figures_of_store(const Store& store);
+
+/// Writes FOLDER/PANEL.csv and .svg for each panel and FOLDER/NAME.lineage.json, and records a
+/// FigureGenerated event unless the newest one says the same. The same checkpoints give the same
+/// bytes. A checkpoint that cannot be read is left out and named.
+/// Throws NotFound when the store holds no run for the figure.
+RegeneratedFigure regenerate(Store& store, const Figure& figure, const RegenerateOptions& options);
+
+}  // namespace shearcell

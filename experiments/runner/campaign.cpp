@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/runner/campaign.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "core/filling.hpp"
+#include "experiments/runner/stop.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell {
+namespace {
+
+enum class JobState { waiting, running, done, ended };  // ended: without reaching its target
+
+class Campaign {
+ public:
+  Campaign(Store& store, const std::vector<StageJob>& jobs, Progress& progress)
+      : store_(store), jobs_(jobs), progress_(progress), states_(jobs.size(), JobState::waiting) {}
+
+  CampaignResult run(std::size_t workers) {
+    std::vector<std::thread> threads;
+    for (std::size_t w = 0; w < std::max<std::size_t>(1, workers); ++w) {
+      threads.emplace_back([this] { work(); });
+    }
+    for (std::thread& thread : threads) thread.join();
+    if (error_) std::rethrow_exception(error_);
+    return result_;
+  }
+
+ private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  // The first job that may begin; kNone when none may now. Jobs that can no longer begin are ended.
+  std::size_t next_job() {
+    for (std::size_t j = 0; j < jobs_.size(); ++j) {
+      if (states_[j] != JobState::waiting) continue;
+      const JobState before = parent_state(j);
+      if (before == JobState::ended || error_ || stop_requested()) {
+        states_[j] = JobState::ended;
+        ++result_.blocked;
+      } else if (before == JobState::done) {
+        return j;
+      }
+    }
+    return kNone;
+  }
+
+  JobState parent_state(std::size_t j) const {
+    for (std::size_t k = 0; k < jobs_.size(); ++k) {
+      if (jobs_[k].id == jobs_[j].parent) return states_[k];
+    }
+    return JobState::done;  // a first stage, or one whose parent was not asked for
+  }
+
+  void work() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      const std::size_t j = next_job();
+      if (j == kNone) {
+        const auto count = [this](JobState s) {
+          return std::count(states_.begin(), states_.end(), s);
+        };
+        if (count(JobState::waiting) == 0 || count(JobState::running) == 0) break;
+        changed_.wait(lock);
+        continue;
+      }
+      states_[j] = JobState::running;
+      lock.unlock();
+      const JobState state = run_job(jobs_[j]);
+      lock.lock();
+      states_[j] = state;
+      changed_.notify_all();
+    }
+    changed_.notify_all();
+  }
+
+  JobState run_job(const StageJob& job) {
+    try {
+      return compute(job);
+    } catch (const StoreDamaged& damage) {
+      note(job, &CampaignResult::damaged, damage.what());
+    } catch (const GeometryError& error) {
+      note(job, &CampaignResult::failed, error.what());
+    } catch (const ConcurrencyConflict& conflict) {
+      note(job, &CampaignResult::blocked,
+           std::string("another process took the run over: ") + conflict.what());
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+    }
+    return JobState::ended;
+  }
+
+  JobState compute(const StageJob& job) {
+    std::string damage;
+    if (stage_done(store_, store_.run(job.id), damage)) {
+      const std::lock_guard lock(mutex_);
+      ++result_.already;
+      return JobState::done;
+    }
+    if (!damage.empty()) {
+      note(job, &CampaignResult::damaged, damage + "; computed again from the checkpoint before");
+    }
+    progress_.begin(job.name);
+    StageOptions options;
+    options.checkpoint_every = job.checkpoint_every;
+    options.report = [&](const StageStatus& status) { progress_.update(job.name, status); };
+    const StageOutcome outcome = run_stage(store_, job.id, options);
+    switch (outcome) {
+      case StageOutcome::completed:
+        finish(job, &CampaignResult::completed, "done");
+        return JobState::done;
+      case StageOutcome::interrupted:
+        finish(job, &CampaignResult::interrupted, "interrupted, checkpoint written");
+        return JobState::ended;
+      case StageOutcome::failed:
+        note(job, &CampaignResult::failed, store_.run(job.id).error);
+        progress_.end(job.name, "FAILED");
+        return JobState::ended;
+    }
+    return JobState::ended;
+  }
+
+  void finish(const StageJob& job, std::size_t CampaignResult::*count, const char* how) {
+    {
+      const std::lock_guard lock(mutex_);
+      ++(result_.*count);
+    }
+    progress_.end(job.name, how);
+  }
+
+  void note(const StageJob& job, std::size_t CampaignResult::*count, const std::string& why) {
+    const std::string line = fmt::format("{} ({:.12}): {}", job.name, job.id, why);
+    progress_.say(line);
+    const std::lock_guard lock(mutex_);
+    ++(result_.*count);
+    result_.messages.push_back(line);
+  }
+
+  Store& store_;
+  const std::vector<StageJob>& jobs_;
+  Progress& progress_;
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
+  std::vector<JobState> states_;
+  CampaignResult result_;
+  std::exception_ptr error_;
+};
+
+std::string job_name(const Membership& membership, const std::string& kind) {
+  // Variants that start from one packing share it, so its name says no variant.
+  return kind == "prepare"
+             ? fmt::format("{} packing seed={}", membership.experiment, membership.seed)
+             : fmt::format("{} {} seed={}", membership.experiment, membership.variant,
+                           membership.seed);
+}
+
+StageJob job_of(const RunRecord& run, std::uint64_t checkpoint_every) {
+  const std::string name =
+      run.memberships.empty() ? run.kind : job_name(run.memberships.front(), run.kind);
+  return {run.id, run.parent, name, checkpoint_every};
+}
+
+}  // namespace
+
+std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan& plan) {
+  const std::string sha = store.register_manifest(manifest.text, manifest.file,
+                                                  {{"experiment", plan.experiment},
+                                                   {"question", manifest.question},
+                                                   {"figures", manifest.figures}});
+  std::vector<StageJob> jobs;
+  std::set<std::string> known;
+  for (const PlannedRun& run : plan.runs) {
+    for (const StageSpec* stage : {&run.prepare, &run.shear}) {
+      const bool prepare = stage->stage == Stage::prepare;
+      RunDeclaration declaration;
+      declaration.id = stage->key;
+      declaration.parent = stage->parent;
+      declaration.kind = stage_name(stage->stage);
+      declaration.resolved = stage->resolved;
+      declaration.grains = run.grains;
+      declaration.target_cycles = prepare ? 0 : run.cycles;
+      declaration.membership.experiment = run.experiment;
+      declaration.membership.scale = run.scale;
+      declaration.membership.variant = prepare ? "packing" : run.variant;
+      declaration.membership.labels = prepare ? nlohmann::json::object() : run.labels;
+      declaration.membership.seed = run.seed;
+      declaration.membership.manifest = sha;
+      if (!known.insert(stage->key).second) continue;
+      store.declare_run(declaration);
+      jobs.push_back({stage->key, stage->parent, job_name(declaration.membership, declaration.kind),
+                      run.checkpoint_every});
+    }
+  }
+  return jobs;
+}
+
+std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes) {
+  std::set<std::string> wanted;
+  for (const std::string& prefix : prefixes) {
+    for (RunRecord run = store.find_run(prefix);; run = store.run(run.parent)) {
+      wanted.insert(run.id);
+      if (run.parent.empty()) break;
+    }
+  }
+  std::vector<StageJob> jobs;
+  for (const RunRecord& run : store.runs()) {
+    const bool asked =
+        prefixes.empty() ? run.state != RunState::completed : wanted.count(run.id) > 0;
+    if (asked) jobs.push_back(job_of(run, 1));
+  }
+  return jobs;
+}
+
+CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
+                            Progress& progress) {
+  return Campaign(store, jobs, progress).run(workers);
+}
+
+}  // namespace shearcell

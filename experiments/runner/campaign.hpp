@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs many stages, as many at once as there are workers, each after the one that it continues.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "experiments/manifest/expand.hpp"
+#include "experiments/runner/progress.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+/// One stage to bring to its target.
+struct StageJob {
+  std::string id;
+  std::string parent;  ///< id, or ""
+  std::string name;    ///< for people
+  std::uint64_t checkpoint_every = 1;
+};
+
+struct CampaignResult {
+  std::size_t completed = 0;  ///< stages computed now
+  std::size_t already = 0;    ///< stages that were done before
+  std::size_t failed = 0;     ///< stopped by the watchdog
+  std::size_t interrupted = 0;
+  std::size_t blocked = 0;  ///< not begun, because the stage before failed or was interrupted
+  std::size_t damaged = 0;  ///< met a damaged file of the store
+  std::vector<std::string> messages;  ///< one for each failure or damage
+};
+
+/// Records the manifest and the runs that it expands to. Returns their stages, each once, parents
+/// first and otherwise in the plan's order.
+std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan& plan);
+
+/// Stages of the store that are not completed, or those whose run begins with one of `prefixes`
+/// and the stages before them. Throws NotFound for a prefix that fits no run or several.
+std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes);
+
+/// Computes every job that is not done. A failure stops only the stages that depend on it.
+CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
+                            Progress& progress);
+
+}  // namespace shearcell

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What stages that are still to do will take, estimated before they run.
+#pragma once
+
+#include <vector>
+
+#include "experiments/manifest/expand.hpp"
+#include "provenance/records.hpp"
+
+namespace shearcell {
+
+struct StageCost {
+  double particle_steps = 0;
+  double bytes = 0;  ///< of checkpoint files
+};
+
+/// Cost of a planned stage from `cycle` on. Settling is estimated from what it took at N = 600 to
+/// 18200; a checkpoint's size from the number of its grains and wall grains.
+StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle);
+
+struct Rate {
+  double particle_steps_per_second;  ///< of one core
+  bool measured;                     ///< in the store's own runs, or assumed
+};
+
+Rate expected_rate(const std::vector<RunRecord>& runs);
+
+}  // namespace shearcell

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/runner/host.hpp"
+
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "core/kernel.hpp"
+#include "experiments/runner/build_facts.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+namespace {
+
+std::string cpu_model() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const auto colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) {
+      return line.substr(colon + 2);
+    }
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+nlohmann::json host_facts() {
+  std::array<char, 256> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0) name[0] = '\0';
+  utsname system{};
+  uname(&system);
+  return {
+      {"host", name.data()},
+      {"system", std::string(system.sysname) + " " + system.release + " " + system.machine},
+      {"cpu", cpu_model()},
+      {"cores", std::thread::hardware_concurrency()},
+      {"simd", find_kernels(Simd::best)->name},
+      {"build",
+       {{"version", kBuildVersion},
+        {"commit", kBuildCommit},
+        {"compiler", kBuildCompiler},
+        {"flags", kBuildFlags},
+        {"type", kBuildType}}},
+      {"libraries",
+       {{"eigen", std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
+                      "." + std::to_string(EIGEN_MINOR_VERSION)},
+        {"hdf5", kHdf5Version},
+        {"sqlite", kSqliteVersion},
+        {"yaml-cpp", kYamlCppVersion},
+        {"cgal", kCgalVersion}}}};
+}
+
+}  // namespace shearcell

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where and with what a run was computed: recorded with every attempt, part of no identity.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+namespace shearcell {
+
+/// {host, cpu, cores, simd, build{version, commit, compiler, flags, type}, libraries{...}}.
+nlohmann::json host_facts();
+
+}  // namespace shearcell

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/runner/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace shearcell {
+namespace {
+
+constexpr std::chrono::seconds kPlainInterval{10};
+
+std::string describe(const StageStatus& status) {
+  const double rate = status.steps_per_second * static_cast<double>(status.grains) * 1e-6;
+  const std::string where =
+      status.target_cycles > 0
+          ? fmt::format("cycle {:.2f} of {:g}", status.cycle, status.target_cycles)
+          : fmt::format("step {}", status.step);
+  const std::string left =
+      status.seconds_left >= 0 ? format_duration(status.seconds_left) + " left" : "";
+  return fmt::format("{:<18} {:6.1f} M particle-steps/s  {}", where, rate, left);
+}
+
+}  // namespace
+
+std::string format_duration(double seconds) {
+  if (!std::isfinite(seconds)) return "?";
+  const auto total = static_cast<long long>(std::llround(seconds));
+  const auto hours = total / 3600;
+  if (hours > 0) return fmt::format("{}:{:02}:{:02}", hours, total / 60 % 60, total % 60);
+  return fmt::format("{}:{:02}", total / 60, total % 60);
+}
+
+Progress::Progress(std::size_t stages, bool quiet)
+    : stages_(stages), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  erase();
+}
+
+void Progress::begin(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  running_[name] = "starting";
+  said_at_[name] = std::chrono::steady_clock::now();
+  if (!terminal_ && !quiet_) fmt::print(stderr, "{}: started\n", name);
+}
+
+void Progress::update(const std::string& name, const StageStatus& status) {
+  const std::lock_guard lock(mutex_);
+  running_[name] = describe(status);
+  if (quiet_) return;
+  if (terminal_) {
+    draw();
+    return;
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (now - said_at_[name] < kPlainInterval) return;
+  said_at_[name] = now;
+  fmt::print(stderr, "{}: {}\n", name, running_[name]);
+}
+
+void Progress::end(const std::string& name, const std::string& how) {
+  const std::lock_guard lock(mutex_);
+  running_.erase(name);
+  ++ended_;
+  if (quiet_) return;
+  erase();
+  fmt::print(stderr, "{}: {} ({} of {} stages)\n", name, how, ended_, stages_);
+  if (terminal_) draw();
+}
+
+void Progress::say(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  erase();
+  fmt::print(stderr, "{}\n", line);
+}
+
+void Progress::erase() {
+  for (; drawn_ > 0; --drawn_) fmt::print(stderr, "\x1b[1A\x1b[2K");
+}
+
+void Progress::draw() {
+  erase();
+  for (const auto& [name, text] : running_) {
+    fmt::print(stderr, "{:.38}  {:.60}\n", name, text);
+    ++drawn_;
+  }
+  std::fflush(stderr);
+}
+
+}  // namespace shearcell

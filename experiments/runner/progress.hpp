@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tells people on standard error how the runs of a campaign come along.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "experiments/runner/stage_runner.hpp"
+
+namespace shearcell {
+
+/// On a terminal: one line per running stage, drawn over itself. Elsewhere: a plain line when a
+/// stage begins or ends and, for each, at most one every ten seconds. Thread-safe.
+class Progress {
+ public:
+  explicit Progress(std::size_t stages, bool quiet = false);
+  ~Progress();
+
+  void begin(const std::string& name);
+  void update(const std::string& name, const StageStatus& status);
+  void end(const std::string& name, const std::string& how);
+  /// A line that stays.
+  void say(const std::string& line);
+
+ private:
+  void erase();
+  void draw();
+
+  std::mutex mutex_;
+  std::size_t stages_, ended_ = 0;
+  bool quiet_, terminal_;
+  std::size_t drawn_ = 0;  ///< lines on the screen that the next drawing replaces
+  std::map<std::string, std::string> running_;
+  std::map<std::string, std::chrono::steady_clock::time_point> said_at_;
+};
+
+/// "1:02:03", "4:05" or "0:07".
+std::string format_duration(double seconds);
+
+}  // namespace shearcell

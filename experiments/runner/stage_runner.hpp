@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Computes one stage of a run from what the store knows about it, and records what comes out.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "experiments/manifest/identity.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+/// How a stage ended in this process.
+enum class StageOutcome : std::uint8_t { completed, interrupted, failed };
+
+/// Where a running stage stands, for people who watch.
+struct StageStatus {
+  double cycle = 0;
+  double target_cycles = 0;  ///< 0 for a stage without cycles
+  double steps_per_second = 0;
+  std::size_t grains = 0;
+  std::uint64_t step = 0;
+  double seconds_left = 0;  ///< negative when it is not known
+};
+
+struct StageOptions {
+  std::uint64_t checkpoint_every = 1;              ///< cycles
+  std::function<void(const StageStatus&)> report;  ///< called a few times a second
+};
+
+/// Computes the stage `id` until its target: continues from its newest checkpoint that verifies,
+/// or else begins from its parent's last state, or from a fresh filling. Checks for
+/// stop_requested() between chunks of steps of about 50 ms.
+/// Throws StoreDamaged when the parent's last state cannot be read, GeometryError for a cell that
+/// cannot be filled; both are recorded as the run's failure first.
+StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
+
+/// Whether the store holds the stage's last state, readable. A completed stage whose last
+/// checkpoint is damaged has work left; `damage` then names the file.
+bool stage_done(Store& store, const RunRecord& run, std::string& damage);
+
+}  // namespace shearcell

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/runner/stop.hpp"
+
+#include <atomic>
+#include <csignal>
+
+namespace shearcell {
+namespace {
+
+std::atomic<bool> stop_wish{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only set such a flag");
+
+extern "C" void on_stop_signal(int number) {
+  stop_wish.store(true);
+  std::signal(number, SIG_DFL);
+}
+
+}  // namespace
+
+void catch_stop_signals() {
+  std::signal(SIGINT, on_stop_signal);
+  std::signal(SIGTERM, on_stop_signal);
+}
+
+bool stop_requested() {
+  return stop_wish.load();
+}
+
+void request_stop(bool stop) {
+  stop_wish.store(stop);
+}
+
+}  // namespace shearcell

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "protocols/settle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/diagnostics.hpp"
+
+namespace shearcell {
+namespace {
+
+constexpr double kLookInterval = 0.1;  // [s]
+constexpr std::uint64_t kLooksPerCheckpoint = 20;
+constexpr double kDenseGrains = 1.2;  // per d^3, of a packing at phi = 0.63
+
+}  // namespace
+
+Settle::Settle(const SettleParameters& parameters, const Scene& scene)
+    : parameters_(parameters),
+      scene_(scene),
+      look_steps_(
+          std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kLookInterval / scene.time_step))),
+      limit_steps_(static_cast<std::uint64_t>(parameters.time_limit / scene.time_step)) {}
+
+std::uint64_t Settle::press_steps(const Cell& cell, std::size_t grains) const {
+  if (scene_.gravity == 0 || scene_.pressure == 0) return 0;
+  const double per_area = static_cast<double>(grains) / (cell.width * cell.depth);
+  const double way = std::max(0.0, cell.top - cell.bottom - per_area / kDenseGrains);
+  const double speed = scene_.pressure / (scene_.wall_drag + scene_.drag_rate * per_area);
+  const double looks = std::ceil((way / speed + 0.5) / kLookInterval);
+  return look_steps_ *
+         static_cast<std::uint64_t>(std::min(looks, parameters_.time_limit / kLookInterval));
+}
+
+bool Settle::settled(const Simulation& simulation) const {
+  const State state = simulation.state();
+  // Without pressure the wall carries what the grains' weight puts on it, on the scale of m g.
+  const double pressure = scene_.pressure > 0 ? scene_.pressure : std::max(scene_.gravity, 1.0);
+  const double kinetic =
+      0.5 * state.velocity.squaredNorm() / static_cast<double>(state.velocity.cols());
+  if (kinetic > parameters_.kinetic_tolerance * pressure) return false;
+  if (std::fabs(state.wall_velocity) * scene_.wall_drag > parameters_.force_tolerance * pressure) {
+    return false;
+  }
+  const WallPose pose = wall_pose(simulation.cell(), 0, state.wall_height);
+  const Diagnostics facts = diagnose(simulation.cell(), scene_, state, pose);
+  return std::fabs(facts.wall_imbalance) <= parameters_.force_tolerance;
+}
+
+StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) const {
+  const std::uint64_t pressed = press_steps(simulation.cell(), simulation.grains());
+  const auto at_look = [&] { return simulation.step() % look_steps_ == 0; };
+  const auto finished = [&] {
+    return simulation.step() > pressed && at_look() && settled(simulation);
+  };
+  StageProgress progress;
+  // A stage that was cut off between its last checkpoint and its end must not go on.
+  progress.finished = progress.checkpoint_due = finished();
+  if (progress.finished) return progress;
+
+  Scene scene = scene_;
+  if (simulation.step() < pressed) scene.gravity = 0;
+  simulation.set_scene(scene);
+  const std::uint64_t to_look = look_steps_ - simulation.step() % look_steps_;
+  simulation.advance(drive(), std::min(most_steps, to_look));
+
+  progress.finished = finished();
+  progress.checkpoint_due =
+      progress.finished || simulation.step() % (kLooksPerCheckpoint * look_steps_) == 0;
+  if (!progress.finished && simulation.step() >= limit_steps_) {
+    throw NumericalFailure("the time [s] that the packing takes to settle",
+                           static_cast<double>(simulation.step()) * scene_.time_step,
+                           parameters_.time_limit, -1, simulation.step(),
+                           "Raise settle_time_limit_s or the settling tolerances, or check that "
+                           "the pressure can lift the grains");
+  }
+  return progress;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Writing a checkpoint; checkpoint_read.cpp reads it.
+#include "provenance/checkpoint.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <stdexcept>
+
+#include "provenance/hdf5_handle.hpp"
+#include "provenance/sha256.hpp"
+
+namespace shearcell {
+
+namespace {
+
+using hdf5::Handle;
+using Shape = std::vector<hsize_t>;
+
+static_assert(std::endian::native == std::endian::little, "hashes and files hold native numbers");
+
+hid_t require(hid_t result, const std::string& what) {
+  if (result < 0) throw std::runtime_error("HDF5 cannot write " + what + " of a checkpoint");
+  return result;
+}
+
+/// Neither files nor groups record the time of writing, and links are stored compactly.
+Handle creation_list(hid_t kind) {
+  Handle list(require(H5Pcreate(kind), "a property list"), H5Pclose);
+  H5Pset_obj_track_times(list.get(), false);
+  if (kind != H5P_DATASET_CREATE) H5Pset_link_creation_order(list.get(), H5P_CRT_ORDER_TRACKED);
+  return list;
+}
+
+Handle make_group(const Handle& parent, const std::string& name) {
+  const Handle list = creation_list(H5P_GROUP_CREATE);
+  return {require(H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
+                  "group " + name),
+          H5Gclose};
+}
+
+Handle make_space(const Shape& shape) {
+  if (shape.empty()) return {require(H5Screate(H5S_SCALAR), "a scalar"), H5Sclose};
+  return {require(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                  "a data space"),
+          H5Sclose};
+}
+
+void put_attribute(const Handle& object, const std::string& name, hid_t type, const void* data,
+                   const Shape& shape = {}) {
+  const Handle space = make_space(shape);
+  const Handle attribute(
+      require(H5Acreate2(object.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+              "attribute " + name),
+      H5Aclose);
+  require(H5Awrite(attribute.get(), type, data), "attribute " + name);
+}
+
+void put_attribute(const Handle& object, const std::string& name, double value) {
+  put_attribute(object, name, H5T_IEEE_F64LE, &value);
+}
+
+void put_attribute(const Handle& object, const std::string& name, std::uint64_t value) {
+  put_attribute(object, name, H5T_STD_U64LE, &value);
+}
+
+/// Strings of one fixed length, cells.size() / length of them.
+void put_strings(const Handle& object, const std::string& name, const std::string& cells,
+                 std::size_t length, const Shape& shape) {
+  const Handle type(require(H5Tcopy(H5T_C_S1), "a text type"), H5Tclose);
+  require(H5Tset_size(type.get(), length), "a text type");
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  put_attribute(object, name, type.get(), cells.data(), shape);
+}
+
+void put_attribute(const Handle& object, const std::string& name, const std::string& text) {
+  const std::string cell = text.empty() ? std::string(1, '\0') : text;
+  put_strings(object, name, cell, cell.size(), {});
+}
+
+Handle put_dataset(const Handle& parent, const std::string& name, hid_t type, const void* data,
+                   const Shape& shape, const std::string& unit = "") {
+  const Handle space = make_space(shape);
+  const Handle list = creation_list(H5P_DATASET_CREATE);
+  H5Pset_layout(list.get(), H5D_CONTIGUOUS);
+  H5Pset_fill_time(list.get(), H5D_FILL_TIME_NEVER);
+  Handle dataset(require(H5Dcreate2(parent.get(), name.c_str(), type, space.get(), H5P_DEFAULT,
+                                    list.get(), H5P_DEFAULT),
+                         "dataset " + name),
+                 H5Dclose);
+  require(H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "dataset " + name);
+  if (!unit.empty()) put_attribute(dataset, "unit", unit);
+  return dataset;
+}
+
+/// An H5MD element at the one instant of the checkpoint: {step, time, value}.
+void put_element(const Handle& parent, const std::string& name, const Checkpoint& checkpoint,
+                 const double* value, const Shape& shape, const std::string& unit) {
+  const Handle group = make_group(parent, name);
+  put_dataset(group, "step", H5T_STD_U64LE, &checkpoint.state.step, {1});
+  put_dataset(group, "time", H5T_IEEE_F64LE, &checkpoint.time_s, {1}, "s");
+  put_dataset(group, "value", H5T_IEEE_F64LE, value, shape, unit);
+}
+
+void put_metadata(const Handle& file) {
+  const Handle h5md = make_group(file, "h5md");
+  const int version[2] = {1, 1};
+  put_attribute(h5md, "version", H5T_STD_I32LE, version, {2});
+  const Handle author = make_group(h5md, "author");
+  put_attribute(author, "name", std::string("shearcell"));
+  const Handle creator = make_group(h5md, "creator");
+  put_attribute(creator, "name", std::string("shearcell"));
+  // The version of the layout, not of the program: the same state gives the same bytes in the next
+  // release too. The log records the program.
+  put_attribute(creator, "version", std::to_string(hdf5::kRestartFormat));
+  const Handle modules = make_group(h5md, "modules");
+  const Handle units = make_group(modules, "units");
+  const int units_version[2] = {1, 0};
+  put_attribute(units, "version", H5T_STD_I32LE, units_version, {2});
+  put_attribute(units, "system", std::string("SI"));
+}
+
+void put_box(const Handle& all, const Checkpoint& checkpoint, const WallPose& pose) {
+  const Handle box = make_group(all, "box");
+  const int dimension = 3;
+  put_attribute(box, "dimension", H5T_STD_I32LE, &dimension);
+  const std::string boundary("none\0\0\0\0none\0\0\0\0periodic", 24);
+  put_strings(box, "boundary", boundary, 8, {3});
+  const double d = checkpoint.units.diameter_m;
+  const double edges[3] = {checkpoint.cell.width * d, (pose.top - pose.bottom) * d,
+                           checkpoint.cell.depth * d};
+  put_dataset(box, "edges", H5T_IEEE_F64LE, edges, {3}, "m");
+}
+
+/// The grains in SI units and after them the wall grains where their walls are, for other programs.
+void put_particles(const Handle& file, const Checkpoint& checkpoint) {
+  const Handle particles = make_group(file, "particles");
+  const Handle all = make_group(particles, "all");
+  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  put_box(all, checkpoint, pose);
+
+  const Eigen::Index grains = checkpoint.state.position.cols();
+  const auto walls = static_cast<Eigen::Index>(checkpoint.cell.wall_grains.size());
+  const double d = checkpoint.units.diameter_m;
+  Eigen::Matrix3Xd position(3, grains + walls);
+  position.leftCols(grains) = checkpoint.state.position * d;
+  position.rightCols(walls) = wall_grain_positions(checkpoint.cell, pose) * d;
+  Eigen::Matrix3Xd velocity = Eigen::Matrix3Xd::Zero(3, grains + walls);
+  velocity.leftCols(grains) = checkpoint.state.velocity * d;
+
+  const auto total = static_cast<hsize_t>(grains + walls);
+  put_element(all, "position", checkpoint, position.data(), {1, total, 3}, "m");
+  put_element(all, "velocity", checkpoint, velocity.data(), {1, total, 3}, "m s-1");
+  std::vector<std::uint64_t> id(total);
+  std::iota(id.begin(), id.end(), std::uint64_t{0});
+  put_dataset(all, "id", H5T_STD_U64LE, id.data(), {total});
+  std::vector<std::uint8_t> species(total, 0);
+  for (std::size_t i = 0; i < checkpoint.cell.wall_grains.size(); ++i) {
+    species[static_cast<std::size_t>(grains) + i] =
+        static_cast<std::uint8_t>(1 + static_cast<int>(checkpoint.cell.wall_grains[i].side));
+  }
+  put_dataset(all, "species", H5T_STD_U8LE, species.data(), {total});
+  const std::vector<double> mass(total, checkpoint.units.mass_kg);
+  put_dataset(all, "mass", H5T_IEEE_F64LE, mass.data(), {total}, "kg");
+  const std::vector<double> radius(total, 0.5 * d);
+  put_dataset(all, "radius", H5T_IEEE_F64LE, radius.data(), {total}, "m");
+}
+
+void put_observables(const Handle& file, const Checkpoint& checkpoint) {
+  const Handle group = make_group(file, "observables");
+  for (const auto& [name, value] : checkpoint.observables) {
+    put_element(group, name, checkpoint, &value, {1}, "");
+  }
+}
+
+void put_cell(const Handle& restart, const Cell& cell) {
+  const Handle group = make_group(restart, "cell");
+  put_attribute(group, "width", cell.width);
+  put_attribute(group, "depth", cell.depth);
+  put_attribute(group, "bottom", cell.bottom);
+  put_attribute(group, "top", cell.top);
+  put_attribute(group, "moving", static_cast<std::uint64_t>(cell.moving));
+  std::vector<std::uint8_t> side;
+  std::vector<double> position;
+  for (const WallGrain& grain : cell.wall_grains) {
+    side.push_back(static_cast<std::uint8_t>(grain.side));
+    position.insert(position.end(), grain.position.begin(), grain.position.end());
+  }
+  put_dataset(group, "wall_grain_side", H5T_STD_U8LE, side.data(), {side.size()});
+  put_dataset(group, "wall_grain_position", H5T_IEEE_F64LE, position.data(), {side.size(), 3});
+}
+
+/// The exact state in the engine's own units: what a run continues from.
+void put_restart(const Handle& file, const Checkpoint& checkpoint) {
+  const Handle restart = make_group(file, "restart");
+  const State& state = checkpoint.state;
+  put_attribute(restart, "format", hdf5::kRestartFormat);
+  put_attribute(restart, "run", checkpoint.run);
+  put_attribute(restart, "step", state.step);
+  put_attribute(restart, "time_s", checkpoint.time_s);
+  put_attribute(restart, "cycle", checkpoint.cycle);
+  put_attribute(restart, "theta", checkpoint.theta);
+  put_attribute(restart, "wall_height", state.wall_height);
+  put_attribute(restart, "wall_velocity", state.wall_velocity);
+  put_attribute(restart, "diameter_m", checkpoint.units.diameter_m);
+  put_attribute(restart, "mass_kg", checkpoint.units.mass_kg);
+  const auto grains = static_cast<hsize_t>(state.position.cols());
+  put_dataset(restart, "position", H5T_IEEE_F64LE, state.position.data(), {grains, 3});
+  put_dataset(restart, "velocity", H5T_IEEE_F64LE, state.velocity.data(), {grains, 3});
+  put_cell(restart, checkpoint.cell);
+}
+
+void require_sound(const Checkpoint& c) {
+  const auto refuse = [](const std::string& why) {
+    throw std::invalid_argument("a checkpoint cannot be written: " + why);
+  };
+  if (c.run.size() > 4096 || c.run.find('\0') != std::string::npos) refuse("bad run id");
+  if (c.state.position.cols() != c.state.velocity.cols()) {
+    refuse("there are not as many velocities as positions");
+  }
+  if (!c.state.position.allFinite() || !c.state.velocity.allFinite()) {
+    refuse("a position or velocity is not finite");
+  }
+  for (const WallGrain& grain : c.cell.wall_grains) {
+    if (!grain.position.allFinite()) refuse("the position of a wall grain is not finite");
+  }
+  for (const double value :
+       {c.time_s, c.cycle, c.theta, c.units.diameter_m, c.units.mass_kg, c.cell.width, c.cell.depth,
+        c.cell.bottom, c.cell.top, c.state.wall_height, c.state.wall_velocity}) {
+    if (!std::isfinite(value)) refuse("a number of the cell, wall or clock is not finite");
+  }
+  for (const auto& [name, value] : c.observables) {
+    if (name.empty() || name == "." || name.find_first_of(std::string("/\0", 2)) != name.npos) {
+      refuse("'" + name + "' cannot name an observable");
+    }
+    if (!std::isfinite(value)) refuse("observable " + name + " is not finite");
+  }
+}
+
+/// The HDF5 part, as it stands in a file after the frame.
+std::vector<std::byte> framed_image(const Handle& file) {
+  require(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "the buffers");
+  const ssize_t size = H5Fget_file_image(file.get(), nullptr, 0);
+  if (size <= 0) require(-1, "the image");
+  std::vector<std::byte> image(hdf5::kFrameSize + static_cast<std::size_t>(size));
+  const ssize_t got = H5Fget_file_image(file.get(), image.data() + hdf5::kFrameSize,
+                                        static_cast<std::size_t>(size));
+  if (got != size) require(-1, "the image");
+  return image;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
+  require_sound(checkpoint);
+  std::vector<std::byte> image;
+  {
+    const std::scoped_lock lock(hdf5::library_mutex());
+    const hdf5::Quiet quiet;
+    const Handle access(require(H5Pcreate(H5P_FILE_ACCESS), "a property list"), H5Pclose);
+    require(H5Pset_fapl_core(access.get(), 1 << 20, false), "a memory file");
+    // The oldest superblock has no checksum of its own: HDF5 1.10 gives wrong ones in file images.
+    require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "version");
+    const Handle creation = creation_list(H5P_FILE_CREATE);
+    require(H5Pset_userblock(creation.get(), hdf5::kFrameSize), "a user block");
+    const Handle file(require(H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation.get(), access.get()),
+                              "a memory file"),
+                      H5Fclose);
+    put_metadata(file);
+    put_particles(file, checkpoint);
+    put_observables(file, checkpoint);
+    put_restart(file, checkpoint);
+    image = framed_image(file);
+  }
+  const std::string frame =
+      hdf5::frame_text(sha256_hex(std::span(image).subspan(hdf5::kFrameSize)));
+  std::memcpy(image.data(), frame.data(), frame.size());
+  return image;
+}
+
+std::string state_hash(const Checkpoint& checkpoint) {
+  const State& state = checkpoint.state;
+  const Cell& cell = checkpoint.cell;
+  const auto numbers = [](const Eigen::Matrix3Xd& m) {
+    return std::as_bytes(std::span(m.data(), static_cast<std::size_t>(m.size())));
+  };
+  Sha256 sha;
+  sha.add("shearcell state 1\n").add_u64(state.step);
+  sha.add_u64(static_cast<std::uint64_t>(state.position.cols()));
+  sha.add(numbers(state.position)).add(numbers(state.velocity));
+  sha.add_f64(state.wall_height).add_f64(state.wall_velocity);
+  sha.add_f64(cell.width).add_f64(cell.depth).add_f64(cell.bottom).add_f64(cell.top);
+  sha.add_u64(static_cast<std::uint64_t>(cell.moving)).add_u64(cell.wall_grains.size());
+  for (const WallGrain& grain : cell.wall_grains) {
+    sha.add_u64(static_cast<std::uint64_t>(grain.side));
+    for (const double x : grain.position) sha.add_f64(x);
+  }
+  return sha.hex();
+}
+
+}  // namespace shearcell

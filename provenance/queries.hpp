@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reading the projections as plain records.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "provenance/records.hpp"
+#include "provenance/sqlite.hpp"
+
+namespace shearcell {
+
+/// One run, or all in the order of their declaration ("").
+std::vector<RunRecord> query_runs(const sqlite::Database& database, std::string_view id = "");
+/// Ids that begin so, at most `limit`.
+std::vector<std::string> query_run_ids(const sqlite::Database& database, std::string_view prefix,
+                                       std::size_t limit);
+/// Checkpoints of one run, or of all (""), in ascending order of step.
+std::vector<CheckpointRecord> query_checkpoints(const sqlite::Database& database,
+                                                std::string_view run = "");
+std::optional<CheckpointRecord> query_checkpoint(const sqlite::Database& database,
+                                                 std::string_view run, std::string_view sha256);
+std::vector<FigureRecord> query_figures(const sqlite::Database& database);
+
+}  // namespace shearcell

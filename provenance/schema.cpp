@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance/schema.hpp"
+
+#include <fmt/format.h>
+
+#include "provenance/errors.hpp"
+#include "provenance/projections.hpp"
+
+namespace shearcell {
+
+namespace {
+
+constexpr const char* kEvents = R"sql(
+CREATE TABLE events(
+  seq INTEGER PRIMARY KEY,
+  stream TEXT NOT NULL,
+  version INTEGER NOT NULL CHECK (version > 0),
+  type TEXT NOT NULL,
+  schema INTEGER NOT NULL CHECK (schema > 0),
+  recorded_at TEXT NOT NULL,
+  payload TEXT NOT NULL,
+  prev_hash TEXT NOT NULL,
+  hash TEXT NOT NULL,
+  UNIQUE (stream, version)
+) STRICT;
+CREATE TRIGGER events_are_never_updated BEFORE UPDATE ON events
+BEGIN SELECT RAISE(ABORT, 'events are never updated'); END;
+CREATE TRIGGER events_are_never_deleted BEFORE DELETE ON events
+BEGIN SELECT RAISE(ABORT, 'events are never deleted'); END;
+)sql";
+
+void require_plain_file(const std::filesystem::path& file) {
+  const auto type = std::filesystem::symlink_status(file).type();
+  if (type != std::filesystem::file_type::regular &&
+      type != std::filesystem::file_type::not_found) {
+    throw StoreDamaged(fmt::format(
+        "{}: the log of a store is a regular file, and a folder, link or device stands there; "
+        "remove it or name another store folder",
+        file.string()));
+  }
+}
+
+void create_tables(sqlite::Database& database) {
+  sqlite::WriteTransaction lock(database);
+  // Another process may have made them while this one waited for the lock.
+  if (database.integer("SELECT count(*) FROM sqlite_schema") == 0) {
+    database.execute(kEvents);
+    create_projections(database);
+    database.execute(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};",
+                                 kApplicationId, kSchemaVersion));
+  }
+  lock.commit();
+}
+
+void require_known_schema(sqlite::Database& database) {
+  if (database.integer("PRAGMA application_id") != kApplicationId) {
+    throw StoreDamaged(
+        fmt::format("{}: this SQLite database belongs to another program; name another store "
+                    "folder",
+                    database.name()));
+  }
+  const std::int64_t version = database.integer("PRAGMA user_version");
+  if (version > kSchemaVersion) {
+    throw StoreDamaged(fmt::format(
+        "{}: the store has schema {}, and this program knows schemas up to {}; use the newer "
+        "shearcell that wrote it",
+        database.name(), version, kSchemaVersion));
+  }
+  if (version < 1) {
+    throw StoreDamaged(
+        fmt::format("{}: the store has schema {}, which never existed; restore the "
+                    "file from a backup",
+                    database.name(), version));
+  }
+}
+
+}  // namespace
+
+sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open mode,
+                               bool read_only) {
+  require_plain_file(file);
+  sqlite::Database database(file, mode);
+  // The rollback journal rather than WAL: SQLite before 3.51.3 can lose committed transactions when
+  // several connections checkpoint a WAL at once. EXTRA also syncs the folder after the journal is
+  // deleted, so that a committed event survives a power cut.
+  database.execute(
+      "PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
+      "PRAGMA synchronous=EXTRA;");
+  if (database.integer("PRAGMA page_count") == 0) create_tables(database);
+  require_known_schema(database);
+  database.execute(read_only ? "PRAGMA query_only=ON" : "PRAGMA journal_mode=DELETE");
+  return database;
+}
+
+}  // namespace shearcell

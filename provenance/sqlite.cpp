@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance/sqlite.hpp"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <stdexcept>
+
+#include "provenance/errors.hpp"
+
+namespace shearcell::sqlite {
+
+namespace {
+
+constexpr int kBusyTimeoutMs = 30'000;
+
+std::int64_t as_signed(std::uint64_t value) {
+  return static_cast<std::int64_t>(value);
+}
+
+}  // namespace
+
+void Database::Close::operator()(sqlite3* handle) const {
+  sqlite3_close_v2(handle);
+}
+
+Database::Database(const std::filesystem::path& file, Open mode) : name_(file.string()) {
+  sqlite3* handle = nullptr;
+  const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE |
+                    (mode == Open::create ? SQLITE_OPEN_CREATE : 0);
+  const int code = sqlite3_open_v2(name_.c_str(), &handle, flags, nullptr);
+  handle_.reset(handle);
+  if (code != SQLITE_OK) fail(code, "open");
+  sqlite3_busy_timeout(handle, kBusyTimeoutMs);
+}
+
+Database Database::in_memory() {
+  return Database(":memory:", Open::create);
+}
+
+void Database::fail(int code, std::string_view doing) const {
+  const char* reason = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(code);
+  switch (code & 0xff) {
+    case SQLITE_NOTADB:
+      throw StoreDamaged(fmt::format(
+          "{}: this is not an SQLite database, so not the log of a store; put the right file there "
+          "from a backup, or name another store folder",
+          name_));
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      throw StoreBusy(fmt::format(
+          "{}: another process kept the store locked for {} s; wait until it ends, then run again",
+          name_, kBusyTimeoutMs / 1000));
+    case SQLITE_CORRUPT:
+    case SQLITE_CONSTRAINT:
+    case SQLITE_ERROR:  // our SQL is fixed, so it fails only on tables that are not ours
+    case SQLITE_MISMATCH:
+      throw StoreDamaged(
+          fmt::format("{}: the database is damaged (cannot {}: {}); restore it from a backup",
+                      name_, doing, reason));
+    default:
+      throw std::runtime_error(fmt::format("{}: cannot {}: {}", name_, doing, reason));
+  }
+}
+
+void Database::execute(const std::string& sql) {
+  const int code = sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK) fail(code, "write");
+}
+
+std::int64_t Database::integer(const std::string& sql) {
+  Statement query(*this, sql);
+  if (!query.step()) fail(SQLITE_CORRUPT, "read");
+  return static_cast<std::int64_t>(query.u64(0));
+}
+
+void Statement::Finalize::operator()(sqlite3_stmt* handle) const {
+  sqlite3_finalize(handle);
+}
+
+Statement::Statement(const Database& database, std::string_view sql) : database_(&database) {
+  sqlite3_stmt* handle = nullptr;
+  check(sqlite3_prepare_v2(database.handle(), sql.data(), static_cast<int>(sql.size()), &handle,
+                           nullptr));
+  handle_.reset(handle);
+}
+
+void Statement::check(int code) const {
+  if (code != SQLITE_OK) database_->fail(code, "read or write");
+}
+
+Statement& Statement::bind(int parameter, std::string_view text) {
+  check(sqlite3_bind_text64(handle_.get(), parameter, text.data() ? text.data() : "", text.size(),
+                            SQLITE_TRANSIENT, SQLITE_UTF8));
+  return *this;
+}
+
+Statement& Statement::bind(int parameter, std::uint64_t value) {
+  check(sqlite3_bind_int64(handle_.get(), parameter, as_signed(value)));
+  return *this;
+}
+
+Statement& Statement::bind(int parameter, double value) {
+  check(sqlite3_bind_double(handle_.get(), parameter, value));
+  return *this;
+}
+
+Statement& Statement::bind_or_null(int parameter, std::string_view text) {
+  if (!text.empty()) return bind(parameter, text);
+  check(sqlite3_bind_null(handle_.get(), parameter));
+  return *this;
+}
+
+bool Statement::step() {
+  const int code = sqlite3_step(handle_.get());
+  if (code == SQLITE_ROW) return true;
+  if (code != SQLITE_DONE) database_->fail(code, "read or write");
+  return false;
+}
+
+void Statement::run() {
+  while (step()) {
+  }
+  check(sqlite3_reset(handle_.get()));
+}
+
+std::string Statement::text(int column) const {
+  const auto* text = sqlite3_column_text(handle_.get(), column);
+  if (!text) return {};
+  return {reinterpret_cast<const char*>(text),
+          static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))};
+}
+
+std::uint64_t Statement::u64(int column) const {
+  return static_cast<std::uint64_t>(sqlite3_column_int64(handle_.get(), column));
+}
+
+double Statement::f64(int column) const {
+  return sqlite3_column_double(handle_.get(), column);
+}
+
+int Statement::columns() const {
+  return sqlite3_column_count(handle_.get());
+}
+
+std::string Statement::literal(int column) const {
+  switch (sqlite3_column_type(handle_.get(), column)) {
+    case SQLITE_NULL:
+      return "NULL";
+    case SQLITE_INTEGER:
+      return fmt::format("{}", sqlite3_column_int64(handle_.get(), column));
+    case SQLITE_FLOAT:
+      return fmt::format("{:a}", f64(column));  // hexadecimal: every bit counts
+    default:
+      return fmt::format("'{}'", text(column));
+  }
+}
+
+WriteTransaction::WriteTransaction(Database& database) : database_(database) {
+  database_.execute("BEGIN IMMEDIATE");
+}
+
+WriteTransaction::~WriteTransaction() {
+  // A failed statement may have rolled back already; then there is nothing to undo.
+  if (open_) sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+void WriteTransaction::commit() {
+  database_.execute("COMMIT");
+  open_ = false;
+}
+
+ReadTransaction::ReadTransaction(Database& database) : database_(database) {
+  database_.execute("BEGIN DEFERRED");
+}
+
+ReadTransaction::~ReadTransaction() {
+  sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+}  // namespace shearcell::sqlite

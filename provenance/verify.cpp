@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance/verify.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "provenance/errors.hpp"
+#include "provenance/projections.hpp"
+#include "provenance/queries.hpp"
+
+namespace shearcell {
+
+namespace {
+
+using Severity = Finding::Severity;
+using Rows = std::map<std::string, std::vector<std::string>>;
+
+void check_file(sqlite::Database& database, VerifyReport& report) {
+  sqlite::Statement query(database, "PRAGMA integrity_check(1)");
+  if (query.step() && query.text(0) != "ok") {
+    report.findings.push_back(
+        {Severity::error, database.name(), "",
+         "SQLite finds the database damaged: " + query.text(0) + "; restore it from a backup"});
+  }
+}
+
+void check_chain(const EventLog& log, VerifyReport& report) {
+  report.head = log.head();
+  log.for_each([&report](const Event&) { ++report.events; });
+  if (const auto fault = log.verify_chain()) {
+    report.findings.push_back({Severity::error, fmt::format("event {}", fault->seq), "",
+                               fault->message + "; restore the log from a backup"});
+  }
+}
+
+/// The tables as the events alone give them. Events that cannot be applied are named and left out.
+sqlite::Database derive(const EventLog& log, VerifyReport& report) {
+  sqlite::Database fresh = sqlite::Database::in_memory();
+  fresh.execute("PRAGMA foreign_keys=ON");
+  create_projections(fresh);
+  log.for_each([&](const Event& event) {
+    try {
+      apply(fresh, event);
+    } catch (const StoreDamaged& damage) {
+      const bool of_run = event.stream.starts_with("run/");
+      report.findings.push_back({Severity::error, fmt::format("event {}", event.seq),
+                                 of_run ? event.stream.substr(4) : "",
+                                 fmt::format("it cannot be applied: {}", damage.what())});
+    }
+  });
+  return fresh;
+}
+
+void compare_tables(const Rows& stored, const Rows& derived, VerifyReport& report) {
+  for (const auto& [table, rows] : derived) {
+    const std::vector<std::string>& found = stored.at(table);
+    const auto [a, b] = std::mismatch(rows.begin(), rows.end(), found.begin(), found.end());
+    if (a == rows.end() && b == found.end()) continue;
+    report.findings.push_back(
+        {Severity::error, "table " + table, "",
+         fmt::format("it is not what the events give: row {} should be ({}) and is ({}); run "
+                     "`rebuild`",
+                     a - rows.begin() + 1, a == rows.end() ? "absent" : *a,
+                     b == found.end() ? "absent" : *b)});
+  }
+}
+
+void check_objects(const std::vector<CheckpointRecord>& records, const ObjectStore& objects,
+                   VerifyReport& report) {
+  std::set<std::string> known;
+  for (const CheckpointRecord& record : records) {
+    const bool rejected = record.state == CheckpointState::rejected;
+    known.insert(record.sha256);
+    try {
+      objects.get(record.sha256, record.size);
+      ++report.checkpoints;
+      report.bytes += record.size;
+    } catch (const std::exception& problem) {
+      report.findings.push_back(
+          {rejected ? Severity::note : Severity::error, record.file, record.run,
+           rejected ? std::string(problem.what()) + " (rejected already)" : problem.what()});
+    }
+  }
+  for (const std::string& file : objects.strangers(known)) {
+    ++report.orphans;
+    report.findings.push_back({Severity::note, file, "",
+                               "no event names this file: a crash or a kill left it, or another "
+                               "process is writing it now; when none runs it can be deleted"});
+  }
+}
+
+/// The same step of the same run must be the same state, whoever computed it.
+void check_reproduced(const std::vector<CheckpointRecord>& records, VerifyReport& report) {
+  std::map<std::pair<std::string, std::uint64_t>, std::string> states;
+  for (const CheckpointRecord& record : records) {
+    if (record.state == CheckpointState::rejected) continue;
+    const auto [first, fresh] = states.try_emplace({record.run, record.step}, record.state_hash);
+    if (fresh || first->second == record.state_hash) continue;
+    report.findings.push_back(
+        {Severity::note, record.file, record.run,
+         fmt::format("two attempts gave different states at step {}; compare the builds in "
+                     "`shearcell log`",
+                     record.step)});
+  }
+}
+
+}  // namespace
+
+bool VerifyReport::ok() const {
+  return std::none_of(findings.begin(), findings.end(),
+                      [](const Finding& finding) { return finding.severity == Severity::error; });
+}
+
+VerifyReport verify(sqlite::Database& database, const EventLog& log, const ObjectStore& objects) {
+  VerifyReport report;
+  std::vector<CheckpointRecord> records;
+  try {
+    // One view of the log, while other processes may write; the files are read after it.
+    const sqlite::ReadTransaction snapshot(database);
+    check_file(database, report);
+    check_chain(log, report);
+    const sqlite::Database fresh = derive(log, report);
+    compare_tables(projection_rows(database), projection_rows(fresh), report);
+    records = query_checkpoints(fresh);
+  } catch (const StoreDamaged& damage) {
+    report.findings.push_back({Severity::error, database.name(), "", damage.what()});
+  }
+  check_reproduced(records, report);
+  check_objects(records, objects, report);
+  return report;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How long the analysis of one checkpoint takes, beside voro++ on the same packing.
+//
+// The packing is jammed, with rough walls. Cells are compared with voro++ before anything is timed.
+// Each time is the best of several runs on one thread, in turn, so that a busy moment of the
+// machine hurts both. voro++ gets the best of three block sizes. Usage: bench_analysis [grains]
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "analysis/measures.hpp"
+#include "analysis/voronoi.hpp"
+#include "tests/analysis/oracles.hpp"
+#include "tests/analysis/packings.hpp"
+
+namespace {
+
+template <typename Work>
+double seconds(Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+  return time.count();
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace shearcell;
+  const int grains = argc > 1 ? std::atoi(argv[1]) : 18200;
+  if (grains < 1) {
+    std::fprintf(stderr, "usage: bench_analysis [grains]\n");
+    return 2;
+  }
+  const testing::Packing p = testing::jammed(grains, true, 0, 1);
+  double own = 1e9;
+  double whole = 1e9;
+  double peer = 1e9;
+  const double before = peak_memory_mb();
+  whole = seconds([&] { analyse(p.cell, p.pose, p.grains); });
+  const double memory = peak_memory_mb();
+
+  double worst = 0;
+  const VoronoiDiagram diagram = voronoi(p.cell, p.pose, p.grains);
+  const std::vector<testing::VoroCell> cells = testing::voro_cells(p);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    worst = std::max(worst, std::abs(cells[i].volume - diagram.volume[i]));
+  }
+  if (!(worst < 1e-9)) {
+    std::fprintf(stderr, "volumes differ from voro++ by %g\n", worst);
+    return 1;
+  }
+  for (int k = 0; k < 7; ++k) {
+    own = std::min(own, seconds([&] { voronoi(p.cell, p.pose, p.grains); }));
+    whole = std::min(whole, seconds([&] { analyse(p.cell, p.pose, p.grains); }));
+    for (const double block : {4.0, 6.0, 8.0}) {
+      peer = std::min(peer, testing::time_voro(p, block));
+    }
+  }
+  std::printf("grains %d, wall grains %zu, volumes agree within %.1e d^3\n", grains,
+              p.cell.wall_grains.size(), worst);
+  std::printf("voronoi %.4f s, voro++ %.4f s, ratio %.2f\n", own, peer, own / peer);
+  std::printf("whole analysis %.4f s; memory %.0f MB, of which %.0f MB before it\n", whole, memory,
+              before);
+  return 0;
+}

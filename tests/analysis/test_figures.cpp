@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figure S2 from made-up runs, the bytes of a CSV file, and gnuplot's drawing.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+
+#include "analysis/error.hpp"
+#include "analysis/figure.hpp"
+#include "analysis/plot.hpp"
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+
+FigureRun made_up_run(const std::string& variant, std::uint64_t seed, int cycles, double shift) {
+  FigureRun run;
+  run.run_id = variant + std::to_string(seed);
+  run.variant = variant;
+  run.seed = seed;
+  for (int n = 0; n <= cycles; ++n) {
+    CheckpointMeasures checkpoint;
+    checkpoint.cycle = n;
+    checkpoint.measures.phi = 0.6 + 0.01 * n + shift;
+    checkpoint.measures.phi_uncorrected = 0.61 + 0.01 * n + shift;
+    checkpoint.measures.crystalline_percent = n + 100 * shift;
+    run.checkpoints.push_back(checkpoint);
+  }
+  return run;
+}
+
+std::vector<FigureRun> two_variants() {
+  return {made_up_run("fluid=cell", 1, 2, 0), made_up_run("fluid=still", 1, 1, 0),
+          made_up_run("fluid=still", 2, 1, 0.02)};
+}
+
+std::vector<FigureTable> s2(std::span<const FigureRun> runs) {
+  const Figure* figure = find_figure("S2");
+  return figure != nullptr ? figure->make(runs) : std::vector<FigureTable>{};
+}
+
+TEST(FigureS2, ARowPerVariantAndCycle) {
+  const std::vector<FigureTable> tables = s2(two_variants());
+  ASSERT_EQ(tables.size(), 2U);
+  EXPECT_EQ(to_csv(tables[0]),
+            "variant,cycle,phi_mean,phi_standard_error,phi_u_mean,phi_u_standard_error,runs\n"
+            "fluid=still,0,0.61,0.01,0.62,0.01,2\n"
+            "fluid=still,1,0.62,0.01,0.63,0.01,2\n"
+            "fluid=cell,0,0.6,,0.61,,1\n"
+            "fluid=cell,1,0.61,,0.62,,1\n"
+            "fluid=cell,2,0.62,,0.63,,1\n");
+  EXPECT_EQ(to_csv(tables[1]),
+            "variant,cycle,phi_mean,phi_standard_error,crystalline_mean_percent,"
+            "crystalline_standard_error_percent,runs\n"
+            "fluid=still,0,0.61,0.01,1,1,2\n"
+            "fluid=still,1,0.62,0.01,2,1,2\n"
+            "fluid=cell,0,0.6,,0,,1\n"
+            "fluid=cell,1,0.61,,1,,1\n"
+            "fluid=cell,2,0.62,,2,,1\n");
+}
+
+TEST(FigureS2, CheckpointsInsideACycleAreLeftOut) {
+  std::vector<FigureRun> runs = {made_up_run("fluid=still", 1, 1, 0)};
+  runs[0].checkpoints[1].cycle = 0.5;
+  EXPECT_EQ(s2(runs)[0].rows.size(), 1U);
+}
+
+TEST(FigureS2, OneRunWithTwoCheckpointsOfACycleIsRefused) {
+  std::vector<FigureRun> runs = {made_up_run("fluid=still", 1, 1, 0)};
+  runs[0].checkpoints[1].cycle = 0;
+  EXPECT_THROW(s2(runs), AnalysisError);
+}
+
+TEST(Figures, UnknownNameIsNone) {
+  EXPECT_EQ(find_figure("S99"), nullptr);
+}
+
+TEST(Csv, QuotingAndNumbers) {
+  FigureTable table;
+  table.columns = {"a b", "c,d"};
+  table.rows = {{std::string("say \"x\""), std::int64_t{-3}},
+                {1.0 / 3, std::numeric_limits<double>::infinity()},
+                {1e-20, std::monostate{}},
+                {-0.0, std::nan("")}};
+  EXPECT_EQ(to_csv(table), "a b,\"c,d\"\n\"say \"\"x\"\"\",-3\n0.333333333,\n1e-20,\n0,\n");
+}
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// A folder that goes away with the test. Its name has what a careless script would trip over.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "shear cell's $HOME-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+bool has_gnuplot() {
+  return std::system("gnuplot --version > /dev/null 2>&1") == 0;
+}
+
+TEST(Plot, SameTableSameSvg) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Folder folder;
+  for (const FigureTable& table : s2(two_variants())) {
+    write_csv(table, folder.path());
+    const fs::path svg = draw_svg(table, folder.path());
+    const std::string first = bytes_of(svg);
+    EXPECT_NE(first.find("</svg>"), std::string::npos);
+    EXPECT_NE(first.find("ϕ"), std::string::npos);
+    EXPECT_EQ(first.find(folder.path().string()), std::string::npos);
+    draw_svg(table, folder.path());
+    EXPECT_EQ(bytes_of(svg), first);
+  }
+}
+
+TEST(Plot, UnnamedVariantsAndNoRunsAreDrawnToo) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Folder folder;
+  const std::vector<FigureRun> odd = {made_up_run("it's_{odd}^`echo`", 1, 3, 0)};
+  for (const std::vector<FigureRun>& runs : {odd, std::vector<FigureRun>{}}) {
+    for (const FigureTable& table : s2(runs)) {
+      write_csv(table, folder.path());
+      EXPECT_GT(fs::file_size(draw_svg(table, folder.path())), 1000U);
+    }
+  }
+}
+
+TEST(Plot, ABadScriptSaysWhatGnuplotSaid) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Folder folder;
+  FigureTable table = s2(two_variants())[0];
+  table.plot = "plot no such thing\n";
+  write_csv(table, folder.path());
+  try {
+    draw_svg(table, folder.path());
+    FAIL() << "no error";
+  } catch (const AnalysisError& error) {
+    EXPECT_NE(std::string(error.what()).find("could not draw S2a"), std::string::npos);
+  }
+  EXPECT_FALSE(fs::exists(folder.path() / "S2a.svg"));
+  EXPECT_TRUE(fs::exists(folder.path() / "S2a.csv"));
+}
+
+TEST(Plot, MissingGnuplotNamesThePackageAndKeepsTheData) {
+  const Folder folder;
+  const FigureTable table = s2(two_variants())[0];
+  write_csv(table, folder.path());
+  const std::string before = std::getenv("PATH") != nullptr ? std::getenv("PATH") : "";
+  setenv("PATH", "/nonexistent", 1);
+  std::string message;
+  try {
+    draw_svg(table, folder.path());
+  } catch (const AnalysisError& error) {
+    message = error.what();
+  }
+  setenv("PATH", before.c_str(), 1);
+  EXPECT_NE(message.find("gnuplot-nox"), std::string::npos) << message;
+  EXPECT_TRUE(fs::exists(folder.path() / "S2a.csv"));
+}
+
+TEST(Plot, NamesThatAreNoFileNamesAreRefused) {
+  FigureTable table;
+  for (const char* name : {"", "../x", "a b", "a'b", "-d"}) {
+    table.name = name;
+    EXPECT_THROW(draw_svg(table, "."), AnalysisError) << name;
+  }
+}
+
+}  // namespace
+}  // namespace shearcell

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Voronoi cells fill the sheared box, agree with each other across faces, and with voro++ and CGAL.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <set>
+#include <string>
+
+#include "analysis/bond_order.hpp"
+#include "analysis/error.hpp"
+#include "analysis/voronoi.hpp"
+#include "tests/analysis/oracles.hpp"
+#include "tests/analysis/packings.hpp"
+
+namespace shearcell::testing {
+namespace {
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+void expect_fills_the_cell(const Packing& p) {
+  const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains, WallGrainCells::measure);
+  const double whole = volume_of(p);
+  EXPECT_NEAR((sum(d.volume) + sum(d.wall_grain_volume)) / whole, 1.0, 1e-12);
+}
+
+/// Largest difference of the two areas that two grains see of their common face.
+double worst_reciprocity(const VoronoiDiagram& d) {
+  double worst = 0;
+  for (std::size_t i = 0; i < d.volume.size(); ++i) {
+    for (const VoronoiFace& face : d.faces_of(i)) {
+      if (face.kind != NeighbourKind::grain) continue;
+      double other = 0;
+      for (const VoronoiFace& back : d.faces_of(static_cast<std::size_t>(face.neighbour))) {
+        if (back.kind == NeighbourKind::grain && back.neighbour == static_cast<std::int32_t>(i) &&
+            (back.to_neighbour + face.to_neighbour).norm() < 1e-9) {
+          other = back.area;
+        }
+      }
+      worst = std::max(worst, std::abs(face.area - other));
+    }
+  }
+  return worst;
+}
+
+void expect_agrees_with_voro(const Packing& p) {
+  const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains);
+  const std::vector<double> q6 = bond_order_q6(d);
+  const std::vector<VoroCell> cells = voro_cells(p);
+  double volume = 0;
+  double surface = 0;
+  double order = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    volume = std::max(volume, std::abs(d.volume[i] - cells[i].volume));
+    surface = std::max(surface, std::abs(d.surface[i] - cells[i].surface));
+    order = std::max(order, std::abs(q6[i] - cells[i].q6));
+  }
+  EXPECT_LT(volume, 1e-9);
+  EXPECT_LT(surface, 1e-9);
+  EXPECT_LT(order, 1e-8);
+}
+
+TEST(Voronoi, RandomPointsFillSmoothAndRoughCells) {
+  for (const double theta : {0.0, 0.1, -0.1}) {
+    for (const bool rough : {false, true}) {
+      SCOPED_TRACE("theta " + std::to_string(theta) + (rough ? " rough" : " smooth"));
+      Packing p = empty_cell(7, 11, 6, theta);
+      if (rough) roughen(p, 3);
+      fill(p, 500, 0, 4);
+      expect_fills_the_cell(p);
+    }
+  }
+}
+
+TEST(Voronoi, JammedPackingsFillTheCellAndAgreeAcrossFaces) {
+  for (const double theta : {0.0, 0.1}) {
+    for (const bool rough : {false, true}) {
+      SCOPED_TRACE("theta " + std::to_string(theta) + (rough ? " rough" : " smooth"));
+      const Packing p = jammed(700, rough, theta, 5);
+      expect_fills_the_cell(p);
+      EXPECT_LT(worst_reciprocity(voronoi(p.cell, p.pose, p.grains)), 1e-11);
+    }
+  }
+}
+
+TEST(Voronoi, AgreesWithVoroOnRandomPoints) {
+  Packing p = empty_cell(7, 11, 6);
+  fill(p, 500, 0, 7);
+  expect_agrees_with_voro(p);
+}
+
+TEST(Voronoi, AgreesWithVoroOnJammedPackings) {
+  for (const double theta : {0.0, 0.1}) {
+    for (const bool rough : {false, true}) {
+      SCOPED_TRACE("theta " + std::to_string(theta) + (rough ? " rough" : " smooth"));
+      expect_agrees_with_voro(jammed(700, rough, theta, 11));
+    }
+  }
+}
+
+TEST(Voronoi, HasTheNeighboursOfCgalsDelaunayTriangulation) {
+  const Packing p = jammed(1200, true, 0.05, 13);
+  const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains);
+  const std::vector<std::set<int>> expected = delaunay_neighbours(p);
+  const auto grains = static_cast<int>(p.grains.cols());
+  int checked = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const Eigen::Vector3d centre = p.grains.col(static_cast<Eigen::Index>(i));
+    if (wall_distances(p.cell, p.pose, centre).minCoeff() < 2) continue;
+    std::set<int> found;
+    for (const VoronoiFace& face : d.faces_of(i)) {
+      found.insert(face.neighbour + (face.kind == NeighbourKind::grain ? 0 : grains));
+    }
+    EXPECT_EQ(found, expected[i]) << "grain " << i;
+    ++checked;
+  }
+  EXPECT_GT(checked, 100);
+}
+
+TEST(Voronoi, LatticesWhereManySitesShareOneSphere) {
+  for (const Lattice kind : {Lattice::simple_cubic, Lattice::bcc, Lattice::fcc, Lattice::hcp}) {
+    for (const double amplitude : {0.0, 1e-15, 1e-12, 1e-9, 1e-4, 0.05}) {
+      SCOPED_TRACE("lattice " + std::to_string(static_cast<int>(kind)) + " jitter " +
+                   std::to_string(amplitude));
+      Packing p = lattice(kind, 4);
+      jitter(p, amplitude, 17);
+      expect_fills_the_cell(p);
+      EXPECT_LT(worst_reciprocity(voronoi(p.cell, p.pose, p.grains)), 1e-11);
+    }
+  }
+}
+
+TEST(Voronoi, AffinelyShearedLattice) {
+  for (const double theta : {0.05, 0.1, std::atan(0.5)}) {
+    Packing p = lattice(Lattice::fcc, 4);
+    p.pose = wall_pose(p.cell, theta, 0);
+    for (Eigen::Index i = 0; i < p.grains.cols(); ++i) {
+      p.grains(0, i) += (p.grains(1, i) - p.pose.top) * p.pose.tan_theta;
+    }
+    expect_fills_the_cell(p);
+    EXPECT_LT(worst_reciprocity(voronoi(p.cell, p.pose, p.grains)), 1e-11);
+  }
+}
+
+TEST(Voronoi, CoplanarAndCollinearSites) {
+  Packing p = empty_cell(8, 8, 2);
+  p.grains.resize(3, 49);
+  for (int i = 0; i < 49; ++i) p.grains.col(i) << 1 + i % 7, 1 + i / 7, 0.25;
+  expect_fills_the_cell(p);
+  p.grains.conservativeResize(3, 7);
+  expect_fills_the_cell(p);
+  p.grains.conservativeResize(3, 1);
+  const VoronoiDiagram alone = voronoi(p.cell, p.pose, p.grains);
+  EXPECT_DOUBLE_EQ(alone.volume[0], 128);
+  EXPECT_EQ(alone.faces.size(), 6U);
+}
+
+TEST(Voronoi, SitesOnOneSphereAroundAGrain) {
+  Packing p = empty_cell(8, 8, 8);
+  p.grains.resize(3, 201);
+  p.grains.col(0) << 4, 4, 4;
+  std::mt19937_64 random(19);
+  std::normal_distribution<double> normal;
+  for (int i = 1; i < 201; ++i) {
+    const Eigen::Vector3d direction(normal(random), normal(random), normal(random));
+    p.grains.col(i) = p.grains.col(0) + 2 * direction.normalized();
+  }
+  expect_fills_the_cell(p);
+  EXPECT_LT(worst_reciprocity(voronoi(p.cell, p.pose, p.grains)), 1e-10);
+  EXPECT_EQ(voronoi(p.cell, p.pose, p.grains).faces_of(0).size(), 200U);
+}
+
+TEST(Voronoi, AShallowCellSeesItsOwnImages) {
+  for (const double depth : {0.3, 0.9, 1.7}) {
+    Packing p = empty_cell(6, 6, depth);
+    fill(p, 30, 0, 23);
+    expect_fills_the_cell(p);
+  }
+}
+
+TEST(Voronoi, DoesNotDependOnWrappingInZ) {
+  Packing p = jammed(300, true, 0.1, 29);
+  const std::vector<double> before = voronoi(p.cell, p.pose, p.grains).volume;
+  for (Eigen::Index i = 0; i < p.grains.cols(); ++i) {
+    p.grains(2, i) += static_cast<double>(i % 5 - 2) * p.cell.depth;
+  }
+  const std::vector<double> after = voronoi(p.cell, p.pose, p.grains).volume;
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(before[i], after[i], 1e-12);
+}
+
+TEST(Voronoi, SameInputSameBits) {
+  const Packing p = jammed(300, true, 0.1, 31);
+  const VoronoiDiagram a = voronoi(p.cell, p.pose, p.grains);
+  const VoronoiDiagram b = voronoi(p.cell, p.pose, p.grains);
+  EXPECT_EQ(a.volume, b.volume);
+  EXPECT_EQ(a.surface, b.surface);
+  EXPECT_EQ(a.first, b.first);
+}
+
+std::string message_of(const Packing& p) {
+  try {
+    voronoi(p.cell, p.pose, p.grains);
+  } catch (const AnalysisError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Voronoi, NamesBothGrainsAtOnePlace) {
+  Packing p = jammed(200, false, 0, 37);
+  p.grains.col(150) = p.grains.col(12);
+  p.grains(2, 150) += p.cell.depth;
+  EXPECT_EQ(message_of(p), "grain 12 and grain 150 lie at the same place");
+}
+
+TEST(Voronoi, NamesTheGrainOutside) {
+  Packing p = jammed(200, false, 0.1, 41);
+  p.grains(1, 33) = -0.25;
+  EXPECT_EQ(message_of(p), "grain 33 lies outside the cell: 0.250000 d beyond the bottom wall");
+  p.grains(1, 33) = std::nan("");
+  EXPECT_EQ(message_of(p), "grain 33 has no finite position");
+}
+
+}  // namespace
+}  // namespace shearcell::testing

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every bad manifest is refused with a message that says where it is wrong and how to mend it, and
+// no bytes whatever lead to anything but a Manifest or a ManifestError.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "experiments/manifest/manifest.hpp"
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kBad = fs::path(SHEARCELL_TEST_DATA) / "manifests" / "bad";
+
+std::string contents(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::vector<std::string> bad_manifests() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(kBad)) names.push_back(entry.path().stem());
+  std::ranges::sort(names);
+  return names;
+}
+
+// What load_manifest has to say about a file; empty when it takes it.
+std::string message_for(const fs::path& path) {
+  try {
+    load_manifest(path);
+  } catch (const ManifestError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string message_for_text(std::string_view text) {
+  try {
+    parse_manifest(text, "text.yaml");
+  } catch (const ManifestError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+class BadManifest : public testing::TestWithParam<std::string> {};
+
+TEST_P(BadManifest, IsRefusedWithTheStatedMessage) {
+  const fs::path path = kBad / (GetParam() + ".yaml");
+  std::istringstream lines(contents(path));
+  constexpr std::string_view mark = "# expect ";
+  std::string expected;
+  for (std::string line; std::getline(lines, line) && line.starts_with(mark);) {
+    if (!expected.empty()) expected += '\n';
+    expected += path.string() + ":" + line.substr(mark.size());
+  }
+  ASSERT_FALSE(expected.empty()) << path << " does not say what to expect";
+  EXPECT_EQ(message_for(path), expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, BadManifest, testing::ValuesIn(bad_manifests()),
+                         [](const auto& file) { return file.param; });
+
+TEST(BadManifestFile, ThereAreEnoughOfThem) {
+  EXPECT_GE(bad_manifests().size(), 60U);
+}
+
+class BadFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "shearcell-manifest-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& text) const {
+    const fs::path path = folder_ / "m.yaml";
+    std::ofstream(path, std::ios::binary) << text;
+    return path;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(BadFile, IsADirectory) {
+  EXPECT_EQ(message_for(folder_),
+            folder_.string() + ": is a directory. Name a manifest file in it.");
+}
+
+TEST_F(BadFile, IsMissing) {
+  const fs::path path = folder_ / "none.yaml";
+  EXPECT_EQ(message_for(path), path.string() + ": there is no such file");
+  const fs::path through_file = write("experiment: a") / "none.yaml";
+  EXPECT_NE(message_for(through_file), "");
+}
+
+TEST_F(BadFile, IsAPipeThatNobodyWritesTo) {
+  const fs::path path = folder_ / "pipe";
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_EQ(message_for(path), path.string() + ": is not a regular file");
+}
+
+TEST_F(BadFile, CannotBeRead) {
+  if (geteuid() == 0) GTEST_SKIP() << "root reads everything";
+  const fs::path path = write("experiment: a");
+  fs::permissions(path, fs::perms::none);
+  EXPECT_EQ(message_for(path), path.string() + ": cannot be read");
+}
+
+TEST_F(BadFile, IsEmpty) {
+  const fs::path path = write("");
+  EXPECT_NE(message_for(path).find("the manifest is empty"), std::string::npos);
+}
+
+TEST_F(BadFile, IsTooLarge) {
+  const fs::path path = write("#" + std::string(ManifestLimits::bytes, 'x'));
+  EXPECT_NE(message_for(path).find("is larger than 1048576 bytes"), std::string::npos);
+}
+
+TEST_F(BadFile, HasTerminalEscapesInItsName) {
+  EXPECT_EQ(message_for("/no\x1b[31m"), "/no\\x1b[31m: there is no such file");
+}
+
+TEST(BadText, IsNotUtf8) {
+  EXPECT_EQ(message_for_text("experiment: a\nquestion: \xC3\x28\n"),
+            "text.yaml:2:11: is not valid UTF-8. Save the file as UTF-8 text.");
+  for (const char* bytes : {"\xFF\xFE"
+                            "a",
+                            "\xC0\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xE0\x80\x80",
+                            "\xF0\x80\x80\x80", "\x80", "\xE2\x82"}) {
+    EXPECT_NE(message_for_text(bytes).find("text.yaml:1:1: is not valid UTF-8"), std::string::npos);
+  }
+}
+
+TEST(BadText, HoldsControlCharacters) {
+  const std::string nul("experiment: a\0b\n", 16);
+  EXPECT_EQ(message_for_text(nul),
+            "text.yaml:1:14: holds the control character 0x00. A manifest is plain text.");
+  EXPECT_NE(message_for_text("experiment: a\n\x04"), "");
+}
+
+TEST(BadText, HasTooManyValues) {
+  std::string list = "experiment: a\nbase: {}\nseeds: [1";
+  for (int i = 2; i <= 1001; ++i) list += ", " + std::to_string(i);
+  EXPECT_NE(message_for_text(list + "]").find("has more than 1000 values (got 1001 values)"),
+            std::string::npos);
+  std::string nodes = "experiment: a\nbase: {}\nseeds: [1";
+  for (int i = 0; i < 100'000; ++i) nodes += ",1";
+  EXPECT_NE(message_for_text(nodes + "]").find("holds more than 100000 values"), std::string::npos);
+}
+
+TEST(BadText, ExpandsWithoutEnd) {
+  std::string text = "experiment: a\nbase: {}\nsweep:\n  grid:\n";
+  for (const char* key : {"period_s", "amplitude_rad", "mass_kg", "drag_kg_per_s", "pressure_Pa",
+                          "settle_time_limit_s", "gravity_m_per_s2"}) {
+    text += std::string("    ") + key + ": [0.1";
+    for (int i = 1; i < 1000; ++i) text += ", " + std::to_string(0.1 + 1e-4 * i);
+    text += "]\n";
+  }
+  EXPECT_NE(message_for_text(text).find("expands to more than 10000 runs"), std::string::npos);
+}
+
+TEST(BadText, ReportsTwentyProblemsAndCountsTheRest) {
+  std::string text = "experiment: a\nbase:\n";
+  for (int i = 0; i < 30; ++i) text += "  nonsense_" + std::to_string(i) + ": 1\n";
+  const std::string message = message_for_text(text);
+  EXPECT_EQ(std::ranges::count(message, '\n'), 20);
+  EXPECT_TRUE(message.ends_with("and 10 more problems"));
+}
+
+// The smallest number of steps that the message names is accepted, and one less is not.
+TEST(BadText, NamesTheSmallestNumberOfStepsThatWorks) {
+  const auto with_steps = [](int steps) {
+    return message_for_text("experiment: a\nbase: {steps_per_cycle: " + std::to_string(steps) +
+                            "}");
+  };
+  EXPECT_EQ(with_steps(16175), "");
+  EXPECT_NE(with_steps(16174).find("Use at least 16175 steps per cycle."), std::string::npos);
+}
+
+// Either outcome will do; anything else (another exception, a crash, a hang) fails the test.
+TEST(BadText, DamagedManifestsNeverEscapeUncaught) {
+  const fs::path drag = fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments" / "drag.yaml";
+  std::vector<std::string> seeds = {contents(drag)};
+  ASSERT_FALSE(seeds.front().empty());
+  for (const std::string& name : bad_manifests())
+    seeds.push_back(contents(kBad / (name + ".yaml")));
+  for (std::size_t length = 0; length < seeds.front().size(); length += 7) {
+    EXPECT_NO_FATAL_FAILURE(message_for_text(seeds.front().substr(0, length)));
+  }
+  std::mt19937 random(7);
+  const std::string alphabet = "{}[]:,-&*!|>'\"%@`#?~<\t\n \\0129.eExyz_";
+  for (int round = 0; round < 3000; ++round) {
+    std::string text = seeds[random() % seeds.size()];
+    for (int change = 0; change < 4 && !text.empty(); ++change) {
+      const std::size_t at = random() % text.size();
+      if (random() % 3 == 0) {
+        text.erase(at, 1 + random() % 8);
+      } else {
+        text.insert(at, 1, alphabet[random() % alphabet.size()]);
+      }
+    }
+    EXPECT_NO_FATAL_FAILURE(message_for_text(text)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace shearcell

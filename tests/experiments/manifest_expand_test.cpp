@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A manifest expands into the runs that it says, in its order, none lost and none doubled.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "experiments/manifest/expand.hpp"
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+using Strings = std::vector<std::string>;
+
+Manifest drag() {
+  return load_manifest(fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments" / "drag.yaml");
+}
+
+Manifest parse(const std::string& text) {
+  return parse_manifest(text, "test.yaml");
+}
+
+Plan at(const Manifest& manifest, const std::string& scale) {
+  ExpandOptions options;
+  options.scale = scale;
+  return expand(manifest, options);
+}
+
+Strings variants(const Plan& plan) {
+  Strings names;
+  for (const PlannedRun& run : plan.runs) names.push_back(run.variant);
+  return names;
+}
+
+std::string message(const Manifest& manifest, const ExpandOptions& options) {
+  try {
+    expand(manifest, options);
+  } catch (const ManifestError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Drag, ExpandsAtEveryScale) {
+  const Manifest manifest = drag();
+  EXPECT_EQ(manifest.experiment, "drag");
+  EXPECT_EQ(manifest.figures, Strings{"S2"});
+  struct Expected {
+    const char* scale;
+    std::size_t runs, grains;
+    std::uint64_t cycles;
+  };
+  for (const Expected& expected : {Expected{"smoke", 4, 600, 5}, Expected{"desk", 6, 2000, 60},
+                                   Expected{"paper", 12, 7900, 200}}) {
+    const Plan plan = at(manifest, expected.scale);
+    EXPECT_EQ(plan.scale, expected.scale);
+    ASSERT_EQ(plan.runs.size(), expected.runs);
+    EXPECT_TRUE(plan.warnings.empty());
+    for (const PlannedRun& run : plan.runs) {
+      EXPECT_EQ(run.grains, expected.grains);
+      EXPECT_EQ(run.parameters.grains, expected.grains);
+      EXPECT_EQ(run.cycles, expected.cycles);
+      EXPECT_EQ(run.checkpoint_every, 1U);
+      EXPECT_EQ(run.parameters.steps_per_cycle, 45600U);
+    }
+  }
+}
+
+TEST(Drag, TakesTheDeskScaleByDefault) {
+  EXPECT_EQ(expand(drag()).scale, "desk");
+}
+
+TEST(Drag, ComparesTheFluidsOnTheSamePackings) {
+  const std::vector<PlannedRun> runs = at(drag(), "smoke").runs;
+  ASSERT_EQ(runs.size(), 4U);
+  EXPECT_EQ(variants({"", "", runs, {}}),
+            (Strings{"fluid=still", "fluid=still", "fluid=cell", "fluid=cell"}));
+  EXPECT_EQ(runs[0].seed, 1U);
+  EXPECT_EQ(runs[1].seed, 2U);
+  EXPECT_EQ(runs[2].labels, (nlohmann::json{{"fluid", "cell"}}));
+  EXPECT_EQ(runs[2].parameters.fluid, Fluid::cell);
+  EXPECT_EQ(runs[0].prepare.key, runs[2].prepare.key);
+  EXPECT_EQ(runs[1].prepare.key, runs[3].prepare.key);
+  EXPECT_NE(runs[0].prepare.key, runs[1].prepare.key);
+  std::set<std::string> shear;
+  for (const PlannedRun& run : runs) {
+    EXPECT_EQ(run.shear.parent, run.prepare.key);
+    shear.insert(run.shear.key);
+  }
+  EXPECT_EQ(shear.size(), 4U);
+}
+
+TEST(Expand, WithoutSweepThereIsOneVariant) {
+  const Plan plan = expand(parse("experiment: one\nbase: {}\n"));
+  ASSERT_EQ(plan.runs.size(), 1U);
+  EXPECT_EQ(plan.scale, "");
+  EXPECT_EQ(plan.runs[0].variant, "base");
+  EXPECT_EQ(plan.runs[0].labels, nlohmann::json::object());
+  EXPECT_EQ(plan.runs[0].parameters, Parameters{});
+}
+
+TEST(Expand, FirstGridAxisVariesSlowestAndTheZipFastest) {
+  const Plan plan = expand(parse(R"(
+experiment: product
+base: {}
+sweep:
+  zip: {amplitude_rad: [0.05, 0.1], period_s: [2, 3]}
+  grid: {walls: [rough, smooth], gravity_m_per_s2: [9.81, 0]}
+)"));
+  EXPECT_EQ(variants(plan),
+            (Strings{"walls=rough,gravity_m_per_s2=9.81,amplitude_rad=0.05,period_s=2",
+                     "walls=rough,gravity_m_per_s2=9.81,amplitude_rad=0.1,period_s=3",
+                     "walls=rough,gravity_m_per_s2=0,amplitude_rad=0.05,period_s=2",
+                     "walls=rough,gravity_m_per_s2=0,amplitude_rad=0.1,period_s=3",
+                     "walls=smooth,gravity_m_per_s2=9.81,amplitude_rad=0.05,period_s=2",
+                     "walls=smooth,gravity_m_per_s2=9.81,amplitude_rad=0.1,period_s=3",
+                     "walls=smooth,gravity_m_per_s2=0,amplitude_rad=0.05,period_s=2",
+                     "walls=smooth,gravity_m_per_s2=0,amplitude_rad=0.1,period_s=3"}));
+  EXPECT_EQ(plan.runs[7].parameters.walls, WallTexture::smooth);
+  EXPECT_EQ(plan.runs[7].parameters.gravity_m_per_s2, 0);
+  EXPECT_EQ(plan.runs[7].parameters.amplitude_rad, 0.1);
+  EXPECT_EQ(plan.runs[7].parameters.period_s, 3);
+}
+
+TEST(Expand, ScalesOverrideBaseSeedsSweepAndCadence) {
+  const Manifest manifest = parse(R"(
+experiment: sizes
+base: {cycles: 100, amplitude_rad: 0.05}
+sweep: {grid: {grains: [5200, 7900, 11400]}}
+seeds: [11, 7]
+checkpoints: {every_cycles: 5}
+scales:
+  smoke: {cycles: 3, seeds: 1, sweep: {grid: {grains: [300, 600]}}, checkpoints: {every_cycles: 1}}
+  paper: {}
+)");
+  const Plan smoke = at(manifest, "smoke");
+  EXPECT_EQ(variants(smoke), (Strings{"grains=300", "grains=600"}));
+  EXPECT_EQ(smoke.runs[0].cycles, 3U);
+  EXPECT_EQ(smoke.runs[0].seed, 1U);
+  EXPECT_EQ(smoke.runs[0].checkpoint_every, 1U);
+  EXPECT_EQ(smoke.runs[0].parameters.amplitude_rad, 0.05);
+  const Plan paper = at(manifest, "paper");
+  ASSERT_EQ(paper.runs.size(), 6U);
+  EXPECT_EQ(paper.runs[0].seed, 11U);
+  EXPECT_EQ(paper.runs[1].seed, 7U);
+  EXPECT_EQ(paper.runs[0].checkpoint_every, 5U);
+}
+
+TEST(Expand, OptionsOverrideTheManifest) {
+  ExpandOptions options{.scale = "smoke", .cycles = 9, .seeds = 3};
+  const Plan plan = expand(drag(), options);
+  ASSERT_EQ(plan.runs.size(), 6U);
+  EXPECT_EQ(plan.runs[0].cycles, 9U);
+  EXPECT_EQ(plan.runs[2].seed, 3U);
+  const Manifest listed = parse("experiment: a\nbase: {}\nseeds: [11, 7, 5]\n");
+  EXPECT_EQ(expand(listed, {.scale = {}, .cycles = {}, .seeds = 2}).runs[1].seed, 7U);
+}
+
+TEST(Expand, RefusesOptionsThatDoNotFit) {
+  const Manifest manifest =
+      parse("experiment: a\nbase: {}\nseeds: [4]\nscales: {smoke: {cycles: 1}, paper: {}}\n");
+  EXPECT_EQ(message(manifest, {}),
+            "test.yaml: scale: there is no scale desk to take by default. Name one. It has smoke, "
+            "paper.");
+  EXPECT_EQ(message(manifest, {.scale = "smok", .cycles = {}, .seeds = {}}),
+            "test.yaml: scale: is unknown, the nearest is smoke (got smok). It has smoke, paper.");
+  EXPECT_EQ(message(manifest, {.scale = "smoke", .cycles = {}, .seeds = 2}),
+            "test.yaml: seeds: the manifest lists 1 seeds only (got 2). List more, or state a "
+            "count.");
+  EXPECT_NE(message(manifest, {.scale = "smoke", .cycles = {}, .seeds = 0}), "");
+  EXPECT_NE(message(manifest, {.scale = "smoke", .cycles = 1'000'000'000, .seeds = {}}), "");
+  EXPECT_NE(message(drag(), {.scale = "smoke", .cycles = {}, .seeds = 9'999}), "");
+  EXPECT_NE(
+      message(parse("experiment: a\nbase: {}\n"), {.scale = "desk", .cycles = {}, .seeds = {}}),
+      "");
+}
+
+TEST(Expand, WarnsOfACellThatThePressureCannotLift) {
+  const auto warnings = [](const std::string& base) {
+    return expand(parse("experiment: a\nbase: {" + base + "}\n")).warnings;
+  };
+  EXPECT_TRUE(warnings("grains: 18200").empty());
+  ASSERT_EQ(warnings("grains: 30000").size(), 1U);
+  EXPECT_NE(warnings("grains: 30000")[0].find("cannot lift"), std::string::npos);
+  EXPECT_TRUE(warnings("grains: 30000, gravity_m_per_s2: 0").empty());
+  EXPECT_TRUE(warnings("grains: 30000, moving_wall: top").empty());
+}
+
+}  // namespace
+}  // namespace shearcell

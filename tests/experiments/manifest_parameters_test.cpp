@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parameters: the schema against the struct, the written reference and the engine's units.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/suggest.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+TEST(Schema, NamesAreUniqueAndDefaultsAllowed) {
+  std::set<std::string_view> names;
+  for (const Field& field : schema()) {
+    EXPECT_TRUE(names.insert(field.name).second) << field.name;
+    EXPECT_EQ(check_value(field, get_value(field, Parameters{})), std::nullopt) << field.name;
+    EXPECT_FALSE(field.doc.empty()) << field.name;
+  }
+}
+
+TEST(Schema, TheReadmeHoldsTheTableOfKeys) {
+  const auto path = std::filesystem::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments" /
+                    "manifest" / "README.md";
+  std::ifstream stream(path);
+  const std::string readme{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_NE(readme.find(schema_markdown()), std::string::npos)
+      << "The table in " << path << " must read:\n"
+      << schema_markdown();
+}
+
+TEST(Parameters, ReadBackFromJson) {
+  Parameters parameters;
+  parameters.grains = 18200;
+  parameters.fluid = Fluid::cell;
+  parameters.walls = WallTexture::smooth;
+  parameters.moving_wall = MovingWall::top;
+  parameters.period_s = 0.1;
+  parameters.cycles = 3;
+  EXPECT_EQ(parameters_from_json(json::parse(to_json(parameters).dump())), parameters);
+  EXPECT_EQ(to_json(parameters).size(), schema().size());
+}
+
+TEST(Parameters, RefuseDamagedJsonByName) {
+  json damaged = to_json({});
+  damaged["mass_kg"] = -1;
+  EXPECT_THROW(
+      {
+        try {
+          parameters_from_json(damaged);
+        } catch (const std::runtime_error& error) {
+          EXPECT_NE(std::string(error.what()).find("mass_kg"), std::string::npos);
+          throw;
+        }
+      },
+      std::runtime_error);
+}
+
+TEST(Suggest, FindsWhatWasMeant) {
+  const auto names = field_names();
+  EXPECT_EQ(suggest_name("stifness_N_per_m", names).name, "stiffness_N_per_m");
+  EXPECT_EQ(suggest_name("grians", names).name, "grains");
+  EXPECT_EQ(suggest_name("Mass_KG", names).name, "mass_kg");
+  EXPECT_EQ(suggest_name("k", names).name, "stiffness_N_per_m");
+  EXPECT_EQ(suggest_name("mass", names).name, "mass_kg");
+  EXPECT_TRUE(suggest_name("mass", names).missing_unit);
+  EXPECT_EQ(suggest_name("stiffness", names).name, "stiffness_N_per_m");
+  EXPECT_EQ(suggest_name("colour", names).name, "");
+  EXPECT_EQ(suggest_name("", names).name, "");
+  EXPECT_EQ(suggest_name(std::string(100'000, 'm'), names).name, "");
+}
+
+// Table I in units of d, m and s.
+TEST(Conversion, GivesTheNumbersOfTableOne) {
+  const Scene scene = shear_scene({});
+  EXPECT_NEAR(scene.stiffness, 3.27e7, 1);
+  EXPECT_NEAR(scene.drag_rate, 64, 1e-9);
+  EXPECT_NEAR(scene.gravity, 3270, 1e-9);
+  EXPECT_NEAR(scene.pressure, 1.431e5, 1e-6);
+  EXPECT_EQ(scene.time_step, 2.0 / 45600);
+  EXPECT_EQ(scene.wall_mass, 10);
+  EXPECT_EQ(scene.wall_drag, 1000);
+  EXPECT_EQ(units({}).diameter_m, 3e-3);
+  EXPECT_EQ(units({}).mass_kg, 2e-5);
+  EXPECT_EQ(drive({}).amplitude, 0.0833);
+  EXPECT_EQ(drive({}).steps_per_cycle, 45600U);
+  EXPECT_EQ(drive({}).pause_steps, 0U);
+}
+
+TEST(Conversion, SettlesInAFluidAtRestWithItsOwnTimeStep) {
+  Parameters parameters;
+  parameters.fluid = Fluid::cell;
+  parameters.steps_per_cycle = 100'000;
+  EXPECT_EQ(shear_scene(parameters).fluid, Fluid::cell);
+  const Scene settle = settle_scene(parameters);
+  EXPECT_EQ(settle.fluid, Fluid::still);
+  EXPECT_EQ(settle.time_step, 2.0 / 45600);
+  EXPECT_EQ(settle.stiffness, shear_scene(parameters).stiffness);
+}
+
+TEST(Conversion, CarriesTheGeometry) {
+  Parameters parameters;
+  parameters.walls = WallTexture::smooth;
+  parameters.moving_wall = MovingWall::top;
+  const Geometry shape = geometry(parameters);
+  EXPECT_EQ(shape.grains, 7900U);
+  EXPECT_EQ(shape.height_over_width, 1.675);
+  EXPECT_EQ(shape.nominal_packing_fraction, 0.64);
+  EXPECT_EQ(shape.fill_packing_fraction, 0.28);
+  EXPECT_EQ(shape.walls, WallTexture::smooth);
+  EXPECT_EQ(shape.wall_grain_area_fraction, 0.52);
+  EXPECT_EQ(shape.wall_grain_recess, 0.25);
+  EXPECT_EQ(shape.moving, MovingWall::top);
+}
+
+// The largest eigenvalue of the dynamical matrix of an FCC crystal of springs, over the Brillouin
+// zone: 8 k/m, on which the limit of the time step rests.
+TEST(Conversion, StabilityLimitIsThatOfAnFccCrystal) {
+  double largest = 0;
+  constexpr int n = 16;
+  for (int a = 0; a <= n; ++a) {
+    for (int b = 0; b <= n; ++b) {
+      for (int c = 0; c <= n; ++c) {
+        const Eigen::Vector3d q = 2 * std::numbers::pi / n * Eigen::Vector3d(a, b, c);
+        Eigen::Matrix3d dynamical = Eigen::Matrix3d::Zero();
+        for (int axis = 0; axis < 3; ++axis) {
+          for (const double sign : {1.0, -1.0}) {
+            Eigen::Vector3d bond = Eigen::Vector3d::Zero();
+            bond[axis] = 1;
+            bond[(axis + 1) % 3] = sign;
+            // Bond and opposite bond together, lattice constant 2.
+            dynamical += 2 * (1 - std::cos(q.dot(bond))) * bond * bond.transpose() / 2;
+          }
+        }
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(dynamical);
+        largest = std::max(largest, modes.eigenvalues().maxCoeff());
+      }
+    }
+  }
+  EXPECT_NEAR(largest, 8, 1e-9);
+  EXPECT_NEAR(stability_limit_s({}), 2 / std::sqrt(largest * 3.27e7), 1e-12);
+}
+
+}  // namespace
+}  // namespace shearcell

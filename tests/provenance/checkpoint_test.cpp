@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A checkpoint gives back every bit of the state, and bad bytes give an error, never a crash.
+#include "provenance/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <thread>
+
+#include "provenance/errors.hpp"
+#include "tests/provenance/samples.hpp"
+
+namespace shearcell {
+namespace {
+
+using test::sample_checkpoint;
+using Limits = std::numeric_limits<double>;
+
+Checkpoint hard_checkpoint() {
+  Checkpoint c = sample_checkpoint(test::run_id(1));
+  c.state.position.col(0) << -0.0, Limits::denorm_min(), -Limits::denorm_min();
+  c.state.position.col(1) << Limits::max(), -Limits::max(), Limits::min();
+  c.state.velocity.col(2) << -0.0, 0.1, std::nextafter(1.0, 2.0);
+  c.state.wall_velocity = -0.0;
+  c.state.step = std::numeric_limits<std::uint64_t>::max();
+  c.cell.moving = MovingWall::top;
+  return c;
+}
+
+void expect_same_bits(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  ASSERT_EQ(a.cols(), b.cols());
+  if (a.size() == 0) return;
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * 8), 0);
+}
+
+void expect_same(const Checkpoint& a, const Checkpoint& b) {
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  EXPECT_EQ(a.run, b.run);
+  EXPECT_EQ(bits(a.time_s), bits(b.time_s));
+  EXPECT_EQ(bits(a.cycle), bits(b.cycle));
+  EXPECT_EQ(bits(a.theta), bits(b.theta));
+  EXPECT_EQ(bits(a.units.diameter_m), bits(b.units.diameter_m));
+  EXPECT_EQ(bits(a.units.mass_kg), bits(b.units.mass_kg));
+  EXPECT_EQ(a.observables, b.observables);
+  EXPECT_EQ(a.state.step, b.state.step);
+  EXPECT_EQ(bits(a.state.wall_height), bits(b.state.wall_height));
+  EXPECT_EQ(bits(a.state.wall_velocity), bits(b.state.wall_velocity));
+  expect_same_bits(a.state.position, b.state.position);
+  expect_same_bits(a.state.velocity, b.state.velocity);
+  EXPECT_EQ(a.cell.moving, b.cell.moving);
+  ASSERT_EQ(a.cell.wall_grains.size(), b.cell.wall_grains.size());
+  for (std::size_t i = 0; i < a.cell.wall_grains.size(); ++i) {
+    EXPECT_EQ(a.cell.wall_grains[i].side, b.cell.wall_grains[i].side);
+    EXPECT_EQ(a.cell.wall_grains[i].position, b.cell.wall_grains[i].position);
+  }
+  EXPECT_EQ(state_hash(a), state_hash(b));
+}
+
+TEST(Checkpoint, GivesBackEveryBit) {
+  const Checkpoint written = hard_checkpoint();
+  expect_same(decode_checkpoint(encode_checkpoint(written)), written);
+}
+
+TEST(Checkpoint, HoldsACellWithoutWallGrainsGrainsOrObservables) {
+  Checkpoint bare = sample_checkpoint("", 0, 0);
+  bare.cell.wall_grains.clear();
+  bare.observables.clear();
+  expect_same(decode_checkpoint(encode_checkpoint(bare)), bare);
+}
+
+TEST(Checkpoint, GivesTheSameBytesEachTime) {
+  const Checkpoint c = hard_checkpoint();
+  const std::vector<std::byte> first = encode_checkpoint(c);
+  encode_checkpoint(sample_checkpoint("other", 1, 500));  // leaves other bytes in freed memory
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // times are kept in seconds
+  EXPECT_EQ(encode_checkpoint(c), first);
+  std::printf("%zu bytes for %d grains and %zu wall grains\n", first.size(),
+              static_cast<int>(c.state.position.cols()), c.cell.wall_grains.size());
+}
+
+TEST(Checkpoint, TakesAboutAHundredAndTwentyBytesPerGrain) {
+  const std::size_t small = encode_checkpoint(sample_checkpoint("a", 1, 1000)).size();
+  const std::size_t large = encode_checkpoint(sample_checkpoint("a", 1, 3000)).size();
+  const double per_grain = static_cast<double>(large - small) / 2000;
+  std::printf("%.1f bytes per grain, %zu bytes for the rest\n", per_grain,
+              small - static_cast<std::size_t>(per_grain * 1000));
+  EXPECT_LT(per_grain, 125);
+}
+
+TEST(Checkpoint, StateHashTellsWhatARunContinuesFrom) {
+  const Checkpoint c = hard_checkpoint();
+  Checkpoint same = c;
+  same.observables.clear();
+  same.run = "another";
+  EXPECT_EQ(state_hash(same), state_hash(c));
+  const auto changed = [&c](auto&& change) {
+    Checkpoint other = c;
+    change(other);
+    return state_hash(other) != state_hash(c);
+  };
+  EXPECT_TRUE(changed([](Checkpoint& o) { o.state.step -= 1; }));
+  EXPECT_TRUE(changed([](Checkpoint& o) { o.state.position(0, 0) = 0.0; }));  // it was -0.0
+  EXPECT_TRUE(changed([](Checkpoint& o) { o.state.velocity(2, 5) += 1e-15; }));
+  EXPECT_TRUE(changed([](Checkpoint& o) { o.state.wall_velocity = 0.0; }));
+  EXPECT_TRUE(changed([](Checkpoint& o) { o.cell.moving = MovingWall::bottom; }));
+  EXPECT_TRUE(changed([](Checkpoint& o) { o.cell.wall_grains.pop_back(); }));
+}
+
+TEST(Checkpoint, RefusesToWriteWhatItCouldNotRead) {
+  const auto refused = [](auto&& change) {
+    Checkpoint c = sample_checkpoint("a");
+    change(c);
+    EXPECT_THROW(encode_checkpoint(c), std::invalid_argument);
+  };
+  refused([](Checkpoint& c) { c.state.position(1, 3) = Limits::quiet_NaN(); });
+  refused([](Checkpoint& c) { c.state.velocity(1, 3) = Limits::infinity(); });
+  refused([](Checkpoint& c) { c.state.velocity.conservativeResize(3, 4); });
+  refused([](Checkpoint& c) { c.theta = Limits::quiet_NaN(); });
+  refused([](Checkpoint& c) { c.observables["phi"] = Limits::quiet_NaN(); });
+  refused([](Checkpoint& c) { c.observables["a/b"] = 1; });
+  refused([](Checkpoint& c) { c.observables[""] = 1; });
+}
+
+TEST(Checkpoint, RefusesEveryTruncation) {
+  const std::vector<std::byte> whole = encode_checkpoint(sample_checkpoint("a", 1, 5));
+  for (std::size_t size = 0; size < whole.size(); size += (size < 1100 ? 1 : 37)) {
+    EXPECT_THROW(decode_checkpoint(std::span(whole).first(size)), StoreDamaged) << size;
+  }
+}
+
+TEST(Checkpoint, RefusesEveryFlippedByte) {
+  const std::vector<std::byte> whole = encode_checkpoint(sample_checkpoint("a", 1, 5));
+  for (std::size_t at = 0; at < whole.size(); at += 3) {
+    std::vector<std::byte> bad = whole;
+    bad[at] ^= std::byte{1};
+    EXPECT_THROW(decode_checkpoint(bad), StoreDamaged) << at;
+  }
+}
+
+TEST(Checkpoint, IsWrittenAndReadByManyThreads) {
+  std::vector<std::thread> threads;
+  for (std::uint64_t t = 0; t < 4; ++t) {
+    threads.emplace_back([t] {
+      for (std::uint64_t i = 0; i < 10; ++i) {
+        const Checkpoint c = sample_checkpoint("a", 100 * t + i);
+        EXPECT_EQ(state_hash(decode_checkpoint(encode_checkpoint(c))), state_hash(c));
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+}
+
+}  // namespace
+}  // namespace shearcell

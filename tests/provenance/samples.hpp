@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Folders, checkpoints and declarations for the tests of the store.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "provenance/sha256.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell::test {
+
+/// An empty folder that goes away with the test.
+class Folder {
+ public:
+  Folder() {
+    static int counter = 0;
+    path_ = std::filesystem::temp_directory_path() /
+            ("shearcell-test-" + std::to_string(getpid()) + "-" + std::to_string(counter++));
+    std::filesystem::create_directory(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline Checkpoint sample_checkpoint(const std::string& run, std::uint64_t step = 45600,
+                                    Eigen::Index grains = 20) {
+  std::mt19937_64 random(step + 1);
+  const auto number = [&random] { return static_cast<double>(random() >> 11) * 0x1p-50 - 4.0; };
+  Checkpoint c;
+  c.run = run;
+  c.time_s = 4.386e-5 * static_cast<double>(step);
+  c.cycle = static_cast<double>(step) / 45600;
+  c.theta = 0.03;
+  c.cell = {.width = 12,
+            .depth = 11.5,
+            .bottom = 0,
+            .top = 20,
+            .moving = MovingWall::bottom,
+            .wall_grains = {}};
+  for (int side = 0; side < 4; ++side) {
+    c.cell.wall_grains.push_back(
+        {static_cast<WallSide>(side), Eigen::Vector3d(number(), number(), number())});
+  }
+  c.state.step = step;
+  c.state.position = Eigen::Matrix3Xd::NullaryExpr(3, grains, number);
+  c.state.velocity = Eigen::Matrix3Xd::NullaryExpr(3, grains, number);
+  c.state.wall_height = 0.125;
+  c.state.wall_velocity = -1e-7;
+  c.observables = {{"phi", 0.6375}, {"kinetic_energy_J", 1.5e-9}};
+  return c;
+}
+
+inline std::string run_id(int number) {
+  return sha256_hex("run " + std::to_string(number));
+}
+
+inline RunDeclaration sample_run(int number, std::uint64_t target = 5) {
+  RunDeclaration d;
+  d.id = run_id(number);
+  d.kind = "shear";
+  d.resolved = {{"amplitude_rad", 0.0833}, {"drag", "still"}, {"number", number}};
+  d.grains = 20;
+  d.target_cycles = target;
+  d.membership = {.experiment = "drag",
+                  .scale = "smoke",
+                  .variant = "drag=still",
+                  .labels = {{"drag", "still"}},
+                  .seed = 0xffffffffffffffff - static_cast<std::uint64_t>(number),
+                  .manifest = sha256_hex("manifest")};
+  return d;
+}
+
+inline std::string read_bytes(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+/// Runs the statement and gives what the exception says, so that a test can look for words in it.
+template <typename Exception, typename Statement>
+std::string message_of(Statement&& statement) {
+  try {
+    statement();
+  } catch (const Exception& e) {
+    return e.what();
+  }
+  ADD_FAILURE() << "the expected exception was not thrown";
+  return {};
+}
+
+}  // namespace shearcell::test
