@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/figure.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 
@@ -17,8 +18,6 @@ constexpr std::array figures = {
     Figure{"S2", "Still fluid and fluid that moves with the cell", figure_s2},
 };
 
-constexpr int significant_digits = 9;
-
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string result = "\"";
@@ -29,20 +28,13 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-template <typename... Format>
-std::string digits(Format... value_and_format) {
-  std::array<char, 32> buffer;
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value_and_format...);
-  return {buffer.data(), end.ptr};
-}
-
 struct FieldText {
   std::string operator()(std::monostate) const { return {}; }
   std::string operator()(double value) const {
     if (!std::isfinite(value)) return {};
-    return digits(value == 0 ? 0.0 : value, std::chars_format::general, significant_digits);
+    return fmt::format("{:.9g}", value == 0 ? 0.0 : value);  // -0 is 0 to a reader
   }
-  std::string operator()(std::int64_t value) const { return digits(value); }
+  std::string operator()(std::int64_t value) const { return std::to_string(value); }
   std::string operator()(const std::string& value) const { return quoted(value); }
 };
 

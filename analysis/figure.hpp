@@ -27,7 +27,7 @@ struct CheckpointMeasures {
 /// One run as a figure sees it.
 struct FigureRun {
   std::string run_id;
-  std::string variant;    ///< the curve that it belongs to, as the manifest names it
+  std::string variant;    ///< the curve that it belongs to, as the manifest names it: "fluid=cell"
   nlohmann::json labels;  ///< the swept parameters of the run
   std::uint64_t seed = 0;
   std::vector<CheckpointMeasures> checkpoints;  ///< by cycle

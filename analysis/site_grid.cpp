@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "analysis/error.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -21,6 +23,7 @@ std::int64_t box_count(double length, double spacing) {
 SiteGrid::SiteGrid(Eigen::Matrix3Xd sites, double depth, double spacing)
     : sites_(std::move(sites)), depth_(depth), low_(Eigen::Vector3d::Zero()) {
   Eigen::Vector3d high(1, 1, depth);
+  if (!sites_.allFinite()) throw AnalysisError("a grain or wall grain has no finite position");
   if (sites_.cols() > 0) {
     low_.head<2>() = sites_.topRows<2>().rowwise().minCoeff();
     high.head<2>() = sites_.topRows<2>().rowwise().maxCoeff();

@@ -15,7 +15,7 @@ namespace shearcell {
 class SiteGrid {
  public:
   /// `sites` is 3 x n with z in [0, depth); `spacing` is the usual distance of neighbours and only
-  /// decides how fast the search is.
+  /// decides how fast the search is. Throws AnalysisError when a coordinate is not finite.
   SiteGrid(Eigen::Matrix3Xd sites, double depth, double spacing);
 
   const Eigen::Matrix3Xd& sites() const { return sites_; }
@@ -54,12 +54,13 @@ void SiteGrid::visit_within(const Eigen::Vector3d& point, double inner, double o
                             Visit&& visit) const {
   const double inner2 = inner * inner;
   const double outer2 = outer * outer;
-  const std::int64_t x0 = box_x(point.x() - outer);
-  const std::int64_t x1 = box_x(point.x() + outer);
-  const std::int64_t y0 = box_y(point.y() - outer);
-  const std::int64_t y1 = box_y(point.y() + outer);
-  const auto z0 = static_cast<std::int64_t>(std::floor((point.z() - outer) / edge_.z()));
-  const auto z1 = static_cast<std::int64_t>(std::floor((point.z() + outer) / edge_.z()));
+  const double reach = outer * (1 + 1e-9);  // so that rounding at a box's edge loses no site
+  const std::int64_t x0 = box_x(point.x() - reach);
+  const std::int64_t x1 = box_x(point.x() + reach);
+  const std::int64_t y0 = box_y(point.y() - reach);
+  const std::int64_t y1 = box_y(point.y() + reach);
+  const auto z0 = static_cast<std::int64_t>(std::floor((point.z() - reach) / edge_.z()));
+  const auto z1 = static_cast<std::int64_t>(std::floor((point.z() + reach) / edge_.z()));
   std::int64_t image = z0 >= 0 ? z0 / count_z_ : -((count_z_ - 1 - z0) / count_z_);
   std::int64_t row_z = z0 - image * count_z_;
   for (std::int64_t kz = z0; kz <= z1; ++kz) {

@@ -202,6 +202,9 @@ Eigen::Matrix3Xd wrapped_sites(const Cell& cell, const WallPose& pose,
 
 VoronoiDiagram voronoi(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains,
                        WallGrainCells wall_grain_cells) {
+  if (!(cell.width > 0 && cell.depth > 0 && pose.top > pose.bottom)) {
+    throw AnalysisError("the cell has no volume");
+  }
   require_inside(cell, pose, grains);
   CellBuilder builder(cell, pose, grains);
   const auto count = static_cast<std::int32_t>(grains.cols());

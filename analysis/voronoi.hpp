@@ -48,7 +48,7 @@ enum class WallGrainCells : std::uint8_t { skip, measure };
 /// Faces no larger than 1e-13 d^2 are rounding and left out.
 ///
 /// Throws AnalysisError, naming the grains, when two sites coincide or a grain lies on or outside a
-/// wall plane.
+/// wall plane, and when the cell has no volume.
 VoronoiDiagram voronoi(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains,
                        WallGrainCells wall_grain_cells = WallGrainCells::skip);
 

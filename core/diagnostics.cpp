@@ -42,7 +42,8 @@ void for_each_contact(const Cell& cell, const State& state, const WallPose& pose
     return p.x() - pose.tan_theta * (p.y() - pose.top);
   };
   LinkedCells near(cell.width, pose.bottom, pose.top, cell.depth,
-                   std::sqrt(1 + pose.tan_theta * pose.tan_theta));
+                   std::sqrt(1 + pose.tan_theta * pose.tan_theta),
+                   static_cast<std::size_t>(grains + walls.cols()));
   for (auto s = static_cast<std::int32_t>(grains + walls.cols()); s-- > 0;) {
     const Eigen::Vector3d p = site(s);
     near.insert(s, untilted(p), p.y(), p.z());

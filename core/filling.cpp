@@ -44,7 +44,7 @@ void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side
       static_cast<std::size_t>(geometry.wall_grain_area_fraction * area / kGrainArea);
   // Close to jamming (0.547) the waiting time diverges; a wall that falls short is still rough.
   const auto attempts = static_cast<std::uint64_t>(4000.0 * area);
-  LinkedCells near(length, 0.0, 1.0, depth, 1.0);
+  LinkedCells near(length, 0.0, 1.0, depth, 1.0, target);
   std::vector<Eigen::Vector2d> placed;
   for (std::uint64_t attempt = 0; attempt < attempts && placed.size() < target; ++attempt) {
     const auto u = draw(seed, geometry.grains, static_cast<std::uint32_t>(side), attempt);
@@ -121,7 +121,8 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed) 
 
   // Wall grains come first in `sites`, so that one search serves both.
   std::vector<Eigen::Vector3d> sites;
-  LinkedCells near(cell.width, cell.bottom, cell.top, cell.depth, 1.0);
+  LinkedCells near(cell.width, cell.bottom, cell.top, cell.depth, 1.0,
+                   geometry.grains + cell.wall_grains.size());
   const auto keep = [&](const Eigen::Vector3d& p) {
     near.insert(static_cast<std::int32_t>(sites.size()), p.x(), p.y(), p.z());
     sites.push_back(p);

@@ -16,16 +16,17 @@ int clamp_to_cell(double scaled, int cells) {
 }  // namespace
 
 LinkedCells::LinkedCells(double width, double low, double high, double depth, double reach,
-                         std::size_t max_cells)
+                         std::size_t points)
     : low_(low), depth_(depth) {
+  const double most = 64 + 4 * static_cast<double>(points);
   double size = reach;
   double cells = 0;
   const auto count = [&size](double length) {
-    return std::max(1.0, std::min(std::floor(length / size), 1e6));
+    return std::max(1.0, std::min(std::floor(length / size), 1e9));
   };
-  for (;; size *= 1.26) {  // a sparse or stretched cell gets wider cells, not more memory
+  for (;; size *= 1.26) {
     cells = count(width) * count(high - low) * count(depth);
-    if (cells <= static_cast<double>(max_cells)) break;
+    if (cells <= most) break;
   }
   nx_ = static_cast<int>(count(width));
   ny_ = static_cast<int>(count(high - low));

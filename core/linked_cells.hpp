@@ -13,9 +13,10 @@ namespace shearcell {
 /// kept in the border cells, which stays correct as long as nothing is farther out than a cell.
 class LinkedCells {
  public:
-  /// Cells are at least `reach` wide. Lengths [d]; the number of cells is bounded by `max_cells`.
+  /// Cells are at least `reach` wide. Lengths [d]. There are at most about four cells per point
+  /// expected, so that a nearly empty box costs no more than its points.
   LinkedCells(double width, double low, double high, double depth, double reach,
-              std::size_t max_cells = std::size_t{1} << 26);
+              std::size_t points);
 
   /// Adds point `index`; a later point of a cell is visited before an earlier one.
   void insert(std::int32_t index, double x, double y, double z);

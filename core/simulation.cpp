@@ -170,7 +170,7 @@ void Simulation::rebuild_lists() {
   const double cutoff = settings_.lists.outer_cutoff;
   const auto fill = [&] {
     LinkedCells near(cell_.width, pose_.bottom, pose_.top, cell_.depth,
-                     cutoff * std::sqrt(1 + pose_.tan_theta * pose_.tan_theta));
+                     cutoff * std::sqrt(1 + pose_.tan_theta * pose_.tan_theta), id_.size());
     for (std::size_t g = id_.size(); g-- > 0;) {
       const double* p = rows_[0].data() + 4 * g;
       near.insert(static_cast<std::int32_t>(g), p[0] - pose_.tan_theta * (p[1] - pose_.top), p[1],

@@ -85,7 +85,7 @@ void WallContacts::find_neighbours(Side& side, const double* rows, double cutoff
   if (side.grains.empty()) return;
 
   LinkedCells near(cell_.width, pose.bottom, pose.top, cell_.depth,
-                   cutoff * std::sqrt(1 + pose.tan_theta * pose.tan_theta));
+                   cutoff * std::sqrt(1 + pose.tan_theta * pose.tan_theta), side.grains.size());
   const auto untilted = [&pose](const double* p) {
     return p[0] - pose.tan_theta * (p[1] - pose.top);
   };

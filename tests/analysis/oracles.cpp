@@ -5,7 +5,9 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
-#include <chrono>
+#include <time.h>
+
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -105,8 +107,14 @@ std::vector<VoroCell> voro_cells(const Packing& p) {
   return cells;
 }
 
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 double time_voro(const Packing& p, double sites_per_block) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = thread_seconds();
   VoroContainer container(p, sites_per_block);
   double total = 0;
   std::vector<int> neighbours;
@@ -117,8 +125,7 @@ double time_voro(const Packing& p, double sites_per_block) {
                              cell.neighbors(neighbours);
                              cell.face_areas(areas);
                            });
-  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-  return total > 0 ? time.count() : -1;
+  return total > 0 ? thread_seconds() - start : -1;
 }
 
 std::vector<std::set<int>> delaunay_neighbours(const Packing& p) {

@@ -19,8 +19,11 @@ struct VoroCell {
 /// All grains' cells by voro++, with wall planes and wall grains.
 std::vector<VoroCell> voro_cells(const Packing& packing);
 
-/// Seconds that voro++ takes for volumes, neighbours and face areas of all grains' cells, with the
-/// given mean number of sites in each of its blocks.
+/// Processor time of this thread [s]: other work on the machine disturbs it little.
+double thread_seconds();
+
+/// Thread seconds that voro++ takes for volumes, neighbours and face areas of all grains' cells,
+/// with the given mean number of sites in each of its blocks.
 double time_voro(const Packing& packing, double sites_per_block);
 
 /// Neighbours of each grain among grains and wall grains (ids from n on) in CGAL's Delaunay

@@ -223,6 +223,8 @@ TEST(Voronoi, NamesTheGrainOutside) {
   EXPECT_EQ(message_of(p), "grain 33 lies outside the cell: 0.250000 d beyond the bottom wall");
   p.grains(1, 33) = std::nan("");
   EXPECT_EQ(message_of(p), "grain 33 has no finite position");
+  p.pose.bottom = p.pose.top;
+  EXPECT_EQ(message_of(p), "the cell has no volume");
 }
 
 }  // namespace

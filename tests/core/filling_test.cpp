@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cell and the loose grains that every run begins with.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/filling.hpp"
+#include "tests/core/scenes.hpp"
+
+namespace shearcell {
+namespace {
+
+Geometry of(std::size_t grains) {
+  Geometry geometry;
+  geometry.grains = grains;
+  return geometry;
+}
+
+double square_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double depth) {
+  Eigen::Vector3d r = a - b;
+  r.z() -= depth * std::round(r.z() / depth);
+  return r.squaredNorm();
+}
+
+TEST(Filling, NoGrainTouchesAnything) {
+  const Geometry geometry = of(500);
+  const Cell cell = make_cell(geometry, 3);
+  const State state = fill_cell(cell, geometry, 3);
+  const Eigen::Matrix3Xd walls = wall_grain_positions(cell, wall_pose(cell, 0, state.wall_height));
+  ASSERT_EQ(state.position.cols(), 500);
+  for (Eigen::Index i = 0; i < 500; ++i) {
+    const Eigen::Vector3d p = state.position.col(i);
+    EXPECT_GE(std::min({p.x(), cell.width - p.x(), p.y() - cell.bottom, cell.top - p.y()}), 0.5);
+    for (Eigen::Index j = 0; j < i; ++j) {
+      ASSERT_GE(square_distance(p, state.position.col(j), cell.depth), 1) << i << ' ' << j;
+    }
+    for (Eigen::Index w = 0; w < walls.cols(); ++w) {
+      ASSERT_GE(square_distance(p, walls.col(w), cell.depth), 1) << i << " wall " << w;
+    }
+  }
+}
+
+TEST(Filling, WallGrainsAreDiscsThatDoNotOverlapAtTheStatedDensity) {
+  const Cell cell = make_cell(of(600), 1);
+  std::array<double, 4> covered{};
+  for (std::size_t a = 0; a < cell.wall_grains.size(); ++a) {
+    const WallGrain& grain = cell.wall_grains[a];
+    covered[static_cast<std::size_t>(grain.side)] += std::numbers::pi / 4;
+    const bool upright = grain.side == WallSide::left || grain.side == WallSide::right;
+    const double behind = grain.side == WallSide::left     ? -grain.position.x()
+                          : grain.side == WallSide::right  ? grain.position.x() - cell.width
+                          : grain.side == WallSide::bottom ? cell.bottom - grain.position.y()
+                                                           : grain.position.y() - cell.top;
+    EXPECT_GE(behind, 0);
+    EXPECT_LE(behind, 0.25);
+    for (std::size_t b = 0; b < a; ++b) {
+      const WallGrain& other = cell.wall_grains[b];
+      if (other.side != grain.side) continue;
+      Eigen::Vector3d p = grain.position, q = other.position;
+      (upright ? p.x() : p.y()) = (upright ? q.x() : q.y()) = 0;
+      ASSERT_GE(square_distance(p, q, cell.depth), 1);
+    }
+  }
+  const double side = (cell.top - cell.bottom) * cell.depth;
+  const double base = cell.width * cell.depth;
+  EXPECT_NEAR(covered[0] / side, 0.52, 0.02);
+  EXPECT_NEAR(covered[1] / side, 0.52, 0.02);
+  EXPECT_NEAR(covered[2] / base, 0.52, 0.03);
+  EXPECT_NEAR(covered[3] / base, 0.52, 0.03);
+}
+
+TEST(Filling, DependsOnSeedNumberAndGeometryAlone) {
+  const auto fill = [](const Geometry& geometry, std::uint64_t seed) {
+    return fill_cell(make_cell(geometry, seed), geometry, seed).position;
+  };
+  EXPECT_EQ(fill(of(200), 5), fill(of(200), 5));
+  EXPECT_NE(fill(of(200), 5), fill(of(200), 6));
+  Geometry top = of(200);
+  top.moving = MovingWall::top;
+  EXPECT_EQ(fill(top, 5), fill(of(200), 5));
+}
+
+TEST(Filling, WidthHoldsTheGrainsAtTheNominalFraction) {
+  // Smooth walls: L^3 * 1.675 * 0.64 = N pi/6.
+  Geometry geometry = of(5200);
+  geometry.walls = WallTexture::smooth;
+  EXPECT_NEAR(std::pow(cell_width(geometry), 3), 5200 * std::numbers::pi / 6 / (0.64 * 1.675),
+              1e-9 * 5200);
+  EXPECT_GT(cell_width(of(5200)), cell_width(geometry));
+}
+
+TEST(Filling, RefusesWhatCannotBe) {
+  EXPECT_THROW(make_cell(of(10), 1), GeometryError);  // shallower than 3 d
+  Geometry dense = of(300);
+  dense.fill_packing_fraction = 0.5;  // beyond what random sequential addition reaches (0.38)
+  EXPECT_THROW(fill_cell(make_cell(dense, 1), dense, 1), GeometryError);
+}
+
+}  // namespace
+}  // namespace shearcell

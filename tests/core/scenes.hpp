@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small cells and states that several tests start from.
+#pragma once
+
+#include <vector>
+
+#include "core/filling.hpp"
+#include "core/simulation.hpp"
+
+namespace shearcell::test {
+
+/// Table I in units of d, m and s.
+inline Scene table_1() {
+  Scene scene;
+  scene.stiffness = 654 / 2e-5;
+  scene.drag_rate = 64;
+  scene.gravity = 3270;
+  scene.pressure = 954 * 3e-3 / 2e-5;
+  scene.time_step = 2.0 / 45600;
+  return scene;
+}
+
+/// Nothing but springs.
+inline Scene only_contacts() {
+  Scene scene = table_1();
+  scene.drag_rate = scene.gravity = scene.pressure = 0;
+  return scene;
+}
+
+/// A smooth cell so large that its walls are out of reach of what happens near its middle, with a
+/// moving wall too heavy to stir.
+inline Cell open_cell(double size = 40) {
+  Cell cell;
+  cell.width = cell.depth = cell.top = size;
+  return cell;
+}
+
+inline State at_rest(const std::vector<Eigen::Vector3d>& positions, const Cell& cell) {
+  State state;
+  const auto n = static_cast<Eigen::Index>(positions.size());
+  state.position.resize(3, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    state.position.col(i) = positions[static_cast<std::size_t>(i)];
+  state.velocity = Eigen::Matrix3Xd::Zero(3, n);
+  state.wall_height = cell.moving == MovingWall::bottom ? cell.bottom : cell.top;
+  return state;
+}
+
+struct Sheared {
+  Cell cell;
+  State state;
+};
+
+/// A rough cell of `grains` loose grains, pressed for `steps` steps: dense, moving, in contact with
+/// walls and each other.
+inline Sheared pressed(std::size_t grains, std::uint64_t steps,
+                       WallTexture walls = WallTexture::rough,
+                       MovingWall moving = MovingWall::bottom) {
+  Geometry geometry;
+  geometry.grains = grains;
+  geometry.walls = walls;
+  geometry.moving = moving;
+  Sheared scene{make_cell(geometry, 7), {}};
+  scene.state = fill_cell(scene.cell, geometry, 7);
+  Scene forces = table_1();
+  forces.gravity = 0;
+  Simulation simulation(scene.cell, forces, scene.state);
+  simulation.advance(Drive{}, steps);
+  scene.state = simulation.state();
+  scene.state.step = 0;
+  return scene;
+}
+
+/// Equal to the last bit (so +0 and -0 differ).
+bool same_bits(const State& a, const State& b);
+
+}  // namespace shearcell::test
