@@ -45,6 +45,7 @@ CREATE TABLE memberships(
   manifest TEXT NOT NULL,
   labels TEXT NOT NULL,
   target_cycles INTEGER NOT NULL,
+  checkpoint_every INTEGER NOT NULL,
   ordinal INTEGER NOT NULL,
   PRIMARY KEY (run, experiment, scale, variant, seed, manifest)
 ) STRICT;
@@ -102,15 +103,17 @@ void declare_run(Database& database, const Event& event, const json& body) {
   const json& membership = body.at("membership");
   Statement member(database,
                    "INSERT INTO memberships(run, experiment, scale, variant, seed, manifest, "
-                   "labels, target_cycles, ordinal) VALUES(?,?,?,?,?,?,?,?,?) ON CONFLICT DO "
-                   "UPDATE SET target_cycles = max(target_cycles, excluded.target_cycles)");
+                   "labels, target_cycles, checkpoint_every, ordinal) VALUES(?,?,?,?,?,?,?,?,?,?) "
+                   "ON CONFLICT DO UPDATE SET target_cycles = max(target_cycles, "
+                   "excluded.target_cycles), checkpoint_every = excluded.checkpoint_every");
   member.bind(1, id);
   member.bind(2, membership.at("experiment").get_ref<const std::string&>());
   member.bind(3, membership.at("scale").get_ref<const std::string&>());
   member.bind(4, membership.at("variant").get_ref<const std::string&>());
   member.bind(5, membership.at("seed").get<std::uint64_t>());
   member.bind(6, membership.at("manifest").get_ref<const std::string&>());
-  member.bind(7, membership.at("labels").dump()).bind(8, target).bind(9, event.seq).run();
+  member.bind(7, membership.at("labels").dump()).bind(8, target);
+  member.bind(9, membership.at("checkpoint_every").get<std::uint64_t>()).bind(10, event.seq).run();
 }
 
 void set_state(Database& database, const Event& event, std::string_view state,
@@ -153,6 +156,11 @@ void record_checkpoint(Database& database, const Event& event, const json& body)
 
 void reject_checkpoint(Database& database, const Event& event, const json& body) {
   const std::string run = after_slash(event.stream);
+  // A completed run that loses its last state has work left.
+  Statement reopen(database,
+                   "UPDATE runs SET state = 'declared' WHERE id = ?1 AND state = 'completed' AND "
+                   "step = (SELECT step FROM checkpoints WHERE run = ?1 AND sha256 = ?2)");
+  reopen.bind(1, run).bind(2, body.at("sha256").get_ref<const std::string&>()).run();
   Statement update(database,
                    "UPDATE checkpoints SET state = 'rejected' WHERE run = ? AND sha256 = ?");
   update.bind(1, run).bind(2, body.at("sha256").get_ref<const std::string&>()).run();

@@ -33,8 +33,8 @@ RunState state_of(const Database& database, const std::string& text) {
 
 std::vector<Membership> query_memberships(const Database& database, const std::string& run) {
   Statement query(database,
-                  "SELECT experiment, scale, variant, labels, seed, manifest, target_cycles FROM "
-                  "memberships WHERE run = ? ORDER BY ordinal");
+                  "SELECT experiment, scale, variant, labels, seed, manifest, target_cycles, "
+                  "checkpoint_every FROM memberships WHERE run = ? ORDER BY ordinal");
   query.bind(1, run);
   std::vector<Membership> found;
   while (query.step()) {
@@ -44,6 +44,7 @@ std::vector<Membership> query_memberships(const Database& database, const std::s
                      .labels = parse(database, query.text(3)),
                      .seed = query.u64(4),
                      .manifest = query.text(5),
+                     .checkpoint_every = query.u64(7),
                      .target_cycles = query.u64(6)});
   }
   return found;

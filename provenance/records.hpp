@@ -17,8 +17,9 @@ struct Membership {
   std::string variant;                               ///< label of the swept values, as "drag=still"
   nlohmann::json labels = nlohmann::json::object();  ///< swept key -> value
   std::uint64_t seed = 0;
-  std::string manifest;             ///< SHA-256 of the manifest's text
-  std::uint64_t target_cycles = 0;  ///< what this experiment asks of the run; set by the store
+  std::string manifest;                ///< SHA-256 of the manifest's text
+  std::uint64_t checkpoint_every = 1;  ///< cycles between checkpoints that it asks for
+  std::uint64_t target_cycles = 0;     ///< what this experiment asks of the run; set by the store
 };
 
 /// A run (one stage) as the expansion of a manifest gives it.

@@ -53,8 +53,13 @@ bool claims_run(const Event& event) {
 }
 
 json membership_json(const Membership& m) {
-  return {{"experiment", m.experiment}, {"scale", m.scale}, {"variant", m.variant},
-          {"labels", m.labels},         {"seed", m.seed},   {"manifest", m.manifest}};
+  return {{"experiment", m.experiment},
+          {"scale", m.scale},
+          {"variant", m.variant},
+          {"labels", m.labels},
+          {"seed", m.seed},
+          {"manifest", m.manifest},
+          {"checkpoint_every", m.checkpoint_every}};
 }
 
 bool adds_something(const RunRecord& known, const RunDeclaration& declared) {
@@ -63,6 +68,7 @@ bool adds_something(const RunRecord& known, const RunDeclaration& declared) {
       known.memberships.begin(), known.memberships.end(), [&](const Membership& old) {
         return old.experiment == m.experiment && old.scale == m.scale && old.variant == m.variant &&
                old.seed == m.seed && old.manifest == m.manifest &&
+               old.checkpoint_every == m.checkpoint_every &&
                old.target_cycles >= declared.target_cycles;
       });
 }

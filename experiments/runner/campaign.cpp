@@ -162,10 +162,12 @@ std::string job_name(const Membership& membership, const std::string& kind) {
                            membership.seed);
 }
 
-StageJob job_of(const RunRecord& run, std::uint64_t checkpoint_every) {
-  const std::string name =
-      run.memberships.empty() ? run.kind : job_name(run.memberships.front(), run.kind);
-  return {run.id, run.parent, name, checkpoint_every};
+StageJob job_of(const RunRecord& run) {
+  if (run.memberships.empty()) return {run.id, run.parent, run.kind, 1};
+  // The densest cadence that an experiment asks for serves all of them.
+  std::uint64_t every = run.memberships.front().checkpoint_every;
+  for (const Membership& m : run.memberships) every = std::min(every, m.checkpoint_every);
+  return {run.id, run.parent, job_name(run.memberships.front(), run.kind), every};
 }
 
 }  // namespace
@@ -193,6 +195,7 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
       declaration.membership.labels = prepare ? nlohmann::json::object() : run.labels;
       declaration.membership.seed = run.seed;
       declaration.membership.manifest = sha;
+      declaration.membership.checkpoint_every = run.checkpoint_every;
       if (!known.insert(stage->key).second) continue;
       store.declare_run(declaration);
       jobs.push_back({stage->key, stage->parent, job_name(declaration.membership, declaration.kind),
@@ -214,7 +217,7 @@ std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& p
   for (const RunRecord& run : store.runs()) {
     const bool asked =
         prefixes.empty() ? run.state != RunState::completed : wanted.count(run.id) > 0;
-    if (asked) jobs.push_back(job_of(run, 1));
+    if (asked) jobs.push_back(job_of(run));
   }
   return jobs;
 }
