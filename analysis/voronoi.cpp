@@ -8,79 +8,140 @@
 #include <tuple>
 
 #include "analysis/clip.hpp"
+#include "analysis/delaunay.hpp"
 #include "analysis/error.hpp"
-#include "analysis/site_grid.hpp"
 
 namespace shearcell {
 namespace {
 
-constexpr double smallest_face = 1e-13;        // [d^2]
-constexpr double same_place = 1e-10;           // [d]
-constexpr double first_reach_spacings = 1.75;  // holds all neighbours of most cells in a packing
-constexpr double reach_growth = 1.2;
+constexpr double smallest_face = 1e-13;  // [d^2]
+// Beyond this no image bears on a cell of a dense packing; a second pass serves all others.
+constexpr double first_margin_spacings = 1.6;
 
 constexpr std::array<const char*, 4> side_names = {"left", "right", "bottom", "top"};
 
-struct Candidate {
-  Eigen::Vector3d offset;
-  std::int32_t site;
-};
-
-/// What candidates are sorted by: small, and a total order, so that the result has no choice.
-struct Rank {
-  double distance2;
-  std::int32_t site;
-  std::uint32_t candidate;
-};
-
-/// Everything that does not change from cell to cell, and the work space.
-class CellBuilder {
+/// The diagram of one packing from its triangulation.
+class Dual {
  public:
-  CellBuilder(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains)
+  Dual(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites, std::int32_t grains)
       : cell_(cell),
         pose_(pose),
-        grain_count_(static_cast<std::int32_t>(grains.cols())),
-        spacing_(site_spacing(cell, pose, grains)),
-        grid_(wrapped_sites(cell, pose, grains), cell.depth, spacing_) {}
+        sites_(sites),
+        grains_(grains),
+        delaunay_(sites, grains, cell.depth, first_margin_spacings * spacing()) {}
 
-  /// Cuts the cell of one site and leaves it in polyhedron(); returns its volume.
-  double build(std::int32_t site);
-
-  /// Adds the faces of the cell that was built last; returns their whole area.
-  double append_faces(std::vector<VoronoiFace>& faces) const;
-
-  Eigen::Vector3d position(std::int32_t site) const { return grid_.sites().col(site); }
-  std::string name(std::int32_t site) const {
-    return site < grain_count_ ? "grain " + std::to_string(site)
-                               : "wall grain " + std::to_string(site - grain_count_);
-  }
+  /// Measures all cells. More images can only make them smaller, so a sphere around a corner that
+  /// holds no image within the margin tells what a wider margin would have to hold, and the second
+  /// pass is the last.
+  VoronoiDiagram measure(WallGrainCells wall_grain_cells);
 
  private:
-  static double site_spacing(const Cell& cell, const WallPose& pose,
-                             const Eigen::Matrix3Xd& grains) {
-    const double volume = cell.width * cell.depth * (pose.top - pose.bottom);
-    const auto sites =
-        static_cast<double>(grains.cols()) + static_cast<double>(cell.wall_grains.size());
-    return std::cbrt(volume / std::max(sites, 1.0));
-  }
+  /// A face as seen from one of its grains.
+  struct Side {
+    std::int32_t to;
+    std::int32_t image;
+    double area;
+  };
 
+  VoronoiDiagram measure_all(WallGrainCells wall_grain_cells);
+  double spacing() const;
+  void note_reach(double z, double radius);
+  void find_bulk();
+  void collect_sides();
   std::array<HalfSpace, 6> box_around(const Eigen::Vector3d& point) const;
-  void gather(std::int32_t site, double inner, double outer);
+  double clip(std::int32_t site);
+  void measure_bulk(std::int32_t site, VoronoiDiagram& diagram);
+  void measure_clipped(std::int32_t site, VoronoiDiagram& diagram);
+  VoronoiFace face_to(std::int32_t site, SiteImage other, double area) const;
 
   const Cell& cell_;
   const WallPose& pose_;
-  std::int32_t grain_count_;
-  double spacing_;
-  SiteGrid grid_;
+  const Eigen::Matrix3Xd& sites_;
+  std::int32_t grains_;
+  Delaunay delaunay_;
+  double reach_ = 0;                // of all spheres around corners, beyond the period in z [d]
+  std::vector<std::uint8_t> bulk_;  // by site: a grain whose cell has all corners inside the walls
+  std::vector<std::size_t> first_;  // by grain, n + 1 entries: its sides are first_[i] ..
+  std::vector<Side> sides_;         // of grains in the bulk
+
   ConvexCell polyhedron_;
-  std::int32_t built_ = 0;
-  std::vector<Candidate> candidates_;
-  std::vector<Rank> ranks_;
-  std::vector<std::int32_t> plane_site_;  // by plane index - 6
+  std::vector<SiteImage> neighbours_;
+  std::vector<SiteImage> plane_site_;  // by plane index - 6
   std::vector<double> areas_;
 };
 
-std::array<HalfSpace, 6> CellBuilder::box_around(const Eigen::Vector3d& point) const {
+double Dual::spacing() const {
+  const double volume = cell_.width * cell_.depth * (pose_.top - pose_.bottom);
+  return std::cbrt(volume / std::max(static_cast<double>(sites_.cols()), 1.0));
+}
+
+void Dual::note_reach(double z, double radius) {
+  reach_ = std::max({reach_, z + radius - cell_.depth, radius - z});
+}
+
+void Dual::find_bulk() {
+  bulk_.assign(static_cast<std::size_t>(sites_.cols()), 0);
+  if (delaunay_.solid()) std::fill_n(bulk_.begin(), grains_, std::uint8_t{1});
+  delaunay_.visit_tetrahedra(
+      [&](const std::array<std::int32_t, 4>& vertices, const Sphere* sphere) {
+        if (sphere != nullptr && wall_distances(cell_, pose_, sphere->centre).minCoeff() >= 0) {
+          note_reach(sphere->centre.z(), std::sqrt(sphere->radius_squared));
+          return;
+        }
+        for (const std::int32_t site : vertices) {
+          if (site >= 0) bulk_[static_cast<std::size_t>(site)] = 0;
+        }
+      });
+}
+
+void Dual::collect_sides() {
+  const std::vector<DualFace> faces = delaunay_.faces(bulk_);
+  const auto seen_by = [&](const SiteImage& v) {
+    return v.image == 0 && bulk_[static_cast<std::size_t>(v.site)] != 0;
+  };
+  first_.assign(static_cast<std::size_t>(grains_) + 1, 0);
+  for (const DualFace& face : faces) {
+    if (seen_by(face.a)) ++first_[static_cast<std::size_t>(face.a.site) + 1];
+    if (seen_by(face.b)) ++first_[static_cast<std::size_t>(face.b.site) + 1];
+  }
+  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  sides_.resize(first_.back());
+  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+  const auto note = [&](const SiteImage& from, const SiteImage& to, double area) {
+    if (!seen_by(from)) return;
+    sides_[next[static_cast<std::size_t>(from.site)]++] = {to.site, to.image, area};
+  };
+  for (const DualFace& face : faces) {
+    note(face.a, face.b, face.area);
+    note(face.b, face.a, face.area);
+  }
+}
+
+VoronoiFace Dual::face_to(std::int32_t site, SiteImage other, double area) const {
+  const bool grain = other.site < grains_;
+  return {delaunay_.offset({site, 0}, other), area, grain ? other.site : other.site - grains_,
+          grain ? NeighbourKind::grain : NeighbourKind::wall_grain};
+}
+
+void Dual::measure_bulk(std::int32_t site, VoronoiDiagram& diagram) {
+  const auto begin = sides_.begin() + static_cast<std::ptrdiff_t>(first_[site]);
+  const auto end = sides_.begin() + static_cast<std::ptrdiff_t>(first_[site + 1]);
+  std::sort(begin, end, [](const Side& a, const Side& b) {
+    return std::tie(a.to, a.image) < std::tie(b.to, b.image);
+  });
+  double surface = 0;
+  double volume = 0;
+  for (auto side = begin; side != end; ++side) {
+    if (side->area <= smallest_face) continue;
+    diagram.faces.push_back(face_to(site, {side->to, side->image}, side->area));
+    surface += side->area;
+    volume += side->area * diagram.faces.back().to_neighbour.norm() / 6;
+  }
+  diagram.volume.push_back(volume);
+  diagram.surface.push_back(surface);
+}
+
+std::array<HalfSpace, 6> Dual::box_around(const Eigen::Vector3d& point) const {
   const Eigen::Vector4d distance = wall_distances(cell_, pose_, point);
   const double c = pose_.cos_theta;
   const double s = pose_.sin_theta;
@@ -93,74 +154,92 @@ std::array<HalfSpace, 6> CellBuilder::box_around(const Eigen::Vector3d& point) c
           bisector_to(period)};
 }
 
-void CellBuilder::gather(std::int32_t site, double inner, double outer) {
-  candidates_.clear();
-  ranks_.clear();
-  const auto keep = [&](std::int32_t other, const Eigen::Vector3d& offset, double distance2,
-                        std::int64_t image) {
-    // The cell itself, and its nearest images, which are walls of the box that it starts from.
-    if (other == site && std::abs(image) <= 1) return;
-    ranks_.push_back({distance2, other, static_cast<std::uint32_t>(candidates_.size())});
-    candidates_.push_back({offset, other});
-  };
-  grid_.visit_within(position(site), inner, outer, keep);
-  std::sort(ranks_.begin(), ranks_.end(), [](const Rank& a, const Rank& b) {
-    return std::tie(a.distance2, a.site, a.candidate) < std::tie(b.distance2, b.site, b.candidate);
-  });
-}
-
-double CellBuilder::build(std::int32_t site) {
-  built_ = site;
-  plane_site_.clear();
-  polyhedron_.reset(box_around(position(site)));
-  double inner = 0;
-  double outer = first_reach_spacings * spacing_;
-  while (true) {
-    gather(site, inner, outer);
-    for (const Rank& rank : ranks_) {
-      const Candidate& other = candidates_[rank.candidate];
-      if (rank.distance2 < same_place * same_place) {
-        throw AnalysisError(name(std::min(site, other.site)) + " and " +
-                            name(std::max(site, other.site)) + " lie at the same place");
-      }
-      if (rank.distance2 > 4 * polyhedron_.radius_squared()) return polyhedron_.measure(areas_);
-      if (polyhedron_.clip(bisector_to(other.offset))) plane_site_.push_back(other.site);
-    }
-    if (outer * outer > 4 * polyhedron_.radius_squared()) return polyhedron_.measure(areas_);
-    inner = outer;
-    outer *= reach_growth;
+/// Cuts the box by the bisectors to the neighbours and leaves the cell in polyhedron_ and areas_.
+/// Returns its volume [d^3].
+double Dual::clip(std::int32_t site) {
+  delaunay_.neighbours(site, neighbours_);
+  // Near ones first, so that few cuts are made in vain; and an order that leaves no choice.
+  std::vector<std::tuple<double, std::int32_t, std::int32_t>> ranks;
+  for (const SiteImage& other : neighbours_) {
+    ranks.emplace_back(delaunay_.offset({site, 0}, other).squaredNorm(), other.site, other.image);
   }
+  std::sort(ranks.begin(), ranks.end());
+
+  polyhedron_.reset(box_around(sites_.col(site)));
+  plane_site_.clear();
+  for (const auto& [distance2, other, image] : ranks) {
+    if (distance2 < same_place * same_place) throw_same_place(site, other, grains_);
+    if (other == site && std::abs(image) == 1) continue;  // a plane of the box already
+    if (polyhedron_.clip(bisector_to(delaunay_.offset({site, 0}, {other, image})))) {
+      plane_site_.push_back({other, image});
+    }
+  }
+  for (std::size_t k = 0; k < polyhedron_.corners(); ++k) {
+    const Eigen::Vector3d corner = polyhedron_.corner(k);
+    note_reach(sites_(2, site) + corner.z(), corner.norm());
+  }
+  return polyhedron_.measure(areas_);
 }
 
-double CellBuilder::append_faces(std::vector<VoronoiFace>& faces) const {
-  const std::size_t begin = faces.size();
+void Dual::measure_clipped(std::int32_t site, VoronoiDiagram& diagram) {
+  diagram.volume.push_back(clip(site));
+  const std::size_t begin = diagram.faces.size();
   double surface = 0;
   for (std::size_t plane = 0; plane < areas_.size(); ++plane) {
-    if (areas_[plane] <= smallest_face) continue;
-    VoronoiFace face;
-    face.area = areas_[plane];
-    const HalfSpace& half = polyhedron_.plane(plane);
+    const double area = areas_[plane];
+    if (area <= smallest_face) continue;
+    surface += area;
     if (plane < 4) {
-      face.kind = NeighbourKind::wall_plane;
-      face.neighbour = static_cast<std::int32_t>(plane);
-      face.to_neighbour = 2 * half.offset * half.normal;
+      const HalfSpace& wall = polyhedron_.plane(plane);
+      diagram.faces.push_back({2 * wall.offset * wall.normal, area,
+                               static_cast<std::int32_t>(plane), NeighbourKind::wall_plane});
+    } else if (plane < 6) {
+      diagram.faces.push_back(face_to(site, {site, plane == 4 ? -1 : 1}, area));
     } else {
-      const std::int32_t site = plane < 6 ? built_ : plane_site_[plane - 6];
-      const bool grain = site < grain_count_;
-      face.kind = grain ? NeighbourKind::grain : NeighbourKind::wall_grain;
-      face.neighbour = grain ? site : site - grain_count_;
-      face.to_neighbour = half.normal;
+      diagram.faces.push_back(face_to(site, plane_site_[plane - 6], area));
     }
-    surface += face.area;
-    faces.push_back(face);
   }
-  std::sort(faces.begin() + static_cast<std::ptrdiff_t>(begin), faces.end(),
+  diagram.surface.push_back(surface);
+  std::sort(diagram.faces.begin() + static_cast<std::ptrdiff_t>(begin), diagram.faces.end(),
             [](const VoronoiFace& a, const VoronoiFace& b) {
-              if (a.kind != b.kind) return a.kind < b.kind;
-              if (a.neighbour != b.neighbour) return a.neighbour < b.neighbour;
-              return a.to_neighbour.z() < b.to_neighbour.z();
+              return std::tuple(a.kind, a.neighbour, a.to_neighbour.z()) <
+                     std::tuple(b.kind, b.neighbour, b.to_neighbour.z());
             });
-  return surface;
+}
+
+VoronoiDiagram Dual::measure(WallGrainCells wall_grain_cells) {
+  while (true) {
+    reach_ = 0;
+    VoronoiDiagram diagram = measure_all(wall_grain_cells);
+    if (reach_ <= delaunay_.margin()) return diagram;
+    delaunay_.widen((1 + 1e-9) * reach_);
+  }
+}
+
+VoronoiDiagram Dual::measure_all(WallGrainCells wall_grain_cells) {
+  find_bulk();
+  collect_sides();
+  VoronoiDiagram diagram;
+  const auto count = static_cast<std::size_t>(grains_);
+  diagram.volume.reserve(count);
+  diagram.surface.reserve(count);
+  diagram.first.reserve(count + 1);
+  diagram.faces.reserve(16 * count);  // a little more than a dense packing has
+  diagram.first.push_back(0);
+  for (std::int32_t i = 0; i < grains_; ++i) {
+    if (bulk_[static_cast<std::size_t>(i)] != 0) {
+      measure_bulk(i, diagram);
+    } else {
+      measure_clipped(i, diagram);
+    }
+    diagram.first.push_back(diagram.faces.size());
+  }
+  if (wall_grain_cells == WallGrainCells::measure) {
+    for (auto w = grains_; w < sites_.cols(); ++w) {
+      diagram.wall_grain_volume.push_back(clip(w));
+    }
+  }
+  return diagram;
 }
 
 void require_inside(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains) {
@@ -206,27 +285,10 @@ VoronoiDiagram voronoi(const Cell& cell, const WallPose& pose, const Eigen::Matr
     throw AnalysisError("the cell has no volume");
   }
   require_inside(cell, pose, grains);
-  CellBuilder builder(cell, pose, grains);
-  const auto count = static_cast<std::int32_t>(grains.cols());
-  VoronoiDiagram diagram;
-  const auto reserve = static_cast<std::size_t>(count);
-  diagram.volume.reserve(reserve);
-  diagram.surface.reserve(reserve);
-  diagram.first.reserve(reserve + 1);
-  diagram.faces.reserve(15 * reserve);  // a little more than a dense packing has
-  diagram.first.push_back(0);
-  for (std::int32_t i = 0; i < count; ++i) {
-    diagram.volume.push_back(builder.build(i));
-    diagram.surface.push_back(builder.append_faces(diagram.faces));
-    diagram.first.push_back(diagram.faces.size());
-  }
-  if (wall_grain_cells == WallGrainCells::measure) {
-    const auto wall_grains = static_cast<std::int32_t>(cell.wall_grains.size());
-    for (std::int32_t w = 0; w < wall_grains; ++w) {
-      diagram.wall_grain_volume.push_back(builder.build(count + w));
-    }
-  }
-  return diagram;
+  const Eigen::Matrix3Xd sites = wrapped_sites(cell, pose, grains);
+  if (!sites.allFinite()) throw AnalysisError("a wall grain has no finite position");
+  return Dual(cell, pose, sites, static_cast<std::int32_t>(grains.cols()))
+      .measure(wall_grain_cells);
 }
 
 }  // namespace shearcell

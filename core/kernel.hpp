@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The three loops over neighbours that take nearly all of the time, as plain functions over arrays.
+// The four loops over neighbours that take nearly all of the time, as plain functions over arrays.
 //
 // Each exists as a scalar text, which is the specification, and as a vector text that must give the
 // same bits. Properties that make that possible:
@@ -26,13 +26,16 @@ constexpr std::int32_t padding_offset(std::size_t grains) {
   return static_cast<std::int32_t>(4 * padded(grains));
 }
 
-/// Neighbours as row offsets (4 * index, in doubles): `list[g * stride + k]`, k < slots[g / lanes].
-/// Rows shorter than their block's `slots` are padded with the offset of a row that touches
-/// nothing.
+/// Neighbours as row offsets (4 * index, in doubles), in blocks of one vector of grains. Grain
+/// `lane` of block b has its k-th neighbour, k < slots[b], at list[(b * stride + k) * lanes +
+/// lane]. Shorter rows are filled up with the offset of a row that touches nothing.
 struct NeighbourRows {
   const std::int32_t* list = nullptr;
   std::size_t stride = 0;
-  const std::uint16_t* slots = nullptr;  ///< one per block of `lanes` grains
+  const std::uint16_t* slots = nullptr;
+  /// 1 for a block with a pair that is nearest through the seam in z; elsewhere the kernel need not
+  /// look for the nearest image. Null: every block may have one.
+  const std::uint8_t* seam = nullptr;
 };
 
 /// One time step of the leapfrog for every grain of a range of blocks.
@@ -69,6 +72,30 @@ struct WallTask {
   double* push = nullptr;    ///< y component of each member's sum, or null
 };
 
+/// Grains ordered by the cells of a grid, x fastest, then z, then y.
+struct CellGrid {
+  std::int32_t columns = 1, layers = 1, rows = 1;  ///< in x, z and y
+  const std::uint32_t* begin = nullptr;  ///< first place of each cell, and the number of grains
+  const std::uint32_t* cell = nullptr;   ///< cell of the grain at each place
+  const double* position[3] = {};        ///< of the grain at each place [d]
+  const std::int32_t* id = nullptr;      ///< its permanent id
+};
+
+/// The outer list: neighbours within `cutoff` of the grains at a range of places, ascending id.
+struct SearchTask {
+  CellGrid grid;
+  const std::int32_t* offset_of_id = nullptr;  ///< row offset of the grain with an id
+  std::int32_t* outer = nullptr;               ///< per grain, `stride` apart
+  std::size_t stride = 0;
+  std::uint16_t* count = nullptr;  ///< per grain
+  std::int32_t padding = 0;        ///< fills each row up to a multiple of 8
+  double depth = 0, per_depth = 0;
+  double cutoff_squared = 0;
+};
+
+/// More neighbours than any packing has; a row is cut off there when a cell has collapsed.
+inline constexpr std::size_t kMostNeighbours = 1024;
+
 /// The inner list from the outer: neighbours within `cutoff` now.
 struct PruneTask {
   std::size_t grains = 0;
@@ -76,9 +103,10 @@ struct PruneTask {
   const std::int32_t* outer = nullptr;
   std::size_t outer_stride = 0;
   const std::uint16_t* outer_count = nullptr;  ///< per grain
-  std::int32_t* inner = nullptr;
+  std::int32_t* inner = nullptr;               ///< laid out as NeighbourRows
   std::size_t inner_stride = 0;
-  std::uint16_t* slots = nullptr;  ///< per block
+  std::uint16_t* slots = nullptr;
+  std::uint8_t* seam = nullptr;
   std::int32_t padding = 0;
   double depth = 0, per_depth = 0;
   double cutoff_squared = 0;
@@ -91,6 +119,8 @@ struct Kernels {
   /// Indexed [gravity on][fluid moves]. Returns the largest squared displacement from `reference`.
   double (*step[2][2])(const StepTask&, std::size_t first_block, std::size_t last_block);
   void (*walls)(const WallTask&);
+  /// Returns the largest number of neighbours found; rows longer than the stride are cut.
+  std::size_t (*search)(const SearchTask&, std::size_t first_place, std::size_t last_place);
   /// Returns false, leaving the inner list unusable, when a row outgrows inner_stride.
   bool (*prune)(const PruneTask&, std::size_t first_block, std::size_t last_block);
 };

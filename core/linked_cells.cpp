@@ -50,7 +50,7 @@ int LinkedCells::layer(double z) const {
 void LinkedCells::insert(std::int32_t point, double x, double y, double z) {
   const auto slot = static_cast<std::size_t>(point);
   if (next_.size() <= slot) next_.resize(std::max(slot + 1, 2 * next_.size()), -1);
-  std::int32_t& head = head_[cell_of(x, y, z)];
+  std::int32_t& head = head_[index(column(x), row(y), layer(z))];
   next_[slot] = head;
   head = point;
 }

@@ -40,11 +40,6 @@ class LinkedCells {
     }
   }
 
-  /// Rank of the cell of a point along a path through memory that keeps neighbours close.
-  std::size_t cell_of(double x, double y, double z) const {
-    return index(column(x), row(y), layer(z));
-  }
-
  private:
   std::size_t index(int ix, int iy, int iz) const {
     return (static_cast<std::size_t>(iy) * static_cast<std::size_t>(nz_) +

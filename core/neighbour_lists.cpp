@@ -4,15 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/contact.hpp"
-
 namespace shearcell {
-namespace {
-
-constexpr std::size_t kLargestStride = 4096;  // beyond it the cell has collapsed into a point
-
-}  // namespace
-
 void Reference::set(const double* rows, std::size_t grains, const WallPose& pose) {
   pose_ = pose;
   for (auto& axis : at_) axis.resize(padded(grains));
@@ -67,41 +59,30 @@ bool NeighbourLists::outer_valid(const double* rows, std::size_t grains,
          settings_.inner_cutoff + 1e-9;
 }
 
-void NeighbourLists::build(const double* rows, std::size_t grains,
-                           const std::vector<std::int32_t>& id, const LinkedCells& near,
-                           const WallPose& pose) {
+void NeighbourLists::build(const double* rows, const std::vector<std::int32_t>& id,
+                           const CellOrder& order, const WallPose& pose) {
+  const std::size_t grains = id.size();
   outer_reference_.set(rows, grains, pose);
-  outer_count_.assign(grains, 0);
-  const double cutoff = settings_.outer_cutoff * settings_.outer_cutoff;
-  const double per_depth = 1 / depth_;
-  const auto padding = padding_offset(grains);
-  const auto by_id = [&id](std::int32_t a, std::int32_t b) {
-    return id[static_cast<std::size_t>(a / 4)] < id[static_cast<std::size_t>(b / 4)];
-  };
-  outer_.assign(grains * outer_stride_, padding);
+  offset_of_id_.resize(grains);
   for (std::size_t g = 0; g < grains; ++g) {
-    const double* own = rows + 4 * g;
-    std::int32_t* row = outer_.data() + g * outer_stride_;
-    std::size_t count = 0;
-    near.for_each_near(own[0] - pose.tan_theta * (own[1] - pose.top), own[1], own[2],
-                       [&](std::int32_t other) {
-                         const double* p = rows + 4 * static_cast<std::size_t>(other);
-                         const double dx = own[0] - p[0];
-                         const double dy = own[1] - p[1];
-                         const double dz = nearest_image(own[2] - p[2], depth_, per_depth);
-                         if (!(dx * dx + dy * dy + dz * dz < cutoff)) return;
-                         if (static_cast<std::size_t>(other) == g) return;
-                         if (count < outer_stride_) row[count] = 4 * other;
-                         ++count;
-                       });
-    if (count > outer_stride_ && outer_stride_ < kLargestStride) {
-      outer_stride_ = std::min(kLargestStride, (count + 15) / 8 * 8);
-      build(rows, grains, id, near, pose);
-      return;
-    }
-    count = std::min(count, outer_stride_);
-    std::sort(row, row + count, by_id);
-    outer_count_[g] = static_cast<std::uint16_t>(count);
+    offset_of_id_[static_cast<std::size_t>(id[g])] = static_cast<std::int32_t>(4 * g);
+  }
+  outer_count_.resize(grains);
+  SearchTask task;
+  task.grid = order.grid();
+  task.offset_of_id = offset_of_id_.data();
+  task.count = outer_count_.data();
+  task.padding = padding_offset(grains);
+  task.depth = depth_;
+  task.per_depth = 1 / depth_;
+  task.cutoff_squared = settings_.outer_cutoff * settings_.outer_cutoff;
+  for (;;) {
+    outer_.resize(grains * outer_stride_);
+    task.outer = outer_.data();
+    task.stride = outer_stride_;
+    const std::size_t most = kernels_.search(task, 0, grains);
+    if (most <= outer_stride_) return;
+    outer_stride_ = padded(most + 8);
   }
 }
 
@@ -109,6 +90,7 @@ void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPos
   inner_reference_.set(rows, grains, pose);
   const std::size_t blocks = (grains + kernels_.lanes - 1) / kernels_.lanes;
   slots_.resize(blocks);
+  seam_.resize(blocks);
   PruneTask task;
   task.grains = grains;
   task.rows = rows;
@@ -116,6 +98,7 @@ void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPos
   task.outer_stride = outer_stride_;
   task.outer_count = outer_count_.data();
   task.slots = slots_.data();
+  task.seam = seam_.data();
   task.padding = padding_offset(grains);
   task.depth = depth_;
   task.per_depth = 1 / depth_;
@@ -129,8 +112,8 @@ void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPos
 }
 
 std::size_t NeighbourLists::bytes() const {
-  return 4 * (outer_.size() + inner_.size()) + 2 * (outer_count_.size() + slots_.size()) +
-         6 * 8 * outer_count_.size();
+  return 4 * (outer_.size() + inner_.size() + offset_of_id_.size()) + 2 * outer_count_.size() +
+         3 * slots_.size() + 6 * 8 * outer_count_.size();
 }
 
 }  // namespace shearcell

@@ -15,8 +15,8 @@
 
 #include "core/aligned.hpp"
 #include "core/cell.hpp"
+#include "core/cell_grid.hpp"
 #include "core/kernel.hpp"
-#include "core/linked_cells.hpp"
 
 namespace shearcell {
 
@@ -54,13 +54,13 @@ class NeighbourLists {
   /// False when a pair outside the outer list may come within the inner cutoff now.
   bool outer_valid(const double* rows, std::size_t grains, const WallPose& pose) const;
 
-  /// Finds all pairs within the outer cutoff. `near` holds the grains; `id` orders each row.
-  void build(const double* rows, std::size_t grains, const std::vector<std::int32_t>& id,
-             const LinkedCells& near, const WallPose& pose);
+  /// Finds all pairs within the outer cutoff. `order` holds the grains; `id` orders each row.
+  void build(const double* rows, const std::vector<std::int32_t>& id, const CellOrder& order,
+             const WallPose& pose);
   /// Cuts the inner list from the outer one.
   void prune(const double* rows, std::size_t grains, const WallPose& pose);
 
-  NeighbourRows rows() const { return {inner_.data(), inner_stride_, slots_.data()}; }
+  NeighbourRows rows() const { return {inner_.data(), inner_stride_, slots_.data(), seam_.data()}; }
   const Reference& reference() const { return inner_reference_; }
   std::size_t bytes() const;
 
@@ -71,7 +71,9 @@ class NeighbourLists {
   Reference outer_reference_, inner_reference_;
   std::size_t outer_stride_ = 32, inner_stride_ = 16;
   AlignedVector<std::int32_t> outer_, inner_;
+  std::vector<std::int32_t> offset_of_id_;
   std::vector<std::uint16_t> outer_count_, slots_;
+  std::vector<std::uint8_t> seam_;
 };
 
 }  // namespace shearcell

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cell_grid.hpp"
 #include "core/contact.hpp"
 #include "core/kernel.hpp"
 
@@ -82,6 +83,37 @@ void walls(const WallTask& t) {
   }
 }
 
+std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
+  std::size_t most = 0;
+  for (std::size_t place = first; place < last; ++place) {
+    const double x = t.grid.position[0][place];
+    const double y = t.grid.position[1][place];
+    const double z = t.grid.position[2][place];
+    const std::int32_t id = t.grid.id[place];
+    std::int32_t found[kMostNeighbours];
+    std::size_t count = 0;
+    std::array<PlaceRun, 9> runs;
+    const std::size_t run_count = surrounding_runs(t.grid, place, runs);
+    for (std::size_t r = 0; r < run_count; ++r) {
+      for (std::size_t p = runs[r].begin; p < runs[r].end; ++p) {
+        const double dx = x - t.grid.position[0][p];
+        const double dy = y - t.grid.position[1][p];
+        const double dz = nearest_image(z - t.grid.position[2][p], t.depth, t.per_depth);
+        const bool near = dx * dx + dy * dy + dz * dz < t.cutoff_squared;
+        if (near && t.grid.id[p] != id && count < kMostNeighbours) found[count++] = t.grid.id[p];
+      }
+    }
+    most = std::max(most, count);
+    count = std::min(count, t.stride);
+    std::sort(found, found + count);
+    const std::size_t grain = static_cast<std::size_t>(t.offset_of_id[id]) / 4;
+    std::int32_t* outer = t.outer + grain * t.stride;
+    for (std::size_t k = 0; k < count; ++k) outer[k] = t.offset_of_id[found[k]];
+    t.count[grain] = static_cast<std::uint16_t>(count);
+  }
+  return most;
+}
+
 bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
   for (std::size_t g = first; g < std::min(last, t.grains); ++g) {
     const double* own = t.rows + 4 * g;
@@ -98,6 +130,7 @@ bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
       inner[kept++] = offset;
     }
     t.slots[g] = static_cast<std::uint16_t>(kept);
+    t.seam[g] = 1;
   }
   return true;
 }
@@ -110,6 +143,7 @@ const Kernels& scalar_kernels() {
       1,
       {{step<false, false>, step<false, true>}, {step<true, false>, step<true, true>}},
       walls,
+      search,
       prune};
   return kernels;
 }

@@ -9,6 +9,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <array>
+
+#include "core/cell_grid.hpp"
 #include "core/contact.hpp"
 #include "core/kernel.hpp"
 
@@ -86,10 +90,8 @@ HWY_INLINE void store_rows(const Vectors& v, double* HWY_RESTRICT rows) {
 HWY_INLINE V contact_factors(V s) {
   const auto& c = kContactSeries;
   const V s2 = hn::Mul(s, s);
-  V even = hn::Set(kD, c[10]);
-  V odd = hn::Set(kD, c[9]);
-  even = hn::MulAdd(even, s2, hn::Set(kD, c[8]));
-  odd = hn::MulAdd(odd, s2, hn::Set(kD, c[7]));
+  V even = hn::Set(kD, c[8]);
+  V odd = hn::Set(kD, c[7]);
   even = hn::MulAdd(even, s2, hn::Set(kD, c[6]));
   odd = hn::MulAdd(odd, s2, hn::Set(kD, c[5]));
   even = hn::MulAdd(even, s2, hn::Set(kD, c[4]));
@@ -106,20 +108,23 @@ HWY_INLINE V contact_factors(V s) {
   return hn::IfThenElseZero(hn::Gt(s, hn::Zero(kD)), factor);
 }
 
+template <bool kSeam = true>
 HWY_INLINE Vectors separation(const Vectors& own, const Vectors& other, V depth, V per_depth) {
-  const V dz = hn::Sub(own.z, other.z);
-  return {hn::Sub(own.x, other.x), hn::Sub(own.y, other.y),
-          hn::NegMulAdd(hn::Round(hn::Mul(dz, per_depth)), depth, dz)};
+  V dz = hn::Sub(own.z, other.z);
+  // Without a seam the nearest image is this one, and subtracting 0 * depth would change no bit.
+  if constexpr (kSeam) dz = hn::NegMulAdd(hn::Round(hn::Mul(dz, per_depth)), depth, dz);
+  return {hn::Sub(own.x, other.x), hn::Sub(own.y, other.y), dz};
 }
 
-// Adds (1/r - 1) dr over the touching neighbours; lane l reads its list at list + l * stride.
+// Adds (1/r - 1) dr over the touching neighbours; lane l has its k-th at list[k * kLanes + l].
+template <bool kSeam>
 HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
-                             const std::int32_t* HWY_RESTRICT list, std::size_t stride,
-                             std::size_t slots, V depth, V per_depth) {
-  for (std::size_t k = 0; k < slots; ++k) {
+                             const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,
+                             V per_depth) {
+  for (const std::int32_t* const end = list + slots * kLanes; list != end; list += kLanes) {
     const Vectors other =
-        load_rows(rows, [&](std::size_t lane) HWY_ATTR { return list[lane * stride + k]; });
-    const Vectors dr = separation(own, other, depth, per_depth);
+        load_rows(rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{list[lane]}; });
+    const Vectors dr = separation<kSeam>(own, other, depth, per_depth);
     const V s = hn::NegMulAdd(
         dr.z, dr.z, hn::NegMulAdd(dr.y, dr.y, hn::NegMulAdd(dr.x, dr.x, hn::Set(kD, 1.0))));
     const V factor = contact_factors(s);
@@ -140,8 +145,13 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
     const Vectors own = load_rows(t.rows, row_of);
     Vectors sum{hn::LoadU(kD, t.wall_sum[0] + g), hn::LoadU(kD, t.wall_sum[1] + g),
                 hn::LoadU(kD, t.wall_sum[2] + g)};
-    add_contacts(sum, own, t.rows, t.neighbours.list + g * t.neighbours.stride, t.neighbours.stride,
-                 t.neighbours.slots[block], depth, per_depth);
+    const std::int32_t* list = t.neighbours.list + g * t.neighbours.stride;
+    const std::size_t slots = t.neighbours.slots[block];
+    if (t.neighbours.seam[block] != 0) {
+      add_contacts<true>(sum, own, t.rows, list, slots, depth, per_depth);
+    } else {
+      add_contacts<false>(sum, own, t.rows, list, slots, depth, per_depth);
+    }
 
     const V keep = hn::Set(kD, t.keep);
     const V kick = hn::Set(kD, t.kick);
@@ -186,8 +196,8 @@ void walls(const WallTask& t) {
                                   hn::Mul(hn::Sub(own.y, hn::Set(kD, t.point[1])), ny));
     const V overlap = hn::Max(hn::Sub(hn::Set(kD, 0.5), distance), hn::Zero(kD));
     Vectors sum{hn::Mul(overlap, nx), hn::Mul(overlap, ny), hn::Zero(kD)};
-    add_contacts(sum, own, t.wall_rows, t.neighbours.list + m * t.neighbours.stride,
-                 t.neighbours.stride, t.neighbours.slots[m / kLanes], depth, per_depth);
+    add_contacts<true>(sum, own, t.wall_rows, t.neighbours.list + m * t.neighbours.stride,
+                       t.neighbours.slots[m / kLanes], depth, per_depth);
 
     HWY_ALIGN double lanes[3][kLanes];
     hn::Store(sum.x, kD, lanes[0]);
@@ -201,44 +211,115 @@ void walls(const WallTask& t) {
   }
 }
 
-bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
+// Ascending order by rank: how many keys are smaller is counted a vector at a time.
+HWY_INLINE void sort_ids(std::int32_t* HWY_RESTRICT ids, std::size_t count) {
+  const hn::ScalableTag<std::int32_t> d;
+  constexpr std::size_t kMost = 64;
+  if (count > kMost) {
+    std::sort(ids, ids + count);
+    return;
+  }
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t k = count; k % lanes != 0; ++k) ids[k] = INT32_MAX;
+  std::int32_t sorted[kMost];
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto key = hn::Set(d, ids[k]);
+    std::size_t rank = 0;
+    for (std::size_t v = 0; v < count; v += lanes) {
+      rank += hn::CountTrue(d, hn::Lt(hn::LoadU(d, ids + v), key));
+    }
+    sorted[rank] = ids[k];
+  }
+  std::copy(sorted, sorted + count, ids);
+}
+
+std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
   const V depth = hn::Set(kD, t.depth);
   const V per_depth = hn::Set(kD, t.per_depth);
   const V cutoff = hn::Set(kD, t.cutoff_squared);
   const hn::Rebind<std::int32_t, D> d32;
-  for (std::size_t block = first; block < last; ++block) {
-    std::size_t most = 0;
-    std::size_t kept[kLanes];
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const std::size_t g = block * kLanes + l;
-      kept[l] = 0;
-      if (g >= t.grains) continue;
-      const double* own_row = t.rows + 4 * g;
-      const Vectors own{hn::Set(kD, own_row[0]), hn::Set(kD, own_row[1]), hn::Set(kD, own_row[2])};
-      const std::int32_t* HWY_RESTRICT outer = t.outer + g * t.outer_stride;
-      std::int32_t* HWY_RESTRICT inner = t.inner + g * t.inner_stride;
-      for (std::size_t k = 0; k < t.outer_count[g]; k += kLanes) {
-        const Vectors other =
-            load_rows(t.rows, [&](std::size_t lane) HWY_ATTR { return outer[k + lane]; });
+  std::int32_t found[kMostNeighbours + 64];
+  std::size_t most = 0;
+  for (std::size_t place = first; place < last; ++place) {
+    const Vectors own{hn::Set(kD, t.grid.position[0][place]),
+                      hn::Set(kD, t.grid.position[1][place]),
+                      hn::Set(kD, t.grid.position[2][place])};
+    const std::int32_t id = t.grid.id[place];
+    const V own_id = hn::Set(kD, static_cast<double>(id));
+    std::array<PlaceRun, 9> runs;
+    const std::size_t run_count = surrounding_runs(t.grid, place, runs);
+    std::size_t count = 0;
+    for (std::size_t r = 0; r < run_count; ++r) {
+      for (std::size_t p = runs[r].begin; p < runs[r].end; p += kLanes) {
+        const Vectors other{hn::LoadU(kD, t.grid.position[0] + p),
+                            hn::LoadU(kD, t.grid.position[1] + p),
+                            hn::LoadU(kD, t.grid.position[2] + p)};
         const Vectors dr = separation(own, other, depth, per_depth);
-        const V square =
-            hn::Add(hn::Add(hn::Mul(dr.x, dr.x), hn::Mul(dr.y, dr.y)), hn::Mul(dr.z, dr.z));
-        const auto near = hn::Lt(square, cutoff);
-        // Through doubles, which hold every offset exactly.
-        const V packed = hn::Compress(hn::PromoteTo(kD, hn::LoadU(d32, outer + k)), near);
-        if (kept[l] > t.inner_stride) return false;
-        hn::BlendedStore(hn::DemoteTo(d32, packed), hn::FirstN(d32, t.inner_stride - kept[l]), d32,
-                         inner + kept[l]);
-        kept[l] += hn::CountTrue(kD, near);
+        const V square = hn::MulAdd(dr.x, dr.x, hn::MulAdd(dr.y, dr.y, hn::Mul(dr.z, dr.z)));
+        // Through doubles, which hold every id exactly.
+        const V ids = hn::PromoteTo(kD, hn::LoadU(d32, t.grid.id + p));
+        const auto near = hn::And(hn::And(hn::Lt(square, cutoff), hn::Ne(ids, own_id)),
+                                  hn::FirstN(kD, runs[r].end - p));
+        hn::StoreU(hn::DemoteTo(d32, hn::Compress(ids, near)), d32, found + count);
+        count = std::min(count + hn::CountTrue(kD, near), kMostNeighbours);
       }
-      most = kept[l] > most ? kept[l] : most;
     }
-    if (most > t.inner_stride) return false;
+    most = std::max(most, count);
+    count = std::min(count, t.stride);
+    sort_ids(found, count);
+    const std::size_t grain = static_cast<std::size_t>(t.offset_of_id[id]) / 4;
+    std::int32_t* HWY_RESTRICT outer = t.outer + grain * t.stride;
+    for (std::size_t k = 0; k < count; ++k) outer[k] = t.offset_of_id[found[k]];
+    for (std::size_t k = count; k % 8 != 0; ++k) outer[k] = t.padding;
+    t.count[grain] = static_cast<std::uint16_t>(count);
+  }
+  return most;
+}
+
+// Keeps the near ones of one grain's outer list in `kept`; returns their number.
+HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g, std::int32_t* HWY_RESTRICT kept,
+                                 hn::Mask<D>& seam) {
+  const V depth = hn::Set(kD, t.depth);
+  const V per_depth = hn::Set(kD, t.per_depth);
+  const V cutoff = hn::Set(kD, t.cutoff_squared);
+  const hn::Rebind<std::int32_t, D> d32;
+  const double* own_row = t.rows + 4 * g;
+  const Vectors own{hn::Set(kD, own_row[0]), hn::Set(kD, own_row[1]), hn::Set(kD, own_row[2])};
+  const std::int32_t* HWY_RESTRICT outer = t.outer + g * t.outer_stride;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < t.outer_count[g]; k += kLanes) {
+    const Vectors other = load_rows(
+        t.rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{outer[k + lane]}; });
+    const V image = hn::Round(hn::Mul(hn::Sub(own.z, other.z), per_depth));
+    const Vectors dr = separation(own, other, depth, per_depth);
+    const V square = hn::MulAdd(dr.x, dr.x, hn::MulAdd(dr.y, dr.y, hn::Mul(dr.z, dr.z)));
+    const auto near = hn::Lt(square, cutoff);
+    seam = hn::Or(seam, hn::And(near, hn::Ne(image, hn::Zero(kD))));
+    const V offsets = hn::PromoteTo(kD, hn::LoadU(d32, outer + k));
+    hn::StoreU(hn::DemoteTo(d32, hn::Compress(offsets, near)), d32, kept + count);
+    count += hn::CountTrue(kD, near);
+  }
+  return count;
+}
+
+bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
+  std::int32_t kept[kMostNeighbours + 64];
+  for (std::size_t block = first; block < last; ++block) {
+    std::int32_t* HWY_RESTRICT inner = t.inner + block * t.inner_stride * kLanes;
+    std::size_t counts[kLanes] = {};
+    std::size_t most = 0;
+    auto seam = hn::FirstN(kD, 0);
+    for (std::size_t l = 0; l < kLanes && block * kLanes + l < t.grains; ++l) {
+      counts[l] = prune_row(t, block * kLanes + l, kept, seam);
+      if (counts[l] > t.inner_stride) return false;
+      for (std::size_t k = 0; k < counts[l]; ++k) inner[k * kLanes + l] = kept[k];
+      most = std::max(most, counts[l]);
+    }
     for (std::size_t l = 0; l < kLanes; ++l) {
-      std::int32_t* inner = t.inner + (block * kLanes + l) * t.inner_stride;
-      for (std::size_t k = kept[l]; k < most; ++k) inner[k] = t.padding;
+      for (std::size_t k = counts[l]; k < most; ++k) inner[k * kLanes + l] = t.padding;
     }
     t.slots[block] = static_cast<std::uint16_t>(most);
+    t.seam[block] = hn::AllFalse(kD, seam) ? 0 : 1;
   }
   return true;
 }
@@ -249,6 +330,7 @@ const Kernels* kernels() {
       kLanes,
       {{step<false, false>, step<false, true>}, {step<true, false>, step<true, true>}},
       walls,
+      search,
       prune};
   return &table;
 }

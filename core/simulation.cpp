@@ -160,52 +160,36 @@ void Simulation::move_wall(double push) {
 void Simulation::refresh_lists() {
   if (!lists_.outer_valid(rows_[0].data(), id_.size(), pose_)) {
     rebuild_lists();
-    return;
+  } else {
+    prune_lists();
   }
-  lists_.prune(rows_[0].data(), id_.size(), pose_);
-  ++counts_.prunes;
 }
 
 void Simulation::rebuild_lists() {
   const double cutoff = settings_.lists.outer_cutoff;
-  const auto fill = [&] {
-    LinkedCells near(cell_.width, pose_.bottom, pose_.top, cell_.depth,
-                     cutoff * std::sqrt(1 + pose_.tan_theta * pose_.tan_theta), id_.size());
-    for (std::size_t g = id_.size(); g-- > 0;) {
-      const double* p = rows_[0].data() + 4 * g;
-      near.insert(static_cast<std::int32_t>(g), p[0] - pose_.tan_theta * (p[1] - pose_.top), p[1],
-                  p[2]);
-    }
-    return near;
-  };
-  LinkedCells near = fill();
+  order_.build(cell_, pose_, cutoff, rows_[0].data(), id_);
   if (settings_.lists.sort_memory && counts_.builds % kBuildsPerSort == 0) {
-    sort_memory(near);
-    near = fill();
+    sort_memory(order_.grain());
+    order_.build(cell_, pose_, cutoff, rows_[0].data(), id_);
   }
-  lists_.build(rows_[0].data(), id_.size(), id_, near, pose_);
-  walls_.build(rows_[0].data(), id_.size(), id_, pose_, cutoff);
-  for (auto& axis : wall_sum_) std::fill(axis.begin(), axis.end(), 0.0);
-  lists_.prune(rows_[0].data(), id_.size(), pose_);
+  lists_.build(rows_[0].data(), id_, order_, pose_);
+  walls_.build(rows_[0].data(), id_, pose_, cutoff);
   ++counts_.builds;
+  prune_lists();
+}
+
+void Simulation::prune_lists() {
+  lists_.prune(rows_[0].data(), id_.size(), pose_);
+  walls_.prune(rows_[0].data(), pose_, settings_.lists.inner_cutoff);
+  for (auto& axis : wall_sum_) std::fill(axis.begin(), axis.end(), 0.0);
   ++counts_.prunes;
 }
 
-void Simulation::sort_memory(const LinkedCells& near) {
-  const std::size_t grains = id_.size();
-  std::vector<std::size_t> rank(grains), order(grains);
-  for (std::size_t g = 0; g < grains; ++g) {
-    const double* p = rows_[0].data() + 4 * g;
-    rank[g] = near.cell_of(p[0] - pose_.tan_theta * (p[1] - pose_.top), p[1], p[2]);
-  }
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return rank[a] != rank[b] ? rank[a] < rank[b] : id_[a] < id_[b];
-  });
+void Simulation::sort_memory(const std::vector<std::int32_t>& order) {
   const auto old_id = id_;
   const auto old_velocity = velocity_;
-  for (std::size_t g = 0; g < grains; ++g) {
-    const std::size_t from = order[g];
+  for (std::size_t g = 0; g < id_.size(); ++g) {
+    const auto from = static_cast<std::size_t>(order[g]);
     id_[g] = old_id[from];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       rows_[1][4 * g + axis] = rows_[0][4 * from + axis];
@@ -235,7 +219,7 @@ State Simulation::state() const {
 
 std::size_t Simulation::bytes() const {
   return 8 * (rows_[0].size() + rows_[1].size() + 3 * (velocity_[0].size() + wall_sum_[0].size())) +
-         4 * id_.size() + lists_.bytes() + walls_.bytes();
+         4 * id_.size() + lists_.bytes() + walls_.bytes() + order_.bytes();
 }
 
 }  // namespace shearcell

@@ -15,6 +15,7 @@
 
 #include "core/aligned.hpp"
 #include "core/cell.hpp"
+#include "core/cell_grid.hpp"
 #include "core/drive.hpp"
 #include "core/kernel.hpp"
 #include "core/neighbour_lists.hpp"
@@ -66,7 +67,8 @@ class Simulation {
   void set_constants();
   void rebuild_lists();
   void refresh_lists();
-  void sort_memory(const LinkedCells& near);
+  void prune_lists();
+  void sort_memory(const std::vector<std::int32_t>& order);
   void step_once(const Drive& drive);
   void move_wall(double push);
   void watch() const;
@@ -81,6 +83,7 @@ class Simulation {
   std::vector<std::int32_t> id_;  // permanent id of each grain in memory
   std::array<AlignedVector<double>, 2> rows_;
   std::array<AlignedVector<double>, 3> velocity_, wall_sum_;
+  CellOrder order_;
   NeighbourLists lists_;
   WallContacts walls_;
   WallPose pose_;  // at step_

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/contact.hpp"
 #include "core/linked_cells.hpp"
@@ -18,16 +19,40 @@ double distance_to(const std::array<double, 2>& point, const std::array<double, 
   return (row[0] - point[0]) * normal[0] + (row[1] - point[1]) * normal[1];
 }
 
+double square_distance(const double* a, const double* b, double depth) {
+  const double dx = a[0] - b[0];
+  const double dy = a[1] - b[1];
+  const double dz = nearest_image(a[2] - b[2], depth, 1 / depth);
+  return dx * dx + dy * dy + dz * dz;
+}
+
 }  // namespace
 
 WallContacts::WallContacts(const Kernels& kernels, const Cell& cell)
     : kernels_(kernels), cell_(cell) {
-  for (std::size_t w = 0; w < cell_.wall_grains.size(); ++w) {
-    sides_[static_cast<std::size_t>(cell_.wall_grains[w].side)].grains.push_back(w);
+  for (const WallGrain& grain : cell_.wall_grains) {
+    sides_[static_cast<std::size_t>(grain.side)].grains.push_back(grain.position);
   }
   for (Side& side : sides_) {
     side.rows.assign(4 * (side.grains.size() + 1), 0.0);
     side.rows[4 * side.grains.size()] = kNowhere;
+  }
+}
+
+// Operations and order are those of wall_grain_position().
+void WallContacts::place_side(WallSide which, const WallPose& pose) {
+  Side& side = sides_[static_cast<std::size_t>(which)];
+  const bool upright = which == WallSide::left || which == WallSide::right;
+  const double dx = which == WallSide::bottom ? (pose.bottom - pose.top) * pose.tan_theta : 0.0;
+  const double dy = which == WallSide::bottom ? pose.bottom - cell_.bottom
+                    : which == WallSide::top  ? pose.top - cell_.top
+                                              : 0.0;
+  for (const std::int32_t w : side.active) {
+    const Eigen::Vector3d& p = side.grains[static_cast<std::size_t>(w)];
+    double* row = side.rows.data() + 4 * static_cast<std::size_t>(w);
+    row[0] = p.x() + (upright ? (p.y() - pose.top) * pose.tan_theta : dx);
+    row[1] = p.y() + dy;
+    row[2] = p.z();
   }
 }
 
@@ -43,80 +68,105 @@ void WallContacts::place(const WallPose& pose) {
   sides_[2].normal = {0, 1};
   sides_[3].point = {0, pose.top};
   sides_[3].normal = {0, -1};
-  for (Side& side : sides_) {
-    double* row = side.rows.data();
-    for (const std::size_t w : side.grains) {
-      const Eigen::Vector3d p = wall_grain_position(cell_, pose, cell_.wall_grains[w]);
-      row[0] = p.x();
-      row[1] = p.y();
-      row[2] = p.z();
-      row += 4;
-    }
-  }
+  for (std::size_t w = 0; w < sides_.size(); ++w) place_side(static_cast<WallSide>(w), pose);
 }
 
-void WallContacts::build(const double* rows, std::size_t grains,
-                         const std::vector<std::int32_t>& id, const WallPose& pose, double cutoff) {
+void WallContacts::build(const double* rows, const std::vector<std::int32_t>& id,
+                         const WallPose& pose, double cutoff) {
+  nowhere_ = padding_offset(id.size());
+  for (Side& side : sides_) {
+    side.active.resize(side.grains.size());
+    std::iota(side.active.begin(), side.active.end(), 0);
+  }
   place(pose);
   for (Side& side : sides_) {
-    side.members.clear();
-    for (std::size_t g = 0; g < grains; ++g) {
+    // Side walls reach over the whole fill height, most of which the moving wall has left behind.
+    std::erase_if(side.active, [&](std::int32_t w) {
+      const double y = side.rows[4 * static_cast<std::size_t>(w) + 1];
+      return y < pose.bottom - 2 * cutoff || y > pose.top + 2 * cutoff;
+    });
+    side.candidates.clear();
+    for (std::size_t g = 0; g < id.size(); ++g) {
       // Wall grains lie behind the plane, so none touches a grain farther than d in front of it.
       if (distance_to(side.point, side.normal, rows + 4 * g) < cutoff) {
-        side.members.push_back(static_cast<std::int32_t>(4 * g));
+        side.candidates.push_back(static_cast<std::int32_t>(4 * g));
       }
     }
-    std::sort(side.members.begin(), side.members.end(), [&id](std::int32_t a, std::int32_t b) {
-      return id[static_cast<std::size_t>(a / 4)] < id[static_cast<std::size_t>(b / 4)];
-    });
-    side.count = side.members.size();
-    side.members.resize(padded(side.count), padding_offset(grains));
-    side.push.assign(side.count, 0.0);
-    find_neighbours(side, rows, cutoff, pose);
+    std::sort(side.candidates.begin(), side.candidates.end(),
+              [&id](std::int32_t a, std::int32_t b) {
+                return id[static_cast<std::size_t>(a / 4)] < id[static_cast<std::size_t>(b / 4)];
+              });
+    find_near(side, rows, cutoff, pose);
   }
 }
 
-void WallContacts::find_neighbours(Side& side, const double* rows, double cutoff,
-                                   const WallPose& pose) {
-  const std::size_t lanes = kernels_.lanes;
-  side.slots.assign(side.members.size() / lanes, 0);
-  const auto padding = static_cast<std::int32_t>(4 * side.grains.size());
-  side.list.assign(side.members.size() * side.stride, padding);
-  if (side.grains.empty()) return;
-
-  LinkedCells near(cell_.width, pose.bottom, pose.top, cell_.depth,
-                   cutoff * std::sqrt(1 + pose.tan_theta * pose.tan_theta), side.grains.size());
+void WallContacts::find_near(Side& side, const double* rows, double cutoff, const WallPose& pose) {
+  LinkedCells cells(cell_.width, pose.bottom, pose.top, cell_.depth,
+                    cutoff * std::sqrt(1 + pose.tan_theta * pose.tan_theta), side.active.size());
   const auto untilted = [&pose](const double* p) {
     return p[0] - pose.tan_theta * (p[1] - pose.top);
   };
-  for (std::size_t w = side.grains.size(); w-- > 0;) {
-    const double* p = side.rows.data() + 4 * w;
-    // Side walls reach over the whole fill height: the moving wall has left most of it behind.
-    if (p[1] < pose.bottom - 2 * cutoff || p[1] > pose.top + 2 * cutoff) continue;
-    near.insert(static_cast<std::int32_t>(w), untilted(p), p[1], p[2]);
+  for (const std::int32_t w : side.active) {
+    const double* p = side.rows.data() + 4 * static_cast<std::size_t>(w);
+    cells.insert(w, untilted(p), p[1], p[2]);
   }
-  for (std::size_t m = 0; m < side.count; ++m) {
-    const double* own = rows + side.members[m];
-    std::int32_t* row = side.list.data() + m * side.stride;
-    std::size_t count = 0;
-    near.for_each_near(untilted(own), own[1], own[2], [&](std::int32_t w) {
+  side.near.clear();
+  side.near_end.clear();
+  for (const std::int32_t candidate : side.candidates) {
+    const double* own = rows + candidate;
+    const auto first = static_cast<std::ptrdiff_t>(side.near.size());
+    cells.for_each_near(untilted(own), own[1], own[2], [&](std::int32_t w) {
       const double* p = side.rows.data() + 4 * static_cast<std::size_t>(w);
-      const double dx = own[0] - p[0];
-      const double dy = own[1] - p[1];
-      const double dz = nearest_image(own[2] - p[2], cell_.depth, 1 / cell_.depth);
-      if (!(dx * dx + dy * dy + dz * dz < cutoff * cutoff)) return;
-      if (count < side.stride) row[count] = 4 * w;
-      ++count;
+      if (square_distance(own, p, cell_.depth) < cutoff * cutoff) side.near.push_back(4 * w);
     });
-    if (count > side.stride) {
-      side.stride = (count + 7) / 8 * 8;
-      find_neighbours(side, rows, cutoff, pose);
-      return;
-    }
-    std::sort(row, row + count);
-    std::uint16_t& slots = side.slots[m / lanes];
-    slots = std::max(slots, static_cast<std::uint16_t>(count));
+    std::sort(side.near.begin() + first, side.near.end());
+    side.near_end.push_back(side.near.size());
   }
+}
+
+void WallContacts::prune(const double* rows, const WallPose& pose, double cutoff) {
+  place(pose);
+  for (Side& side : sides_) prune_side(side, rows, cutoff);
+}
+
+void WallContacts::prune_side(Side& side, const double* rows, double cutoff) {
+  const std::size_t lanes = kernels_.lanes;
+  const auto nothing = static_cast<std::int32_t>(4 * side.grains.size());
+  side.members.clear();
+  side.list.clear();
+  side.slots.clear();
+  std::size_t first = 0;
+  for (std::size_t c = 0; c < side.candidates.size(); ++c) {
+    const double* own = rows + side.candidates[c];
+    const std::size_t m = side.members.size();
+    const std::size_t block = m / lanes * side.stride * lanes;
+    const auto touch = [&](std::size_t k) -> std::int32_t& {
+      return side.list[block + k * lanes + m % lanes];
+    };
+    if (m % lanes == 0) {
+      side.list.resize(block + side.stride * lanes, nothing);
+      side.slots.resize(m / lanes + 1, 0);
+    }
+    std::size_t count = 0;
+    for (std::size_t n = first; n < side.near_end[c]; ++n) {
+      if (!(square_distance(own, side.rows.data() + side.near[n], cell_.depth) < cutoff * cutoff)) {
+        continue;
+      }
+      if (count == side.stride) {  // start again with room for more
+        side.stride *= 2;
+        prune_side(side, rows, cutoff);
+        return;
+      }
+      touch(count++) = side.near[n];
+    }
+    first = side.near_end[c];
+    if (count == 0 && !(distance_to(side.point, side.normal, own) < cutoff - 0.5)) continue;
+    side.slots[m / lanes] = std::max(side.slots[m / lanes], static_cast<std::uint16_t>(count));
+    side.members.push_back(side.candidates[c]);
+  }
+  side.count = side.members.size();
+  side.members.resize(padded(side.count), nowhere_);
+  side.push.assign(side.count, 0.0);
 }
 
 double WallContacts::evaluate(const double* rows, const WallPose& pose,
@@ -154,10 +204,13 @@ double WallContacts::evaluate(const double* rows, const WallPose& pose,
 }
 
 std::size_t WallContacts::bytes() const {
-  std::size_t total = cell_.wall_grains.size() * sizeof(WallGrain);
+  std::size_t total = 0;
   for (const Side& side : sides_) {
-    total += 8 * (side.rows.size() + side.push.size() + side.grains.size()) +
-             4 * (side.members.size() + side.list.size()) + 2 * side.slots.size();
+    total += 24 * side.grains.size() +
+             8 * (side.rows.size() + side.push.size() + side.near_end.size()) +
+             4 * (side.members.size() + side.list.size() + side.near.size() + side.active.size() +
+                  side.candidates.size()) +
+             2 * side.slots.size();
   }
   return total;
 }

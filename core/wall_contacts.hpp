@@ -13,17 +13,23 @@
 
 namespace shearcell {
 
+/// Like the neighbour lists in two levels: for each wall, candidates found at the outer cutoff, and
+/// members pruned from them that may touch it until the next pruning.
 class WallContacts {
  public:
   WallContacts(const Kernels& kernels, const Cell& cell);
 
-  /// Finds, for each wall, the grains that may touch it while the outer list is valid, and the wall
-  /// grains within `cutoff` [d] of each. `id` is the permanent id of each grain in memory.
-  void build(const double* rows, std::size_t grains, const std::vector<std::int32_t>& id,
-             const WallPose& pose, double cutoff);
+  /// Finds, for each wall, the grains within `cutoff` [d] of its plane, and the wall grains within
+  /// `cutoff` of each. `id` is the permanent id of each grain in memory.
+  void build(const double* rows, const std::vector<std::int32_t>& id, const WallPose& pose,
+             double cutoff);
 
-  /// Sets the wall sums (StepTask::wall_sum) of all grains near a wall, and returns the sum of the
-  /// y components over the contacts with the moving wall, in ascending permanent id [d].
+  /// Cuts the members from the candidates: those with a wall grain within `cutoff` [d] or the plane
+  /// within `cutoff` - d/2.
+  void prune(const double* rows, const WallPose& pose, double cutoff);
+
+  /// Sets the wall sums (StepTask::wall_sum) of all members, and returns the sum of the y
+  /// components over the contacts with the moving wall, in ascending permanent id [d].
   double evaluate(const double* rows, const WallPose& pose,
                   std::array<AlignedVector<double>, 3>& wall_sum);
 
@@ -32,10 +38,14 @@ class WallContacts {
  private:
   struct Side {
     std::array<double, 2> point, normal;
-    std::vector<std::size_t> grains;      // its wall grains, as positions in cell.wall_grains
-    AlignedVector<double> rows;           // their centres, and one that nothing touches
-    AlignedVector<std::int32_t> members;  // offsets of the grains near this wall
-    std::size_t count = 0;                // members without padding
+    std::vector<Eigen::Vector3d> grains;   // its wall grains, in the untilted cell
+    std::vector<std::int32_t> active;      // those that a candidate may meet
+    AlignedVector<double> rows;            // centres now, and one that nothing touches
+    std::vector<std::int32_t> candidates;  // offsets of grains near this wall, ascending id
+    std::vector<std::int32_t> near;        // their wall grains, as offsets
+    std::vector<std::size_t> near_end;     // end of each candidate's part of `near`
+    AlignedVector<std::int32_t> members;   // padded to whole blocks
+    std::size_t count = 0;                 // members without padding
     AlignedVector<std::int32_t> list;
     std::vector<std::uint16_t> slots;
     std::size_t stride = 8;
@@ -43,10 +53,13 @@ class WallContacts {
   };
 
   void place(const WallPose& pose);
-  void find_neighbours(Side& side, const double* rows, double cutoff, const WallPose& pose);
+  void place_side(WallSide which, const WallPose& pose);
+  void find_near(Side& side, const double* rows, double cutoff, const WallPose& pose);
+  void prune_side(Side& side, const double* rows, double cutoff);
 
   const Kernels& kernels_;
   Cell cell_;
+  std::int32_t nowhere_ = 0;  // offset of a row among the grains that nothing touches
   std::array<Side, 4> sides_;
 };
 

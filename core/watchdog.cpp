@@ -33,10 +33,12 @@ double smallest_distance(const Cell& cell, const WallPose& pose, const double* r
 
 double largest_overlap(const WatchTask& task, std::size_t g, double depth) {
   const double* own = task.rows + 4 * g;
-  const std::int32_t* list = task.neighbours.list + g * task.neighbours.stride;
+  const std::size_t block = g / task.lanes;
+  const std::int32_t* list =
+      task.neighbours.list + block * task.neighbours.stride * task.lanes + g % task.lanes;
   double nearest = 1;
-  for (std::size_t k = 0; k < task.neighbours.slots[g / task.lanes]; ++k) {
-    const double* other = task.rows + list[k];
+  for (std::size_t k = 0; k < task.neighbours.slots[block]; ++k) {
+    const double* other = task.rows + list[k * task.lanes];
     const double dx = own[0] - other[0];
     const double dy = own[1] - other[1];
     const double dz = nearest_image(own[2] - other[2], depth, 1 / depth);

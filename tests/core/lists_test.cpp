@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/contact.hpp"
+#include "core/linked_cells.hpp"
 #include "core/neighbour_lists.hpp"
 #include "core/random.hpp"
 
@@ -46,19 +47,13 @@ TEST(NeighbourLists, HoldExactlyThePairsWithinTheCutoffsInAscendingId) {
     const WallPose pose = wall_pose(cell, theta, 1.5);
     const Points points = random_points(grains, cell, pose, 11);
     ListSettings settings;
-    LinkedCells near(cell.width, pose.bottom, pose.top, cell.depth,
-                     settings.outer_cutoff * std::sqrt(1 + pose.tan_theta * pose.tan_theta),
-                     grains);
-    for (std::size_t g = 0; g < grains; ++g) {
-      const double* p = points.rows.data() + 4 * g;
-      near.insert(static_cast<std::int32_t>(g), p[0] - pose.tan_theta * (p[1] - pose.top), p[1],
-                  p[2]);
-    }
+    CellOrder order;
+    order.build(cell, pose, settings.outer_cutoff, points.rows.data(), points.id);
     for (const Simd simd : {Simd::scalar, Simd::avx2, Simd::avx512}) {
       const Kernels* kernels = find_kernels(simd);
       if (kernels == nullptr) continue;
       NeighbourLists lists(*kernels, settings, cell.depth);
-      lists.build(points.rows.data(), grains, points.id, near, pose);
+      lists.build(points.rows.data(), points.id, order, pose);
       lists.prune(points.rows.data(), grains, pose);
       const NeighbourRows inner = lists.rows();
       for (std::size_t g = 0; g < grains; ++g) {
@@ -75,7 +70,9 @@ TEST(NeighbourLists, HoldExactlyThePairsWithinTheCutoffsInAscendingId) {
         }
         std::vector<std::int32_t> found;
         for (std::size_t k = 0; k < inner.slots[g / kernels->lanes]; ++k) {
-          const std::int32_t offset = inner.list[g * inner.stride + k];
+          const std::size_t lanes = kernels->lanes;
+          const std::int32_t offset =
+              inner.list[(g / lanes * inner.stride + k) * lanes + g % lanes];
           if (offset != padding_offset(grains)) found.push_back(offset);
         }
         ASSERT_EQ(found, expected) << kernels->name << " grain " << g << " theta " << theta;

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/cell_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shearcell {
+namespace {
+
+// Clamped in floating point, so that a wild coordinate (or NaN) lands in a border cell.
+std::int32_t clamp_to_cell(double scaled, std::int32_t cells) {
+  if (!(scaled > 0)) return 0;
+  return static_cast<std::int32_t>(std::min(scaled, static_cast<double>(cells - 1)));
+}
+
+}  // namespace
+
+void CellOrder::choose_grid(const Cell& cell, const WallPose& pose, double reach,
+                            std::size_t grains) {
+  // A pair at distance r is at most r sqrt(1 + tan^2) apart along x in the untilted frame.
+  double size_x = reach * std::sqrt(1 + pose.tan_theta * pose.tan_theta);
+  double size = reach;
+  const double height = pose.top - pose.bottom;
+  const auto count = [](double length, double width) {
+    return std::max(1.0, std::min(std::floor(length / width), 1e6));
+  };
+  // A nearly empty cell gets wider cells, so that it costs no more than its grains.
+  const double most = 64 + 4 * static_cast<double>(grains);
+  while (count(cell.width, size_x) * count(height, size) * count(cell.depth, size) > most) {
+    size_x *= 1.26;
+    size *= 1.26;
+  }
+  grid_.columns = static_cast<std::int32_t>(count(cell.width, size_x));
+  grid_.rows = static_cast<std::int32_t>(count(height, size));
+  grid_.layers = static_cast<std::int32_t>(count(cell.depth, size));
+  per_cell_ = {grid_.columns / cell.width, grid_.rows / height, grid_.layers / cell.depth};
+}
+
+std::uint32_t CellOrder::cell_of(const double* row, const Cell& cell, const WallPose& pose) const {
+  const double x = row[0] - pose.tan_theta * (row[1] - pose.top);
+  const double z = row[2] - cell.depth * std::floor(row[2] / cell.depth);
+  const std::int32_t column = clamp_to_cell(x * per_cell_[0], grid_.columns);
+  const std::int32_t line = clamp_to_cell((row[1] - pose.bottom) * per_cell_[1], grid_.rows);
+  const std::int32_t layer = clamp_to_cell(z * per_cell_[2], grid_.layers);
+  return static_cast<std::uint32_t>((line * grid_.layers + layer) * grid_.columns + column);
+}
+
+void CellOrder::build(const Cell& cell, const WallPose& pose, double reach, const double* rows,
+                      const std::vector<std::int32_t>& id) {
+  const std::size_t grains = id.size();
+  choose_grid(cell, pose, reach, grains);
+  const auto cells = static_cast<std::size_t>(grid_.columns) *
+                     static_cast<std::size_t>(grid_.rows) * static_cast<std::size_t>(grid_.layers);
+  begin_.assign(cells + 1, 0);
+  cell_of_grain_.resize(grains);
+  for (std::size_t g = 0; g < grains; ++g) {
+    cell_of_grain_[g] = cell_of(rows + 4 * g, cell, pose);
+    ++begin_[cell_of_grain_[g] + 1];
+  }
+  for (std::size_t c = 0; c < cells; ++c) begin_[c + 1] += begin_[c];
+
+  cell_.resize(grains);
+  grain_.resize(grains);
+  id_.assign(padded(grains) + 8, 0);  // a run may be read up to a vector beyond its end
+  for (auto& axis : position_) axis.resize(padded(grains) + 8);
+  std::vector<std::uint32_t>& next = cell_;  // free until the end
+  next.assign(begin_.begin(), begin_.end());
+  for (std::size_t g = 0; g < grains; ++g) {
+    const std::size_t place = next[cell_of_grain_[g]]++;
+    grain_[place] = static_cast<std::int32_t>(g);
+    id_[place] = id[g];
+    for (std::size_t axis = 0; axis < 3; ++axis) position_[axis][place] = rows[4 * g + axis];
+  }
+  cell_.resize(grains);
+  for (std::size_t place = 0; place < grains; ++place) {
+    cell_[place] = cell_of_grain_[static_cast<std::size_t>(grain_[place])];
+  }
+  grid_.begin = begin_.data();
+  grid_.cell = cell_.data();
+  grid_.id = id_.data();
+  for (std::size_t axis = 0; axis < 3; ++axis) grid_.position[axis] = position_[axis].data();
+}
+
+std::size_t CellOrder::bytes() const {
+  return 4 * (begin_.size() + cell_.size() + cell_of_grain_.size() + id_.size() + grain_.size()) +
+         3 * 8 * position_[0].size();
+}
+
+}  // namespace shearcell

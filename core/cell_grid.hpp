@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grains copied into the order of a grid's cells, so that a search runs along contiguous memory.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/aligned.hpp"
+#include "core/cell.hpp"
+#include "core/kernel.hpp"
+
+namespace shearcell {
+
+/// Places [begin, end) of consecutive cells.
+struct PlaceRun {
+  std::size_t begin, end;
+};
+
+/// The places whose cells surround that of the grain at `place`, itself included, each once: at
+/// most nine runs of three neighbouring cells in x. Returns their number.
+inline std::size_t surrounding_runs(const CellGrid& grid, std::size_t place,
+                                    std::array<PlaceRun, 9>& runs) {
+  const auto cell = static_cast<std::int32_t>(grid.cell[place]);
+  const std::int32_t column = cell % grid.columns;
+  const std::int32_t layer = cell / grid.columns % grid.layers;
+  const std::int32_t row = cell / (grid.columns * grid.layers);
+  const std::int32_t first = column > 0 ? column - 1 : 0;
+  const std::int32_t last = column + 1 < grid.columns ? column + 1 : column;
+  // With fewer than three layers the neighbours on both sides coincide.
+  const std::int32_t layers = grid.layers < 3 ? grid.layers : 3;
+  std::size_t count = 0;
+  for (std::int32_t r = row > 0 ? row - 1 : 0; r <= row + 1 && r < grid.rows; ++r) {
+    for (std::int32_t k = 0; k < layers; ++k) {
+      const std::int32_t z = grid.layers < 3 ? k : (layer + k - 1 + grid.layers) % grid.layers;
+      const std::int32_t line = (r * grid.layers + z) * grid.columns;
+      runs[count++] = {grid.begin[line + first], grid.begin[line + last + 1]};
+    }
+  }
+  return count;
+}
+
+/// The grid of a cell in its untilted frame. Cells are at least as wide as the reach in x, y and z;
+/// grains that stand out of the walls are kept in the border cells.
+class CellOrder {
+ public:
+  /// Sorts the grains (kernel.hpp's rows) into cells for pairs up to `reach` [d] apart.
+  void build(const Cell& cell, const WallPose& pose, double reach, const double* rows,
+             const std::vector<std::int32_t>& id);
+
+  const CellGrid& grid() const { return grid_; }
+  /// Place in memory of the grain at each place of the grid.
+  const std::vector<std::int32_t>& grain() const { return grain_; }
+  std::size_t bytes() const;
+
+ private:
+  void choose_grid(const Cell& cell, const WallPose& pose, double reach, std::size_t grains);
+  std::uint32_t cell_of(const double* row, const Cell& cell, const WallPose& pose) const;
+
+  CellGrid grid_;
+  std::array<double, 3> per_cell_{};  // cells per d in x, y, z
+  std::vector<std::uint32_t> begin_, cell_, cell_of_grain_;
+  std::array<AlignedVector<double>, 3> position_;
+  AlignedVector<std::int32_t> id_;
+  std::vector<std::int32_t> grain_;
+};
+
+}  // namespace shearcell

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cyclic shear stops where it promises to, and neither chunks, restarts nor the servo's own
+// constants show in what it does to a packing.
+#include "protocols/cyclic_shear.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+#include "tests/protocols/packings.hpp"
+
+namespace shearcell {
+namespace {
+
+using test::Packing;
+using test::same_bits;
+using test::Sheared;
+using test::table_1;
+
+const Drive kDrive{.amplitude = 0.02, .steps_per_cycle = 3000, .pause_steps = 0};
+
+const Sheared& dense() {
+  static const Sheared scene = test::pressed(300, 20000);
+  return scene;
+}
+
+struct Stop {
+  std::uint64_t step;
+  StageProgress progress;
+};
+
+// Advances to the end; every return of the protocol.
+std::vector<Stop> shear(Simulation& simulation, const CyclicShear& protocol,
+                        std::uint64_t most_steps = test::kAtOnce) {
+  std::vector<Stop> stops;
+  do {
+    const StageProgress progress = protocol.advance(simulation, most_steps);
+    stops.push_back({simulation.step(), progress});
+  } while (!stops.back().progress.finished);
+  return stops;
+}
+
+State after(const CyclicShear& protocol, std::uint64_t most_steps = test::kAtOnce) {
+  Simulation simulation(dense().cell, table_1(), dense().state);
+  shear(simulation, protocol, most_steps);
+  return simulation.state();
+}
+
+TEST(CyclicShear, StopsAtTheEndOfEveryCycleUpright) {
+  const CyclicShear protocol(kDrive, 4, 1);
+  EXPECT_EQ(protocol.expected_steps(), 12000U);
+  Simulation simulation(dense().cell, table_1(), dense().state);
+  const std::vector<Stop> stops = shear(simulation, protocol);
+  ASSERT_EQ(stops.size(), 4U);
+  for (std::size_t n = 0; n < stops.size(); ++n) {
+    EXPECT_EQ(stops[n].step, 3000 * (n + 1));
+    EXPECT_EQ(stops[n].progress.cycle, static_cast<double>(n + 1));
+    EXPECT_TRUE(stops[n].progress.checkpoint_due);
+    EXPECT_EQ(stops[n].progress.finished, n == 3);
+    EXPECT_EQ(tilt(protocol.drive(), stops[n].step).theta, 0);
+  }
+  // In between the walls do tilt, by A at a quarter.
+  EXPECT_EQ(tilt(protocol.drive(), 750).theta, kDrive.amplitude);
+  EXPECT_FALSE(same_bits(simulation.state(), dense().state));
+}
+
+TEST(CyclicShear, PromisesACheckpointNowhereElse) {
+  Simulation simulation(dense().cell, table_1(), dense().state);
+  int due = 0, others = 0;
+  for (const Stop& stop : shear(simulation, CyclicShear(kDrive, 3, 1), 700)) {
+    EXPECT_EQ(stop.progress.checkpoint_due, stop.step % 3000 == 0) << stop.step;
+    ++(stop.progress.checkpoint_due ? due : others);
+  }
+  EXPECT_EQ(due, 3);
+  EXPECT_EQ(others, 3 * 4);
+}
+
+TEST(CyclicShear, KeepsItsCadenceAndRecordsTheEnd) {
+  Simulation simulation(dense().cell, table_1(), dense().state);
+  std::vector<double> cycles;
+  for (const Stop& stop : shear(simulation, CyclicShear(kDrive, 5, 2))) {
+    if (stop.progress.checkpoint_due) cycles.push_back(stop.progress.cycle);
+  }
+  EXPECT_EQ(cycles, (std::vector<double>{2, 4, 5}));
+}
+
+TEST(CyclicShear, DoesNothingBeyondItsTarget) {
+  Simulation simulation(dense().cell, table_1(), dense().state);
+  shear(simulation, CyclicShear(kDrive, 2, 1));
+  const State end = simulation.state();
+  for (const std::uint64_t target : {2U, 1U, 0U}) {
+    const StageProgress progress = CyclicShear(kDrive, target, 1).advance(simulation, 1000);
+    EXPECT_TRUE(progress.finished);
+    EXPECT_TRUE(progress.checkpoint_due);
+    EXPECT_EQ(progress.cycle, 2);
+  }
+  EXPECT_TRUE(same_bits(simulation.state(), end));
+}
+
+TEST(CyclicShear, GivesTheSameBitsInAnyChunks) {
+  const CyclicShear protocol(kDrive, 3, 1);
+  const State whole = after(protocol);
+  EXPECT_EQ(whole.step, 9000U);
+  for (const std::uint64_t chunk : {1U, 613U, 2999U, 3001U}) {
+    EXPECT_TRUE(same_bits(after(protocol, chunk), whole)) << chunk;
+  }
+  // How often checkpoints are promised is no physics either.
+  EXPECT_TRUE(same_bits(after(CyclicShear(kDrive, 3, 3)), whole));
+}
+
+TEST(CyclicShear, ExtendedRunEqualsALongOne) {
+  const State two = after(CyclicShear(kDrive, 2, 1));
+  Simulation extended(dense().cell, table_1(), two);
+  shear(extended, CyclicShear(kDrive, 3, 1));
+  EXPECT_TRUE(same_bits(extended.state(), after(CyclicShear(kDrive, 3, 1))));
+}
+
+TEST(CyclicShear, KeepsTheWallsUprightDuringAPause) {
+  Drive paused = kDrive;
+  paused.pause_steps = 1000;
+  const CyclicShear protocol(paused, 2, 1);
+  EXPECT_EQ(protocol.expected_steps(), 8000U);
+  int tilted = 0;
+  for (std::uint64_t step = 0; step < 8000; ++step) {
+    const bool pause = step % 4000 >= 3000;
+    const Tilt t = tilt(paused, step);
+    EXPECT_TRUE(!pause || (t.theta == 0 && t.rate == 0)) << step;
+    if (t.theta != 0) ++tilted;
+  }
+  EXPECT_EQ(tilted, 2 * (3000 - 2));  // all but the two zeros of the sine in each cycle
+
+  // A cycle with its pause is a cycle, and then rest between fixed walls.
+  Simulation whole(dense().cell, table_1(), dense().state);
+  const std::vector<Stop> stops = shear(whole, CyclicShear(paused, 1, 1), 1700);
+  EXPECT_EQ(stops.back().step, 4000U);
+  Simulation parts(dense().cell, table_1(), dense().state);
+  shear(parts, CyclicShear(kDrive, 1, 1));
+  parts.advance(Drive{}, 1000);
+  EXPECT_TRUE(same_bits(whole.state(), parts.state()));
+}
+
+// Packing fraction of the whole cell after one cycle of Table I. Mass and drag of the moving wall
+// are ours, not the experiment's.
+double density_after_a_cycle(double wall_factor, std::uint64_t seed) {
+  Scene scene = table_1();
+  scene.wall_mass *= wall_factor;
+  scene.wall_drag *= wall_factor;
+  Packing packing = test::loose(test::rough_geometry(300), scene, seed);
+  test::settle(packing);
+  packing.state.step = 0;
+  Simulation simulation(packing.cell, scene, packing.state);
+  shear(simulation, CyclicShear({.amplitude = 0.0833, .steps_per_cycle = 45600}, 1, 1));
+  const double height = packing.cell.top - simulation.state().wall_height;
+  return 300 * std::numbers::pi / 6 / (packing.cell.width * packing.cell.depth * height);
+}
+
+TEST(Servo, ItsMassAndDragDoNotShowInTheDensity) {
+  std::vector<double> density;
+  for (const double factor : {1.0, 3.0, 1.0 / 3}) {
+    density.push_back((density_after_a_cycle(factor, 1) + density_after_a_cycle(factor, 2)) / 2);
+  }
+  std::printf("density after a cycle: %.4f; wall mass and drag x 3: %.4f, / 3: %.4f\n", density[0],
+              density[1], density[2]);
+  EXPECT_GT(density[0], 0.5);
+  EXPECT_NEAR(density[1] / density[0], 1, 0.02);
+  EXPECT_NEAR(density[2] / density[0], 1, 0.02);
+}
+
+}  // namespace
+}  // namespace shearcell

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A settled packing is in mechanical equilibrium, and how it was reached in pieces leaves no trace.
+#include "protocols/settle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "tests/protocols/packings.hpp"
+
+namespace shearcell {
+namespace {
+
+using test::forces;
+using test::Forces;
+using test::load;
+using test::loose;
+using test::Packing;
+using test::rough_geometry;
+using test::same_bits;
+using test::settle;
+using test::table_1;
+
+constexpr std::uint64_t kLookSteps = 2280;  // 0.1 s at Table I's time step
+
+// N = 600, Table I, rough walls.
+const Packing& settled_packing() {
+  static const Packing packing = [] {
+    Packing made = loose(rough_geometry(600), table_1());
+    settle(made);
+    return made;
+  }();
+  return packing;
+}
+
+TEST(SettledPacking, HasItsMovingWallInBalance) {
+  const Packing& packing = settled_packing();
+  const double push = -forces(packing).of_wall.at(WallSide::bottom).y();
+  const double imbalance = 1 + push / load(packing);
+  std::printf("moving wall: P A = %.6g, contacts %.6g, imbalance %.3g\n", load(packing), push,
+              imbalance);
+  EXPECT_LT(std::fabs(imbalance), 1e-3);
+  // The wall's own drag counts too, so that a creeping wall is not taken for one at rest.
+  EXPECT_LT(std::fabs(packing.state.wall_velocity) * packing.scene.wall_drag,
+            1e-3 * packing.scene.pressure);
+}
+
+TEST(SettledPacking, IsAtRest) {
+  const Packing& packing = settled_packing();
+  const double kinetic = 0.5 * packing.state.velocity.squaredNorm() / 600;
+  std::printf("kinetic energy per grain over P d^3: %.3g\n", kinetic / packing.scene.pressure);
+  EXPECT_LT(kinetic, 1e-8 * packing.scene.pressure);
+}
+
+// Sum of contact forces and weight on every grain that is held, by at least four contacts.
+TEST(SettledPacking, ObeysNewtonsLawGrainByGrain) {
+  const Packing& packing = settled_packing();
+  const Forces f = forces(packing);
+  double worst = 0;
+  int held = 0;
+  for (Eigen::Index i = 0; i < 600; ++i) {
+    if (f.contacts[static_cast<std::size_t>(i)] < 4) continue;
+    ++held;
+    const Eigen::Vector3d sum =
+        f.on_grain.col(i) - packing.scene.gravity * Eigen::Vector3d::UnitY();
+    worst = std::max(worst, sum.norm());
+  }
+  std::printf("held grains %d of 600, mean contact force %.4g, weight %.4g, worst residual %.3g\n",
+              held, f.mean, packing.scene.gravity, worst);
+  EXPECT_GT(held, 540);
+  EXPECT_LT(worst, 0.01 * f.mean);
+  EXPECT_LT(worst, 0.2 * packing.scene.gravity);
+}
+
+TEST(SettledPacking, PassesWeightAndPressureOnToTopAndSideWalls) {
+  const Packing& packing = settled_packing();
+  const Forces f = forces(packing);
+  const double weight = 600 * packing.scene.gravity;
+  const double top = f.of_wall.at(WallSide::top).y();
+  const double sides = f.of_wall.at(WallSide::left).y() + f.of_wall.at(WallSide::right).y();
+  std::printf("over P A: weight %.4f, top wall %.4f, side walls %.4f\n", weight / load(packing),
+              top / load(packing), sides / load(packing));
+  EXPECT_LT(top, 0);
+  EXPECT_NEAR((load(packing) - weight + top + sides) / load(packing), 0, 2e-3);
+  const double across = f.of_wall.at(WallSide::left).x() + f.of_wall.at(WallSide::right).x() +
+                        f.of_wall.at(WallSide::bottom).x() + f.of_wall.at(WallSide::top).x();
+  EXPECT_NEAR(across / load(packing), 0, 2e-3);
+}
+
+TEST(SettledPacking, IsAsDenseAndAsSoftAsSphereGlass) {
+  const Packing& packing = settled_packing();
+  const Forces f = forces(packing);
+  const Diagnostics facts =
+      diagnose(packing.cell, packing.scene, packing.state, test::upright(packing));
+  std::printf("contacts per grain %.3f, mean overlap %.3e d, largest %.3e d\n", f.touches_per_grain,
+              f.mean_overlap, facts.largest_overlap);
+  EXPECT_GT(f.touches_per_grain, 5.5);
+  EXPECT_LT(f.touches_per_grain, 6.6);
+  EXPECT_GT(f.mean_overlap, 1.5e-3);
+  EXPECT_LT(f.mean_overlap, 3.5e-3);
+  // What a run records says the same.
+  EXPECT_DOUBLE_EQ(facts.contacts_per_grain, f.touches_per_grain);
+  EXPECT_NEAR(facts.mean_overlap, f.mean_overlap, 1e-12);
+}
+
+TEST(Settle, GivesTheSameBitsWhenItIsInterrupted) {
+  const Packing& whole = settled_packing();
+  ASSERT_GT(whole.pressed, 3 * kLookSteps);
+  ASSERT_GT(whole.state.step, whole.pressed + kLookSteps);
+
+  Packing pieces = loose(rough_geometry(600), table_1());
+  const Settle protocol({}, pieces.scene);
+  int pressing = 0, falling = 0;
+  for (bool finished = false; !finished;) {
+    // A new simulation and a new protocol for every few pieces of odd length.
+    Simulation simulation(pieces.cell, pieces.scene, pieces.state);
+    for (int piece = 0; piece < 3 && !finished; ++piece) {
+      finished = protocol.advance(simulation, 777).finished;
+    }
+    pieces.state = simulation.state();
+    ++(pieces.state.step < whole.pressed ? pressing : falling);
+  }
+  std::printf("restarts while pressing %d, under gravity %d; %llu steps, pressed for %llu\n",
+              pressing, falling, static_cast<unsigned long long>(whole.state.step),
+              static_cast<unsigned long long>(whole.pressed));
+  EXPECT_GE(pressing, 2);
+  EXPECT_GE(falling, 2);
+  EXPECT_TRUE(same_bits(pieces.state, whole.state));
+}
+
+TEST(Settle, TakesAFinishedStateAsFinished) {
+  const Packing& packing = settled_packing();
+  const Settle protocol({}, packing.scene);
+  Simulation simulation(packing.cell, packing.scene, packing.state);
+  const StageProgress progress = protocol.advance(simulation, test::kAtOnce);
+  EXPECT_TRUE(progress.finished);
+  EXPECT_TRUE(progress.checkpoint_due);
+  EXPECT_EQ(progress.cycle, 0);
+  EXPECT_TRUE(same_bits(simulation.state(), packing.state));
+}
+
+TEST(Settle, WithoutGravityTheTopAndSidesCarryThePressureAlone) {
+  Scene scene = table_1();
+  scene.gravity = 0;
+  Packing packing = loose(rough_geometry(600), scene);
+  settle(packing);
+  EXPECT_EQ(packing.pressed, 0U);
+  const Forces f = forces(packing);
+  const double bottom = f.of_wall.at(WallSide::bottom).y() / load(packing);
+  const double rest = (f.of_wall.at(WallSide::top).y() + f.of_wall.at(WallSide::left).y() +
+                       f.of_wall.at(WallSide::right).y()) /
+                      load(packing);
+  std::printf("no gravity: bottom %.5f, top and sides %.5f of P A, %.3f contacts per grain\n",
+              bottom, rest, f.touches_per_grain);
+  EXPECT_NEAR(bottom, 1, 1e-3);
+  EXPECT_NEAR(rest, -1, 2e-3);
+  EXPECT_GT(f.touches_per_grain, 5.5);
+}
+
+TEST(Settle, LowersAMovingTopWall) {
+  Packing packing = loose(rough_geometry(600, MovingWall::top), table_1());
+  settle(packing);
+  const Forces f = forces(packing);
+  const double top = f.of_wall.at(WallSide::top).y() / load(packing);
+  const double weight = 600 * packing.scene.gravity / load(packing);
+  const double rest = (f.of_wall.at(WallSide::bottom).y() + f.of_wall.at(WallSide::left).y() +
+                       f.of_wall.at(WallSide::right).y()) /
+                      load(packing);
+  std::printf("moving top: from %.3f to %.3f d, top %.5f, weight %.4f, others %.5f of P A\n",
+              packing.cell.top, packing.state.wall_height, top, weight, rest);
+  EXPECT_LT(packing.state.wall_height, 0.6 * packing.cell.top);
+  EXPECT_NEAR(top, -1, 1e-3);
+  EXPECT_NEAR(rest, 1 + weight, 2e-3);
+}
+
+TEST(Settle, SaysWhichLimitItRanInto) {
+  Packing packing = loose(rough_geometry(300), table_1());
+  SettleParameters parameters;
+  parameters.time_limit = 0.25;
+  try {
+    settle(packing, parameters);
+    FAIL() << "a quarter of a second was enough";
+  } catch (const NumericalFailure& failure) {
+    std::printf("%s\n", failure.what());
+    EXPECT_NE(std::string(failure.what()).find("settle_time_limit_s"), std::string::npos);
+    EXPECT_EQ(failure.limit, 0.25);
+    EXPECT_GE(failure.value, 0.25);
+    EXPECT_LE(failure.value, 0.35 + 1e-9);  // it looks every 0.1 s
+    EXPECT_EQ(failure.grain, -1);
+  }
+}
+
+TEST(Settle, PressesUntilTheWallHasDoneItsWay) {
+  const Packing packing = loose(rough_geometry(600), table_1());
+  const auto pressed = [&](const Scene& scene, const SettleParameters& parameters = {}) {
+    return Settle(parameters, scene).press_steps(packing.cell, 600);
+  };
+  const std::uint64_t usual = pressed(table_1());
+  EXPECT_GT(usual, 0U);
+  EXPECT_EQ(usual % kLookSteps, 0U);
+
+  Scene scene = table_1();
+  scene.gravity = 0;
+  EXPECT_EQ(pressed(scene), 0U);
+  scene = table_1();
+  scene.pressure = 0;
+  EXPECT_EQ(pressed(scene), 0U);
+  scene = table_1();
+  scene.pressure /= 10;
+  EXPECT_GT(pressed(scene), usual);
+  scene = table_1();
+  scene.wall_drag *= 10;
+  EXPECT_GT(pressed(scene), usual);
+  SettleParameters hasty;
+  hasty.time_limit = 0.3;
+  EXPECT_LE(pressed(table_1(), hasty), 3 * kLookSteps);
+
+  // By then the grains are dense and carry the load.
+  scene = table_1();
+  scene.gravity = 0;
+  Simulation simulation(packing.cell, scene, packing.state);
+  simulation.advance(Drive{}, usual);
+  const State state = simulation.state();
+  const Diagnostics facts =
+      diagnose(packing.cell, scene, state, wall_pose(packing.cell, 0, state.wall_height));
+  std::printf("pressed for %.2f s: %.3f contacts per grain, wall imbalance %.3g\n",
+              static_cast<double>(usual) * scene.time_step, facts.contacts_per_grain,
+              facts.wall_imbalance);
+  EXPECT_GT(facts.contacts_per_grain, 5);
+  EXPECT_LT(std::fabs(facts.wall_imbalance), 0.1);
+}
+
+}  // namespace
+}  // namespace shearcell
