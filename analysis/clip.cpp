@@ -100,7 +100,6 @@ void ConvexCell::reset(const std::array<HalfSpace, 6>& box) {
     const bool right_handed = (x + y + z) % 2 == 1;
     add_corner(right_handed ? Triple{x, y, z} : Triple{y, x, z});
   }
-  find_radius();
 }
 
 void ConvexCell::grow_tables() {
@@ -154,15 +153,6 @@ void ConvexCell::remove_corner(std::size_t k) {
   triples_[k] = triples_[count_];
 }
 
-void ConvexCell::find_radius() {
-  double largest = 0;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const double r2 = x_[k] * x_[k] + y_[k] * y_[k] + z_[k] * z_[k];
-    largest = r2 > largest ? r2 : largest;
-  }
-  radius_squared_ = largest;
-}
-
 bool ConvexCell::outside_exactly(std::size_t k, const HalfSpace& plane) const {
   const Triple& t = triples_[k];
   return lies_outside(meet_exactly(planes_[t[0]], planes_[t[1]], planes_[t[2]]), plane);
@@ -211,7 +201,6 @@ bool ConvexCell::clip(const HalfSpace& plane) {
   for (std::size_t k = cut_.size(); k-- > 0;) remove_corner(cut_[k]);
   grow_corners(count_ + fresh_.size());
   for (const Triple& t : fresh_) add_corner(t);
-  find_radius();
   return true;
 }
 

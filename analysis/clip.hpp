@@ -10,8 +10,7 @@
 //     counts as inside. That is the same as pushing each later plane outward by an infinitesimal
 //     larger than all before it, so however many sites share a sphere, the polyhedron stays simple.
 //  3. The corners cut away then form a disc. An edge of that disc borders exactly one of them,
-//  which
-//     a small table of plane pairs shows without any adjacency being stored.
+//     which a small table of plane pairs shows without any adjacency being stored.
 #pragma once
 
 #include <Eigen/Core>
@@ -52,9 +51,6 @@ class ConvexCell {
   std::size_t corners() const { return count_; }
   Eigen::Vector3d corner(std::size_t k) const { return {x_[k], y_[k], z_[k]}; }
 
-  /// Largest squared distance of a corner from the origin [d^2].
-  double radius_squared() const { return radius_squared_; }
-
   /// Area of each plane's face [d^2], by plane index; 0 for a plane with no face. Returns the
   /// volume [d^3].
   double measure(std::vector<double>& areas);
@@ -66,7 +62,6 @@ class ConvexCell {
   void remove_corner(std::size_t k);
   bool outside_exactly(std::size_t k, const HalfSpace& plane) const;
   void find_outside(const HalfSpace& plane);
-  void find_radius();
   void grow_corners(std::size_t count);
   std::size_t pair(std::uint16_t a, std::uint16_t b) const { return a * stride_ + b; }
   void grow_tables();
@@ -76,7 +71,6 @@ class ConvexCell {
   std::vector<double> x_, y_, z_;
   std::vector<double> error_;  // bound on the distance of the stored corner from the true one
   std::vector<Triple> triples_;
-  double radius_squared_ = 0;
 
   std::vector<std::uint16_t> cut_;
   std::vector<Triple> fresh_;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <type_traits>
 
@@ -23,12 +24,19 @@ constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 // A circumcentre that may be farther from the true one than this [d] is computed exactly.
 constexpr double worst_error = 1e-12;
 
-/// The edges of a tetrahedron by the numbers of its vertices.
-constexpr std::array<std::array<int, 2>, 6> edges = {
+/// The edges of a tetrahedron by the numbers of its corners.
+constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {
     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-/// Bit of the edge between two vertices of a tetrahedron, by their numbers.
+/// The bit of the edge between two corners.
 constexpr std::array<std::array<std::uint8_t, 4>, 4> edge_bit = {
     {{0, 1, 2, 4}, {1, 0, 8, 16}, {2, 8, 0, 32}, {4, 16, 32, 0}}};
+
+/// Number of the corner that is `vertex`, which must be one of the four.
+std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
+  return static_cast<std::size_t>((t.vertex[1] == vertex ? 1 : 0) +
+                                  (t.vertex[2] == vertex ? 2 : 0) +
+                                  (t.vertex[3] == vertex ? 3 : 0));
+}
 
 }  // namespace
 
@@ -43,142 +51,166 @@ void throw_same_place(std::int32_t a, std::int32_t b, std::int32_t grains) {
 
 Delaunay::Delaunay(const Eigen::Matrix3Xd& sites, std::int32_t grains, double depth, double margin)
     : sites_(sites), grains_(grains), depth_(depth), margin_(margin) {
-  const auto count = static_cast<std::int32_t>(sites.cols());
-  vertex_.resize(static_cast<std::size_t>(count));
-  std::vector<SiteImage> images;
-  for (std::int32_t i = 0; i < count; ++i) images.push_back({i, 0});
-  collect_images(0, margin, images);
-  insert(images);
+  for (std::int32_t i = 0; i < sites.cols(); ++i) add_point({i, 0});
+  add_images(0, margin);
+  insert(0);
 }
 
 void Delaunay::widen(double margin) {
-  std::vector<SiteImage> images;
-  collect_images(margin_, margin, images);
+  const std::size_t first = point_.size();
+  add_images(margin_, margin);
   margin_ = margin;
-  insert(images);
+  insert(first);
 }
 
-void Delaunay::collect_images(double inner, double outer, std::vector<SiteImage>& images) const {
+void Delaunay::add_images(double inner, double outer) {
   const auto beyond = [&](double distance) { return distance >= inner && distance < outer; };
   for (std::int32_t k = 1; (k - 1) * depth_ < outer; ++k) {
     for (std::int32_t i = 0; i < sites_.cols(); ++i) {
-      if (beyond(sites_(2, i) + (k - 1) * depth_)) images.push_back({i, k});
-      if (beyond(k * depth_ - sites_(2, i))) images.push_back({i, -k});
+      if (beyond(sites_(2, i) + (k - 1) * depth_)) add_point({i, k});
+      if (beyond(k * depth_ - sites_(2, i))) add_point({i, -k});
     }
   }
 }
 
-void Delaunay::insert(const std::vector<SiteImage>& images) {
+void Delaunay::add_point(SiteImage image) {
+  image_.push_back(image);
+  point_.push_back(sites_.col(image.site));
+  point_.back().z() += image.image * depth_;
+}
+
+void Delaunay::insert(std::size_t first) {
   std::vector<Kernel::Point_3> points;
-  std::vector<std::size_t> order;
-  points.reserve(images.size());
-  order.reserve(images.size());
-  for (const SiteImage& image : images) {
-    const Eigen::Vector3d p = sites_.col(image.site);
-    order.push_back(points.size());
-    points.emplace_back(p.x(), p.y(), p.z() + image.image * depth_);
-  }
+  points.reserve(point_.size());
+  for (const Eigen::Vector3d& p : point_) points.emplace_back(p.x(), p.y(), p.z());
+  std::vector<std::size_t> order(point_.size() - first);
+  std::iota(order.begin(), order.end(), first);
   const auto position = CGAL::make_property_map(points);
   CGAL::spatial_sort(
       order.begin(), order.end(),
       CGAL::Spatial_sort_traits_adapter_3<Kernel, std::decay_t<decltype(position)>>(position));
 
-  CellHandle hint;
+  handle_.resize(point_.size());
+  Triangulation::Cell_handle hint;
   for (const std::size_t k : order) {
-    const VertexHandle vertex = triangulation_.insert(points[k], hint);
+    const Triangulation::Vertex_handle vertex = triangulation_.insert(points[k], hint);
+    std::int32_t& number = vertex->info().value;
+    if (number >= 0) {
+      throw_same_place(image_[static_cast<std::size_t>(number)].site, image_[k].site, grains_);
+    }
+    number = static_cast<std::int32_t>(k);
+    handle_[k] = vertex;
     hint = vertex->cell();
-    SiteImage& present = vertex->info();
-    if (present.site >= 0) throw_same_place(present.site, images[k].site, grains_);
-    present = images[k];
-    if (present.image == 0) vertex_[static_cast<std::size_t>(present.site)] = vertex;
+  }
+  copy_tetrahedra();
+}
+
+void Delaunay::copy_tetrahedra() {
+  if (triangulation_.dimension() < 3) return;
+  std::int32_t count = 0;
+  for (const auto cell : triangulation_.all_cell_handles()) cell->info().value = count++;
+  tetrahedra_.resize(static_cast<std::size_t>(count));
+  auto copy = tetrahedra_.begin();
+  for (const auto cell : triangulation_.all_cell_handles()) {
+    bool any_grain = false;
+    for (int k = 0; k < 4; ++k) {
+      const std::int32_t vertex = cell->vertex(k)->info().value;
+      any_grain = any_grain || (vertex >= 0 && vertex < grains_);
+      copy->vertex[static_cast<std::size_t>(k)] = vertex;
+      copy->neighbour[static_cast<std::size_t>(k)] = cell->neighbor(k)->info().value;
+    }
+    if (any_grain && copy->bounded()) copy->centre = circumcentre(copy->vertex);
+    ++copy;
   }
 }
 
-Sphere Delaunay::circumsphere(CellHandle tetrahedron) const {
-  const Eigen::Vector3d origin = vector(tetrahedron->vertex(0)->point());
-  const Eigen::Vector3d a = vector(tetrahedron->vertex(1)->point()) - origin;
-  const Eigen::Vector3d b = vector(tetrahedron->vertex(2)->point()) - origin;
-  const Eigen::Vector3d c = vector(tetrahedron->vertex(3)->point()) - origin;
+Eigen::Vector3d Delaunay::circumcentre(const std::array<std::int32_t, 4>& vertices) const {
+  const Eigen::Vector3d origin = point(vertices[0]);
+  const Eigen::Vector3d a = point(vertices[1]) - origin;
+  const Eigen::Vector3d b = point(vertices[2]) - origin;
+  const Eigen::Vector3d c = point(vertices[3]) - origin;
   const Eigen::Vector3d bc = b.cross(c);
   const double aa = a.squaredNorm();
   const double bb = b.squaredNorm();
   const double cc = c.squaredNorm();
   const double determinant = a.dot(bc);
   const Eigen::Vector3d v = (aa * bc + bb * c.cross(a) + cc * a.cross(b)) / (2 * determinant);
-  const double radius2 = v.squaredNorm();
 
   // Forward error of Cramer's rule: numerator and determinant each lose a few roundoffs of the
-  // products of their edges' lengths, which are at most `longest`. 32 covers the operations counted
-  // one by one.
+  // products of the edges' lengths, none above the longest. 32 covers the operations counted one
+  // by one.
   const double longest2 = std::max({aa, bb, cc});
-  const double terms = longest2 * (longest2 + std::sqrt(longest2 * radius2));
-  if (32 * unit_roundoff * terms < worst_error * determinant) return {origin + v, radius2};
+  const double terms = longest2 * (longest2 + std::sqrt(longest2 * v.squaredNorm()));
+  if (32 * unit_roundoff * terms < worst_error * determinant) return origin + v;
 
   using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
-  std::array<Exact::Point_3, 4> p;
-  for (int k = 0; k < 4; ++k) {
-    const Kernel::Point_3& q = tetrahedron->vertex(k)->point();
-    p[static_cast<std::size_t>(k)] = Exact::Point_3(q.x(), q.y(), q.z());
-  }
-  const Exact::Point_3 centre = CGAL::circumcenter(p[0], p[1], p[2], p[3]);
-  return {{CGAL::to_double(centre.x()), CGAL::to_double(centre.y()), CGAL::to_double(centre.z())},
-          CGAL::to_double(CGAL::squared_distance(centre, p[0]))};
+  const auto exact = [&](std::size_t k) {
+    const Eigen::Vector3d& p = point(vertices[k]);
+    return Exact::Point_3(p.x(), p.y(), p.z());
+  };
+  const Exact::Point_3 centre = CGAL::circumcenter(exact(0), exact(1), exact(2), exact(3));
+  return {CGAL::to_double(centre.x()), CGAL::to_double(centre.y()), CGAL::to_double(centre.z())};
 }
 
 std::vector<DualFace> Delaunay::faces(const std::vector<std::uint8_t>& wanted) {
-  const auto is_wanted = [&](const SiteImage& v) {
-    return v.image == 0 && v.site >= 0 && wanted[static_cast<std::size_t>(v.site)] != 0;
+  const auto is_wanted = [&](std::int32_t vertex) {
+    const auto v = static_cast<std::size_t>(vertex);
+    return v < wanted.size() && wanted[v] != 0;  // false for -1, which is large as unsigned
   };
   std::vector<DualFace> found;
-  found.reserve(8 * vertex_.size());  // 15.5 edges meet at a site, and each is shared by two
-  edges_done_.assign(centre_.size(), 0);
-  for (CellHandle cell : triangulation_.all_cell_handles()) {
-    std::array<bool, 4> corner;
-    for (std::size_t k = 0; k < 4; ++k) {
-      corner[k] = is_wanted(cell->vertex(static_cast<int>(k))->info());
-    }
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      const auto [i, j] = edges[e];
-      if (!corner[static_cast<std::size_t>(i)] && !corner[static_cast<std::size_t>(j)]) continue;
-      if ((edges_done_[cell->info()] >> e & 1U) != 0) continue;
-      const VertexHandle a = cell->vertex(i);
-      const VertexHandle b = cell->vertex(j);
-      found.push_back({a->info(), b->info(), face_area(cell, a, b)});
+  found.reserve(8 * wanted.size());  // 15.5 edges meet at a site, and each has two ends
+  for (Tetrahedron& t : tetrahedra_) t.edges_done = 0;
+  for (std::size_t k = 0; k < tetrahedra_.size(); ++k) {
+    const Tetrahedron& t = tetrahedra_[k];
+    std::array<bool, 4> end;
+    for (std::size_t i = 0; i < 4; ++i) end[i] = is_wanted(t.vertex[i]);
+    for (const auto [i, j] : edges) {
+      if ((!end[i] && !end[j]) || (t.edges_done & edge_bit[i][j]) != 0) continue;
+      const double area = face_area(static_cast<std::int32_t>(k), i, j);
+      found.push_back({image_[static_cast<std::size_t>(t.vertex[i])],
+                       image_[static_cast<std::size_t>(t.vertex[j])], area});
     }
   }
   return found;
 }
 
-double Delaunay::face_area(CellHandle start, VertexHandle a, VertexHandle b) {
-  // The face is the polygon of the circumcentres around the edge, which turn one way.
-  const Eigen::Vector3d first = centre_[start->info()];
+double Delaunay::face_area(std::int32_t start, std::size_t i, std::size_t j) {
+  // The face is the polygon of the circumcentres around the edge from i to j, taken in turn.
+  const Tetrahedron& first = tetrahedra_[static_cast<std::size_t>(start)];
+  const std::int32_t a = first.vertex[i];
+  const std::int32_t b = first.vertex[j];
   Eigen::Vector3d arm = Eigen::Vector3d::Zero();
   Eigen::Vector3d twice = Eigen::Vector3d::Zero();
-  CellHandle cell = start;
+  std::int32_t k = start;
   do {
-    const int i = cell->index(a);
-    const int j = cell->index(b);
-    edges_done_[cell->info()] |= edge_bit[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-    const Eigen::Vector3d next = centre_[cell->info()] - first;
+    Tetrahedron& t = tetrahedra_[static_cast<std::size_t>(k)];
+    i = corner_of(t, a);
+    j = corner_of(t, b);
+    t.edges_done = static_cast<std::uint8_t>(t.edges_done | edge_bit[i][j]);
+    const Eigen::Vector3d next = t.centre - first.centre;
     twice += arm.cross(next);
     arm = next;
-    cell = cell->neighbor(Triangulation::next_around_edge(i, j));
-  } while (cell != start);
-  const Eigen::Vector3d edge = vector(b->point()) - vector(a->point());
-  const double length2 = edge.squaredNorm();
-  if (length2 < same_place * same_place) {
-    throw_same_place(a->info().site, b->info().site, grains_);
+    const int across = Triangulation::next_around_edge(static_cast<int>(i), static_cast<int>(j));
+    k = t.neighbour[static_cast<std::size_t>(across)];
+  } while (k != start);
+  const Eigen::Vector3d edge = point(b) - point(a);
+  const double length = edge.norm();
+  if (length < same_place) {
+    throw_same_place(image_[static_cast<std::size_t>(a)].site,
+                     image_[static_cast<std::size_t>(b)].site, grains_);
   }
-  return edge.dot(twice) / (2 * std::sqrt(length2));
+  return edge.dot(twice) / (2 * length);
 }
 
 void Delaunay::neighbours(std::int32_t site, std::vector<SiteImage>& found) const {
   found.clear();
   if (triangulation_.dimension() < 1) return;
-  std::vector<VertexHandle> adjacent;
-  triangulation_.finite_adjacent_vertices(vertex_[static_cast<std::size_t>(site)],
+  std::vector<Triangulation::Vertex_handle> adjacent;
+  triangulation_.finite_adjacent_vertices(handle_[static_cast<std::size_t>(site)],
                                           std::back_inserter(adjacent));
-  for (const VertexHandle& vertex : adjacent) found.push_back(vertex->info());
+  for (const auto& vertex : adjacent) {
+    found.push_back(image_[static_cast<std::size_t>(vertex->info().value)]);
+  }
 }
 
 }  // namespace shearcell

@@ -29,7 +29,7 @@ Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd
   for (std::int32_t i = 0; i < count; ++i) {
     double largest = 0;
     std::int32_t contacts = 0;
-    const auto touch = [&](std::int32_t j, const Eigen::Vector3d&, double distance2, std::int64_t) {
+    const auto touch = [&](std::int32_t j, const Eigen::Vector3d&, double distance2) {
       if (j == i) return;
       const double overlap = 1 - std::sqrt(distance2);
       largest = std::max(largest, overlap);
@@ -39,7 +39,7 @@ Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd
         ++result.pairs;
       }
     };
-    grid.visit_within(grid.sites().col(i), 0, 1, touch);
+    grid.visit_within(grid.sites().col(i), 1, touch);
     result.largest[static_cast<std::size_t>(i)] = largest;
     result.contacts[static_cast<std::size_t>(i)] = contacts;
   }

@@ -18,16 +18,20 @@ namespace shearcell {
 namespace {
 
 constexpr const char* style =
-    "set terminal svg size 560,420 enhanced font 'Helvetica,15' background '#ffffff'\n"
+    "set terminal svg size 600,430 enhanced font 'Helvetica,14' background '#ffffff'\n"
     "set encoding utf8\n"
     "set datafile separator ','\n"
-    "set border lw 1.2\n"
-    "set xtics in mirror\n"
-    "set ytics in mirror\n"
+    "set border 15 lw 1.2\n"
+    "set xtics in mirror scale 0.9,0.5\n"
+    "set ytics in mirror scale 0.9,0.5\n"
     "set mxtics 2\n"
     "set mytics 2\n"
-    "set key noautotitle Left reverse samplen 1.5 spacing 1.2\n"
-    "set bars 0.6\n";
+    // Ranges end a little outside the data, not at the next tick, so that no point or bar is cut.
+    "set autoscale noextend\n"
+    "set offsets graph 0.03, graph 0.03, graph 0.05, graph 0.05\n"
+    // Above the frame, the one place where no data can be.
+    "set key above horizontal center noautotitle Left reverse samplen 1.5 width 2\n"
+    "set bars 0.5\n";
 
 // Without data there is nothing that gnuplot could draw; the axes still say what is missing.
 constexpr const char* empty_plot =

@@ -8,7 +8,7 @@
 namespace shearcell {
 namespace {
 
-// Two boxes per spacing: a search of 1.75 spacings then looks at few sites outside its sphere.
+// Boxes a little smaller than the spacing: a search then looks at few sites outside its sphere.
 constexpr double boxes_per_spacing = 1.15;
 // Sites in a large, nearly empty region must not cost memory without bound.
 constexpr double boxes_per_axis_limit = 400;

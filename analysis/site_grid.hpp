@@ -20,11 +20,11 @@ class SiteGrid {
 
   const Eigen::Matrix3Xd& sites() const { return sites_; }
 
-  /// Calls visit(site, offset, distance squared, image) for every periodic image of every site with
-  /// inner <= distance < outer of `point`, where offset = image position - point and `image` counts
-  /// whole periods in z. A site that lies at `point` itself is visited too. In a fixed order.
+  /// Calls visit(site, offset, distance squared) for every periodic image of every site nearer to
+  /// `point` than `reach`, where offset = image position - point. A site that lies at `point`
+  /// itself is visited too. In a fixed order.
   template <typename Visit>
-  void visit_within(const Eigen::Vector3d& point, double inner, double outer, Visit&& visit) const;
+  void visit_within(const Eigen::Vector3d& point, double reach, Visit&& visit) const;
 
  private:
   std::int64_t box_x(double x) const { return clamped((x - low_.x()) / edge_.x(), count_x_); }
@@ -50,17 +50,15 @@ class SiteGrid {
 };
 
 template <typename Visit>
-void SiteGrid::visit_within(const Eigen::Vector3d& point, double inner, double outer,
-                            Visit&& visit) const {
-  const double inner2 = inner * inner;
-  const double outer2 = outer * outer;
-  const double reach = outer * (1 + 1e-9);  // so that rounding at a box's edge loses no site
-  const std::int64_t x0 = box_x(point.x() - reach);
-  const std::int64_t x1 = box_x(point.x() + reach);
-  const std::int64_t y0 = box_y(point.y() - reach);
-  const std::int64_t y1 = box_y(point.y() + reach);
-  const auto z0 = static_cast<std::int64_t>(std::floor((point.z() - reach) / edge_.z()));
-  const auto z1 = static_cast<std::int64_t>(std::floor((point.z() + reach) / edge_.z()));
+void SiteGrid::visit_within(const Eigen::Vector3d& point, double reach, Visit&& visit) const {
+  const double reach2 = reach * reach;
+  const double outer = reach * (1 + 1e-9);  // so that rounding at a box's edge loses no site
+  const std::int64_t x0 = box_x(point.x() - outer);
+  const std::int64_t x1 = box_x(point.x() + outer);
+  const std::int64_t y0 = box_y(point.y() - outer);
+  const std::int64_t y1 = box_y(point.y() + outer);
+  const auto z0 = static_cast<std::int64_t>(std::floor((point.z() - outer) / edge_.z()));
+  const auto z1 = static_cast<std::int64_t>(std::floor((point.z() + outer) / edge_.z()));
   std::int64_t image = z0 >= 0 ? z0 / count_z_ : -((count_z_ - 1 - z0) / count_z_);
   std::int64_t row_z = z0 - image * count_z_;
   for (std::int64_t kz = z0; kz <= z1; ++kz) {
@@ -73,7 +71,7 @@ void SiteGrid::visit_within(const Eigen::Vector3d& point, double inner, double o
         const Eigen::Vector3d offset(entry.x - point.x(), entry.y - point.y(),
                                      (entry.z - point.z()) + shift);
         const double distance2 = offset.squaredNorm();
-        if (distance2 < outer2 && distance2 >= inner2) visit(entry.site, offset, distance2, image);
+        if (distance2 < reach2) visit(entry.site, offset, distance2);
       }
     }
     if (++row_z == count_z_) {

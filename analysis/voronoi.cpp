@@ -16,7 +16,7 @@ namespace {
 
 constexpr double smallest_face = 1e-13;  // [d^2]
 // Beyond this no image bears on a cell of a dense packing; a second pass serves all others.
-constexpr double first_margin_spacings = 1.6;
+constexpr double first_margin_spacings = 2.1;
 
 constexpr std::array<const char*, 4> side_names = {"left", "right", "bottom", "top"};
 
@@ -46,6 +46,7 @@ class Dual {
   VoronoiDiagram measure_all(WallGrainCells wall_grain_cells);
   double spacing() const;
   void note_reach(double z, double radius);
+  bool may_be_corner(const Eigen::Vector3d& centre) const;
   void find_bulk();
   void collect_sides();
   std::array<HalfSpace, 6> box_around(const Eigen::Vector3d& point) const;
@@ -60,7 +61,7 @@ class Dual {
   std::int32_t grains_;
   Delaunay delaunay_;
   double reach_ = 0;                // of all spheres around corners, beyond the period in z [d]
-  std::vector<std::uint8_t> bulk_;  // by site: a grain whose cell has all corners inside the walls
+  std::vector<std::uint8_t> bulk_;  // by site: a grain whose cell meets no wall plane
   std::vector<std::size_t> first_;  // by grain, n + 1 entries: its sides are first_[i] ..
   std::vector<Side> sides_;         // of grains in the bulk
 
@@ -79,19 +80,27 @@ void Dual::note_reach(double z, double radius) {
   reach_ = std::max({reach_, z + radius - cell_.depth, radius - z});
 }
 
+/// Inside the walls, and no farther out in z than a grain's own images leave room for. Where a wide
+/// gap has too few images yet, spheres may be centred anywhere.
+bool Dual::may_be_corner(const Eigen::Vector3d& centre) const {
+  return std::abs(centre.z() - cell_.depth / 2) <= cell_.depth &&
+         wall_distances(cell_, pose_, centre).minCoeff() >= 0;
+}
+
 void Dual::find_bulk() {
   bulk_.assign(static_cast<std::size_t>(sites_.cols()), 0);
-  if (delaunay_.solid()) std::fill_n(bulk_.begin(), grains_, std::uint8_t{1});
-  delaunay_.visit_tetrahedra(
-      [&](const std::array<std::int32_t, 4>& vertices, const Sphere* sphere) {
-        if (sphere != nullptr && wall_distances(cell_, pose_, sphere->centre).minCoeff() >= 0) {
-          note_reach(sphere->centre.z(), std::sqrt(sphere->radius_squared));
-          return;
-        }
-        for (const std::int32_t site : vertices) {
-          if (site >= 0) bulk_[static_cast<std::size_t>(site)] = 0;
-        }
-      });
+  if (!delaunay_.tetrahedra().empty()) std::fill_n(bulk_.begin(), grains_, std::uint8_t{1});
+  const auto is_grain = [&](std::int32_t vertex) { return vertex >= 0 && vertex < grains_; };
+  for (const Tetrahedron& t : delaunay_.tetrahedra()) {
+    if (std::none_of(t.vertex.begin(), t.vertex.end(), is_grain)) continue;
+    if (t.bounded() && may_be_corner(t.centre)) {
+      note_reach(t.centre.z(), (t.centre - delaunay_.point(t.vertex[0])).norm());
+      continue;
+    }
+    for (const std::int32_t vertex : t.vertex) {
+      if (is_grain(vertex)) bulk_[static_cast<std::size_t>(vertex)] = 0;
+    }
+  }
 }
 
 void Dual::collect_sides() {
@@ -119,7 +128,7 @@ void Dual::collect_sides() {
 
 VoronoiFace Dual::face_to(std::int32_t site, SiteImage other, double area) const {
   const bool grain = other.site < grains_;
-  return {delaunay_.offset({site, 0}, other), area, grain ? other.site : other.site - grains_,
+  return {delaunay_.offset(site, other), area, grain ? other.site : other.site - grains_,
           grain ? NeighbourKind::grain : NeighbourKind::wall_grain};
 }
 
@@ -161,7 +170,7 @@ double Dual::clip(std::int32_t site) {
   // Near ones first, so that few cuts are made in vain; and an order that leaves no choice.
   std::vector<std::tuple<double, std::int32_t, std::int32_t>> ranks;
   for (const SiteImage& other : neighbours_) {
-    ranks.emplace_back(delaunay_.offset({site, 0}, other).squaredNorm(), other.site, other.image);
+    ranks.emplace_back(delaunay_.offset(site, other).squaredNorm(), other.site, other.image);
   }
   std::sort(ranks.begin(), ranks.end());
 
@@ -170,7 +179,7 @@ double Dual::clip(std::int32_t site) {
   for (const auto& [distance2, other, image] : ranks) {
     if (distance2 < same_place * same_place) throw_same_place(site, other, grains_);
     if (other == site && std::abs(image) == 1) continue;  // a plane of the box already
-    if (polyhedron_.clip(bisector_to(delaunay_.offset({site, 0}, {other, image})))) {
+    if (polyhedron_.clip(bisector_to(delaunay_.offset(site, {other, image})))) {
       plane_site_.push_back({other, image});
     }
   }

@@ -61,14 +61,15 @@ struct StepTask {
 /// Contacts of the grains near one wall with its plane and its wall grains.
 struct WallTask {
   const double* rows = nullptr;
-  const std::int32_t* members = nullptr;  ///< row offsets of grains near this wall, ascending id,
-                                          ///< padded to whole blocks
-  std::size_t count = 0;                  ///< members without the padding
-  const double* wall_rows = nullptr;      ///< wall grains
-  NeighbourRows neighbours;               ///< member -> wall grains
-  double point[2] = {}, normal[2] = {};   ///< the plane, and its normal into the cell
+  const std::int32_t* members =
+      nullptr;                           ///< row offsets of grains near this wall, padded to blocks
+  std::size_t count = 0;                 ///< members without the padding
+  const std::uint8_t* first = nullptr;   ///< 1 where no wall before this one has the grain
+  const double* wall_rows = nullptr;     ///< wall grains
+  NeighbourRows neighbours;              ///< member -> wall grains
+  double point[2] = {}, normal[2] = {};  ///< the plane, and its normal into the cell
   double depth = 0, per_depth = 0;
-  double* wall_sum[3] = {};  ///< added to, per grain
+  double* wall_sum[3] = {};  ///< per grain: set by its first wall, added to by the next
   double* push = nullptr;    ///< y component of each member's sum, or null
 };
 
@@ -105,6 +106,7 @@ struct PruneTask {
   const std::uint16_t* outer_count = nullptr;  ///< per grain
   std::int32_t* inner = nullptr;               ///< laid out as NeighbourRows
   std::size_t inner_stride = 0;
+  std::uint16_t* inner_count = nullptr;  ///< per grain and spare lane
   std::uint16_t* slots = nullptr;
   std::uint8_t* seam = nullptr;
   std::int32_t padding = 0;

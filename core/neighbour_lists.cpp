@@ -97,6 +97,8 @@ void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPos
   task.outer = outer_.data();
   task.outer_stride = outer_stride_;
   task.outer_count = outer_count_.data();
+  inner_count_.resize(padded(grains));
+  task.inner_count = inner_count_.data();
   task.slots = slots_.data();
   task.seam = seam_.data();
   task.padding = padding_offset(grains);
@@ -112,7 +114,7 @@ void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPos
 }
 
 std::size_t NeighbourLists::bytes() const {
-  return 4 * (outer_.size() + inner_.size() + offset_of_id_.size()) + 2 * outer_count_.size() +
+  return 4 * (outer_.size() + inner_.size() + offset_of_id_.size()) + 4 * outer_count_.size() +
          3 * slots_.size() + 6 * 8 * outer_count_.size();
 }
 

@@ -61,6 +61,8 @@ class NeighbourLists {
   void prune(const double* rows, std::size_t grains, const WallPose& pose);
 
   NeighbourRows rows() const { return {inner_.data(), inner_stride_, slots_.data(), seam_.data()}; }
+  /// Length of each grain's inner list when it was last pruned; empty before that.
+  const std::vector<std::uint16_t>& inner_count() const { return inner_count_; }
   const Reference& reference() const { return inner_reference_; }
   std::size_t bytes() const;
 
@@ -72,7 +74,7 @@ class NeighbourLists {
   std::size_t outer_stride_ = 32, inner_stride_ = 16;
   AlignedVector<std::int32_t> outer_, inner_;
   std::vector<std::int32_t> offset_of_id_;
-  std::vector<std::uint16_t> outer_count_, slots_;
+  std::vector<std::uint16_t> outer_count_, inner_count_, slots_;
   std::vector<std::uint8_t> seam_;
 };
 

@@ -76,9 +76,10 @@ void walls(const WallTask& t) {
     add_contacts(sum, own, t.wall_rows, t.neighbours.list + m * t.neighbours.stride,
                  t.neighbours.slots[m], t.depth, t.per_depth);
     const std::size_t g = static_cast<std::size_t>(t.members[m]) / 4;
-    t.wall_sum[0][g] += sum.x;
-    t.wall_sum[1][g] += sum.y;
-    t.wall_sum[2][g] += sum.z;
+    const bool first = t.first[m] != 0;
+    t.wall_sum[0][g] = (first ? 0.0 : t.wall_sum[0][g]) + sum.x;
+    t.wall_sum[1][g] = (first ? 0.0 : t.wall_sum[1][g]) + sum.y;
+    t.wall_sum[2][g] = (first ? 0.0 : t.wall_sum[2][g]) + sum.z;
     if (t.push != nullptr) t.push[m] = sum.y;
   }
 }
@@ -129,7 +130,7 @@ bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
       if (kept == t.inner_stride) return false;
       inner[kept++] = offset;
     }
-    t.slots[g] = static_cast<std::uint16_t>(kept);
+    t.slots[g] = t.inner_count[g] = static_cast<std::uint16_t>(kept);
     t.seam[g] = 1;
   }
   return true;

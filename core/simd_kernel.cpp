@@ -86,26 +86,24 @@ HWY_INLINE void store_rows(const Vectors& v, double* HWY_RESTRICT rows) {
 #endif
 }
 
-// contact_factor(s), 0 where s <= 0.
+// contact_factor(s) for s >= 0; kDeep: for s beyond the series too.
+template <bool kDeep>
 HWY_INLINE V contact_factors(V s) {
   const auto& c = kContactSeries;
   const V s2 = hn::Mul(s, s);
-  V even = hn::Set(kD, c[8]);
   V odd = hn::Set(kD, c[7]);
-  even = hn::MulAdd(even, s2, hn::Set(kD, c[6]));
+  V even = hn::Set(kD, c[6]);
   odd = hn::MulAdd(odd, s2, hn::Set(kD, c[5]));
   even = hn::MulAdd(even, s2, hn::Set(kD, c[4]));
   odd = hn::MulAdd(odd, s2, hn::Set(kD, c[3]));
   even = hn::MulAdd(even, s2, hn::Set(kD, c[2]));
   odd = hn::MulAdd(odd, s2, hn::Set(kD, c[1]));
   even = hn::MulAdd(even, s2, hn::Set(kD, c[0]));
-  V factor = hn::Mul(s, hn::MulAdd(odd, s, even));
-  const auto deep = hn::Gt(s, hn::Set(kD, kSeriesEnd));
-  if (HWY_UNLIKELY(!hn::AllFalse(kD, deep))) {
-    const V one = hn::Set(kD, 1.0);
-    factor = hn::IfThenElse(deep, hn::Sub(hn::Div(one, hn::Sqrt(hn::Sub(one, s))), one), factor);
-  }
-  return hn::IfThenElseZero(hn::Gt(s, hn::Zero(kD)), factor);
+  const V series = hn::Mul(s, hn::MulAdd(odd, s, even));
+  if constexpr (!kDeep) return series;
+  const V one = hn::Set(kD, 1.0);
+  const V exact = hn::Sub(hn::Div(one, hn::Sqrt(hn::Sub(one, s))), one);
+  return hn::IfThenElse(hn::Gt(s, hn::Set(kD, kSeriesEnd)), exact, series);
 }
 
 template <bool kSeam = true>
@@ -117,20 +115,39 @@ HWY_INLINE Vectors separation(const Vectors& own, const Vectors& other, V depth,
 }
 
 // Adds (1/r - 1) dr over the touching neighbours; lane l has its k-th at list[k * kLanes + l].
-template <bool kSeam>
-HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
-                             const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,
-                             V per_depth) {
+// Returns the largest s.
+template <bool kSeam, bool kDeep>
+HWY_INLINE V sum_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
+                          const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,
+                          V per_depth) {
+  V deepest = hn::Zero(kD);
   for (const std::int32_t* const end = list + slots * kLanes; list != end; list += kLanes) {
     const Vectors other =
         load_rows(rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{list[lane]}; });
     const Vectors dr = separation<kSeam>(own, other, depth, per_depth);
-    const V s = hn::NegMulAdd(
-        dr.z, dr.z, hn::NegMulAdd(dr.y, dr.y, hn::NegMulAdd(dr.x, dr.x, hn::Set(kD, 1.0))));
-    const V factor = contact_factors(s);
+    V s = hn::NegMulAdd(dr.z, dr.z,
+                        hn::NegMulAdd(dr.y, dr.y, hn::NegMulAdd(dr.x, dr.x, hn::Set(kD, 1.0))));
+    s = hn::Max(s, hn::Zero(kD));  // not touching: the factor is 0
+    if constexpr (!kDeep) deepest = hn::Max(deepest, s);
+    const V factor = contact_factors<kDeep>(s);
     sum.x = hn::MulAdd(factor, dr.x, sum.x);
     sum.y = hn::MulAdd(factor, dr.y, sum.y);
     sum.z = hn::MulAdd(factor, dr.z, sum.z);
+  }
+  return deepest;
+}
+
+// Overlaps beyond the series are rare: a block that has one is summed again, from its beginning.
+template <bool kSeam>
+HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
+                             const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,
+                             V per_depth) {
+  Vectors series = sum;
+  const V deepest = sum_contacts<kSeam, false>(series, own, rows, list, slots, depth, per_depth);
+  if (HWY_LIKELY(hn::AllFalse(kD, hn::Gt(deepest, hn::Set(kD, kSeriesEnd))))) {
+    sum = series;
+  } else {
+    sum_contacts<kSeam, true>(sum, own, rows, list, slots, depth, per_depth);
   }
 }
 
@@ -205,10 +222,27 @@ void walls(const WallTask& t) {
     hn::Store(sum.z, kD, lanes[2]);
     for (std::size_t l = 0; l < kLanes && m + l < t.count; ++l) {
       const std::size_t g = static_cast<std::size_t>(members[l]) / 4;
-      for (std::size_t axis = 0; axis < 3; ++axis) t.wall_sum[axis][g] += lanes[axis][l];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        double& wall_sum = t.wall_sum[axis][g];
+        wall_sum = (t.first[m + l] != 0 ? 0.0 : wall_sum) + lanes[axis][l];
+      }
       if (t.push != nullptr) t.push[m + l] = lanes[1][l];
     }
   }
+}
+
+using Offsets = hn::Rebind<std::int32_t, D>;
+constexpr Offsets kOffsets{};
+
+// Stores the lanes of `values` whose grains `mask` selects, one after the other, and anything
+// behind them up to a whole vector. Returns how many. (Compressing doubles, Highway 1.0 copies a
+// table of 16 kB on every call.)
+HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
+                                      std::int32_t* HWY_RESTRICT to) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(kD, mask, bits);
+  hn::StoreU(hn::Compress(values, hn::LoadMaskBits(kOffsets, bits)), kOffsets, to);
+  return hn::CountTrue(kD, mask);
 }
 
 // Ascending order by rank: how many keys are smaller is counted a vector at a time.
@@ -237,7 +271,6 @@ std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
   const V depth = hn::Set(kD, t.depth);
   const V per_depth = hn::Set(kD, t.per_depth);
   const V cutoff = hn::Set(kD, t.cutoff_squared);
-  const hn::Rebind<std::int32_t, D> d32;
   std::int32_t found[kMostNeighbours + 64];
   std::size_t most = 0;
   for (std::size_t place = first; place < last; ++place) {
@@ -256,12 +289,12 @@ std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
                             hn::LoadU(kD, t.grid.position[2] + p)};
         const Vectors dr = separation(own, other, depth, per_depth);
         const V square = hn::MulAdd(dr.x, dr.x, hn::MulAdd(dr.y, dr.y, hn::Mul(dr.z, dr.z)));
-        // Through doubles, which hold every id exactly.
-        const V ids = hn::PromoteTo(kD, hn::LoadU(d32, t.grid.id + p));
-        const auto near = hn::And(hn::And(hn::Lt(square, cutoff), hn::Ne(ids, own_id)),
-                                  hn::FirstN(kD, runs[r].end - p));
-        hn::StoreU(hn::DemoteTo(d32, hn::Compress(ids, near)), d32, found + count);
-        count = std::min(count + hn::CountTrue(kD, near), kMostNeighbours);
+        const auto ids = hn::LoadU(kOffsets, t.grid.id + p);
+        // Compared as doubles, which hold every id exactly and whose mask fits.
+        const auto near =
+            hn::And(hn::And(hn::Lt(square, cutoff), hn::Ne(hn::PromoteTo(kD, ids), own_id)),
+                    hn::FirstN(kD, runs[r].end - p));
+        count = std::min(count + store_selected(ids, near, found + count), kMostNeighbours);
       }
     }
     most = std::max(most, count);
@@ -282,7 +315,6 @@ HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g, std::int32_t
   const V depth = hn::Set(kD, t.depth);
   const V per_depth = hn::Set(kD, t.per_depth);
   const V cutoff = hn::Set(kD, t.cutoff_squared);
-  const hn::Rebind<std::int32_t, D> d32;
   const double* own_row = t.rows + 4 * g;
   const Vectors own{hn::Set(kD, own_row[0]), hn::Set(kD, own_row[1]), hn::Set(kD, own_row[2])};
   const std::int32_t* HWY_RESTRICT outer = t.outer + g * t.outer_stride;
@@ -290,33 +322,41 @@ HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g, std::int32_t
   for (std::size_t k = 0; k < t.outer_count[g]; k += kLanes) {
     const Vectors other = load_rows(
         t.rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{outer[k + lane]}; });
-    const V image = hn::Round(hn::Mul(hn::Sub(own.z, other.z), per_depth));
-    const Vectors dr = separation(own, other, depth, per_depth);
-    const V square = hn::MulAdd(dr.x, dr.x, hn::MulAdd(dr.y, dr.y, hn::Mul(dr.z, dr.z)));
+    const V dz = hn::Sub(own.z, other.z);
+    const V image = hn::Round(hn::Mul(dz, per_depth));
+    const V z = hn::NegMulAdd(image, depth, dz);
+    const V x = hn::Sub(own.x, other.x);
+    const V y = hn::Sub(own.y, other.y);
+    const V square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
     const auto near = hn::Lt(square, cutoff);
     seam = hn::Or(seam, hn::And(near, hn::Ne(image, hn::Zero(kD))));
-    const V offsets = hn::PromoteTo(kD, hn::LoadU(d32, outer + k));
-    hn::StoreU(hn::DemoteTo(d32, hn::Compress(offsets, near)), d32, kept + count);
-    count += hn::CountTrue(kD, near);
+    count += store_selected(hn::LoadU(kOffsets, outer + k), near, kept + count);
   }
   return count;
 }
 
 bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
-  std::int32_t kept[kMostNeighbours + 64];
+  std::int32_t rows[kLanes][kMostNeighbours + 64];
+  const auto padding = hn::Set(kOffsets, t.padding);
   for (std::size_t block = first; block < last; ++block) {
-    std::int32_t* HWY_RESTRICT inner = t.inner + block * t.inner_stride * kLanes;
-    std::size_t counts[kLanes] = {};
+    std::size_t count[kLanes];
     std::size_t most = 0;
     auto seam = hn::FirstN(kD, 0);
-    for (std::size_t l = 0; l < kLanes && block * kLanes + l < t.grains; ++l) {
-      counts[l] = prune_row(t, block * kLanes + l, kept, seam);
-      if (counts[l] > t.inner_stride) return false;
-      for (std::size_t k = 0; k < counts[l]; ++k) inner[k * kLanes + l] = kept[k];
-      most = std::max(most, counts[l]);
-    }
     for (std::size_t l = 0; l < kLanes; ++l) {
-      for (std::size_t k = counts[l]; k < most; ++k) inner[k * kLanes + l] = t.padding;
+      const std::size_t g = block * kLanes + l;
+      count[l] = g < t.grains ? prune_row(t, g, rows[l], seam) : 0;
+      most = std::max(most, count[l]);
+    }
+    if (most > t.inner_stride) return false;
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      t.inner_count[block * kLanes + l] = static_cast<std::uint16_t>(count[l]);
+      for (std::size_t k = count[l]; k < most; k += kLanes) {
+        hn::StoreU(padding, kOffsets, rows[l] + k);
+      }
+    }
+    std::int32_t* HWY_RESTRICT inner = t.inner + block * t.inner_stride * kLanes;
+    for (std::size_t k = 0; k < most; ++k) {
+      for (std::size_t l = 0; l < kLanes; ++l) inner[k * kLanes + l] = rows[l][k];
     }
     t.slots[block] = static_cast<std::uint16_t>(most);
     t.seam[block] = hn::AllFalse(kD, seam) ? 0 : 1;

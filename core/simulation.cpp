@@ -11,9 +11,6 @@
 namespace shearcell {
 namespace {
 
-// Outer builds between two sorts of the memory: grains diffuse slowly.
-constexpr std::uint64_t kBuildsPerSort = 64;
-
 // Steps between two looks of the watchdog, which cost less than two steps each.
 constexpr std::uint64_t kWatchInterval = 1024;
 
@@ -168,10 +165,7 @@ void Simulation::refresh_lists() {
 void Simulation::rebuild_lists() {
   const double cutoff = settings_.lists.outer_cutoff;
   order_.build(cell_, pose_, cutoff, rows_[0].data(), id_);
-  if (settings_.lists.sort_memory && counts_.builds % kBuildsPerSort == 0) {
-    sort_memory(order_.grain());
-    order_.build(cell_, pose_, cutoff, rows_[0].data(), id_);
-  }
+  if (settings_.lists.sort_memory) sort_memory();
   lists_.build(rows_[0].data(), id_, order_, pose_);
   walls_.build(rows_[0].data(), id_, pose_, cutoff);
   ++counts_.builds;
@@ -185,15 +179,31 @@ void Simulation::prune_lists() {
   ++counts_.prunes;
 }
 
-void Simulation::sort_memory(const std::vector<std::int32_t>& order) {
+// Near in space is near in memory, and within a stretch of memory the grains with equally many
+// neighbours share a vector, whose lanes all wait for the longest list.
+void Simulation::sort_memory() {
+  constexpr std::size_t kStretch = 64;
+  std::vector<std::int32_t> from = order_.grain();
+  const std::vector<std::uint16_t>& neighbours = lists_.inner_count();
+  if (!neighbours.empty()) {
+    for (std::size_t first = 0; first < from.size(); first += kStretch) {
+      const std::size_t last = std::min(first + kStretch, from.size());
+      std::stable_sort(from.begin() + static_cast<std::ptrdiff_t>(first),
+                       from.begin() + static_cast<std::ptrdiff_t>(last),
+                       [&](std::int32_t a, std::int32_t b) {
+                         return neighbours[static_cast<std::size_t>(a)] <
+                                neighbours[static_cast<std::size_t>(b)];
+                       });
+    }
+  }
   const auto old_id = id_;
   const auto old_velocity = velocity_;
   for (std::size_t g = 0; g < id_.size(); ++g) {
-    const auto from = static_cast<std::size_t>(order[g]);
-    id_[g] = old_id[from];
+    const auto old = static_cast<std::size_t>(from[g]);
+    id_[g] = old_id[old];
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      rows_[1][4 * g + axis] = rows_[0][4 * from + axis];
-      velocity_[axis][g] = old_velocity[axis][from];
+      rows_[1][4 * g + axis] = rows_[0][4 * old + axis];
+      velocity_[axis][g] = old_velocity[axis][old];
     }
   }
   std::swap(rows_[0], rows_[1]);

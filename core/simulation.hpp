@@ -68,7 +68,7 @@ class Simulation {
   void rebuild_lists();
   void refresh_lists();
   void prune_lists();
-  void sort_memory(const std::vector<std::int32_t>& order);
+  void sort_memory();
   void step_once(const Drive& drive);
   void move_wall(double push);
   void watch() const;

@@ -126,58 +126,65 @@ void WallContacts::find_near(Side& side, const double* rows, double cutoff, cons
 
 void WallContacts::prune(const double* rows, const WallPose& pose, double cutoff) {
   place(pose);
+  seen_.assign(static_cast<std::size_t>(nowhere_ / 4), 0);
   for (Side& side : sides_) prune_side(side, rows, cutoff);
 }
 
 void WallContacts::prune_side(Side& side, const double* rows, double cutoff) {
-  const std::size_t lanes = kernels_.lanes;
-  const auto nothing = static_cast<std::int32_t>(4 * side.grains.size());
-  side.members.clear();
-  side.list.clear();
-  side.slots.clear();
+  touches_.clear();
+  touched_.clear();
   std::size_t first = 0;
   for (std::size_t c = 0; c < side.candidates.size(); ++c) {
     const double* own = rows + side.candidates[c];
-    const std::size_t m = side.members.size();
-    const std::size_t block = m / lanes * side.stride * lanes;
-    const auto touch = [&](std::size_t k) -> std::int32_t& {
-      return side.list[block + k * lanes + m % lanes];
-    };
-    if (m % lanes == 0) {
-      side.list.resize(block + side.stride * lanes, nothing);
-      side.slots.resize(m / lanes + 1, 0);
-    }
-    std::size_t count = 0;
+    const std::size_t begin = touched_.size();
     for (std::size_t n = first; n < side.near_end[c]; ++n) {
-      if (!(square_distance(own, side.rows.data() + side.near[n], cell_.depth) < cutoff * cutoff)) {
-        continue;
+      const double* wall = side.rows.data() + side.near[n];
+      if (square_distance(own, wall, cell_.depth) < cutoff * cutoff) {
+        touched_.push_back(side.near[n]);
       }
-      if (count == side.stride) {  // start again with room for more
-        side.stride *= 2;
-        prune_side(side, rows, cutoff);
-        return;
-      }
-      touch(count++) = side.near[n];
     }
     first = side.near_end[c];
-    if (count == 0 && !(distance_to(side.point, side.normal, own) < cutoff - 0.5)) continue;
-    side.slots[m / lanes] = std::max(side.slots[m / lanes], static_cast<std::uint16_t>(count));
-    side.members.push_back(side.candidates[c]);
+    if (begin < touched_.size() || distance_to(side.point, side.normal, own) < cutoff - 0.5) {
+      touches_.push_back({side.candidates[c], touches_.size(), begin, touched_.size()});
+    }
   }
-  side.count = side.members.size();
-  side.members.resize(padded(side.count), nowhere_);
+  // Members with equally many wall grains share a vector, whose lanes wait for the longest list.
+  std::stable_sort(touches_.begin(), touches_.end(), [](const Touch& a, const Touch& b) {
+    return a.end - a.begin < b.end - b.begin;
+  });
+  write_lists(side);
+}
+
+void WallContacts::write_lists(Side& side) {
+  const std::size_t lanes = kernels_.lanes;
+  side.count = touches_.size();
+  side.members.assign(padded(side.count), nowhere_);
+  side.first.resize(side.count);
   side.push.assign(side.count, 0.0);
+  side.by_id.resize(side.count);
+  side.slots.assign(side.members.size() / lanes, 0);
+  if (!touches_.empty()) {
+    side.stride = std::max<std::size_t>(1, touches_.back().end - touches_.back().begin);
+  }
+  side.list.assign(side.members.size() * side.stride,
+                   static_cast<std::int32_t>(4 * side.grains.size()));
+  for (std::size_t m = 0; m < side.count; ++m) {
+    const Touch& touch = touches_[m];
+    side.members[m] = touch.grain;
+    side.by_id[touch.rank] = m;
+    std::uint8_t& seen = seen_[static_cast<std::size_t>(touch.grain / 4)];
+    side.first[m] = seen == 0 ? 1 : 0;
+    seen = 1;
+    std::int32_t* list = side.list.data() + m / lanes * side.stride * lanes + m % lanes;
+    for (std::size_t n = touch.begin; n < touch.end; ++n, list += lanes) *list = touched_[n];
+    std::uint16_t& slots = side.slots[m / lanes];
+    slots = std::max(slots, static_cast<std::uint16_t>(touch.end - touch.begin));
+  }
 }
 
 double WallContacts::evaluate(const double* rows, const WallPose& pose,
                               std::array<AlignedVector<double>, 3>& wall_sum) {
   place(pose);
-  for (const Side& side : sides_) {
-    for (std::size_t m = 0; m < side.count; ++m) {
-      const auto g = static_cast<std::size_t>(side.members[m]) / 4;
-      for (auto& axis : wall_sum) axis[g] = 0;
-    }
-  }
   const std::size_t moving = cell_.moving == MovingWall::bottom ? 2 : 3;
   for (std::size_t w = 0; w < sides_.size(); ++w) {
     Side& side = sides_[w];
@@ -186,6 +193,7 @@ double WallContacts::evaluate(const double* rows, const WallPose& pose,
     task.rows = rows;
     task.members = side.members.data();
     task.count = side.count;
+    task.first = side.first.data();
     task.wall_rows = side.rows.data();
     task.neighbours = {side.list.data(), side.stride, side.slots.data()};
     for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -199,7 +207,7 @@ double WallContacts::evaluate(const double* rows, const WallPose& pose,
     kernels_.walls(task);
   }
   double push = 0;
-  for (std::size_t m = 0; m < sides_[moving].count; ++m) push += sides_[moving].push[m];
+  for (const std::size_t m : sides_[moving].by_id) push += sides_[moving].push[m];
   return push;
 }
 

@@ -46,21 +46,32 @@ class WallContacts {
     std::vector<std::size_t> near_end;     // end of each candidate's part of `near`
     AlignedVector<std::int32_t> members;   // padded to whole blocks
     std::size_t count = 0;                 // members without padding
+    std::vector<std::uint8_t> first;       // whether it is the first wall of each member
     AlignedVector<std::int32_t> list;
     std::vector<std::uint16_t> slots;
     std::size_t stride = 8;
     std::vector<double> push;
+    std::vector<std::size_t> by_id;  // members in ascending permanent id
   };
 
   void place(const WallPose& pose);
   void place_side(WallSide which, const WallPose& pose);
   void find_near(Side& side, const double* rows, double cutoff, const WallPose& pose);
   void prune_side(Side& side, const double* rows, double cutoff);
+  void write_lists(Side& side);
 
   const Kernels& kernels_;
   Cell cell_;
   std::int32_t nowhere_ = 0;  // offset of a row among the grains that nothing touches
   std::array<Side, 4> sides_;
+  std::vector<std::uint8_t> seen_;  // grains that a wall before has
+  // What is left of the candidates of one side while it is pruned.
+  struct Touch {
+    std::int32_t grain;
+    std::size_t rank, begin, end;  // rank in ascending id; part of touched_
+  };
+  std::vector<Touch> touches_;
+  std::vector<std::int32_t> touched_;
 };
 
 }  // namespace shearcell

@@ -86,9 +86,9 @@ std::string plot_curves(std::span<const Curve> curves, std::span<const CurveStyl
     const std::string errors = both ? fmt::format("{}:{}", columns.x_error, columns.y_error)
                                     : std::to_string(columns.y_error);
     text += k == 0 ? "plot " : ", \\\n     ";
-    text += fmt::format("data using {}:{} with {} lc rgb '{}' pt 0 notitle, \\\n     ", values,
-                        errors, both ? "xyerrorbars" : "yerrorbars", style.colour);
-    text += fmt::format("data using {} with linespoints lc rgb '{}' pt {} ps 0.7 title {}", values,
+    text += fmt::format("data using {}:{} with {} lc rgb '{}' lw 0.8 pt 0 notitle, \\\n     ",
+                        values, errors, both ? "xyerrorbars" : "yerrorbars", style.colour);
+    text += fmt::format("data using {} with linespoints lc rgb '{}' pt {} ps 0.6 title {}", values,
                         style.colour, style.point, literal(style.title));
   }
   return text.empty() ? text : text + "\n";

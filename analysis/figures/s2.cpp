@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Figure S2: the form of the drag force changes how fast the grains compact, not the curve of
 // crystallinity against packing fraction. Supplement B.3.
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "analysis/figures/curves.hpp"
@@ -15,14 +18,23 @@ const std::array<std::string, 2> variants = {"fluid=still", "fluid=cell"};
 
 // Red triangles and black squares, as in the supplement.
 const std::array<CurveStyle, 2> styles = {
-    CurveStyle{"fluid=still", "{/:Italic v}_{fluid} = 0", "#d62728", 9},
-    CurveStyle{"fluid=cell", "{/:Italic v}_{fluid} = {/:Italic v}_{cell}", "#000000", 5}};
+    CurveStyle{"fluid=still", "{/:Italic v}_{fluid}{/=14  = }0", "#d62728", 9},
+    CurveStyle{"fluid=cell", "{/:Italic v}_{fluid}{/=14  = }{/:Italic v}_{cell}", "#000000", 5}};
 
 RunStatistics over(const CurvePoint& point, double Measures::*quantity) {
   std::vector<double> values;
   values.reserve(point.runs.size());
   for (const Measures* measures : point.runs) values.push_back(measures->*quantity);
   return over_runs(values);
+}
+
+/// Short runs get a tick for every cycle and none between; gnuplot would halve them.
+std::string whole_cycle_tics(std::span<const Curve> curves) {
+  std::int64_t last = 0;
+  for (const Curve& curve : curves) {
+    if (!curve.points.empty()) last = std::max(last, curve.points.back().cycle);
+  }
+  return last <= 10 ? "set xtics 1\nunset mxtics\n" : "";
 }
 
 FigureTable phi_against_cycle(std::span<const Curve> curves) {
@@ -43,9 +55,8 @@ FigureTable phi_against_cycle(std::span<const Curve> curves) {
   }
   table.plot =
       "set xlabel 'shear cycle  {/:Italic n}'\n"
-      "set ylabel 'volume fraction  {/:Italic ϕ}'\n"
-      "set xrange [0:*]\n"
-      "set key bottom right\n" +
+      "set ylabel 'volume fraction  {/:Italic ϕ}'\n" +
+      whole_cycle_tics(curves) +
       plot_curves(curves, styles, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
   return table;
 }
@@ -72,9 +83,9 @@ FigureTable crystallinity_against_phi(std::span<const Curve> curves) {
   }
   table.plot =
       "set xlabel 'volume fraction  {/:Italic ϕ}'\n"
-      "set ylabel 'crystalline grains  [%]'\n"
+      "set ylabel 'percentage crystalline  [%]'\n"
       "set yrange [0:*]\n"
-      "set key top left\n" +
+      "set offsets graph 0.03, graph 0.03, graph 0.05, 0\n" +
       plot_curves(curves, styles, {.x = 3, .x_error = 4, .y = 5, .y_error = 6});
   return table;
 }

@@ -29,13 +29,12 @@ Eigen::Matrix3Xd forces(const Packing& p) {
       Eigen::Vector3d(c, -s, 0), Eigen::Vector3d(-c, s, 0), Eigen::Vector3d(0, 1, 0),
       Eigen::Vector3d(0, -1, 0)};
   for (Eigen::Index i = 0; i < p.grains.cols(); ++i) {
-    const auto push = [&](std::int32_t j, const Eigen::Vector3d& offset, double distance2,
-                          std::int64_t) {
+    const auto push = [&](std::int32_t j, const Eigen::Vector3d& offset, double distance2) {
       if (j == i) return;
       const double r = std::sqrt(distance2) + 1e-12;
       force.col(i) -= (1 - r) / r * offset;
     };
-    grid.visit_within(grid.sites().col(i), 0, 1, push);
+    grid.visit_within(grid.sites().col(i), 1, push);
     const Eigen::Vector4d distance = wall_distances(p.cell, p.pose, p.grains.col(i));
     for (int w = 0; w < 4; ++w) {
       if (distance[w] < 0.5) {

@@ -23,7 +23,6 @@ TEST(ConvexCell, CubeHasItsVolumeAndFaces) {
   std::vector<double> areas;
   EXPECT_DOUBLE_EQ(cell.measure(areas), 8);
   for (const double area : areas) EXPECT_DOUBLE_EQ(area, 4);
-  EXPECT_DOUBLE_EQ(cell.radius_squared(), 3);
 }
 
 TEST(ConvexCell, PlanesThatOnlyTouchDoNotCut) {

@@ -64,6 +64,19 @@ void expect_agrees_with_voro(const Packing& p) {
   EXPECT_LT(order, 1e-8);
 }
 
+/// Largest sum of area times outward normal over the faces of a cell: 0 for a closed surface.
+double worst_opening(const VoronoiDiagram& d) {
+  double worst = 0;
+  for (std::size_t i = 0; i < d.volume.size(); ++i) {
+    Eigen::Vector3d total = Eigen::Vector3d::Zero();
+    for (const VoronoiFace& face : d.faces_of(i)) {
+      total += face.area * face.to_neighbour.normalized();
+    }
+    worst = std::max(worst, total.norm());
+  }
+  return worst;
+}
+
 TEST(Voronoi, RandomPointsFillSmoothAndRoughCells) {
   for (const double theta : {0.0, 0.1, -0.1}) {
     for (const bool rough : {false, true}) {
@@ -82,7 +95,9 @@ TEST(Voronoi, JammedPackingsFillTheCellAndAgreeAcrossFaces) {
       SCOPED_TRACE("theta " + std::to_string(theta) + (rough ? " rough" : " smooth"));
       const Packing p = jammed(700, rough, theta, 5);
       expect_fills_the_cell(p);
-      EXPECT_LT(worst_reciprocity(voronoi(p.cell, p.pose, p.grains)), 1e-11);
+      const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains);
+      EXPECT_LT(worst_reciprocity(d), 1e-11);
+      EXPECT_LT(worst_opening(d), 1e-11);
     }
   }
 }
@@ -129,7 +144,9 @@ TEST(Voronoi, LatticesWhereManySitesShareOneSphere) {
       Packing p = lattice(kind, 4);
       jitter(p, amplitude, 17);
       expect_fills_the_cell(p);
-      EXPECT_LT(worst_reciprocity(voronoi(p.cell, p.pose, p.grains)), 1e-11);
+      const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains);
+      EXPECT_LT(worst_reciprocity(d), 1e-11);
+      EXPECT_LT(worst_opening(d), 1e-11);
     }
   }
 }
@@ -217,12 +234,33 @@ TEST(Voronoi, NamesBothGrainsAtOnePlace) {
   EXPECT_EQ(message_of(p), "grain 12 and grain 150 lie at the same place");
 }
 
+TEST(Voronoi, NamesGrainAndWallGrainAtOnePlace) {
+  Packing p = jammed(200, false, 0, 37);
+  p.cell.wall_grains.push_back({WallSide::left, p.grains.col(150) + Eigen::Vector3d(1e-13, 0, 0)});
+  EXPECT_EQ(message_of(p), "grain 150 and wall grain 0 lie at the same place");
+}
+
+// In a region without grains, cells see images from farther away than in a packing.
+TEST(Voronoi, AVoidAcrossThePeriodicBoundary) {
+  Packing p = empty_cell(9, 9, 9);
+  fill(p, 700, 0, 59);
+  for (Eigen::Index i = 0; i < p.grains.cols(); ++i) {
+    p.grains(2, i) = 3 + 3 * (p.grains(2, i) / p.cell.depth - std::floor(p.grains(2, i) / 9));
+  }
+  expect_fills_the_cell(p);
+  expect_agrees_with_voro(p);
+  EXPECT_LT(worst_reciprocity(voronoi(p.cell, p.pose, p.grains)), 1e-11);
+}
+
 TEST(Voronoi, NamesTheGrainOutside) {
   Packing p = jammed(200, false, 0.1, 41);
   p.grains(1, 33) = -0.25;
   EXPECT_EQ(message_of(p), "grain 33 lies outside the cell: 0.250000 d beyond the bottom wall");
   p.grains(1, 33) = std::nan("");
   EXPECT_EQ(message_of(p), "grain 33 has no finite position");
+  p.grains(1, 33) = 1;
+  p.cell.wall_grains.push_back({WallSide::left, {0, std::nan(""), 0}});
+  EXPECT_EQ(message_of(p), "a wall grain has no finite position");
   p.pose.bottom = p.pose.top;
   EXPECT_EQ(message_of(p), "the cell has no volume");
 }

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line's contract: exit codes, help, messages, and nothing written for bad input.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "tests/experiments/program.hpp"
+
+namespace shearcell::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kBad = fs::path(SHEARCELL_TEST_DATA) / "manifests" / "bad";
+const std::string kDrag =
+    (fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments" / "drag.yaml").string();
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class CommandLine : public ProgramTest {
+ protected:
+  void expect_usage_error(const Arguments& arguments, const std::string& says) {
+    const auto before = listing();
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_TRUE(contains(outcome.err, says)) << "said: " << outcome.err << "not: " << says;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(listing(), before) << "something was written";
+  }
+};
+
+TEST_F(CommandLine, EverySubcommandHasHelpWithAnExample) {
+  const Outcome all = run({"--help"});
+  EXPECT_EQ(all.code, 0);
+  EXPECT_TRUE(contains(all.out, "Exit codes"));
+  for (const char* command :
+       {"plan", "run", "resume", "status", "log", "show", "verify", "figures"}) {
+    EXPECT_TRUE(contains(all.out, std::string("  ") + command)) << command;
+    const Outcome help = run({command, "--help"});
+    EXPECT_EQ(help.code, 0) << command;
+    EXPECT_TRUE(contains(help.out, "Example")) << command;
+    EXPECT_TRUE(contains(help.out, "--store")) << command;
+    EXPECT_EQ(help.err, "") << command;
+  }
+  EXPECT_TRUE(listing().empty());
+}
+
+TEST_F(CommandLine, SaysItsVersion) {
+  const Outcome outcome = run({"--version"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_TRUE(outcome.out.starts_with("shearcell ")) << outcome.out;
+}
+
+TEST_F(CommandLine, RefusesWhatItDoesNotKnow) {
+  expect_usage_error({}, "subcommand");
+  expect_usage_error({"shake"}, "shake");
+  expect_usage_error({"run"}, "manifest");
+  expect_usage_error({"run", kDrag, "--colour"}, "--colour");
+  expect_usage_error({"run", kDrag, "--cycles", "-1"}, "cycles");
+  expect_usage_error({"run", kDrag, "--seeds", "0"}, "seeds");
+  expect_usage_error({"run", kDrag, "--jobs", "0"}, "jobs");
+  expect_usage_error({"run", kDrag, "--scale", "desc"}, "the nearest is desk");
+  expect_usage_error({"run", "nowhere.yaml"}, "nowhere.yaml");
+  for (const char* command : {"status", "resume", "log", "verify", "figures"}) {
+    expect_usage_error({command}, "there is no store here");
+  }
+}
+
+struct BadInput {
+  const char* file;
+  const char* says;
+};
+
+// The messages themselves are tested with the manifests; here, that they come out of the program.
+TEST_F(CommandLine, RefusesABadManifestBeforeItWritesAnything) {
+  for (const BadInput& bad :
+       {BadInput{"unknown_key", "The nearest is stiffness_N_per_m"},
+        BadInput{"text_for_number", "is not a number (got heavy)"},
+        BadInput{"missing_unit_mass", "is written without its unit. Write mass_kg"},
+        BadInput{"negative_mass", "is out of range (got -2e-5)"},
+        BadInput{"no_grains", "base.grains: is out of range (got 0)"},
+        BadInput{"empty_sweep", "sweeps nothing"},
+        BadInput{"time_step_over_limit", "is over the stability limit"},
+        BadInput{"no_yaml", "is not valid YAML"}, BadInput{"unclosed_bracket", "is not valid YAML"},
+        BadInput{"alias_bomb", "anchors and aliases are not read"}}) {
+    const std::string file = (kBad / bad.file).string() + ".yaml";
+    for (const char* command : {"run", "plan"}) {
+      SCOPED_TRACE(std::string(command) + " " + bad.file);
+      expect_usage_error({command, file}, bad.says);
+      expect_usage_error({command, file}, file + ":");  // file:line:column
+    }
+  }
+  expect_usage_error({"run", "."}, "is a directory");
+  // One bad manifest among good ones stops all of them.
+  expect_usage_error(
+      {"run", write("good.yaml", tiny_manifest()), (kBad / "negative_mass.yaml").string()},
+      "is out of range");
+}
+
+TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {
+  ASSERT_EQ(run({"run", write("m.yaml", tiny_manifest()), "--cycles", "0"}).code, 0);
+  expect_usage_error({"figures", "S99"}, "there is no figure S99");
+  expect_usage_error({"figures", "S2", "--scale", "paper"}, "no run of the store belongs");
+  expect_usage_error({"show", "0123456789abcdef"}, "no run");
+  expect_usage_error({"log", "zzz"}, "no run");
+  expect_usage_error({"resume", "zzz"}, "no run");
+}
+
+TEST_F(CommandLine, FindsARunByAUniqueBeginning) {
+  ASSERT_EQ(run({"run", write("m.yaml", tiny_manifest()), "--cycles", "0", "--seeds", "9"}).code,
+            0);
+  std::vector<std::string> ids;
+  const nlohmann::json status = json({"status", "--json"});
+  for (const auto& record : status.at("runs")) ids.push_back(record.at("id"));
+  ASSERT_EQ(ids.size(), 18U);  // more than there are hexadecimal digits: two begin alike
+  std::sort(ids.begin(), ids.end());
+  const auto twin = std::adjacent_find(ids.begin(), ids.end(),
+                                       [](const auto& a, const auto& b) { return a[0] == b[0]; });
+  ASSERT_NE(twin, ids.end());
+  const std::string ambiguous = twin->substr(0, 1);
+  for (const char* command : {"show", "log", "resume"}) {
+    expect_usage_error({command, ambiguous}, "several runs begin with");
+    expect_usage_error({command, ambiguous}, *twin);
+  }
+  const std::string prefix = twin->substr(0, 12);
+  EXPECT_EQ(json({"show", prefix, "--json"}).at("id"), *twin);
+  const nlohmann::json events = json({"log", prefix, "--json"}).at("events");
+  EXPECT_GE(events.size(), 4U);
+  for (const auto& event : events) EXPECT_EQ(event.at("stream"), "run/" + *twin);
+  EXPECT_EQ(run({"resume", prefix, "-q"}).code, 0);
+}
+
+TEST_F(CommandLine, PrintsFactsAsJson) {
+  const std::string manifest = write("m.yaml", tiny_manifest("", kBothFluids));
+  const nlohmann::json done = json({"run", manifest, "--cycles", "1", "--json", "-q"});
+  EXPECT_EQ(done.at("completed"), 3);
+
+  const nlohmann::json runs = json({"status", "--json"}).at("runs");
+  ASSERT_EQ(runs.size(), 3U);
+  for (const auto& record : runs) {
+    for (const char* key :
+         {"id", "experiment", "variant", "seed", "state", "cycle", "target_cycles", "N",
+          "wall_seconds", "particle_steps_per_second", "state_hash", "error"}) {
+      EXPECT_TRUE(record.contains(key)) << key;
+    }
+    EXPECT_EQ(record.at("experiment"), "tiny");
+    EXPECT_EQ(record.at("N"), 300);
+    EXPECT_EQ(record.at("state_hash").get<std::string>().size(), 64U);
+    EXPECT_GT(record.at("particle_steps_per_second"), 1e4);
+    EXPECT_EQ(record.at("cycle"), record.at("target_cycles"));
+
+    const nlohmann::json shown = json({"show", record.at("id"), "--json"});
+    EXPECT_EQ(shown.at("checkpoints").back().at("state_hash"), record.at("state_hash"));
+    const nlohmann::json checkpoint =
+        json({"show", shown.at("checkpoints").back().at("sha256"), "--json"});
+    EXPECT_EQ(checkpoint.at("grains"), 300);
+  }
+  EXPECT_GT(json({"log", "--json"}).at("events").size(), 9U);
+  const nlohmann::json verified = json({"verify", "--json"});
+  EXPECT_TRUE(verified.at("ok"));
+  EXPECT_EQ(verified.at("checkpoints"), 5);
+  const nlohmann::json plan = json({"plan", manifest, "--cycles", "2", "--json"});
+  EXPECT_EQ(plan.at("runs"), 2);
+  EXPECT_EQ(plan.at("particle_steps_left"), 2 * 300 * 10000);
+  // The tables for people come out too.
+  for (const Arguments& words :
+       {Arguments{"status"}, Arguments{"log"}, Arguments{"verify"},
+        Arguments{"show", runs[0].at("id")}, Arguments{"plan", manifest}}) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.code, 0) << words[0];
+    EXPECT_FALSE(outcome.out.empty()) << words[0];
+  }
+}
+
+TEST_F(CommandLine, MakesAFigureTwiceWithTheSameBytes) {
+  ASSERT_EQ(run({"run", write("m.yaml", tiny_manifest("", kBothFluids)), "-q"}).code, 0);
+  ASSERT_EQ(run({"figures", "S2", "--out", "one"}).code, 0);
+  const std::string head = json({"verify", "--json"}).at("head").at("hash");
+  ASSERT_EQ(run({"figures", "--all", "--out", "two"}).code, 0);
+  EXPECT_EQ(json({"verify", "--json"}).at("head").at("hash"), head);
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(path("one"))) {
+    ++files;
+    EXPECT_EQ(read_bytes(entry.path()), read_bytes(path("two") / entry.path().filename()))
+        << entry.path();
+  }
+  EXPECT_GE(files, 3U);
+  EXPECT_EQ(json({"show", "S2", "--json"}).at("figure"), "S2");
+}
+
+TEST_F(CommandLine, PlansTheDragExperimentAtEveryScale) {
+  struct Expected {
+    const char* scale;
+    int runs, stages;
+    double particle_steps;  // of the shear
+  };
+  for (const Expected& expected : {Expected{"smoke", 4, 6, 4.0 * 600 * 5 * 45600},
+                                   Expected{"desk", 6, 9, 6.0 * 2000 * 60 * 45600},
+                                   Expected{"paper", 12, 18, 12.0 * 7900 * 200 * 45600}}) {
+    const nlohmann::json plan = json({"plan", kDrag, "--scale", expected.scale, "--json"});
+    EXPECT_EQ(plan.at("runs"), expected.runs);
+    EXPECT_EQ(plan.at("stages").size(), static_cast<std::size_t>(expected.stages));
+    const double steps = plan.at("particle_steps_left");
+    std::printf("%s: %.3g particle-steps, %.0f s, %.3g MB\n", expected.scale, steps,
+                plan.at("seconds_left").get<double>(), plan.at("bytes_left").get<double>() * 1e-6);
+    EXPECT_GT(steps, expected.particle_steps);
+    EXPECT_LT(steps, 1.2 * expected.particle_steps);
+    EXPECT_GT(plan.at("seconds_left"), 0);
+    EXPECT_GT(plan.at("bytes_left"), 0);
+    const Outcome words = run({"plan", kDrag, "--scale", expected.scale});
+    EXPECT_TRUE(contains(words.out, std::to_string(expected.runs) + " runs"));
+    EXPECT_TRUE(contains(words.out, "on disk"));
+  }
+  EXPECT_TRUE(listing().empty()) << "a plan wrote something";
+}
+
+}  // namespace
+}  // namespace shearcell::test

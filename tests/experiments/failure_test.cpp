@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A run that fails, or whose files were damaged, is named, keeps what is good, and stops no other.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+
+#include "experiments/runner/stage_runner.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
+class Failure : public testing::Test {
+ protected:
+  std::filesystem::path file_of(const CheckpointRecord& record) const {
+    return store_.folder() / record.file;
+  }
+
+  TemporaryFolder folder_;
+  StopWish wish_;
+  Store store_{folder_.path() / "store", Access::create};
+};
+
+// A limit on the overlap that no packing under this pressure keeps.
+TEST_F(Failure, OfAPackingStopsItsShearAndNothingElse) {
+  const std::string text = tiny_manifest(
+      "", "sweep: {grid: {max_overlap_diameters: [0.1, 0.02], fluid: [still, cell]}}\n");
+  const CampaignResult result = compute(store_, text);
+  EXPECT_EQ(result.completed, 3U);
+  EXPECT_EQ(result.failed, 1U);
+  EXPECT_EQ(result.blocked, 2U);
+  ASSERT_EQ(result.messages.size(), 1U);
+  std::printf("%s\n", result.messages[0].c_str());
+  EXPECT_NE(result.messages[0].find("overlap"), std::string::npos);
+
+  for (const RunRecord& run : store_.runs()) {
+    const bool sound = run.resolved.at("parameters").at("max_overlap_diameters") == 0.1;
+    if (sound) {
+      EXPECT_EQ(run.state, RunState::completed);
+      continue;
+    }
+    if (run.kind == "shear") {
+      EXPECT_EQ(run.state, RunState::declared) << "its packing failed, and yet it was begun";
+      EXPECT_EQ(run.attempts, 0U);
+      continue;
+    }
+    EXPECT_EQ(run.state, RunState::failed);
+    EXPECT_NE(run.error.find("overlap"), std::string::npos);
+    const Event last = store_.events("run/" + run.id).back();
+    ASSERT_EQ(last.type, "RunFailed");
+    const nlohmann::json numbers = last.body().at("numbers");
+    EXPECT_EQ(numbers.at("limit"), 0.02);
+    EXPECT_GT(numbers.at("value").get<double>(), 0.02);
+    EXPECT_GT(numbers.at("step").get<std::uint64_t>(), 0U);
+    EXPECT_GE(numbers.at("grain").get<std::int64_t>(), 0);
+  }
+  // Trying again fails alike.
+  EXPECT_EQ(resume(store_).failed, 1U);
+}
+
+TEST_F(Failure, UnderShearKeepsTheLastGoodCheckpoint) {
+  // Twenty cycles a second that tilt the walls by half a radian throw the grains about.
+  constexpr double kLimit = 0.05;
+  const CampaignResult result =
+      compute(store_, tiny_manifest("  max_overlap_diameters: 0.05\n"
+                                    "  period_s: 0.05\n"
+                                    "  steps_per_cycle: 500\n"
+                                    "  cycles: 6\n",
+                                    "sweep: {grid: {amplitude_rad: [0.001, 0.5]}}\n"));
+  for (const std::string& message : result.messages) std::printf("%s\n", message.c_str());
+  EXPECT_EQ(result.completed, 2U);
+  ASSERT_EQ(result.failed, 1U);
+  for (const RunRecord& run : runs_of_kind(store_, "shear")) {
+    if (run.state == RunState::completed) continue;
+    ASSERT_EQ(run.state, RunState::failed);
+    const auto kept = store_.checkpoints(run.id);
+    ASSERT_FALSE(kept.empty());
+    for (const CheckpointRecord& record : kept) {
+      std::printf("cycle %g: largest overlap %.4f d, limit %g d\n", record.cycle,
+                  record.observables.at("largest_overlap_d"), kLimit);
+      EXPECT_LE(record.observables.at("largest_overlap_d"), kLimit) << "recorded as good";
+    }
+    const std::uint64_t failed_at =
+        store_.events("run/" + run.id).back().body().at("numbers").at("step");
+    EXPECT_LE(kept.back().step, failed_at);
+    EXPECT_EQ(store_.load_checkpoint(kept.back()).state.step, kept.back().step);
+    EXPECT_EQ(run.state_hash, kept.back().state_hash);
+  }
+  EXPECT_TRUE(store_.verify().ok());
+}
+
+// A run shorter than the watchdog's interval is not unwatched.
+TEST_F(Failure, IsNoticedInAShortRunToo) {
+  const CampaignResult result = compute(store_, tiny_manifest("  max_overlap_diameters: 0.05\n"
+                                                              "  period_s: 0.05\n"
+                                                              "  steps_per_cycle: 500\n"
+                                                              "  amplitude_rad: 0.5\n"
+                                                              "  cycles: 1\n"));
+  EXPECT_EQ(result.failed, 1U);
+  EXPECT_EQ(runs_of_kind(store_, "shear").at(0).state, RunState::failed);
+}
+
+TEST_F(Failure, OfTheNewestCheckpointIsMendedFromTheOneBefore) {
+  compute(store_, tiny_manifest("", kBothFluids));
+  const auto expected = final_hashes(store_);
+  const RunRecord run = runs_of_kind(store_, "shear").front();
+  const CheckpointRecord newest = store_.checkpoints(run.id).back();
+  truncate_file(file_of(newest));
+  EXPECT_FALSE(store_.verify().ok());
+
+  const CampaignResult result = compute(store_, tiny_manifest("", kBothFluids));
+  EXPECT_EQ(result.damaged, 1U);
+  EXPECT_EQ(result.completed, 1U);
+  EXPECT_EQ(result.already, 2U);
+  ASSERT_EQ(result.messages.size(), 1U);
+  EXPECT_NE(result.messages[0].find(newest.file), std::string::npos) << result.messages[0];
+  EXPECT_EQ(final_hashes(store_), expected);
+  EXPECT_EQ(count_events(store_, "CheckpointRejected", "run/" + run.id), 1U);
+  EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0, 1, 2}));
+  EXPECT_TRUE(store_.verify().ok());
+  // One cycle was computed twice.
+  EXPECT_EQ(store_.run(run.id).particle_steps, static_cast<double>(kGrains * 3 * kStepsPerCycle));
+}
+
+TEST_F(Failure, OfTheLastStateAloneLeavesWorkToDo) {
+  compute(store_, tiny_manifest());
+  const RunRecord run = runs_of_kind(store_, "shear").front();
+  const auto records = store_.checkpoints(run.id);
+  ASSERT_EQ(records.size(), 3U);
+  std::string damage;
+  EXPECT_TRUE(stage_done(store_, run, damage));
+  truncate_file(file_of(records[1]));
+  EXPECT_TRUE(stage_done(store_, run, damage)) << "nothing goes on from an older checkpoint";
+  EXPECT_EQ(damage, "");
+  truncate_file(file_of(records[2]));
+  EXPECT_FALSE(stage_done(store_, run, damage));
+  EXPECT_NE(damage.find(records[2].file), std::string::npos) << damage;
+
+  RunRecord begun = run;
+  begun.state = RunState::interrupted;
+  damage.clear();
+  EXPECT_FALSE(stage_done(store_, begun, damage));
+  EXPECT_EQ(damage, "");
+}
+
+// Half done, so the run is not completed: the damage must be named all the same.
+TEST_F(Failure, OfTheNewestCheckpointOfAnUnfinishedRunIsNamed) {
+  ExpandOptions options;
+  options.cycles = 2;
+  compute(store_, tiny_manifest(), options);
+  const RunRecord run = runs_of_kind(store_, "shear").front();
+  const CheckpointRecord newest = store_.checkpoints(run.id).back();
+  truncate_file(file_of(newest));
+  options.cycles = 3;
+  const CampaignResult result = compute(store_, tiny_manifest(), options);
+  EXPECT_EQ(result.completed, 1U);
+  EXPECT_EQ(result.damaged, 1U);
+  ASSERT_EQ(result.messages.size(), 1U);
+  EXPECT_NE(result.messages[0].find(newest.file), std::string::npos) << result.messages[0];
+
+  Store whole(folder_.path() / "whole", Access::create);
+  compute(whole, tiny_manifest(), options);
+  EXPECT_EQ(final_hashes(store_), final_hashes(whole));
+}
+
+TEST_F(Failure, OfEveryCheckpointBeginsAgainFromThePacking) {
+  compute(store_, tiny_manifest());
+  const auto expected = final_hashes(store_);
+  const RunRecord run = runs_of_kind(store_, "shear").front();
+  for (const CheckpointRecord& record : store_.checkpoints(run.id)) truncate_file(file_of(record));
+  EXPECT_EQ(compute(store_, tiny_manifest()).completed, 1U);
+  EXPECT_EQ(final_hashes(store_), expected);
+  EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0, 1, 2}));
+  EXPECT_TRUE(store_.verify().ok());
+}
+
+TEST_F(Failure, OfAPackingFileIsMendedToTheSameState) {
+  Store whole(folder_.path() / "whole", Access::create);
+  compute(whole, tiny_manifest());
+
+  const Manifest manifest = parse_manifest(tiny_manifest(), "t");
+  const std::vector<StageJob> jobs = declare(store_, manifest, expand(manifest));
+  ASSERT_EQ(run_stage(store_, jobs[0].id, {}), StageOutcome::completed);
+  for (const CheckpointRecord& record : store_.checkpoints(jobs[0].id)) {
+    std::filesystem::remove(file_of(record));
+  }
+  Progress progress(jobs.size(), true);
+  const CampaignResult result = run_campaign(store_, jobs, 2, progress);
+  EXPECT_EQ(result.damaged, 1U);
+  EXPECT_EQ(result.completed, 2U);
+  EXPECT_EQ(final_hashes(store_), final_hashes(whole));
+  EXPECT_TRUE(store_.verify().ok());
+}
+
+TEST_F(Failure, OfThePackingFileIsSeenByResumeToo) {
+  const Manifest manifest = parse_manifest(tiny_manifest(), "t");
+  const std::vector<StageJob> jobs = declare(store_, manifest, expand(manifest));
+  ASSERT_EQ(run_stage(store_, jobs[0].id, {}), StageOutcome::completed);
+  for (const CheckpointRecord& record : store_.checkpoints(jobs[0].id)) {
+    truncate_file(file_of(record));
+  }
+  // The first resume meets the damage and names it; no later than the second mends it.
+  const CampaignResult first = resume(store_);
+  EXPECT_GE(first.damaged, 1U);
+  ASSERT_FALSE(first.messages.empty());
+  resume(store_);
+  for (const RunRecord& run : store_.runs()) EXPECT_EQ(run.state, RunState::completed);
+}
+
+}  // namespace
+}  // namespace shearcell

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// However often and wherever a run is interrupted, it ends in the same bits as one that never was.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "experiments/runner/stage_runner.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
+class Interruption : public testing::Test {
+ protected:
+  TemporaryFolder folder_;
+  StopWish wish_;
+  Store store_{folder_.path() / "store", Access::create};
+  Store whole_{folder_.path() / "whole", Access::create};
+};
+
+// With the wish to stop pending from the start, a stage ends after a single chunk of steps.
+TEST_F(Interruption, AfterEveryChunkLeavesNoTrace) {
+  compute(whole_, tiny_manifest());
+  const Manifest manifest = parse_manifest(tiny_manifest(), "t");
+  const std::vector<StageJob> jobs = declare(store_, manifest, expand(manifest));
+  request_stop(true);
+  for (const StageJob& job : jobs) {
+    std::size_t interrupted = 0;
+    while (run_stage(store_, job.id, {}) == StageOutcome::interrupted) {
+      ASSERT_LT(++interrupted, 1000U) << "the stage does not come forward";
+      EXPECT_EQ(store_.run(job.id).state, RunState::interrupted);
+    }
+    const RunRecord run = store_.run(job.id);
+    std::printf("%s: interrupted %zu times\n", job.name.c_str(), interrupted);
+    EXPECT_GE(interrupted, 3U);
+    EXPECT_EQ(run.attempts, interrupted + 1);
+    EXPECT_EQ(run.state, RunState::completed);
+    EXPECT_EQ(run.particle_steps, static_cast<double>(kGrains * run.step)) << "a step was repeated";
+    EXPECT_EQ(count_events(store_, "RunInterrupted", "run/" + job.id), interrupted);
+    EXPECT_EQ(count_events(store_, "RunResumed", "run/" + job.id), interrupted);
+  }
+  EXPECT_EQ(final_hashes(store_), final_hashes(whole_));
+  EXPECT_TRUE(store_.verify().ok());
+}
+
+TEST_F(Interruption, FromAnotherThreadAtAnyMoment) {
+  const std::string text = tiny_manifest("", kBothFluids);
+  compute(whole_, text);
+  CampaignResult result;
+  std::size_t interrupted = 0;
+  auto delay = std::chrono::milliseconds(10);
+  for (std::size_t attempt = 0; attempt == 0 || result.interrupted + result.blocked > 0;
+       ++attempt, delay += std::chrono::milliseconds(23)) {
+    ASSERT_LT(attempt, 200U);
+    request_stop(false);
+    std::thread stopper([delay] {
+      std::this_thread::sleep_for(delay);
+      request_stop(true);
+    });
+    result = attempt == 0 ? compute(store_, text) : resume(store_);
+    stopper.join();
+    interrupted += result.interrupted;
+    EXPECT_EQ(result.failed + result.damaged, 0U);
+  }
+  std::printf("interrupted %zu times\n", interrupted);
+  EXPECT_GE(interrupted, 1U);
+  EXPECT_EQ(final_hashes(store_), final_hashes(whole_));
+  for (const RunRecord& run : store_.runs()) {
+    EXPECT_EQ(run.state, RunState::completed);
+    EXPECT_EQ(run.particle_steps, static_cast<double>(kGrains * run.step));
+  }
+}
+
+TEST_F(Interruption, BeforeTheFirstStageBeginsNothing) {
+  request_stop(true);
+  const CampaignResult result = compute(store_, tiny_manifest("", kBothFluids));
+  EXPECT_EQ(result.blocked, 3U);
+  EXPECT_EQ(result.completed + result.interrupted, 0U);
+  EXPECT_EQ(count_events(store_, "RunStarted"), 0U);
+  request_stop(false);
+  EXPECT_EQ(resume(store_).completed, 3U);
+}
+
+// The other fluid is interrupted with its own cycle unfinished, and the cadence stays as declared.
+TEST_F(Interruption, KeepsTheCadenceOfItsCheckpoints) {
+  const std::string text = tiny_manifest("", "checkpoints: {every_cycles: 2}\n");
+  const Manifest manifest = parse_manifest(text, "t");
+  ExpandOptions options;
+  options.cycles = 5;
+  const std::vector<StageJob> jobs = declare(store_, manifest, expand(manifest, options));
+  ASSERT_EQ(jobs.size(), 2U);
+  run_stage(store_, jobs[0].id, {});
+  request_stop(true);
+  ASSERT_EQ(run_stage(store_, jobs[1].id, {.checkpoint_every = 2, .report = {}}),
+            StageOutcome::interrupted);
+  const double stopped_at = store_.run(jobs[1].id).cycle;
+  std::printf("stopped at cycle %g\n", stopped_at);
+  ASSERT_GT(stopped_at, 0);
+  ASSERT_LT(stopped_at, 1);
+  request_stop(false);
+  const std::vector<StageJob> left = unfinished(store_, {});
+  ASSERT_EQ(left.size(), 1U);
+  EXPECT_EQ(left[0].checkpoint_every, 2U);
+  EXPECT_EQ(resume(store_).completed, 1U);
+  EXPECT_EQ(cycles_of(store_, jobs[1].id), (std::vector<double>{0, stopped_at, 2, 4, 5}));
+}
+
+}  // namespace
+}  // namespace shearcell

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/experiments/program.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+extern char** environ;
+
+namespace shearcell::test {
+
+namespace fs = std::filesystem;
+
+pid_t ProgramTest::start(const Arguments& arguments) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  const std::string out = outputs_.path() / "out", err = outputs_.path() / "err";
+  constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC;
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), flags, 0600);
+  posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), flags, 0600);
+  posix_spawn_file_actions_addchdir_np(&actions, folder_.path().c_str());
+
+  std::vector<std::string> words = {SHEARCELL_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  // A store that the caller's environment names must not be touched.
+  std::vector<char*> environment;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    if (std::strncmp(*variable, "SHEARCELL_STORE=", 16) != 0) environment.push_back(*variable);
+  }
+  environment.push_back(nullptr);
+  pid_t child = 0;
+  const int error =
+      posix_spawn(&child, SHEARCELL_PROGRAM, &actions, nullptr, argv.data(), environment.data());
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw std::runtime_error(std::string("posix_spawn: ") + std::strerror(error));
+  return child;
+}
+
+Outcome ProgramTest::wait(pid_t child) {
+  int status = 0;
+  waitpid(child, &status, 0);
+  Outcome outcome;
+  if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
+  outcome.out = read_bytes(outputs_.path() / "out");
+  outcome.err = read_bytes(outputs_.path() / "err");
+  return outcome;
+}
+
+Outcome ProgramTest::run(const Arguments& arguments) {
+  return wait(start(arguments));
+}
+
+Outcome ProgramTest::run_until(const Arguments& arguments, std::size_t files, int signal) {
+  const pid_t child = start(arguments);
+  siginfo_t ended{};
+  while (objects() < files) {
+    waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT);
+    if (ended.si_pid == child) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  kill(child, signal);
+  return wait(child);
+}
+
+nlohmann::json ProgramTest::json(const Arguments& arguments) {
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json facts = nlohmann::json::parse(outcome.out, nullptr, false);
+  EXPECT_FALSE(facts.is_discarded()) << outcome.out;
+  return facts;
+}
+
+std::set<std::string> ProgramTest::listing() const {
+  std::set<std::string> found;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_.path())) {
+    found.insert(entry.path().lexically_relative(folder_.path()).string());
+  }
+  return found;
+}
+
+std::size_t ProgramTest::objects(const std::string& store) const {
+  std::size_t count = 0;
+  std::error_code gone;
+  for (auto entry = fs::recursive_directory_iterator(path(store) / "objects", gone);
+       !gone && entry != fs::recursive_directory_iterator(); entry.increment(gone)) {
+    count += entry->path().extension() == ".h5" ? 1 : 0;
+  }
+  return count;
+}
+
+std::map<std::string, std::string> ProgramTest::hashes(const std::string& store) {
+  std::map<std::string, std::string> found;
+  const nlohmann::json status = json({"status", "--json", "--store", store});
+  for (const auto& run : status.at("runs")) {
+    EXPECT_EQ(run.at("state"), "completed");
+    found[run.at("id")] = run.at("state_hash");
+  }
+  EXPECT_FALSE(found.empty());
+  return found;
+}
+
+std::string ProgramTest::newest_file(const std::string& run, const std::string& store) {
+  const auto checkpoints = json({"show", run, "--json", "--store", store}).at("checkpoints");
+  return store + "/" + checkpoints.back().at("file").get<std::string>();
+}
+
+}  // namespace shearcell::test

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs the built program as a person would, in a folder of its own, and says what came of it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell::test {
+
+struct Outcome {
+  int code = -1;   ///< exit code, or -1 when a signal ended it
+  int signal = 0;  ///< that ended it, or 0
+  std::string out;
+  std::string err;
+};
+
+class ProgramTest : public testing::Test {
+ protected:
+  using Arguments = std::vector<std::string>;
+
+  /// Runs it to its end.
+  Outcome run(const Arguments& arguments);
+
+  /// Sends `signal` as soon as the store has at least `files` checkpoint files.
+  Outcome run_until(const Arguments& arguments, std::size_t files, int signal);
+
+  /// Output of a command that must succeed, read as JSON.
+  nlohmann::json json(const Arguments& arguments);
+
+  /// Writes a file in the folder and returns its name.
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name), std::ios::binary) << text;
+    return name;
+  }
+
+  std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
+
+  /// Everything below the folder, and so whether something was written.
+  std::set<std::string> listing() const;
+
+  /// Checkpoint files of a store.
+  std::size_t objects(const std::string& store = "shearcell-store") const;
+
+  /// Run id -> state hash, from `status --json`.
+  std::map<std::string, std::string> hashes(const std::string& store = "shearcell-store");
+
+  /// File of the last checkpoint of a run, relative to the test's folder.
+  std::string newest_file(const std::string& run, const std::string& store = "shearcell-store");
+
+ private:
+  pid_t start(const Arguments& arguments);
+  Outcome wait(pid_t child);
+
+  TemporaryFolder folder_;
+  TemporaryFolder outputs_;  // apart, so that they do not show in the listing
+};
+
+}  // namespace shearcell::test

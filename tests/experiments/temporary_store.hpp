@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A folder that goes away with its test, and an experiment small enough to run many times in it.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "experiments/manifest/expand.hpp"
+#include "experiments/runner/campaign.hpp"
+#include "experiments/runner/stop.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell::test {
+
+/// An empty folder under the system's own for temporary files.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "shearcell-test-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    path_ = pattern;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string read_bytes(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Cuts a file in half.
+inline void truncate_file(const std::filesystem::path& file) {
+  ASSERT_GT(std::filesystem::file_size(file), 1U);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+}
+
+inline constexpr std::size_t kGrains = 300;
+inline constexpr std::size_t kStepsPerCycle = 10000;
+
+/// Table I with the largest round time step that is stable: a cycle takes some 60 ms and is more
+/// than one of the runner's chunks, so that an interruption falls within a cycle.
+/// Lines of `base` replace or join the base values; `rest` is added to the manifest.
+inline std::string tiny_manifest(const std::string& base = "", const std::string& rest = "") {
+  std::string text =
+      "experiment: tiny\n"
+      "question: Does the runner keep its promises?\n"
+      "figures: [S2]\n"
+      "base:\n";
+  for (const char* line : {"  grains: 300\n", "  period_s: 1\n", "  steps_per_cycle: 10000\n",
+                           "  settle_time_step_s: 1.0e-4\n", "  cycles: 2\n"}) {
+    const std::string key = std::string(line).substr(0, std::string(line).find(':') + 1);
+    if (base.find(key) == std::string::npos) text += line;
+  }
+  return text + base + rest;
+}
+
+inline const std::string kBothFluids = "sweep: {grid: {fluid: [still, cell]}}\n";
+
+/// Declares what a manifest expands to and brings it to its target.
+inline CampaignResult compute(Store& store, const std::string& text,
+                              const ExpandOptions& options = {}, std::size_t workers = 2) {
+  const Manifest manifest = parse_manifest(text, "tiny.yaml");
+  const std::vector<StageJob> jobs = declare(store, manifest, expand(manifest, options));
+  Progress progress(jobs.size(), true);
+  return run_campaign(store, jobs, workers, progress);
+}
+
+inline CampaignResult resume(Store& store, std::size_t workers = 2) {
+  const std::vector<StageJob> jobs = unfinished(store, {});
+  Progress progress(jobs.size(), true);
+  return run_campaign(store, jobs, workers, progress);
+}
+
+/// Run id -> hash of its last state.
+inline std::map<std::string, std::string> final_hashes(const Store& store) {
+  std::map<std::string, std::string> hashes;
+  for (const RunRecord& run : store.runs()) hashes[run.id] = run.state_hash;
+  return hashes;
+}
+
+inline std::vector<RunRecord> runs_of_kind(const Store& store, const std::string& kind) {
+  std::vector<RunRecord> found;
+  for (const RunRecord& run : store.runs()) {
+    if (run.kind == kind) found.push_back(run);
+  }
+  return found;
+}
+
+inline std::size_t count_events(const Store& store, const std::string& type,
+                                const std::string& stream = "") {
+  std::size_t count = 0;
+  for (const Event& event : store.events(stream)) count += event.type == type ? 1 : 0;
+  return count;
+}
+
+inline std::vector<double> cycles_of(const Store& store, const std::string& run) {
+  std::vector<double> cycles;
+  for (const CheckpointRecord& record : store.checkpoints(run)) cycles.push_back(record.cycle);
+  return cycles;
+}
+
+/// Takes back any wish to stop when a test ends, however it ends.
+struct StopWish {
+  StopWish() { request_stop(false); }
+  ~StopWish() { request_stop(false); }
+  StopWish(const StopWish&) = delete;
+  StopWish& operator=(const StopWish&) = delete;
+};
+
+}  // namespace shearcell::test
