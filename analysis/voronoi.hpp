@@ -43,8 +43,10 @@ enum class WallGrainCells : std::uint8_t { skip, measure };
 /// Cells of `grains` (3 x n [d], z unwrapped and periodic with cell.depth), inside the walls in the
 /// given pose. With WallGrainCells::measure all volumes together are the volume of the sheared box.
 ///
-/// Each cell starts as the box and is cut by the bisectors to its neighbours in order of distance,
-/// until the next neighbour is farther than twice the farthest corner: no site beyond can cut it.
+/// Cells are the dual of CGAL's Delaunay triangulation of sites and images: polygons of
+/// circumcentres for a grain whose cell meets no wall plane, the box cut by the bisectors to the
+/// Delaunay neighbours for the others. The faces of a grain are in ascending order of kind,
+/// neighbour and image.
 /// Faces no larger than 1e-13 d^2 are rounding and left out.
 ///
 /// Throws AnalysisError, naming the grains, when two sites coincide or a grain lies on or outside a

@@ -10,13 +10,12 @@ namespace shearcell {
 
 /// The force of grain j on grain i is k (1 - r) n = k (1/r - 1) dr with dr = r_i - r_j. The factor
 /// (1/r - 1) is a function of s = 1 - r^2 alone. Below `kSeriesEnd` (an overlap of 2.4 % of d) it
-/// is s times this polynomial, Chebyshev's fit of ((1 - s)^(-1/2) - 1) / s on [0, 3/64] with its
-/// value at 0 kept exact, whose relative error is below 4e-16; that costs a quarter of an IEEE
-/// square root and division. Fused multiply-adds in a fixed order make it the same number on every
-/// machine.
+/// is s times this polynomial, Chebyshev's fit of ((1 - s)^(-1/2) - 1) / s on [0, 3/64], whose
+/// relative error is below 4e-16; that costs a quarter of an IEEE square root and division. Fused
+/// multiply-adds in a fixed order make it the same number on every machine.
 inline constexpr std::array<double, 8> kContactSeries = {
-    0x1.0000000000000p-1, 0x1.80000000000eep-2, 0x1.3fffffff86be9p-2, 0x1.180000a14c1c2p-2,
-    0x1.f7ff5f734dcd4p-3, 0x1.ce25ea450648dp-3, 0x1.a86f1130eb51ep-3, 0x1.d6e03a3dfbbb4p-3};
+    0x1.ffffffffffffdp-2, 0x1.8000000001e61p-2, 0x1.3ffffffcaee3ap-2, 0x1.180002341faa0p-2,
+    0x1.f7fe90c23dc82p-3, 0x1.ce40ab1a4211ap-3, 0x1.a6bcab0ea0c35p-3, 0x1.e19bcd23e162bp-3};
 inline constexpr double kSeriesEnd = 0.046875;
 
 /// (1/r - 1) for s = 1 - r^2 in (0, 1]; infinite for coincident centres. The vector kernel

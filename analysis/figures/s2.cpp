@@ -18,8 +18,8 @@ const std::array<std::string, 2> variants = {"fluid=still", "fluid=cell"};
 
 // Red triangles and black squares, as in the supplement.
 const std::array<CurveStyle, 2> styles = {
-    CurveStyle{"fluid=still", "{/:Italic v}_{fluid}{/=14  = }0", "#d62728", 9},
-    CurveStyle{"fluid=cell", "{/:Italic v}_{fluid}{/=14  = }{/:Italic v}_{cell}", "#000000", 5}};
+    CurveStyle{"fluid=still", "{/:Italic v}_{fluid }= 0", "#d62728", 9},
+    CurveStyle{"fluid=cell", "{/:Italic v}_{fluid }= {/:Italic v}_{cell}", "#000000", 5}};
 
 RunStatistics over(const CurvePoint& point, double Measures::*quantity) {
   std::vector<double> values;

@@ -86,16 +86,16 @@ TEST(ContactLaw, FactorIsAccurateToAFewUnitsInTheLastPlace) {
     const long double exact = 1 / std::sqrt(1 - static_cast<long double>(s)) - 1;
     const double error =
         std::fabs(static_cast<double>((contact_factor(s) - exact) / exact)) / 0x1p-53;
-    // Beyond the series the subtraction costs at most a factor of r/(1-r) < 31.
-    worst = std::max(worst, s <= kSeriesEnd ? error : error / 32);
+    // Beyond the series the subtraction costs at most a factor of r/(1-r) < 41.
+    worst = std::max(worst, s <= kSeriesEnd ? error : error / 42);
   }
-  EXPECT_LT(worst, 3) << "in units of 2^-53";
+  EXPECT_LT(worst, 5) << "in units of 2^-53";
 }
 
 TEST(ContactLaw, SeriesMeetsTheClosedForm) {
   const double below = contact_factor(kSeriesEnd);
   const double above = contact_factor(std::nextafter(kSeriesEnd, 1));
-  EXPECT_NEAR(below, above, 4e-15 * below);
+  EXPECT_NEAR(below, above, 1e-14 * below);
   EXPECT_GT(contact_factor(1e-300), 0);
   EXPECT_EQ(contact_factor(0), 0);
   EXPECT_TRUE(std::isinf(contact_factor(1)));

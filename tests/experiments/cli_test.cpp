@@ -217,5 +217,12 @@ TEST_F(CommandLine, PlansTheDragExperimentAtEveryScale) {
   EXPECT_TRUE(listing().empty()) << "a plan wrote something";
 }
 
+// As `run` would make its store there.
+TEST_F(CommandLine, PlansForAStoreThatIsStillAnEmptyFolder) {
+  fs::create_directory(path("shearcell-store"));
+  EXPECT_EQ(json({"plan", kDrag, "--scale", "smoke", "--json"}).at("runs"), 4);
+  EXPECT_TRUE(fs::is_empty(path("shearcell-store")));
+}
+
 }  // namespace
 }  // namespace shearcell::test

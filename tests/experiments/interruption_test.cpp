@@ -85,7 +85,26 @@ TEST_F(Interruption, BeforeTheFirstStageBeginsNothing) {
   EXPECT_EQ(resume(store_).completed, 3U);
 }
 
-// The other fluid is interrupted with its own cycle unfinished, and the cadence stays as declared.
+// Two programs at once on one store: the later one takes runs over, and nothing is mixed up.
+TEST_F(Interruption, ByAnotherProgramOnTheSameStoreLeavesNoTrace) {
+  const std::string text = tiny_manifest("  cycles: 4\n", kBothFluids);
+  compute(whole_, text);
+  std::thread other([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    Store same(store_.folder(), Access::create);
+    compute(same, text, {}, 1);
+  });
+  const CampaignResult first = compute(store_, text, {}, 1);
+  other.join();
+  for (const std::string& message : first.messages) std::printf("%s\n", message.c_str());
+  EXPECT_EQ(first.failed + first.damaged, 0U);
+  resume(store_);
+  EXPECT_EQ(final_hashes(store_), final_hashes(whole_));
+  for (const RunRecord& run : store_.runs()) EXPECT_EQ(run.state, RunState::completed);
+  EXPECT_TRUE(store_.verify().ok());
+}
+
+// A run that is interrupted within a cycle goes on at the cadence that was declared.
 TEST_F(Interruption, KeepsTheCadenceOfItsCheckpoints) {
   const std::string text = tiny_manifest("", "checkpoints: {every_cycles: 2}\n");
   const Manifest manifest = parse_manifest(text, "t");
