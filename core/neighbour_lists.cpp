@@ -41,8 +41,9 @@ double Reference::stretch(const WallPose& pose) const {
   return 1 - 0.5 * std::fabs(pose.tan_theta - pose_.tan_theta);
 }
 
-NeighbourLists::NeighbourLists(const Kernels& kernels, const ListSettings& settings, double depth)
-    : kernels_(kernels), settings_(settings), depth_(depth) {}
+NeighbourLists::NeighbourLists(const Kernels& kernels, const ListSettings& settings, double depth,
+                               Team& team)
+    : kernels_(kernels), team_(team), settings_(settings), depth_(depth) {}
 
 bool NeighbourLists::inner_valid(double farthest, const WallPose& pose) const {
   if (settings_.rebuild_every_step) return false;
@@ -80,7 +81,11 @@ void NeighbourLists::build(const double* rows, const std::vector<std::int32_t>& 
     outer_.resize(grains * outer_stride_);
     task.outer = outer_.data();
     task.stride = outer_stride_;
-    const std::size_t most = kernels_.search(task, 0, grains);
+    std::vector<std::size_t> longest(team_.size(), 0);
+    team_.run(grains, [&](std::size_t thread, std::size_t first, std::size_t last) {
+      longest[thread] = kernels_.search(task, first, last);
+    });
+    const std::size_t most = *std::max_element(longest.begin(), longest.end());
     if (most <= outer_stride_) return;
     outer_stride_ = padded(most + 8);
   }
@@ -109,7 +114,11 @@ void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPos
     inner_.resize(blocks * kernels_.lanes * inner_stride_);
     task.inner = inner_.data();
     task.inner_stride = inner_stride_;
-    if (kernels_.prune(task, 0, blocks)) return;
+    std::vector<char> fits(team_.size(), 0);
+    team_.run(blocks, [&](std::size_t thread, std::size_t first, std::size_t last) {
+      fits[thread] = kernels_.prune(task, first, last) ? 1 : 0;
+    });
+    if (std::count(fits.begin(), fits.end(), 0) == 0) return;
   }
 }
 

@@ -17,6 +17,7 @@
 #include "core/cell.hpp"
 #include "core/cell_grid.hpp"
 #include "core/kernel.hpp"
+#include "core/team.hpp"
 
 namespace shearcell {
 
@@ -47,7 +48,7 @@ class Reference {
 
 class NeighbourLists {
  public:
-  NeighbourLists(const Kernels& kernels, const ListSettings& settings, double depth);
+  NeighbourLists(const Kernels& kernels, const ListSettings& settings, double depth, Team& team);
 
   /// False when, at the cutoff of the inner list, a pair outside it may touch now.
   bool inner_valid(double farthest, const WallPose& pose) const;
@@ -68,6 +69,7 @@ class NeighbourLists {
 
  private:
   const Kernels& kernels_;
+  Team& team_;
   ListSettings settings_;
   double depth_;
   Reference outer_reference_, inner_reference_;

@@ -29,7 +29,8 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state, Engine
       scene_(scene),
       settings_(settings),
       kernels_(require_kernels(settings.simd)),
-      lists_(kernels_, settings.lists, cell_.depth),
+      team_(std::make_unique<Team>(settings.threads)),
+      lists_(kernels_, settings.lists, cell_.depth, *team_),
       walls_(kernels_, cell_) {
   if (state.position.cols() == 0 || state.position.cols() != state.velocity.cols()) {
     throw std::invalid_argument("a simulation needs as many velocities as positions, and a grain");
@@ -39,6 +40,7 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state, Engine
     throw std::invalid_argument("the depth of the cell, " + std::to_string(cell_.depth) +
                                 " d, is less than twice the cutoff of the neighbour list");
   }
+  farthest_of_thread_.resize(team_->size());
   load(state);
   set_constants();
 }
@@ -123,7 +125,12 @@ void Simulation::step_once(const Drive& drive) {
   task_.next_shear = next.tan_theta;
   task_.next_top = next.top;
   const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;
-  const double square = kernels_.step[scene_.gravity != 0][flow](task_, 0, blocks);
+  const auto step = kernels_.step[scene_.gravity != 0][flow];
+  std::vector<double>& squares = farthest_of_thread_;
+  team_->run(blocks, [&](std::size_t thread, std::size_t first, std::size_t last) {
+    squares[thread] = step(task_, first, last);
+  });
+  const double square = *std::max_element(squares.begin(), squares.end());
 
   std::swap(rows_[0], rows_[1]);
   ++step_;

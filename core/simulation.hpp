@@ -21,6 +21,7 @@
 #include "core/neighbour_lists.hpp"
 #include "core/scene.hpp"
 #include "core/state.hpp"
+#include "core/team.hpp"
 #include "core/wall_contacts.hpp"
 #include "core/watchdog.hpp"
 
@@ -29,6 +30,7 @@ namespace shearcell {
 /// How fast a simulation runs, never what it computes.
 struct EngineSettings {
   Simd simd = Simd::best;
+  std::size_t threads = 1;
   ListSettings lists;
   WatchdogLimits limits;  ///< these decide where a run fails, not what it computes until then
 };
@@ -78,6 +80,7 @@ class Simulation {
   Scene scene_;
   EngineSettings settings_;
   const Kernels& kernels_;
+  std::unique_ptr<Team> team_;
   std::uint64_t step_ = 0;
   double wall_height_ = 0, wall_velocity_ = 0;
   std::vector<std::int32_t> id_;  // permanent id of each grain in memory
@@ -88,6 +91,7 @@ class Simulation {
   WallContacts walls_;
   WallPose pose_;  // at step_
   StepTask task_;
+  std::vector<double> farthest_of_thread_;  // squared displacements
   ListCounts counts_;
 };
 

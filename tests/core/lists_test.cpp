@@ -52,7 +52,8 @@ TEST(NeighbourLists, HoldExactlyThePairsWithinTheCutoffsInAscendingId) {
     for (const Simd simd : {Simd::scalar, Simd::avx2, Simd::avx512}) {
       const Kernels* kernels = find_kernels(simd);
       if (kernels == nullptr) continue;
-      NeighbourLists lists(*kernels, settings, cell.depth);
+      Team team(1);
+      NeighbourLists lists(*kernels, settings, cell.depth, team);
       lists.build(points.rows.data(), points.id, order, pose);
       lists.prune(points.rows.data(), grains, pose);
       const NeighbourRows inner = lists.rows();

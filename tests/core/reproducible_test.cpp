@@ -124,6 +124,11 @@ TEST(Reproducible, AnyInstructionsAndAnyLists) {
           << find_kernels(simd)->name << " at cutoff " << inner;
     }
   }
+  for (const std::size_t threads : {2U, 3U}) {
+    EngineSettings shared;
+    shared.threads = threads;
+    EXPECT_TRUE(same_bits(golden, advanced(start, 700, shared))) << threads << " threads";
+  }
   EngineSettings settings;
   settings.lists.rebuild_every_step = true;
   EXPECT_TRUE(same_bits(golden, advanced(start, 700, settings))) << "rebuilt every step";

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A few threads that share one simulation's loops.
+//
+// Properties: (1) a loop's items are cut into contiguous ranges, one for each thread, and each item
+// is computed by one thread alone; (2) nothing that a thread computes depends on the range it was
+// given, so the bits do not depend on the number of threads; (3) `run` returns when all ranges are
+// done, and everything written in them is visible to the caller.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+namespace shearcell {
+
+class Team {
+ public:
+  /// `threads` counts the caller's; 1 starts none.
+  explicit Team(std::size_t threads);
+  ~Team();
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  std::size_t size() const { return workers_.size() + 1; }
+
+  /// Calls work(thread, first, last) once on each thread with its part of [0, count). `work` must
+  /// not throw.
+  template <class Work>
+  void run(std::size_t count, Work&& work) {
+    if (workers_.empty()) {
+      work(std::size_t{0}, std::size_t{0}, count);
+      return;
+    }
+    call_ = [](void* w, std::size_t thread, std::size_t first, std::size_t last) {
+      (*static_cast<std::remove_reference_t<Work>*>(w))(thread, first, last);
+    };
+    argument_ = &work;
+    count_ = count;
+    start_workers();
+    run_part(0);
+    wait_for_workers();
+  }
+
+ private:
+  void start_workers();
+  void wait_for_workers();
+  void run_part(std::size_t thread);
+  void work_until_stopped(std::size_t thread);
+
+  void (*call_)(void*, std::size_t, std::size_t, std::size_t) = nullptr;
+  void* argument_ = nullptr;
+  std::size_t count_ = 0;
+  bool stop_ = false;
+  // The round that workers may do, and how many have done it.
+  alignas(64) std::atomic<std::uint32_t> round_{0};
+  alignas(64) std::atomic<std::uint32_t> done_{0};
+  std::vector<std::thread> workers_;
+};
+
+}  // namespace shearcell
