@@ -14,8 +14,7 @@ namespace {
 // Steps between two looks of the watchdog, which cost less than two steps each.
 constexpr std::uint64_t kWatchInterval = 1024;
 
-const Kernels& require_kernels(Simd simd) {
-  const Kernels* kernels = find_kernels(simd);
+const Kernels& require_kernels(const Kernels* kernels) {
   if (kernels == nullptr) {
     throw std::invalid_argument("this machine lacks the instructions of the kernel asked for");
   }
@@ -28,7 +27,7 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state, Engine
     : cell_(std::move(cell)),
       scene_(scene),
       settings_(settings),
-      kernels_(require_kernels(settings.simd)),
+      kernels_(require_kernels(settings.kernels)),
       team_(std::make_unique<Team>(settings.threads)),
       lists_(kernels_, settings.lists, cell_.depth, *team_),
       walls_(kernels_, cell_) {

@@ -29,7 +29,7 @@ namespace shearcell {
 
 /// How fast a simulation runs, never what it computes.
 struct EngineSettings {
-  Simd simd = Simd::best;
+  const Kernels* kernels = find_kernels(Simd::best);
   std::size_t threads = 1;
   ListSettings lists;
   WatchdogLimits limits;  ///< these decide where a run fails, not what it computes until then

@@ -50,7 +50,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   for (const auto add :
-       {add_plan, add_run, add_status, add_log, add_show, add_verify, add_figures}) {
+       {add_plan, add_run, add_status, add_log, add_show, add_verify, add_figures, add_bench}) {
     add(app, context);
   }
   try {

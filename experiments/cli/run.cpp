@@ -19,11 +19,15 @@ struct RunOptions {
   std::vector<std::string> manifests;
   ExpandOptions expand;
   std::size_t jobs = 0;
+  std::size_t threads = 1;
   bool quiet = false;
 };
 
-std::size_t workers(std::size_t asked) {
-  return asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
+// As many runs at a time as their threads leave cores for.
+std::size_t workers(const RunOptions& options) {
+  if (options.jobs > 0) return options.jobs;
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  return std::max<std::size_t>(1, cores / options.threads);
 }
 
 void report(const CampaignResult& result, Context& context) {
@@ -54,7 +58,7 @@ void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& 
              Context& context) {
   catch_stop_signals();
   Progress progress(jobs.size(), options.quiet);
-  report(run_campaign(store, jobs, workers(options.jobs), progress), context);
+  report(run_campaign(store, jobs, workers(options), progress, options.threads), context);
 }
 
 void run(const RunOptions& options, Context& context) {
@@ -84,6 +88,9 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
   command.add_option("--jobs,-j", options.jobs, "Runs at a time (default: one per core)")
       ->check(CLI::Range(1, 1024))
       ->type_name("J");
+  command.add_option("--threads,-t", options.threads, "Threads inside each run, for large cells")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("T");
   command.add_flag("--quiet,-q", options.quiet, "No progress");
 }
 

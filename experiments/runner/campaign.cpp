@@ -21,8 +21,12 @@ enum class JobState { waiting, running, done, ended };  // ended: without reachi
 
 class Campaign {
  public:
-  Campaign(Store& store, const std::vector<StageJob>& jobs, Progress& progress)
-      : store_(store), jobs_(jobs), progress_(progress), states_(jobs.size(), JobState::waiting) {}
+  Campaign(Store& store, const std::vector<StageJob>& jobs, Progress& progress, std::size_t threads)
+      : store_(store),
+        jobs_(jobs),
+        progress_(progress),
+        threads_(threads),
+        states_(jobs.size(), JobState::waiting) {}
 
   CampaignResult run(std::size_t workers) {
     std::vector<std::thread> threads;
@@ -111,6 +115,7 @@ class Campaign {
     progress_.begin(job.name);
     StageOptions options;
     options.checkpoint_every = job.checkpoint_every;
+    options.threads = threads_;
     options.report = [&](const StageStatus& status) { progress_.update(job.name, status); };
     const StageOutcome outcome = run_stage(store_, job.id, options);
     switch (outcome) {
@@ -147,6 +152,7 @@ class Campaign {
   Store& store_;
   const std::vector<StageJob>& jobs_;
   Progress& progress_;
+  std::size_t threads_;
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   std::vector<JobState> states_;
@@ -223,8 +229,8 @@ std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& p
 }
 
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
-                            Progress& progress) {
-  return Campaign(store, jobs, progress).run(workers);
+                            Progress& progress, std::size_t threads) {
+  return Campaign(store, jobs, progress, threads).run(workers);
 }
 
 }  // namespace shearcell

@@ -39,7 +39,8 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
 std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes);
 
 /// Computes every job that is not done. A failure stops only the stages that depend on it.
+/// `threads` is how many each simulation uses; it changes no bit.
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
-                            Progress& progress);
+                            Progress& progress, std::size_t threads = 1);
 
 }  // namespace shearcell

@@ -86,6 +86,7 @@ class Attempt {
     Beginning beginning = begin(store_, run_, stage_);
     store_.start_run(run_.id, host_facts(), beginning.from);
     EngineSettings settings;
+    settings.threads = options_.threads;
     settings.limits.overlap = stage_.parameters.max_overlap_diameters;
     Simulation simulation(std::move(beginning.cell), scene_, beginning.state, settings);
     first_step_ = recorded_step_ = simulation.step();

@@ -26,6 +26,7 @@ struct StageStatus {
 
 struct StageOptions {
   std::uint64_t checkpoint_every = 1;              ///< cycles
+  std::size_t threads = 1;                         ///< inside this one simulation
   std::function<void(const StageStatus&)> report;  ///< called a few times a second
 };
 

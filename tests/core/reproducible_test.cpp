@@ -117,7 +117,7 @@ TEST(Reproducible, AnyInstructionsAndAnyLists) {
     if (find_kernels(simd) == nullptr) continue;
     for (const double inner : {1.03, 1.05, 1.1, 1.2, 1.3}) {
       EngineSettings settings;
-      settings.simd = simd;
+      settings.kernels = find_kernels(simd);
       settings.lists.inner_cutoff = inner;
       settings.lists.outer_cutoff = inner + 0.05;
       EXPECT_TRUE(same_bits(golden, advanced(start, 700, settings)))
@@ -147,7 +147,7 @@ TEST(Reproducible, EveryFeatureOnEveryKernel) {
         scene.gravity = gravity;
         const State golden = advanced(start, 300, {}, scene);
         EngineSettings settings;
-        settings.simd = Simd::scalar;
+        settings.kernels = &scalar_kernels();
         EXPECT_TRUE(same_bits(golden, advanced(start, 300, settings, scene)));
       }
     }
@@ -175,7 +175,7 @@ TEST(Reproducible, DeepAndShallowOverlapsSideBySide) {
   }
   start.state = test::at_rest(positions, start.cell);
   EngineSettings scalar;
-  scalar.simd = Simd::scalar;
+  scalar.kernels = &scalar_kernels();
   EXPECT_TRUE(same_bits(advanced(start, 200), advanced(start, 200, scalar)));
 }
 

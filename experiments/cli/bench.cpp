@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `bench`: measurements of the program itself.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/report/speed.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+nlohmann::json facts(const SpeedResult& r) {
+  return {{"N", r.grains},
+          {"simd", r.simd},
+          {"threads", r.threads},
+          {"million_particle_steps_per_second", r.median_rate},
+          {"slowest", r.slowest_rate},
+          {"fastest", r.fastest_rate},
+          {"share_step", r.step_share},
+          {"share_walls", r.wall_share},
+          {"share_search", r.search_share},
+          {"share_prune", r.prune_share},
+          {"steps_per_search", r.steps_per_search},
+          {"steps_per_prune", r.steps_per_prune},
+          {"bytes_per_grain", r.bytes_per_grain},
+          {"state_hash", r.state_hash}};
+}
+
+void speed(const SpeedOptions& options, Context& context) {
+  const std::vector<SpeedResult> results = measure_speed(options);
+  if (context.json) {
+    nlohmann::json sizes = nlohmann::json::array();
+    for (const SpeedResult& result : results) sizes.push_back(facts(result));
+    print_json({{"sizes", sizes}});
+    return;
+  }
+  std::vector<std::vector<std::string>> rows;
+  const auto percent = [](double share) { return fmt::format("{:.1f}", 100 * share); };
+  for (const SpeedResult& r : results) {
+    rows.push_back({std::to_string(r.grains), r.simd, std::to_string(r.threads),
+                    fmt::format("{:.1f}", r.median_rate),
+                    fmt::format("{:.0f}-{:.0f}", r.slowest_rate, r.fastest_rate),
+                    percent(r.step_share), percent(r.wall_share), percent(r.search_share),
+                    percent(r.prune_share), fmt::format("{:.0f}", r.bytes_per_grain)});
+  }
+  print_table(
+      {"N", "SIMD", "thr", "M/s", "range", "step%", "wall%", "search%", "prune%", "B/grain"}, rows);
+  fmt::print("M/s: million particle-steps/s, median of {}; step: forces and integration\n",
+             options.repeats);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Context& context) {
+  CLI::App* command = app.add_subcommand("bench", "Measure the program on this machine");
+  command->require_subcommand(1);
+  command->footer("Examples:\n  shearcell bench speed");
+  auto options = std::make_shared<SpeedOptions>();
+  CLI::App* rate = command->add_subcommand(
+      "speed", "Particle-steps per second in the sheared rough cell, and where the time goes");
+  rate->add_option("--size", options->sizes, "Numbers of grains")->type_name("N");
+  rate->add_option("--threads", options->threads, "Threads inside one run")->type_name("T");
+  rate->add_option("--repeats", options->repeats, "Timings of which the median is told")
+      ->check(CLI::Range(1, 1000));
+  rate->add_option("--seconds", options->seconds_per_repeat, "Length of one timing")
+      ->check(CLI::Range(0.01, 60.0));
+  rate->add_flag("--json", context.json, "Print JSON for programs");
+  rate->footer(
+      "Every kernel of the machine is timed, after it gave the same state as the others.\n"
+      "Examples:\n  shearcell bench speed --size 600 5200\n"
+      "  shearcell bench speed --size 18200 --threads 1 2 --json");
+  rate->callback([options, &context] {
+    options->report = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
+    speed(*options, context);
+  });
+}
+
+}  // namespace shearcell::cli

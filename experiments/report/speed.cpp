@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/report/speed.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/filling.hpp"
+#include "core/simulation.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "protocols/settle.hpp"
+#include "provenance/checkpoint.hpp"
+
+namespace shearcell {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The engine holds no clock, so its kernels are timed from outside: a table of functions that take
+// the time around those of the kernel in use. One simulation at a time, one thread.
+struct Stopwatch {
+  const Kernels* inner = nullptr;
+  double step = 0, walls = 0, search = 0, prune = 0;
+};
+Stopwatch stopwatch;
+
+template <class Call>
+auto timed(double& total, Call&& call) {
+  const auto start = Clock::now();
+  if constexpr (std::is_void_v<decltype(call())>) {
+    call();
+    total += seconds_since(start);
+  } else {
+    const auto result = call();
+    total += seconds_since(start);
+    return result;
+  }
+}
+
+template <int kGravity, int kFlow>
+double timed_step(const StepTask& task, std::size_t first, std::size_t last) {
+  return timed(stopwatch.step,
+               [&] { return stopwatch.inner->step[kGravity][kFlow](task, first, last); });
+}
+
+Kernels timed_kernels(const Kernels& inner) {
+  stopwatch = {};
+  stopwatch.inner = &inner;
+  return {
+      inner.name,
+      inner.lanes,
+      {{timed_step<0, 0>, timed_step<0, 1>}, {timed_step<1, 0>, timed_step<1, 1>}},
+      [](const WallTask& task) { timed(stopwatch.walls, [&] { stopwatch.inner->walls(task); }); },
+      [](const SearchTask& task, std::size_t first, std::size_t last) {
+        return timed(stopwatch.search, [&] { return stopwatch.inner->search(task, first, last); });
+      },
+      [](const PruneTask& task, std::size_t first, std::size_t last) {
+        return timed(stopwatch.prune, [&] { return stopwatch.inner->prune(task, first, last); });
+      }};
+}
+
+struct Prepared {
+  Cell cell;
+  State state;
+  Scene scene;
+  Drive drive;
+};
+
+Prepared prepare(std::size_t grains) {
+  Parameters parameters;
+  parameters.grains = grains;
+  if (!pressure_lifts_column(parameters)) parameters.gravity_m_per_s2 = 0;
+  Prepared made;
+  made.cell = make_cell(geometry(parameters), 1);
+  made.state = fill_cell(made.cell, geometry(parameters), 1);
+  made.scene = shear_scene(parameters);
+  made.drive = drive(parameters);
+  // Time enough to press, with or without gravity afterwards.
+  Scene pressing = settle_scene(parameters);
+  pressing.gravity = 1;
+  const std::uint64_t steps = Settle({}, pressing).press_steps(made.cell, grains);
+  pressing.gravity = 0;
+  EngineSettings settings;
+  settings.threads = grains > 20000 ? std::max(1U, std::thread::hardware_concurrency()) : 1;
+  Simulation simulation(made.cell, pressing, made.state, settings);
+  simulation.advance(Drive{}, steps);
+  simulation.set_scene(made.scene);
+  simulation.advance(Drive{}, 2000);  // the weight
+  made.state = simulation.state();
+  made.state.step = made.drive.steps_per_cycle / 8;  // tilted and moving
+  return made;
+}
+
+std::string hash_after(const Prepared& made, const EngineSettings& settings, std::uint64_t steps) {
+  Simulation simulation(made.cell, made.scene, made.state, settings);
+  simulation.advance(made.drive, steps);
+  Checkpoint checkpoint;
+  checkpoint.cell = simulation.cell();
+  checkpoint.state = simulation.state();
+  return state_hash(checkpoint);
+}
+
+void measure_shares(const Prepared& made, const Kernels& kernels, std::uint64_t steps,
+                    SpeedResult& result) {
+  const Kernels table = timed_kernels(kernels);
+  EngineSettings settings;
+  settings.kernels = &table;
+  Simulation simulation(made.cell, made.scene, made.state, settings);
+  const auto start = Clock::now();
+  simulation.advance(made.drive, steps);
+  const double total = seconds_since(start);
+  result.step_share = stopwatch.step / total;
+  result.wall_share = stopwatch.walls / total;
+  result.search_share = stopwatch.search / total;
+  result.prune_share = stopwatch.prune / total;
+  const ListCounts& counts = simulation.list_counts();
+  result.steps_per_search = static_cast<double>(steps) / static_cast<double>(counts.builds);
+  result.steps_per_prune = static_cast<double>(steps) / static_cast<double>(counts.prunes);
+  result.bytes_per_grain =
+      static_cast<double>(simulation.bytes()) / static_cast<double>(simulation.grains());
+}
+
+void measure_rate(const Prepared& made, const EngineSettings& settings, const SpeedOptions& options,
+                  SpeedResult& result) {
+  Simulation simulation(made.cell, made.scene, made.state, settings);
+  const auto warm_up = Clock::now();
+  std::uint64_t steps = 0;
+  for (; seconds_since(warm_up) < options.seconds_per_repeat || steps == 0; steps += 20) {
+    simulation.advance(made.drive, 20);
+  }
+  std::vector<double> rates;
+  for (std::size_t repeat = 0; repeat < options.repeats; ++repeat) {
+    const auto start = Clock::now();
+    simulation.advance(made.drive, steps);
+    rates.push_back(1e-6 * static_cast<double>(steps * result.grains) / seconds_since(start));
+  }
+  std::sort(rates.begin(), rates.end());
+  result.median_rate = rates[rates.size() / 2];
+  result.slowest_rate = rates.front();
+  result.fastest_rate = rates.back();
+}
+
+std::vector<SpeedResult> measure_size(std::size_t grains, const SpeedOptions& options) {
+  const auto say = [&](const std::string& what) {
+    if (options.report) options.report(fmt::format("N = {}: {}", grains, what));
+  };
+  say("pressing a packing");
+  const Prepared made = prepare(grains);
+  std::vector<SpeedResult> results;
+  for (const Simd simd : {Simd::avx512, Simd::avx2, Simd::scalar}) {
+    const Kernels* kernels = find_kernels(simd);
+    if (kernels == nullptr) continue;
+    for (const std::size_t threads : options.threads) {
+      SpeedResult result;
+      result.grains = grains;
+      result.simd = kernels->name;
+      result.threads = threads;
+      say(fmt::format("{}, {} thread{}", kernels->name, threads, threads == 1 ? "" : "s"));
+      EngineSettings settings;
+      settings.kernels = kernels;
+      settings.threads = threads;
+      result.state_hash = hash_after(made, settings, 200);
+      if (!results.empty() && result.state_hash != results.front().state_hash) {
+        throw std::runtime_error(fmt::format(
+            "{} with {} threads gives another state than {} after 200 steps at N = {}; no rate is "
+            "worth reporting",
+            result.simd, threads, results.front().simd, grains));
+      }
+      measure_rate(made, settings, options, result);
+      const double steps = 1e6 * result.median_rate * options.seconds_per_repeat /
+                           static_cast<double>(grains * threads);
+      measure_shares(made, *kernels,
+                     std::max<std::uint64_t>(400, static_cast<std::uint64_t>(steps)), result);
+      results.push_back(result);
+    }
+  }
+  return results;
+}
+
+}  // namespace
+
+std::vector<SpeedResult> measure_speed(const SpeedOptions& options) {
+  std::vector<SpeedResult> all;
+  for (const std::size_t grains : options.sizes) {
+    const std::vector<SpeedResult> results = measure_size(grains, options);
+    all.insert(all.end(), results.begin(), results.end());
+  }
+  return all;
+}
+
+}  // namespace shearcell

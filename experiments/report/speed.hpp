@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How fast the engine is: particle-steps per second in the real scene, and where the time goes.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/kernel.hpp"
+
+namespace shearcell {
+
+struct SpeedOptions {
+  std::vector<std::size_t> sizes = {600, 2000, 5200, 18200, 100000};
+  std::vector<std::size_t> threads = {1};
+  std::size_t repeats = 7;
+  double seconds_per_repeat = 0.5;
+  std::function<void(const std::string&)> report;  ///< what is being done now; may be empty
+};
+
+/// Of one size with one kernel and one number of threads. Rates are in 1e6 particle-steps/s.
+struct SpeedResult {
+  std::size_t grains = 0;
+  std::string simd;
+  std::size_t threads = 1;
+  double median_rate = 0, slowest_rate = 0, fastest_rate = 0;
+  /// Shares of the time: forces with integration (one loop), walls, search of the outer list,
+  /// pruning of the inner one; the rest is the moving wall, the drive, sorting and the watchdog.
+  double step_share = 0, wall_share = 0, search_share = 0, prune_share = 0;
+  double steps_per_search = 0, steps_per_prune = 0;
+  double bytes_per_grain = 0;
+  std::string state_hash;  ///< after 200 steps; the same for all results of one size
+};
+
+/// Table I in a rough cell sheared at A = 0.0833, gravity on where the pressure can lift the column
+/// (N <= 18200). The packing is pressed together first; each kernel must then give the same state
+/// after 200 steps as the first one, or else std::runtime_error is thrown and nothing is timed.
+/// Shares are measured with one thread.
+std::vector<SpeedResult> measure_speed(const SpeedOptions& options);
+
+}  // namespace shearcell
