@@ -114,8 +114,9 @@ TEST_F(Interruption, KeepsTheCadenceOfItsCheckpoints) {
   ASSERT_EQ(jobs.size(), 2U);
   run_stage(store_, jobs[0].id, {});
   request_stop(true);
-  ASSERT_EQ(run_stage(store_, jobs[1].id, {.checkpoint_every = 2, .report = {}}),
-            StageOutcome::interrupted);
+  StageOptions options_of_stage;
+  options_of_stage.checkpoint_every = jobs[1].checkpoint_every;
+  ASSERT_EQ(run_stage(store_, jobs[1].id, options_of_stage), StageOutcome::interrupted);
   const double stopped_at = store_.run(jobs[1].id).cycle;
   std::printf("stopped at cycle %g\n", stopped_at);
   ASSERT_GT(stopped_at, 0);
