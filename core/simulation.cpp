@@ -135,10 +135,11 @@ void Simulation::step_once(const Drive& drive) {
   ++step_;
   pose_ = next;
   if (!lists_.inner_valid(std::sqrt(square), pose_)) refresh_lists();
-  if (step_ % kWatchInterval == 0) watch();
+  if (step_ % kWatchInterval == 0) check();
 }
 
-void Simulation::watch() const {
+void Simulation::check() const {
+  if (counts_.builds == 0) return;  // nothing has happened to the state that was loaded
   WatchTask task;
   task.rows = rows_[0].data();
   for (std::size_t axis = 0; axis < 3; ++axis) task.velocity[axis] = velocity_[axis].data();

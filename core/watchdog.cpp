@@ -71,9 +71,10 @@ void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, c
                       task.velocity[2][g] * task.velocity[2][g];
     // Written so that NaN fails.
     if (!(v2 <= fastest_square)) {
-      throw NumericalFailure("the speed [d/s] of a grain", std::sqrt(v2), std::sqrt(fastest_square),
-                             id, task.step,
-                             "The integration is unstable: use more steps per cycle");
+      throw NumericalFailure(
+          "the speed [d/s] of a grain", std::sqrt(v2), std::sqrt(fastest_square), id, task.step,
+          "The integration is unstable: use a smaller time step (more steps_per_cycle; "
+          "while settling, a smaller settle_time_step_s)");
     }
     const double distance = smallest_distance(cell, pose, row);
     if (!(distance >= -limits.escape && std::isfinite(row[2]))) {
@@ -86,8 +87,9 @@ void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, c
     if (!(overlap <= limits.overlap)) {
       throw NumericalFailure("the overlap [d] of two grains", overlap, limits.overlap, id,
                              task.step,
-                             "The grains are too soft for this load: raise the stiffness, lower "
-                             "the pressure, or use more steps per cycle");
+                             "The grains are too soft for this load, or the time step is too "
+                             "large: raise the stiffness, lower the pressure, or use a smaller "
+                             "time step");
     }
   }
 }

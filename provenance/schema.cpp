@@ -86,7 +86,14 @@ sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open m
   database.execute(
       "PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
       "PRAGMA synchronous=EXTRA;");
-  if (database.integer("PRAGMA page_count") == 0) create_tables(database);
+  if (database.integer("PRAGMA page_count") == 0) {
+    // An empty file is how a new store begins; beside objects it is a log that was lost.
+    if (mode != sqlite::Open::create || std::filesystem::exists(file.parent_path() / "objects")) {
+      throw StoreDamaged(file.string() +
+                         ": the log is empty; restore it from a backup, or name another store");
+    }
+    create_tables(database);
+  }
   require_known_schema(database);
   database.execute(read_only ? "PRAGMA query_only=ON" : "PRAGMA journal_mode=DELETE");
   return database;

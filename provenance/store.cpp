@@ -267,14 +267,16 @@ void Store::reject_checkpoint(const std::string& id, const std::string& sha256,
   lock.commit();
 }
 
-std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string& id) {
+std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string& id,
+                                                               std::vector<std::string>* damage) {
   std::vector<CheckpointRecord> records = checkpoints(id);
   std::reverse(records.begin(), records.end());
   for (const CheckpointRecord& record : records) {
     try {
       return LoadedCheckpoint{record, load_checkpoint(record)};
-    } catch (const StoreDamaged& damage) {
-      if (access_ != Access::read) reject_checkpoint(id, record.sha256, damage.what());
+    } catch (const StoreDamaged& error) {
+      if (damage != nullptr) damage->push_back(error.what());
+      if (access_ != Access::read) reject_checkpoint(id, record.sha256, error.what());
     }
   }
   return std::nullopt;

@@ -79,7 +79,9 @@ class Store {
 
   /// The newest checkpoint from which the run can go on. Those that are missing or damaged are
   /// rejected (only skipped with Access::read) and the next older one is tried.
-  std::optional<LoadedCheckpoint> newest_valid_checkpoint(const std::string& id);
+  /// What was wrong with each of those is appended to `damage`, when given.
+  std::optional<LoadedCheckpoint> newest_valid_checkpoint(
+      const std::string& id, std::vector<std::string>* damage = nullptr);
 
   /// `provenance` holds the inputs and the SHA-256 of the outputs.
   void record_figure(const std::string& name, const nlohmann::json& provenance);

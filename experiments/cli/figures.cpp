@@ -44,6 +44,7 @@ void figures(const FigureOptions& options, Context& context) {
   Store store(context.store, Access::write);
   const std::vector<std::string> names =
       options.all || options.names.empty() ? figures_of_store(store) : options.names;
+  if (names.empty()) fmt::print(stderr, "No manifest of this store asks for a figure.\n");
   for (const std::string& name : names) {
     if (find_figure(name) == nullptr) {
       throw NotFound("there is no figure " + name + "; known are" + known_figures());

@@ -48,13 +48,14 @@ int run(int argc, char** argv) {
   CLI::App app{kDescription, "shearcell"};
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // so that a word that is none is named
   for (const auto add :
        {add_plan, add_run, add_status, add_log, add_show, add_verify, add_figures, add_bench}) {
     add(app, context);
   }
   try {
     app.parse(argc, argv);
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
     return context.exit_code;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kUsageError;

@@ -23,7 +23,12 @@ struct PlanOptions {
 };
 
 std::optional<Store> open_if_there(const std::string& folder) {
-  if (!std::filesystem::exists(folder)) return std::nullopt;
+  // A folder that `run` would take for a new store is none yet.
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder) ||
+      (std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder, ignored))) {
+    return std::nullopt;
+  }
   return std::optional<Store>(std::in_place, folder, Access::read);
 }
 

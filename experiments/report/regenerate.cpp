@@ -209,7 +209,9 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
   }
   const nlohmann::json facts = lineage(result, inputs, runs);
   const auto path = options.folder / (result.name + ".lineage.json");
-  std::ofstream(path) << facts.dump(1) << '\n';
+  std::ofstream file(path);
+  file << facts.dump(1) << '\n';
+  if (!file.flush()) throw std::runtime_error(path.string() + ": cannot write the lineage");
   result.files.push_back(path);
 
   bool recorded = false;

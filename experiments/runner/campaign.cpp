@@ -103,19 +103,18 @@ class Campaign {
   }
 
   JobState compute(const StageJob& job) {
-    std::string damage;
-    if (stage_done(store_, store_.run(job.id), damage)) {
+    if (stage_done(store_, store_.run(job.id))) {
       const std::lock_guard lock(mutex_);
       ++result_.already;
       return JobState::done;
-    }
-    if (!damage.empty()) {
-      note(job, &CampaignResult::damaged, damage + "; computed again from the checkpoint before");
     }
     progress_.begin(job.name);
     StageOptions options;
     options.checkpoint_every = job.checkpoint_every;
     options.threads = threads_;
+    options.damaged = [&](const std::string& what) {
+      note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
+    };
     options.report = [&](const StageStatus& status) { progress_.update(job.name, status); };
     const StageOutcome outcome = run_stage(store_, job.id, options);
     switch (outcome) {
@@ -212,18 +211,20 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
 }
 
 std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes) {
+  std::vector<RunRecord> asked;
+  for (const std::string& prefix : prefixes) asked.push_back(store.find_run(prefix));
+  if (prefixes.empty()) {
+    asked = store.runs();
+    std::erase_if(asked, [](const RunRecord& run) { return run.state == RunState::completed; });
+  }
+  // The stages before are asked for as well: one of them may have lost its last checkpoint.
   std::set<std::string> wanted;
-  for (const std::string& prefix : prefixes) {
-    for (RunRecord run = store.find_run(prefix);; run = store.run(run.parent)) {
-      wanted.insert(run.id);
-      if (run.parent.empty()) break;
-    }
+  for (RunRecord run : asked) {
+    while (wanted.insert(run.id).second && !run.parent.empty()) run = store.run(run.parent);
   }
   std::vector<StageJob> jobs;
   for (const RunRecord& run : store.runs()) {
-    const bool asked =
-        prefixes.empty() ? run.state != RunState::completed : wanted.count(run.id) > 0;
-    if (asked) jobs.push_back(job_of(run));
+    if (wanted.count(run.id) > 0) jobs.push_back(job_of(run));
   }
   return jobs;
 }

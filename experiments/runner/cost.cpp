@@ -14,9 +14,9 @@ namespace {
 constexpr double kAssumedRate = 50e6;
 
 // Size of a checkpoint file, measured: its grains, its wall grains, and the layout around them.
-constexpr double kBytesPerGrain = 130;
-constexpr double kBytesPerWallGrain = 110;
-constexpr double kBytesPerFile = 30e3;
+constexpr double kBytesPerGrain = 121;
+constexpr double kBytesPerWallGrain = 97;
+constexpr double kBytesPerFile = 18e3;
 
 // Simulated time [s] to settle a packing of height h [d]; within a third of the measured 0.9, 1.1,
 // 1.6 and 2.8 s at N = 600, 2000, 5200 and 18200.

@@ -49,8 +49,9 @@ struct Beginning {
   std::optional<std::string> from;  ///< checkpoint of this stage that it continues
 };
 
-Beginning begin(Store& store, const RunRecord& run, const StageRecord& stage) {
-  if (auto newest = store.newest_valid_checkpoint(run.id)) {
+Beginning begin(Store& store, const RunRecord& run, const StageRecord& stage,
+                std::vector<std::string>& damage) {
+  if (auto newest = store.newest_valid_checkpoint(run.id, &damage)) {
     return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
             newest->record.sha256};
   }
@@ -60,7 +61,7 @@ Beginning begin(Store& store, const RunRecord& run, const StageRecord& stage) {
     State state = fill_cell(cell, shape, stage.seed);
     return {std::move(cell), std::move(state), std::nullopt};
   }
-  auto parent = store.newest_valid_checkpoint(run.parent);
+  auto parent = store.newest_valid_checkpoint(run.parent, &damage);
   if (!parent) {
     throw StoreDamaged("run " + run.parent.substr(0, 12) + ": the settled packing that run " +
                        run.id.substr(0, 12) +
@@ -83,7 +84,11 @@ class Attempt {
         protocol_(make_protocol(stage_, run_.target_cycles, options.checkpoint_every)) {}
 
   StageOutcome run() {
-    Beginning beginning = begin(store_, run_, stage_);
+    std::vector<std::string> damage;
+    Beginning beginning = begin(store_, run_, stage_, damage);
+    for (const std::string& what : damage) {
+      if (options_.damaged) options_.damaged(what);
+    }
     store_.start_run(run_.id, host_facts(), beginning.from);
     EngineSettings settings;
     settings.threads = options_.threads;
@@ -124,7 +129,9 @@ class Attempt {
     }
   }
 
+  // Throws NumericalFailure rather than keep a state that went wrong.
   void record(const Simulation& simulation, double cycle) {
+    simulation.check();
     Checkpoint checkpoint;
     checkpoint.run = run_.id;
     checkpoint.cell = simulation.cell();
@@ -191,16 +198,15 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
   return Attempt(store, std::move(run), options).run();
 }
 
-bool stage_done(Store& store, const RunRecord& run, std::string& damage) {
+bool stage_done(const Store& store, const RunRecord& run) {
   if (run.state != RunState::completed) return false;
   const auto recorded = store.checkpoints(run.id);
   if (recorded.empty()) return false;
   try {
     store.load_checkpoint(recorded.back());
     return true;
-  } catch (const StoreDamaged& error) {
-    damage = error.what();
-    return false;
+  } catch (const StoreDamaged&) {
+    return false;  // run_stage says what is wrong with it
   }
 }
 

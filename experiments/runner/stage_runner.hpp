@@ -25,20 +25,20 @@ struct StageStatus {
 };
 
 struct StageOptions {
-  std::uint64_t checkpoint_every = 1;              ///< cycles
-  std::size_t threads = 1;                         ///< inside this one simulation
-  std::function<void(const StageStatus&)> report;  ///< called a few times a second
+  std::uint64_t checkpoint_every = 1;               ///< cycles
+  std::size_t threads = 1;                          ///< inside this one simulation
+  std::function<void(const std::string&)> damaged;  ///< told of each checkpoint passed over
+  std::function<void(const StageStatus&)> report;   ///< called a few times a second
 };
 
 /// Computes the stage `id` until its target: continues from its newest checkpoint that verifies,
 /// or else begins from its parent's last state, or from a fresh filling. Checks for
 /// stop_requested() between chunks of steps of about 50 ms.
-/// Throws StoreDamaged when the parent's last state cannot be read, GeometryError for a cell that
-/// cannot be filled; both are recorded as the run's failure first.
+/// Throws StoreDamaged when the parent's last state cannot be read and GeometryError for a cell
+/// that cannot be filled, both before an attempt is recorded.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
-/// Whether the store holds the stage's last state, readable. A completed stage whose last
-/// checkpoint is damaged has work left; `damage` then names the file.
-bool stage_done(Store& store, const RunRecord& run, std::string& damage);
+/// Whether the stage is completed and its last state can be read; else there is work left.
+bool stage_done(const Store& store, const RunRecord& run);
 
 }  // namespace shearcell

@@ -28,7 +28,7 @@ TEST(Watchdog, StopsATimeStepBeyondTheStabilityLimit) {
   const NumericalFailure failure = failure_of(simulation, 20000);
   EXPECT_GT(failure.value, failure.limit);
   EXPECT_GE(failure.grain, 0);
-  EXPECT_NE(std::string(failure.what()).find("more steps per cycle"), std::string::npos)
+  EXPECT_NE(std::string(failure.what()).find("smaller time step"), std::string::npos)
       << failure.what();
 }
 
