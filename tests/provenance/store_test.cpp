@@ -316,10 +316,18 @@ TEST_F(StoreTest, AReaderChangesNothing) {
   EXPECT_EQ(test::read_bytes(path_ / "store.sqlite"), before);
 }
 
+TEST_F(StoreTest, RefusesALogThatWasLost) {
+  fs::create_directories(path_);
+  test::write_bytes(path_ / "store.sqlite", "");
+  EXPECT_THROW(open(Access::write), StoreDamaged);
+  fs::create_directories(path_ / "objects");
+  EXPECT_THROW(open(Access::create), StoreDamaged) << "its objects are still there";
+}
+
 TEST_F(StoreTest, StartsOverWhereItsCreationWasCutShort) {
   fs::create_directories(path_);
   test::write_bytes(path_ / "store.sqlite", "");
-  Store store = open(Access::write);
+  Store store = open(Access::create);
   store.declare_run(sample_run(1));
   EXPECT_TRUE(store.verify().ok());
 }
