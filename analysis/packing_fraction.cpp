@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/site_grid.hpp"
 #include "analysis/voronoi.hpp"
+#include "core/diagnostics.hpp"
 
 namespace shearcell {
 namespace {
@@ -20,29 +20,23 @@ double cube(double x) {
 }  // namespace
 
 Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains) {
-  const SiteGrid grid(wrapped_sites(cell, pose, grains), cell.depth, 1.0);
-  const auto count = static_cast<std::int32_t>(grains.cols());
   Overlaps result;
-  result.largest.assign(static_cast<std::size_t>(count), 0.0);
-  result.contacts.assign(static_cast<std::size_t>(count), 0);
+  result.largest.assign(static_cast<std::size_t>(grains.cols()), 0.0);
+  result.contacts.assign(static_cast<std::size_t>(grains.cols()), 0);
+  const auto touch = [&](std::int32_t grain, double overlap) {
+    double& largest = result.largest[static_cast<std::size_t>(grain)];
+    largest = std::max(largest, overlap);
+    ++result.contacts[static_cast<std::size_t>(grain)];
+  };
   double sum = 0;
-  for (std::int32_t i = 0; i < count; ++i) {
-    double largest = 0;
-    std::int32_t contacts = 0;
-    const auto touch = [&](std::int32_t j, const Eigen::Vector3d&, double distance2) {
-      if (j == i) return;
-      const double overlap = 1 - std::sqrt(distance2);
-      largest = std::max(largest, overlap);
-      ++contacts;
-      if (j > i && j < count) {
-        sum += overlap;
-        ++result.pairs;
-      }
-    };
-    grid.visit_within(grid.sites().col(i), 1, touch);
-    result.largest[static_cast<std::size_t>(i)] = largest;
-    result.contacts[static_cast<std::size_t>(i)] = contacts;
-  }
+  for_each_contact(cell, grains, pose, [&](const Contact& contact) {
+    if (contact.kind == Contact::Kind::wall_plane) return;
+    touch(contact.grain, contact.overlap);
+    if (contact.kind == Contact::Kind::wall_grain) return;
+    touch(contact.other, contact.overlap);
+    sum += contact.overlap;
+    ++result.pairs;
+  });
   if (result.pairs > 0) result.mean = sum / static_cast<double>(result.pairs);
   return result;
 }

@@ -31,12 +31,12 @@ void visit_planes(const Cell& cell, const WallPose& pose, std::int32_t i, const 
 
 }  // namespace
 
-void for_each_contact(const Cell& cell, const State& state, const WallPose& pose,
+void for_each_contact(const Cell& cell, const Eigen::Matrix3Xd& positions, const WallPose& pose,
                       const Visit& visit) {
   const Eigen::Matrix3Xd walls = wall_grain_positions(cell, pose);
-  const Eigen::Index grains = state.position.cols();
+  const Eigen::Index grains = positions.cols();
   const auto site = [&](std::int32_t s) -> Eigen::Vector3d {
-    return s < grains ? state.position.col(s) : walls.col(s - grains);
+    return s < grains ? positions.col(s) : walls.col(s - grains);
   };
   const auto untilted = [&pose](const Eigen::Vector3d& p) {
     return p.x() - pose.tan_theta * (p.y() - pose.top);
@@ -75,7 +75,7 @@ Diagnostics diagnose(const Cell& cell, const Scene& scene, const State& state,
   const WallSide moving = cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
   std::size_t touches = 0, pairs = 0;
   double push = 0;
-  for_each_contact(cell, state, pose, [&](const Contact& c) {
+  for_each_contact(cell, state.position, pose, [&](const Contact& c) {
     if (c.kind == Contact::Kind::grain) {
       ++pairs;
       d.mean_overlap += c.overlap;

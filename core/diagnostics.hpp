@@ -23,8 +23,9 @@ struct Contact {
   Eigen::Vector3d normal;  ///< unit vector towards `grain`
 };
 
-/// Calls visit for every contact; a pair of grains once, with grain < other.
-void for_each_contact(const Cell& cell, const State& state, const WallPose& pose,
+/// Calls visit for every contact of `grains` (3 x N [d], z unwrapped); a pair of grains once, with
+/// grain < other. Grain by grain in ascending id.
+void for_each_contact(const Cell& cell, const Eigen::Matrix3Xd& grains, const WallPose& pose,
                       const std::function<void(const Contact&)>& visit);
 
 struct Diagnostics {

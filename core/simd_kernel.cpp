@@ -1,90 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The kernel with one grain per vector lane, compiled for AVX2+FMA and AVX-512 and chosen at run
 // time. Every arithmetic operation and its order is that of scalar_kernel.cpp.
-
-// Targets without a fused multiply-add would give other bits: they take the scalar kernel.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/simd_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <array>
-
-#include "core/cell_grid.hpp"
 #include "core/contact.hpp"
 #include "core/kernel.hpp"
+#include "core/simd_vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace shearcell {
 namespace HWY_NAMESPACE {
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
-
-namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::ScalableTag<double>;
-using V = hn::Vec<D>;
-constexpr D kD{};
-constexpr hn::Half<D> kHalf{};
-constexpr std::size_t kLanes = hn::MaxLanes(kD);
-
-struct Vectors {
-  V x, y, z;
-};
-
-// Rows {x, y, z, 0} of kLanes grains, transposed. `a` .. `d` hold rows 0 .. 3, and in their upper
-// halves, where there are any, rows 4 .. 7.
-HWY_INLINE Vectors transpose(V a, V b, V c, V d) {
-  const V x_z_low = hn::InterleaveLower(kD, a, b);
-  const V x_z_high = hn::InterleaveLower(kD, c, d);
-  const V y_low = hn::InterleaveUpper(kD, a, b);
-  const V y_high = hn::InterleaveUpper(kD, c, d);
-  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(x_z_high), x_z_low),
-          hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y_high), y_low),
-          hn::OddEvenBlocks(x_z_high, hn::SwapAdjacentBlocks(x_z_low))};
-}
-
-// Loads kLanes rows; lane l takes the row at rows + offset(l).
-template <class Offset>
-HWY_INLINE Vectors load_rows(const double* HWY_RESTRICT rows, Offset&& offset) {
-#if HWY_TARGET == HWY_AVX3
-  const auto row = [&](std::size_t lane) HWY_ATTR { return hn::LoadU(kHalf, rows + offset(lane)); };
-  return transpose(hn::Combine(kD, row(4), row(0)), hn::Combine(kD, row(5), row(1)),
-                   hn::Combine(kD, row(6), row(2)), hn::Combine(kD, row(7), row(3)));
-#else
-  return transpose(hn::LoadU(kD, rows + offset(0)), hn::LoadU(kD, rows + offset(1)),
-                   hn::LoadU(kD, rows + offset(2)), hn::LoadU(kD, rows + offset(3)));
-#endif
-}
-
-// Stores x, y, z as kLanes consecutive rows.
-HWY_INLINE void store_rows(const Vectors& v, double* HWY_RESTRICT rows) {
-  const V zero = hn::Zero(kD);
-  const V xy_even = hn::InterleaveLower(kD, v.x, v.y);  // lanes 0, 2 (, 4, 6)
-  const V xy_odd = hn::InterleaveUpper(kD, v.x, v.y);
-  const V z_even = hn::InterleaveLower(kD, v.z, zero);
-  const V z_odd = hn::InterleaveUpper(kD, v.z, zero);
-  // Rows of the even and odd 128-bit blocks: {x y} of one block beside {z 0} of the same block.
-  const V row0 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_even), xy_even);
-  const V row1 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_odd), xy_odd);
-  const V row2 = hn::OddEvenBlocks(z_even, hn::SwapAdjacentBlocks(xy_even));
-  const V row3 = hn::OddEvenBlocks(z_odd, hn::SwapAdjacentBlocks(xy_odd));
-#if HWY_TARGET == HWY_AVX3
-  hn::StoreU(hn::LowerHalf(row0), kHalf, rows);
-  hn::StoreU(hn::LowerHalf(row1), kHalf, rows + 4);
-  hn::StoreU(hn::LowerHalf(row2), kHalf, rows + 8);
-  hn::StoreU(hn::LowerHalf(row3), kHalf, rows + 12);
-  hn::StoreU(hn::UpperHalf(kHalf, row0), kHalf, rows + 16);
-  hn::StoreU(hn::UpperHalf(kHalf, row1), kHalf, rows + 20);
-  hn::StoreU(hn::UpperHalf(kHalf, row2), kHalf, rows + 24);
-  hn::StoreU(hn::UpperHalf(kHalf, row3), kHalf, rows + 28);
-#else
-  hn::StoreU(row0, kD, rows);
-  hn::StoreU(row1, kD, rows + 4);
-  hn::StoreU(row2, kD, rows + 8);
-  hn::StoreU(row3, kD, rows + 12);
-#endif
-}
 
 // contact_factor(s) for s >= 0; kDeep: for s beyond the series too.
 template <bool kDeep>
@@ -104,14 +34,6 @@ HWY_INLINE V contact_factors(V s) {
   const V one = hn::Set(kD, 1.0);
   const V exact = hn::Sub(hn::Div(one, hn::Sqrt(hn::Sub(one, s))), one);
   return hn::IfThenElse(hn::Gt(s, hn::Set(kD, kSeriesEnd)), exact, series);
-}
-
-template <bool kSeam = true>
-HWY_INLINE Vectors separation(const Vectors& own, const Vectors& other, V depth, V per_depth) {
-  V dz = hn::Sub(own.z, other.z);
-  // Without a seam the nearest image is this one, and subtracting 0 * depth would change no bit.
-  if constexpr (kSeam) dz = hn::NegMulAdd(hn::Round(hn::Mul(dz, per_depth)), depth, dz);
-  return {hn::Sub(own.x, other.x), hn::Sub(own.y, other.y), dz};
 }
 
 // Adds (1/r - 1) dr over the touching neighbours; lane l has its k-th at list[k * kLanes + l].
@@ -231,138 +153,9 @@ void walls(const WallTask& t) {
   }
 }
 
-using Offsets = hn::Rebind<std::int32_t, D>;
-constexpr Offsets kOffsets{};
-
-// Stores the lanes of `values` whose grains `mask` selects, one after the other, and anything
-// behind them up to a whole vector. Returns how many. (Compressing doubles, Highway 1.0 copies a
-// table of 16 kB on every call.)
-HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
-                                      std::int32_t* HWY_RESTRICT to) {
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(kD, mask, bits);
-  hn::StoreU(hn::Compress(values, hn::LoadMaskBits(kOffsets, bits)), kOffsets, to);
-  return hn::CountTrue(kD, mask);
-}
-
-// Ascending order by rank: how many keys are smaller is counted a vector at a time.
-HWY_INLINE void sort_ids(std::int32_t* HWY_RESTRICT ids, std::size_t count) {
-  const hn::ScalableTag<std::int32_t> d;
-  constexpr std::size_t kMost = 64;
-  if (count > kMost) {
-    std::sort(ids, ids + count);
-    return;
-  }
-  const std::size_t lanes = hn::Lanes(d);
-  for (std::size_t k = count; k % lanes != 0; ++k) ids[k] = INT32_MAX;
-  std::int32_t sorted[kMost];
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto key = hn::Set(d, ids[k]);
-    std::size_t rank = 0;
-    for (std::size_t v = 0; v < count; v += lanes) {
-      rank += hn::CountTrue(d, hn::Lt(hn::LoadU(d, ids + v), key));
-    }
-    sorted[rank] = ids[k];
-  }
-  std::copy(sorted, sorted + count, ids);
-}
-
-std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
-  const V depth = hn::Set(kD, t.depth);
-  const V per_depth = hn::Set(kD, t.per_depth);
-  const V cutoff = hn::Set(kD, t.cutoff_squared);
-  std::int32_t found[kMostNeighbours + 64];
-  std::size_t most = 0;
-  for (std::size_t place = first; place < last; ++place) {
-    const Vectors own{hn::Set(kD, t.grid.position[0][place]),
-                      hn::Set(kD, t.grid.position[1][place]),
-                      hn::Set(kD, t.grid.position[2][place])};
-    const std::int32_t id = t.grid.id[place];
-    const V own_id = hn::Set(kD, static_cast<double>(id));
-    std::array<PlaceRun, 9> runs;
-    const std::size_t run_count = surrounding_runs(t.grid, place, runs);
-    std::size_t count = 0;
-    for (std::size_t r = 0; r < run_count; ++r) {
-      for (std::size_t p = runs[r].begin; p < runs[r].end; p += kLanes) {
-        const Vectors other{hn::LoadU(kD, t.grid.position[0] + p),
-                            hn::LoadU(kD, t.grid.position[1] + p),
-                            hn::LoadU(kD, t.grid.position[2] + p)};
-        const Vectors dr = separation(own, other, depth, per_depth);
-        const V square = hn::MulAdd(dr.x, dr.x, hn::MulAdd(dr.y, dr.y, hn::Mul(dr.z, dr.z)));
-        const auto ids = hn::LoadU(kOffsets, t.grid.id + p);
-        // Compared as doubles, which hold every id exactly and whose mask fits.
-        const auto near =
-            hn::And(hn::And(hn::Lt(square, cutoff), hn::Ne(hn::PromoteTo(kD, ids), own_id)),
-                    hn::FirstN(kD, runs[r].end - p));
-        count = std::min(count + store_selected(ids, near, found + count), kMostNeighbours);
-      }
-    }
-    most = std::max(most, count);
-    count = std::min(count, t.stride);
-    sort_ids(found, count);
-    const std::size_t grain = static_cast<std::size_t>(t.offset_of_id[id]) / 4;
-    std::int32_t* HWY_RESTRICT outer = t.outer + grain * t.stride;
-    for (std::size_t k = 0; k < count; ++k) outer[k] = t.offset_of_id[found[k]];
-    for (std::size_t k = count; k % 8 != 0; ++k) outer[k] = t.padding;
-    t.count[grain] = static_cast<std::uint16_t>(count);
-  }
-  return most;
-}
-
-// Keeps the near ones of one grain's outer list in `kept`; returns their number.
-HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g, std::int32_t* HWY_RESTRICT kept,
-                                 hn::Mask<D>& seam) {
-  const V depth = hn::Set(kD, t.depth);
-  const V per_depth = hn::Set(kD, t.per_depth);
-  const V cutoff = hn::Set(kD, t.cutoff_squared);
-  const double* own_row = t.rows + 4 * g;
-  const Vectors own{hn::Set(kD, own_row[0]), hn::Set(kD, own_row[1]), hn::Set(kD, own_row[2])};
-  const std::int32_t* HWY_RESTRICT outer = t.outer + g * t.outer_stride;
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < t.outer_count[g]; k += kLanes) {
-    const Vectors other = load_rows(
-        t.rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{outer[k + lane]}; });
-    const V dz = hn::Sub(own.z, other.z);
-    const V image = hn::Round(hn::Mul(dz, per_depth));
-    const V z = hn::NegMulAdd(image, depth, dz);
-    const V x = hn::Sub(own.x, other.x);
-    const V y = hn::Sub(own.y, other.y);
-    const V square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
-    const auto near = hn::Lt(square, cutoff);
-    seam = hn::Or(seam, hn::And(near, hn::Ne(image, hn::Zero(kD))));
-    count += store_selected(hn::LoadU(kOffsets, outer + k), near, kept + count);
-  }
-  return count;
-}
-
-bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
-  std::int32_t rows[kLanes][kMostNeighbours + 64];
-  const auto padding = hn::Set(kOffsets, t.padding);
-  for (std::size_t block = first; block < last; ++block) {
-    std::size_t count[kLanes];
-    std::size_t most = 0;
-    auto seam = hn::FirstN(kD, 0);
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const std::size_t g = block * kLanes + l;
-      count[l] = g < t.grains ? prune_row(t, g, rows[l], seam) : 0;
-      most = std::max(most, count[l]);
-    }
-    if (most > t.inner_stride) return false;
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      t.inner_count[block * kLanes + l] = static_cast<std::uint16_t>(count[l]);
-      for (std::size_t k = count[l]; k < most; k += kLanes) {
-        hn::StoreU(padding, kOffsets, rows[l] + k);
-      }
-    }
-    std::int32_t* HWY_RESTRICT inner = t.inner + block * t.inner_stride * kLanes;
-    for (std::size_t k = 0; k < most; ++k) {
-      for (std::size_t l = 0; l < kLanes; ++l) inner[k * kLanes + l] = rows[l][k];
-    }
-    t.slots[block] = static_cast<std::uint16_t>(most);
-    t.seam[block] = hn::AllFalse(kD, seam) ? 0 : 1;
-  }
-  return true;
-}
+// simd_lists.cpp
+std::size_t search(const SearchTask& task, std::size_t first_place, std::size_t last_place);
+bool prune(const PruneTask& task, std::size_t first_block, std::size_t last_block);
 
 const Kernels* kernels() {
   static const Kernels table{

@@ -35,24 +35,36 @@ WallContacts::WallContacts(const Kernels& kernels, const Cell& cell)
   }
   for (Side& side : sides_) {
     side.rows.assign(4 * (side.grains.size() + 1), 0.0);
+    for (std::size_t w = 0; w < side.grains.size(); ++w) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        side.rows[4 * w + static_cast<std::size_t>(axis)] = side.grains[w](axis);
+      }
+    }
     side.rows[4 * side.grains.size()] = kNowhere;
   }
 }
 
-// Operations and order are those of wall_grain_position().
+// Operations and order are those of wall_grain_position(). z never changes, nor y on the side
+// walls.
 void WallContacts::place_side(WallSide which, const WallPose& pose) {
   Side& side = sides_[static_cast<std::size_t>(which)];
-  const bool upright = which == WallSide::left || which == WallSide::right;
-  const double dx = which == WallSide::bottom ? (pose.bottom - pose.top) * pose.tan_theta : 0.0;
-  const double dy = which == WallSide::bottom ? pose.bottom - cell_.bottom
-                    : which == WallSide::top  ? pose.top - cell_.top
-                                              : 0.0;
+  const auto row_of = [&side](std::int32_t w) {
+    return side.rows.data() + 4 * static_cast<std::size_t>(w);
+  };
+  if (which == WallSide::left || which == WallSide::right) {
+    for (const std::int32_t w : side.active) {
+      const Eigen::Vector3d& p = side.grains[static_cast<std::size_t>(w)];
+      row_of(w)[0] = p.x() + (p.y() - pose.top) * pose.tan_theta;
+    }
+    return;
+  }
+  const bool bottom = which == WallSide::bottom;
+  const double dx = bottom ? (pose.bottom - pose.top) * pose.tan_theta : 0.0;
+  const double dy = bottom ? pose.bottom - cell_.bottom : pose.top - cell_.top;
   for (const std::int32_t w : side.active) {
     const Eigen::Vector3d& p = side.grains[static_cast<std::size_t>(w)];
-    double* row = side.rows.data() + 4 * static_cast<std::size_t>(w);
-    row[0] = p.x() + (upright ? (p.y() - pose.top) * pose.tan_theta : dx);
-    row[1] = p.y() + dy;
-    row[2] = p.z();
+    row_of(w)[0] = p.x() + dx;
+    row_of(w)[1] = p.y() + dy;
   }
 }
 

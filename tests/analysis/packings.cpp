@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "analysis/site_grid.hpp"
 #include "analysis/voronoi.hpp"
+#include "core/diagnostics.hpp"
 
 namespace shearcell::testing {
 namespace {
@@ -21,27 +21,13 @@ double uniform(Random& random, double low, double high) {
 
 /// Forces between overlapping soft spheres of unit stiffness, and on them from wall planes.
 Eigen::Matrix3Xd forces(const Packing& p) {
-  const SiteGrid grid(wrapped_sites(p.cell, p.pose, p.grains), p.cell.depth, 1.0);
   Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, p.grains.cols());
-  const double c = p.pose.cos_theta;
-  const double s = p.pose.sin_theta;
-  const std::array<Eigen::Vector3d, 4> inward = {
-      Eigen::Vector3d(c, -s, 0), Eigen::Vector3d(-c, s, 0), Eigen::Vector3d(0, 1, 0),
-      Eigen::Vector3d(0, -1, 0)};
-  for (Eigen::Index i = 0; i < p.grains.cols(); ++i) {
-    const auto push = [&](std::int32_t j, const Eigen::Vector3d& offset, double distance2) {
-      if (j == i) return;
-      const double r = std::sqrt(distance2) + 1e-12;
-      force.col(i) -= (1 - r) / r * offset;
-    };
-    grid.visit_within(grid.sites().col(i), 1, push);
-    const Eigen::Vector4d distance = wall_distances(p.cell, p.pose, p.grains.col(i));
-    for (int w = 0; w < 4; ++w) {
-      if (distance[w] < 0.5) {
-        force.col(i) += (0.5 - distance[w]) * inward[static_cast<std::size_t>(w)];
-      }
+  for_each_contact(p.cell, p.grains, p.pose, [&](const Contact& contact) {
+    force.col(contact.grain) += contact.overlap * contact.normal;
+    if (contact.kind == Contact::Kind::grain) {
+      force.col(contact.other) -= contact.overlap * contact.normal;
     }
-  }
+  });
   return force;
 }
 

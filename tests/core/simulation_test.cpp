@@ -139,7 +139,7 @@ TEST(Wall, TiltedPlanesPushAlongTheirNormals) {
   const Eigen::Vector3d normal(std::cos(theta), -std::sin(theta), 0);
   const State state = at_rest({foot + 0.49 * normal}, cell);
   int touches = 0;
-  for_each_contact(cell, state, pose, [&](const Contact& contact) {
+  for_each_contact(cell, state.position, pose, [&](const Contact& contact) {
     ++touches;
     EXPECT_EQ(contact.kind, Contact::Kind::wall_plane);
     EXPECT_EQ(contact.side, WallSide::left);
@@ -167,7 +167,7 @@ TEST(Contacts, BalanceMomentumAndEnergy) {
   const WallPose pose = wall_pose(cell, 0, 0);
   const auto spring_energy = [&](const State& s) {
     double energy = 0;
-    for_each_contact(cell, s, pose, [&](const Contact& c) {
+    for_each_contact(cell, s.position, pose, [&](const Contact& c) {
       energy += 0.5 * scene.stiffness * c.overlap * c.overlap;
     });
     return energy;

@@ -70,7 +70,7 @@ inline Forces forces(const Packing& packing) {
   }
   double sum = 0, overlap = 0;
   int contacts = 0, pairs = 0, touches = 0;
-  for_each_contact(packing.cell, packing.state, upright(packing), [&](const Contact& c) {
+  for_each_contact(packing.cell, packing.state.position, upright(packing), [&](const Contact& c) {
     const Eigen::Vector3d force = packing.scene.stiffness * c.overlap * c.normal;
     f.on_grain.col(c.grain) += force;
     ++f.contacts[static_cast<std::size_t>(c.grain)];

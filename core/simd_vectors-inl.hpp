@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rows of positions as vectors, one grain per lane: what the vector loops share. Included once for
+// each instruction set, so it has no ordinary include guard.
+#if defined(SHEARCELL_SIMD_VECTORS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHEARCELL_SIMD_VECTORS_INL
+#undef SHEARCELL_SIMD_VECTORS_INL
+#else
+#define SHEARCELL_SIMD_VECTORS_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+
+HWY_BEFORE_NAMESPACE();
+namespace shearcell {
+namespace HWY_NAMESPACE {
+// Targets without a fused multiply-add would give other bits: they take the scalar kernel.
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::ScalableTag<double>;
+using V = hn::Vec<D>;
+constexpr D kD{};
+constexpr hn::Half<D> kHalf{};
+constexpr std::size_t kLanes = hn::MaxLanes(kD);
+
+struct Vectors {
+  V x, y, z;
+};
+
+// Rows {x, y, z, 0} of kLanes grains, transposed. `a` .. `d` hold rows 0 .. 3, and in their upper
+// halves, where there are any, rows 4 .. 7.
+HWY_INLINE Vectors transpose(V a, V b, V c, V d) {
+  const V x_z_low = hn::InterleaveLower(kD, a, b);
+  const V x_z_high = hn::InterleaveLower(kD, c, d);
+  const V y_low = hn::InterleaveUpper(kD, a, b);
+  const V y_high = hn::InterleaveUpper(kD, c, d);
+  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(x_z_high), x_z_low),
+          hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y_high), y_low),
+          hn::OddEvenBlocks(x_z_high, hn::SwapAdjacentBlocks(x_z_low))};
+}
+
+// Loads kLanes rows; lane l takes the row at rows + offset(l).
+template <class Offset>
+HWY_INLINE Vectors load_rows(const double* HWY_RESTRICT rows, Offset&& offset) {
+#if HWY_TARGET == HWY_AVX3
+  const auto row = [&](std::size_t lane) HWY_ATTR { return hn::LoadU(kHalf, rows + offset(lane)); };
+  return transpose(hn::Combine(kD, row(4), row(0)), hn::Combine(kD, row(5), row(1)),
+                   hn::Combine(kD, row(6), row(2)), hn::Combine(kD, row(7), row(3)));
+#else
+  return transpose(hn::LoadU(kD, rows + offset(0)), hn::LoadU(kD, rows + offset(1)),
+                   hn::LoadU(kD, rows + offset(2)), hn::LoadU(kD, rows + offset(3)));
+#endif
+}
+
+// Stores x, y, z as kLanes consecutive rows.
+HWY_INLINE void store_rows(const Vectors& v, double* HWY_RESTRICT rows) {
+  const V zero = hn::Zero(kD);
+  const V xy_even = hn::InterleaveLower(kD, v.x, v.y);  // lanes 0, 2 (, 4, 6)
+  const V xy_odd = hn::InterleaveUpper(kD, v.x, v.y);
+  const V z_even = hn::InterleaveLower(kD, v.z, zero);
+  const V z_odd = hn::InterleaveUpper(kD, v.z, zero);
+  // Rows of the even and odd 128-bit blocks: {x y} of one block beside {z 0} of the same block.
+  const V row0 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_even), xy_even);
+  const V row1 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_odd), xy_odd);
+  const V row2 = hn::OddEvenBlocks(z_even, hn::SwapAdjacentBlocks(xy_even));
+  const V row3 = hn::OddEvenBlocks(z_odd, hn::SwapAdjacentBlocks(xy_odd));
+#if HWY_TARGET == HWY_AVX3
+  hn::StoreU(hn::LowerHalf(row0), kHalf, rows);
+  hn::StoreU(hn::LowerHalf(row1), kHalf, rows + 4);
+  hn::StoreU(hn::LowerHalf(row2), kHalf, rows + 8);
+  hn::StoreU(hn::LowerHalf(row3), kHalf, rows + 12);
+  hn::StoreU(hn::UpperHalf(kHalf, row0), kHalf, rows + 16);
+  hn::StoreU(hn::UpperHalf(kHalf, row1), kHalf, rows + 20);
+  hn::StoreU(hn::UpperHalf(kHalf, row2), kHalf, rows + 24);
+  hn::StoreU(hn::UpperHalf(kHalf, row3), kHalf, rows + 28);
+#else
+  hn::StoreU(row0, kD, rows);
+  hn::StoreU(row1, kD, rows + 4);
+  hn::StoreU(row2, kD, rows + 8);
+  hn::StoreU(row3, kD, rows + 12);
+#endif
+}
+
+template <bool kSeam = true>
+HWY_INLINE Vectors separation(const Vectors& own, const Vectors& other, V depth, V per_depth) {
+  V dz = hn::Sub(own.z, other.z);
+  // Without a seam the nearest image is this one, and subtracting 0 * depth would change no bit.
+  if constexpr (kSeam) dz = hn::NegMulAdd(hn::Round(hn::Mul(dz, per_depth)), depth, dz);
+  return {hn::Sub(own.x, other.x), hn::Sub(own.y, other.y), dz};
+}
+
+#endif  // a target with fused multiply-add
+}  // namespace HWY_NAMESPACE
+}  // namespace shearcell
+HWY_AFTER_NAMESPACE();
+
+#endif  // once for each target
