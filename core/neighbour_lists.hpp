@@ -23,7 +23,7 @@ namespace shearcell {
 
 /// How the lists are kept. These change the speed, never the bits.
 struct ListSettings {
-  double outer_cutoff = 1.35;  ///< [d]
+  double outer_cutoff = 1.4;   ///< [d]
   double inner_cutoff = 1.08;  ///< [d]
   bool rebuild_every_step = false;
   bool sort_memory = true;  ///< keep grains that are near in space near in memory

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One packing for two programs: `bench_peers prepare DIR N` writes it for LAMMPS, `ours DIR` times
+// the same steps here, `compare DIR` sets LAMMPS's positions beside ours. peers.sh ties them up.
+//
+// The scene: the rough cell of Table I, pressed, then upright with all walls held fast (a moving
+// wall of huge mass), grains kicked to random velocities, no gravity.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include "core/filling.hpp"
+#include "core/random.hpp"
+#include "core/simulation.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "protocols/settle.hpp"
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kAccuracySteps = 200;
+constexpr std::uint64_t kSpeedSteps = 2000;
+
+struct Kicked {
+  Cell cell;
+  State state;  ///< velocities at the whole step
+  Scene scene;
+};
+
+Kicked prepare(std::size_t grains) {
+  Parameters parameters;
+  parameters.grains = grains;
+  parameters.gravity_m_per_s2 = 0;
+  Kicked kicked;
+  kicked.cell = make_cell(geometry(parameters), 1);
+  kicked.state = fill_cell(kicked.cell, geometry(parameters), 1);
+  Scene pressing = settle_scene(parameters);
+  pressing.gravity = 1;  // so that press_steps is not 0
+  const std::uint64_t steps = Settle({}, pressing).press_steps(kicked.cell, grains);
+  pressing.gravity = 0;
+  Simulation simulation(kicked.cell, pressing, kicked.state);
+  simulation.advance(Drive{}, steps);
+  kicked.state = simulation.state();
+  kicked.state.step = 0;
+  kicked.state.wall_velocity = 0;
+  for (Eigen::Index i = 0; i < kicked.state.position.cols(); ++i) {
+    const auto a = uniform_pair({static_cast<std::uint32_t>(i), 0, 0, 9}, 1);
+    const auto b = uniform_pair({static_cast<std::uint32_t>(i), 1, 0, 9}, 1);
+    kicked.state.velocity.col(i) = Eigen::Vector3d(a[0] - 0.5, a[1] - 0.5, b[0] - 0.5) * 10;
+    // LAMMPS wants every position inside its box.
+    double& z = kicked.state.position(2, i);
+    z -= kicked.cell.depth * std::floor(z / kicked.cell.depth);
+  }
+  kicked.scene = shear_scene(parameters);
+  kicked.scene.pressure = 0;
+  kicked.scene.wall_mass = 1e30;
+  return kicked;
+}
+
+// The leapfrog wants velocities half a step before: one step from rest gives the accelerations.
+Simulation simulate(const Kicked& kicked, double drag_rate) {
+  Scene scene = kicked.scene;
+  scene.drag_rate = 0;
+  State state = kicked.state;
+  state.velocity.setZero();
+  Simulation probe(kicked.cell, scene, state);
+  probe.advance(Drive{}, 1);
+  const Eigen::Matrix3Xd acceleration =
+      probe.state().velocity / scene.time_step - drag_rate * kicked.state.velocity;
+  state.velocity = kicked.state.velocity - 0.5 * scene.time_step * acceleration;
+  scene.drag_rate = drag_rate;
+  return Simulation(kicked.cell, scene, state);
+}
+
+void write_data(const Kicked& kicked, const fs::path& folder) {
+  const WallPose pose = wall_pose(kicked.cell, 0, kicked.state.wall_height);
+  const Eigen::Matrix3Xd walls = wall_grain_positions(kicked.cell, pose);
+  const Eigen::Index grains = kicked.state.position.cols();
+  std::ofstream data(folder / "scene.data");
+  data << "one packing, lengths in d, masses in m, times in s\n\n"
+       << grains + walls.cols() << " atoms\n2 atom types\n\n"
+       << fmt::format("{} {} xlo xhi\n{} {} ylo yhi\n0 {:.17g} zlo zhi\n\nAtoms # sphere\n\n", -2,
+                      kicked.cell.width + 2, kicked.cell.bottom - 2, kicked.cell.top + 2,
+                      kicked.cell.depth);
+  const double density = 6 / 3.14159265358979323846;  // mass 1
+  for (Eigen::Index i = 0; i < grains + walls.cols(); ++i) {
+    const Eigen::Vector3d p = i < grains ? kicked.state.position.col(i) : walls.col(i - grains);
+    data << fmt::format("{} {} 1 {:.17g} {:.17g} {:.17g} {:.17g}\n", i + 1, i < grains ? 1 : 2,
+                        density, p.x(), p.y(), p.z());
+  }
+  data << "\nVelocities\n\n";
+  for (Eigen::Index i = 0; i < grains + walls.cols(); ++i) {
+    const Eigen::Vector3d v =
+        i < grains ? Eigen::Vector3d(kicked.state.velocity.col(i)) : Eigen::Vector3d::Zero();
+    data << fmt::format("{} {:.17g} {:.17g} {:.17g} 0 0 0\n", i + 1, v.x(), v.y(), v.z());
+  }
+}
+
+// An input deck; drag as b/m, and how many steps.
+void write_input(const Kicked& kicked, const fs::path& folder, const std::string& name,
+                 double drag_rate, std::uint64_t steps, int finer) {
+  const double k = kicked.scene.stiffness;
+  std::ofstream in(folder / (name + ".in"));
+  in << "units lj\natom_style sphere\nboundary f f p\nnewton off\ncomm_modify vel yes\n"
+     << "read_data scene.data\ngroup grains type 1\ngroup walls type 2\n"
+     << fmt::format("pair_style gran/hooke {:.17g} 0 0 0 0 0\npair_coeff * *\n", k)
+     << "neigh_modify exclude group walls walls delay 0 every 1 check yes\nneighbor 0.1 bin\n"
+     << fmt::format(
+            "fix left grains wall/gran hooke {0:.17g} 0 0 0 0 0 xplane 0 {1:.17g}\n"
+            "fix base grains wall/gran hooke {0:.17g} 0 0 0 0 0 yplane {2:.17g} {3:.17g}\n",
+            k, kicked.cell.width, kicked.state.wall_height, kicked.cell.top)
+     << "fix move grains nve/sphere\n";
+  if (drag_rate > 0) in << fmt::format("fix drag grains viscous {:.17g}\n", drag_rate);
+  in << fmt::format("timestep {:.17g}\nthermo 1000000\n", kicked.scene.time_step / finer)
+     << fmt::format("run {}\n", steps * static_cast<std::uint64_t>(finer))
+     << "dump out grains custom 1 " << name << ".dump id xu yu zu\n"
+     << "dump_modify out sort id format float %.17g\nrun 0\n";
+}
+
+Eigen::Matrix3Xd read_dump(const fs::path& file, Eigen::Index grains) {
+  std::ifstream dump(file);
+  std::string line;
+  while (std::getline(dump, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
+  }
+  Eigen::Matrix3Xd positions(3, grains);
+  for (Eigen::Index i = 0; i < grains; ++i) {
+    long id = 0;
+    if (!(dump >> id >> positions(0, i) >> positions(1, i) >> positions(2, i)) || id != i + 1) {
+      throw std::runtime_error(file.string() + ": not the positions of all grains");
+    }
+  }
+  return positions;
+}
+
+double farthest(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b, double depth) {
+  Eigen::Matrix3Xd difference = a - b;
+  for (double& dz : difference.row(2).reshaped()) dz -= depth * std::round(dz / depth);
+  return difference.colwise().norm().maxCoeff();
+}
+
+void compare(const Kicked& kicked, const fs::path& folder) {
+  const auto distance = [&](const std::string& name, double drag_rate, int finer) {
+    Kicked fine = kicked;
+    fine.scene.time_step /= finer;
+    Simulation simulation = simulate(fine, drag_rate);
+    simulation.advance(Drive{}, kAccuracySteps * static_cast<std::uint64_t>(finer));
+    return farthest(simulation.state().position,
+                    read_dump(folder / (name + ".dump"), kicked.state.position.cols()),
+                    kicked.cell.depth);
+  };
+  const double without = distance("free", 0, 1);
+  const double with = distance("drag", 64, 1);
+  const double finer = distance("drag4", 64, 4);
+  fmt::print("largest distance from LAMMPS after {} steps [d]\n", kAccuracySteps);
+  fmt::print("  no drag            {:.3g}   (must be below 1e-9)\n", without);
+  fmt::print("  drag, dt           {:.3g}\n", with);
+  fmt::print("  drag, dt/4         {:.3g}   (LAMMPS takes the drag explicitly: order {:.2f})\n",
+             finer, std::log2(with / finer) / 2);
+  if (!(without < 1e-9)) throw std::runtime_error("the trajectories disagree");
+}
+
+void time_ours(const Kicked& kicked) {
+  Simulation simulation = simulate(kicked, 64);
+  const auto start = std::chrono::steady_clock::now();
+  simulation.advance(Drive{}, kSpeedSteps);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  fmt::print("{:.4f}\n", 1e-6 * static_cast<double>(kSpeedSteps * simulation.grains()) / seconds);
+}
+
+int run(int argc, char** argv) {
+  if (argc != 4) throw std::runtime_error("usage: bench_peers prepare|ours|compare DIR N");
+  const std::string what = argv[1];
+  const fs::path folder = argv[2];
+  const Kicked kicked = prepare(std::stoul(argv[3]));
+  if (what == "prepare") {
+    write_data(kicked, folder);
+    write_input(kicked, folder, "free", 0, kAccuracySteps, 1);
+    write_input(kicked, folder, "drag", 64, kAccuracySteps, 1);
+    write_input(kicked, folder, "drag4", 64, kAccuracySteps, 4);
+    write_input(kicked, folder, "speed", 64, kSpeedSteps, 1);
+  } else if (what == "ours") {
+    time_ours(kicked);
+  } else {
+    compare(kicked, folder);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace shearcell
+
+int main(int argc, char** argv) {
+  try {
+    return shearcell::run(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "bench_peers: {}\n", error.what());
+    return 1;
+  }
+}
