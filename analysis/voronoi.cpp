@@ -133,8 +133,10 @@ VoronoiFace Dual::face_to(std::int32_t site, SiteImage other, double area) const
 }
 
 void Dual::measure_bulk(std::int32_t site, VoronoiDiagram& diagram) {
-  const auto begin = sides_.begin() + static_cast<std::ptrdiff_t>(first_[site]);
-  const auto end = sides_.begin() + static_cast<std::ptrdiff_t>(first_[site + 1]);
+  const auto begin =
+      sides_.begin() + static_cast<std::ptrdiff_t>(first_[static_cast<std::size_t>(site)]);
+  const auto end =
+      sides_.begin() + static_cast<std::ptrdiff_t>(first_[static_cast<std::size_t>(site) + 1]);
   std::sort(begin, end, [](const Side& a, const Side& b) {
     return std::tie(a.to, a.image) < std::tie(b.to, b.image);
   });
