@@ -27,11 +27,11 @@ constexpr std::int32_t padding_offset(std::size_t grains) {
 }
 
 /// Neighbours as row offsets (4 * index, in doubles), in blocks of one vector of grains. Grain
-/// `lane` of block b has its k-th neighbour, k < slots[b], at list[(b * stride + k) * lanes +
-/// lane]. Shorter rows are filled up with the offset of a row that touches nothing.
+/// `lane` of block b has its k-th neighbour, k < slots[b], at list[begin[b] + k * lanes + lane].
+/// Shorter rows are filled up with the offset of a row that touches nothing.
 struct NeighbourRows {
   const std::int32_t* list = nullptr;
-  std::size_t stride = 0;
+  const std::uint32_t* begin = nullptr;
   const std::uint16_t* slots = nullptr;
   /// 1 for a block with a pair that is nearest through the seam in z; elsewhere the kernel need not
   /// look for the nearest image. Null: every block may have one.
@@ -41,10 +41,11 @@ struct NeighbourRows {
 /// One time step of the leapfrog for every grain of a range of blocks.
 struct StepTask {
   std::size_t grains = 0;
-  const double* rows = nullptr;    ///< positions at this step [d], rows of 4
-  double* next_rows = nullptr;     ///< positions at the next step
-  double* velocity[3] = {};        ///< [d/s], half a step before -> half a step after
-  const double* wall_sum[3] = {};  ///< sum over wall contacts of overlap times normal [d]
+  const double* rows = nullptr;          ///< positions at this step [d], rows of 4
+  double* next_rows = nullptr;           ///< positions at the next step
+  double* velocity[3] = {};              ///< [d/s], half a step before -> half a step after
+  const double* wall_sum[3] = {};        ///< sum over wall contacts of overlap times normal [d]
+  const std::uint8_t* walled = nullptr;  ///< 0 for a block of which no grain has a wall sum
   NeighbourRows neighbours;
   double depth = 0, per_depth = 0;
   double keep = 0;  ///< (1 - b dt / 2m) / (1 + b dt / 2m)
@@ -53,8 +54,9 @@ struct StepTask {
   double flow = 0;  ///< dt b/m du/dy / (1 + b dt / 2m), for the fluid that follows the walls
   double time_step = 0;
   double top = 0;  ///< height at which that fluid stands still
-  /// Where each grain was when the list was made, in the frame that moves with the shear.
-  const double* reference[3] = {};
+  /// Where each grain was when the list was made, in the frame that moves with the shear; in single
+  /// precision, which only the margin of the lists has to know.
+  const float* reference[3] = {};
   double next_shear = 0, next_top = 0;  ///< tan(theta) and top wall at the next step
 };
 
@@ -105,8 +107,9 @@ struct PruneTask {
   std::size_t outer_stride = 0;
   const std::uint16_t* outer_count = nullptr;  ///< per grain
   std::int32_t* inner = nullptr;               ///< laid out as NeighbourRows
-  std::size_t inner_stride = 0;
-  std::uint16_t* inner_count = nullptr;  ///< per grain and spare lane
+  std::size_t inner_stride = 0;                ///< most slots that a block may have
+  std::uint32_t* begin = nullptr;              ///< per block, packed within each range
+  std::uint16_t* inner_count = nullptr;        ///< per grain and spare lane
   std::uint16_t* slots = nullptr;
   std::uint8_t* seam = nullptr;
   std::int32_t padding = 0;

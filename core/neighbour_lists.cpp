@@ -8,21 +8,25 @@ namespace shearcell {
 void Reference::set(const double* rows, std::size_t grains, const WallPose& pose) {
   pose_ = pose;
   for (auto& axis : at_) axis.resize(padded(grains));
+  double largest = 0;
   for (std::size_t g = 0; g < grains; ++g) {
     const double* p = rows + 4 * g;
-    at_[0][g] = p[0] - pose.tan_theta * (p[1] - pose.top);
-    at_[1][g] = p[1];
-    at_[2][g] = p[2];
+    largest = std::max({largest, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+    at_[0][g] = static_cast<float>(p[0] - pose.tan_theta * (p[1] - pose.top));
+    at_[1][g] = static_cast<float>(p[1]);
+    at_[2][g] = static_cast<float>(p[2]);
   }
+  rounding_ = 0x1p-22 * largest;  // half a unit in the last place is 2^-25 of a coordinate at most
 }
 
 double Reference::farthest(const double* rows, std::size_t grains, const WallPose& pose) const {
   double square = 0;
   for (std::size_t g = 0; g < grains; ++g) {
     const double* p = rows + 4 * g;
-    const double wx = p[0] - (at_[0][g] + pose.tan_theta * (at_[1][g] - pose.top));
-    const double wy = p[1] - at_[1][g];
-    const double wz = p[2] - at_[2][g];
+    const double y = double{at_[1][g]};
+    const double wx = p[0] - (double{at_[0][g]} + pose.tan_theta * (y - pose.top));
+    const double wy = p[1] - y;
+    const double wz = p[2] - double{at_[2][g]};
     square = std::max(square, wx * wx + wy * wy + wz * wz);
   }
   return std::sqrt(square);
@@ -47,7 +51,8 @@ NeighbourLists::NeighbourLists(const Kernels& kernels, const ListSettings& setti
 
 bool NeighbourLists::inner_valid(double farthest, const WallPose& pose) const {
   if (settings_.rebuild_every_step) return false;
-  const double moved = std::max(farthest, inner_reference_.wall_travel(pose));
+  const double moved =
+      std::max(farthest, inner_reference_.wall_travel(pose)) + inner_reference_.rounding();
   return settings_.inner_cutoff * inner_reference_.stretch(pose) - 2 * moved > 1.0 + 1e-9;
 }
 
@@ -55,7 +60,8 @@ bool NeighbourLists::outer_valid(const double* rows, std::size_t grains,
                                  const WallPose& pose) const {
   if (settings_.rebuild_every_step) return false;
   const double moved =
-      std::max(outer_reference_.farthest(rows, grains, pose), outer_reference_.wall_travel(pose));
+      std::max(outer_reference_.farthest(rows, grains, pose), outer_reference_.wall_travel(pose)) +
+      outer_reference_.rounding();
   return settings_.outer_cutoff * outer_reference_.stretch(pose) - 2 * moved >
          settings_.inner_cutoff + 1e-9;
 }
@@ -96,6 +102,7 @@ void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPos
   const std::size_t blocks = (grains + kernels_.lanes - 1) / kernels_.lanes;
   slots_.resize(blocks);
   seam_.resize(blocks);
+  begin_.resize(blocks);
   PruneTask task;
   task.grains = grains;
   task.rows = rows;
@@ -106,6 +113,7 @@ void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPos
   task.inner_count = inner_count_.data();
   task.slots = slots_.data();
   task.seam = seam_.data();
+  task.begin = begin_.data();
   task.padding = padding_offset(grains);
   task.depth = depth_;
   task.per_depth = 1 / depth_;
@@ -124,7 +132,7 @@ void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPos
 
 std::size_t NeighbourLists::bytes() const {
   return 4 * (outer_.size() + inner_.size() + offset_of_id_.size()) + 4 * outer_count_.size() +
-         3 * slots_.size() + 6 * 8 * outer_count_.size();
+         7 * slots_.size() + 6 * 4 * outer_count_.size();
 }
 
 }  // namespace shearcell

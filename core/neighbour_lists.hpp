@@ -39,10 +39,14 @@ class Reference {
   double wall_travel(const WallPose& pose) const;
   /// Lower bound of what a separation of length 1 has shrunk to by the affine shear since.
   double stretch(const WallPose& pose) const;
-  const double* data(std::size_t axis) const { return at_[axis].data(); }
+  /// Bound of the error of `farthest`, and of what the kernel finds: positions are kept in single
+  /// precision here.
+  double rounding() const { return rounding_; }
+  const float* data(std::size_t axis) const { return at_[axis].data(); }
 
  private:
-  std::array<AlignedVector<double>, 3> at_;  // x is that in the untilted frame, top wall as origin
+  std::array<AlignedVector<float>, 3> at_;  // x is that in the untilted frame, top wall as origin
+  double rounding_ = 0;
   WallPose pose_;
 };
 
@@ -61,7 +65,7 @@ class NeighbourLists {
   /// Cuts the inner list from the outer one.
   void prune(const double* rows, std::size_t grains, const WallPose& pose);
 
-  NeighbourRows rows() const { return {inner_.data(), inner_stride_, slots_.data(), seam_.data()}; }
+  NeighbourRows rows() const { return {inner_.data(), begin_.data(), slots_.data(), seam_.data()}; }
   /// Length of each grain's inner list when it was last pruned; empty before that.
   const std::vector<std::uint16_t>& inner_count() const { return inner_count_; }
   const Reference& reference() const { return inner_reference_; }
@@ -77,6 +81,7 @@ class NeighbourLists {
   AlignedVector<std::int32_t> outer_, inner_;
   std::vector<std::int32_t> offset_of_id_;
   std::vector<std::uint16_t> outer_count_, inner_count_, slots_;
+  std::vector<std::uint32_t> begin_;
   std::vector<std::uint8_t> seam_;
 };
 

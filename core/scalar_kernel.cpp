@@ -36,9 +36,10 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
   double farthest = 0;
   for (std::size_t g = first; g < std::min(last, t.grains); ++g) {
     const double* own = t.rows + 4 * g;
-    Sum sum{t.wall_sum[0][g], t.wall_sum[1][g], t.wall_sum[2][g]};
-    add_contacts(sum, own, t.rows, t.neighbours.list + g * t.neighbours.stride,
-                 t.neighbours.slots[g], t.depth, t.per_depth);
+    Sum sum{0, 0, 0};
+    if (t.walled[g] != 0) sum = {t.wall_sum[0][g], t.wall_sum[1][g], t.wall_sum[2][g]};
+    add_contacts(sum, own, t.rows, t.neighbours.list + t.neighbours.begin[g], t.neighbours.slots[g],
+                 t.depth, t.per_depth);
 
     double vx = std::fma(t.kick, sum.x, t.keep * t.velocity[0][g]);
     double vy = std::fma(t.kick, sum.y, t.keep * t.velocity[1][g]);
@@ -57,10 +58,10 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
     next[2] = z;
     next[3] = 0;
 
-    const double ry = t.reference[1][g];
-    const double wx = x - std::fma(t.next_shear, ry - t.next_top, t.reference[0][g]);
+    const double ry = double{t.reference[1][g]};
+    const double wx = x - std::fma(t.next_shear, ry - t.next_top, double{t.reference[0][g]});
     const double wy = y - ry;
-    const double wz = z - t.reference[2][g];
+    const double wz = z - double{t.reference[2][g]};
     farthest = std::max(farthest, std::fma(wz, wz, std::fma(wy, wy, wx * wx)));
   }
   return farthest;
@@ -73,7 +74,7 @@ void walls(const WallTask& t) {
         std::fma(own[0] - t.point[0], t.normal[0], (own[1] - t.point[1]) * t.normal[1]);
     const double overlap = std::max(0.5 - distance, 0.0);
     Sum sum{overlap * t.normal[0], overlap * t.normal[1], 0};
-    add_contacts(sum, own, t.wall_rows, t.neighbours.list + m * t.neighbours.stride,
+    add_contacts(sum, own, t.wall_rows, t.neighbours.list + t.neighbours.begin[m],
                  t.neighbours.slots[m], t.depth, t.per_depth);
     const std::size_t g = static_cast<std::size_t>(t.members[m]) / 4;
     const bool first = t.first[m] != 0;
@@ -116,9 +117,10 @@ std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
 }
 
 bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
+  std::size_t begin = first * t.inner_stride;
   for (std::size_t g = first; g < std::min(last, t.grains); ++g) {
     const double* own = t.rows + 4 * g;
-    std::int32_t* inner = t.inner + g * t.inner_stride;
+    std::int32_t* inner = t.inner + begin;
     std::size_t kept = 0;
     for (std::size_t k = 0; k < t.outer_count[g]; ++k) {
       const std::int32_t offset = t.outer[g * t.outer_stride + k];
@@ -132,6 +134,8 @@ bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
     }
     t.slots[g] = t.inner_count[g] = static_cast<std::uint16_t>(kept);
     t.seam[g] = 1;
+    t.begin[g] = static_cast<std::uint32_t>(begin);
+    begin += kept;
   }
   return true;
 }

@@ -82,9 +82,12 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
     const std::size_t g = block * kLanes;
     const auto row_of = [&](std::size_t lane) HWY_ATTR { return 4 * (g + lane); };
     const Vectors own = load_rows(t.rows, row_of);
-    Vectors sum{hn::LoadU(kD, t.wall_sum[0] + g), hn::LoadU(kD, t.wall_sum[1] + g),
-                hn::LoadU(kD, t.wall_sum[2] + g)};
-    const std::int32_t* list = t.neighbours.list + g * t.neighbours.stride;
+    Vectors sum{hn::Zero(kD), hn::Zero(kD), hn::Zero(kD)};
+    if (t.walled[block] != 0) {
+      sum = {hn::LoadU(kD, t.wall_sum[0] + g), hn::LoadU(kD, t.wall_sum[1] + g),
+             hn::LoadU(kD, t.wall_sum[2] + g)};
+    }
+    const std::int32_t* list = t.neighbours.list + t.neighbours.begin[block];
     const std::size_t slots = t.neighbours.slots[block];
     if (t.neighbours.seam[block] != 0) {
       add_contacts<true>(sum, own, t.rows, list, slots, depth, per_depth);
@@ -109,12 +112,15 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
                        hn::MulAdd(dt, vz, own.z)};
     store_rows(next, t.next_rows + 4 * g);
 
-    const V ry = hn::LoadU(kD, t.reference[1] + g);
-    const V wx =
-        hn::Sub(next.x, hn::MulAdd(hn::Set(kD, t.next_shear), hn::Sub(ry, hn::Set(kD, t.next_top)),
-                                   hn::LoadU(kD, t.reference[0] + g)));
+    const hn::Rebind<float, D> single;
+    const auto reference = [&](std::size_t axis) HWY_ATTR {
+      return hn::PromoteTo(kD, hn::LoadU(single, t.reference[axis] + g));
+    };
+    const V ry = reference(1);
+    const V wx = hn::Sub(next.x, hn::MulAdd(hn::Set(kD, t.next_shear),
+                                            hn::Sub(ry, hn::Set(kD, t.next_top)), reference(0)));
     const V wy = hn::Sub(next.y, ry);
-    const V wz = hn::Sub(next.z, hn::LoadU(kD, t.reference[2] + g));
+    const V wz = hn::Sub(next.z, reference(2));
     const V square = hn::MulAdd(wz, wz, hn::MulAdd(wy, wy, hn::Mul(wx, wx)));
     // The last block's spare lanes hold no grain.
     const auto real = hn::FirstN(kD, t.grains - g);
@@ -135,7 +141,7 @@ void walls(const WallTask& t) {
                                   hn::Mul(hn::Sub(own.y, hn::Set(kD, t.point[1])), ny));
     const V overlap = hn::Max(hn::Sub(hn::Set(kD, 0.5), distance), hn::Zero(kD));
     Vectors sum{hn::Mul(overlap, nx), hn::Mul(overlap, ny), hn::Zero(kD)};
-    add_contacts<true>(sum, own, t.wall_rows, t.neighbours.list + m * t.neighbours.stride,
+    add_contacts<true>(sum, own, t.wall_rows, t.neighbours.list + t.neighbours.begin[m / kLanes],
                        t.neighbours.slots[m / kLanes], depth, per_depth);
 
     HWY_ALIGN double lanes[3][kLanes];

@@ -127,6 +127,7 @@ HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g, std::int32_t
 bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
   std::int32_t rows[kLanes][kMostNeighbours + 64];
   const auto padding = hn::Set(kOffsets, t.padding);
+  std::size_t begin = first * t.inner_stride * kLanes;
   for (std::size_t block = first; block < last; ++block) {
     std::size_t count[kLanes];
     std::size_t most = 0;
@@ -143,7 +144,9 @@ bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
         hn::StoreU(padding, kOffsets, rows[l] + k);
       }
     }
-    std::int32_t* HWY_RESTRICT inner = t.inner + block * t.inner_stride * kLanes;
+    std::int32_t* HWY_RESTRICT inner = t.inner + begin;
+    t.begin[block] = static_cast<std::uint32_t>(begin);
+    begin += most * kLanes;
     for (std::size_t k = 0; k < most; ++k) {
       for (std::size_t l = 0; l < kLanes; ++l) inner[k * kLanes + l] = rows[l][k];
     }

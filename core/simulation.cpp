@@ -121,6 +121,7 @@ void Simulation::step_once(const Drive& drive) {
     task_.reference[axis] = lists_.reference().data(axis);
   }
   task_.neighbours = lists_.rows();
+  task_.walled = walls_.walled().data();
   task_.next_shear = next.tan_theta;
   task_.next_top = next.top;
   const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;

@@ -140,6 +140,8 @@ void WallContacts::prune(const double* rows, const WallPose& pose, double cutoff
   place(pose);
   seen_.assign(static_cast<std::size_t>(nowhere_ / 4), 0);
   for (Side& side : sides_) prune_side(side, rows, cutoff);
+  walled_.assign(seen_.size() / kernels_.lanes, 0);
+  for (std::size_t g = 0; g < seen_.size(); ++g) walled_[g / kernels_.lanes] |= seen_[g];
 }
 
 void WallContacts::prune_side(Side& side, const double* rows, double cutoff) {
@@ -174,12 +176,18 @@ void WallContacts::write_lists(Side& side) {
   side.first.resize(side.count);
   side.push.assign(side.count, 0.0);
   side.by_id.resize(side.count);
-  side.slots.assign(side.members.size() / lanes, 0);
-  if (!touches_.empty()) {
-    side.stride = std::max<std::size_t>(1, touches_.back().end - touches_.back().begin);
+  // Sorted by length, so the last member of a block is its longest.
+  const std::size_t blocks = side.members.size() / lanes;
+  side.begin.assign(blocks, 0);
+  side.slots.assign(blocks, 0);
+  std::size_t end = 0;
+  for (std::size_t block = 0; block * lanes < side.count; ++block) {
+    const Touch& longest = touches_[std::min(block * lanes + lanes, side.count) - 1];
+    side.begin[block] = static_cast<std::uint32_t>(end);
+    side.slots[block] = static_cast<std::uint16_t>(longest.end - longest.begin);
+    end += lanes * side.slots[block];
   }
-  side.list.assign(side.members.size() * side.stride,
-                   static_cast<std::int32_t>(4 * side.grains.size()));
+  side.list.assign(end, static_cast<std::int32_t>(4 * side.grains.size()));
   for (std::size_t m = 0; m < side.count; ++m) {
     const Touch& touch = touches_[m];
     side.members[m] = touch.grain;
@@ -187,10 +195,8 @@ void WallContacts::write_lists(Side& side) {
     std::uint8_t& seen = seen_[static_cast<std::size_t>(touch.grain / 4)];
     side.first[m] = seen == 0 ? 1 : 0;
     seen = 1;
-    std::int32_t* list = side.list.data() + m / lanes * side.stride * lanes + m % lanes;
+    std::int32_t* list = side.list.data() + side.begin[m / lanes] + m % lanes;
     for (std::size_t n = touch.begin; n < touch.end; ++n, list += lanes) *list = touched_[n];
-    std::uint16_t& slots = side.slots[m / lanes];
-    slots = std::max(slots, static_cast<std::uint16_t>(touch.end - touch.begin));
   }
 }
 
@@ -207,7 +213,7 @@ double WallContacts::evaluate(const double* rows, const WallPose& pose,
     task.count = side.count;
     task.first = side.first.data();
     task.wall_rows = side.rows.data();
-    task.neighbours = {side.list.data(), side.stride, side.slots.data()};
+    task.neighbours = {side.list.data(), side.begin.data(), side.slots.data()};
     for (std::size_t axis = 0; axis < 2; ++axis) {
       task.point[axis] = side.point[axis];
       task.normal[axis] = side.normal[axis];
@@ -230,7 +236,7 @@ std::size_t WallContacts::bytes() const {
              8 * (side.rows.size() + side.push.size() + side.near_end.size()) +
              4 * (side.members.size() + side.list.size() + side.near.size() + side.active.size() +
                   side.candidates.size()) +
-             2 * side.slots.size();
+             6 * side.slots.size();
   }
   return total;
 }

@@ -33,6 +33,8 @@ class WallContacts {
   double evaluate(const double* rows, const WallPose& pose,
                   std::array<AlignedVector<double>, 3>& wall_sum);
 
+  /// 1 for each block of grains in memory that has a member.
+  const std::vector<std::uint8_t>& walled() const { return walled_; }
   std::size_t bytes() const;
 
  private:
@@ -48,8 +50,8 @@ class WallContacts {
     std::size_t count = 0;                 // members without padding
     std::vector<std::uint8_t> first;       // whether it is the first wall of each member
     AlignedVector<std::int32_t> list;
+    std::vector<std::uint32_t> begin;
     std::vector<std::uint16_t> slots;
-    std::size_t stride = 8;
     std::vector<double> push;
     std::vector<std::size_t> by_id;  // members in ascending permanent id
   };
@@ -65,6 +67,7 @@ class WallContacts {
   std::int32_t nowhere_ = 0;  // offset of a row among the grains that nothing touches
   std::array<Side, 4> sides_;
   std::vector<std::uint8_t> seen_;  // grains that a wall before has
+  std::vector<std::uint8_t> walled_;
   // What is left of the candidates of one side while it is pruned.
   struct Touch {
     std::int32_t grain;

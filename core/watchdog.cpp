@@ -34,8 +34,7 @@ double smallest_distance(const Cell& cell, const WallPose& pose, const double* r
 double largest_overlap(const WatchTask& task, std::size_t g, double depth) {
   const double* own = task.rows + 4 * g;
   const std::size_t block = g / task.lanes;
-  const std::int32_t* list =
-      task.neighbours.list + block * task.neighbours.stride * task.lanes + g % task.lanes;
+  const std::int32_t* list = task.neighbours.list + task.neighbours.begin[block] + g % task.lanes;
   double nearest = 1;
   for (std::size_t k = 0; k < task.neighbours.slots[block]; ++k) {
     const double* other = task.rows + list[k * task.lanes];
