@@ -2,6 +2,7 @@
 #include "experiments/runner/progress.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -11,6 +12,13 @@ namespace shearcell {
 namespace {
 
 constexpr std::chrono::seconds kPlainInterval{10};
+
+// A longer line would wrap, and drawing over it would leave its beginning behind.
+std::size_t terminal_width() {
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 20) return 79;
+  return std::size_t{size.ws_col} - 1;
+}
 
 std::string describe(const StageStatus& status) {
   const double rate = status.steps_per_second * static_cast<double>(status.grains) * 1e-6;
@@ -84,7 +92,7 @@ void Progress::erase() {
 void Progress::draw() {
   erase();
   for (const auto& [name, text] : running_) {
-    fmt::print(stderr, "{:.38}  {:.60}\n", name, text);
+    fmt::print(stderr, "{:.{}}\n", fmt::format("{:<28} {}", name, text), terminal_width());
     ++drawn_;
   }
   std::fflush(stderr);
