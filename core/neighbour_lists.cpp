@@ -132,7 +132,7 @@ void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPos
 
 std::size_t NeighbourLists::bytes() const {
   return 4 * (outer_.size() + inner_.size() + offset_of_id_.size()) + 4 * outer_count_.size() +
-         7 * slots_.size() + 6 * 4 * outer_count_.size();
+         7 * slots_.size() + std::size_t{24} * outer_count_.size();
 }
 
 }  // namespace shearcell
