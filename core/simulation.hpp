@@ -60,7 +60,6 @@ class Simulation {
   const Scene& scene() const { return scene_; }
   std::size_t grains() const { return id_.size(); }
   const ListCounts& list_counts() const { return counts_; }
-  const char* simd_name() const { return kernels_.name; }
   /// Memory held for grains, walls and lists [bytes].
   std::size_t bytes() const;
 

@@ -48,11 +48,11 @@ void report(const CampaignResult& result, Context& context) {
     context.exit_code = kStoreDamaged;
   } else if (result.failed > 0) {
     context.exit_code = kRunFailed;
-  } else if (result.interrupted == 0 && !stop_requested() && result.blocked > 0) {
-    context.exit_code = kOtherError;  // another process has them
   } else if (result.interrupted > 0 || stop_requested()) {
     context.exit_code = kInterrupted;
     fmt::print(stderr, "Interrupted. Continue with: shearcell resume --store {}\n", context.store);
+  } else if (result.blocked > 0) {
+    context.exit_code = kOtherError;  // another process has them
   }
 }
 

@@ -178,13 +178,13 @@ nlohmann::json lineage(const RegeneratedFigure& result, const std::vector<Input>
 }  // namespace
 
 std::vector<std::string> figures_of_store(const Store& store) {
+  const std::vector<ManifestFacts> registered = manifests(store);
   std::vector<std::string> names;
   for (const Figure& figure : all_figures()) {
-    for (const ManifestFacts& manifest : manifests(store)) {
-      if (!asks_for(manifest, figure.name)) continue;
-      names.emplace_back(figure.name);
-      break;
-    }
+    const bool asked =
+        std::any_of(registered.begin(), registered.end(),
+                    [&](const ManifestFacts& manifest) { return asks_for(manifest, figure.name); });
+    if (asked) names.emplace_back(figure.name);
   }
   return names;
 }
