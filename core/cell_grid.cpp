@@ -16,7 +16,7 @@ std::int32_t clamp_to_cell(double scaled, std::int32_t cells) {
 }  // namespace
 
 void CellOrder::choose_grid(const Cell& cell, const WallPose& pose, double reach,
-                            std::size_t grains) {
+                            std::size_t sites) {
   // A pair at distance r is at most r sqrt(1 + tan^2) apart along x in the untilted frame.
   double size_x = reach * std::sqrt(1 + pose.tan_theta * pose.tan_theta);
   double size = reach;
@@ -24,8 +24,8 @@ void CellOrder::choose_grid(const Cell& cell, const WallPose& pose, double reach
   const auto count = [](double length, double width) {
     return std::max(1.0, std::min(std::floor(length / width), 1e6));
   };
-  // A nearly empty cell gets wider cells, so that it costs no more than its grains.
-  const double most = 64 + 4 * static_cast<double>(grains);
+  // A nearly empty cell gets wider cells, so that it costs no more than its sites.
+  const double most = 64 + 4 * static_cast<double>(sites);
   while (count(cell.width, size_x) * count(height, size) * count(cell.depth, size) > most) {
     size_x *= 1.26;
     size *= 1.26;
@@ -46,44 +46,45 @@ std::uint32_t CellOrder::cell_of(const double* row, const Cell& cell, const Wall
 }
 
 void CellOrder::build(const Cell& cell, const WallPose& pose, double reach, const double* rows,
-                      const std::vector<std::int32_t>& id) {
-  const std::size_t grains = id.size();
-  choose_grid(cell, pose, reach, grains);
+                      const std::vector<Site>& sites) {
+  choose_grid(cell, pose, reach, sites.size());
   const auto cells = static_cast<std::size_t>(grid_.columns) *
                      static_cast<std::size_t>(grid_.rows) * static_cast<std::size_t>(grid_.layers);
   begin_.assign(cells + 1, 0);
-  cell_of_grain_.resize(grains);
-  for (std::size_t g = 0; g < grains; ++g) {
-    cell_of_grain_[g] = cell_of(rows + 4 * g, cell, pose);
-    ++begin_[cell_of_grain_[g] + 1];
+  cell_of_site_.resize(sites.size());
+  for (std::size_t s = 0; s < sites.size(); ++s) {
+    cell_of_site_[s] = cell_of(rows + sites[s].offset, cell, pose);
+    ++begin_[cell_of_site_[s] + 1];
   }
   for (std::size_t c = 0; c < cells; ++c) begin_[c + 1] += begin_[c];
 
-  cell_.resize(grains);
-  grain_.resize(grains);
-  id_.assign(padded(grains) + 8, 0);  // a run may be read up to a vector beyond its end
-  for (auto& axis : position_) axis.resize(padded(grains) + 8);
+  site_.resize(sites.size());
+  id_.assign(padded(sites.size()) + 8, 0);  // a run may be read up to a vector beyond its end
+  for (auto& axis : row_) axis.resize(padded(sites.size()) + 8);
   std::vector<std::uint32_t>& next = cell_;  // free until the end
   next.assign(begin_.begin(), begin_.end());
-  for (std::size_t g = 0; g < grains; ++g) {
-    const std::size_t place = next[cell_of_grain_[g]]++;
-    grain_[place] = static_cast<std::int32_t>(g);
-    id_[place] = id[g];
-    for (std::size_t axis = 0; axis < 3; ++axis) position_[axis][place] = rows[4 * g + axis];
+  for (std::size_t s = 0; s < sites.size(); ++s) {
+    const std::size_t place = next[cell_of_site_[s]]++;
+    site_[place] = static_cast<std::int32_t>(s);
+    id_[place] = sites[s].id;
+    for (std::size_t k = 0; k < 4; ++k) {
+      row_[k][place] = rows[static_cast<std::size_t>(sites[s].offset) + k];
+    }
   }
-  cell_.resize(grains);
-  for (std::size_t place = 0; place < grains; ++place) {
-    cell_[place] = cell_of_grain_[static_cast<std::size_t>(grain_[place])];
+  cell_.resize(sites.size());
+  for (std::size_t place = 0; place < sites.size(); ++place) {
+    cell_[place] = cell_of_site_[static_cast<std::size_t>(site_[place])];
   }
   grid_.begin = begin_.data();
   grid_.cell = cell_.data();
   grid_.id = id_.data();
-  for (std::size_t axis = 0; axis < 3; ++axis) grid_.position[axis] = position_[axis].data();
+  for (std::size_t axis = 0; axis < 3; ++axis) grid_.position[axis] = row_[axis].data();
+  grid_.margin = row_[3].data();
 }
 
 std::size_t CellOrder::bytes() const {
-  return 4 * (begin_.size() + cell_.size() + cell_of_grain_.size() + id_.size() + grain_.size()) +
-         3 * 8 * position_[0].size();
+  return 4 * (begin_.size() + cell_.size() + cell_of_site_.size() + id_.size() + site_.size()) +
+         4 * 8 * row_[0].size();
 }
 
 }  // namespace shearcell

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains copied into the order of a grid's cells, so that a search runs along contiguous memory.
+// Grains and wall grains copied into the order of a grid's cells, so that a search runs along contiguous memory.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct PlaceRun {
   std::size_t begin, end;
 };
 
-/// The places whose cells surround that of the grain at `place`, itself included, each once: at
+/// The places whose cells surround that of the site at `place`, itself included, each once: at
 /// most nine runs of three neighbouring cells in x. Returns their number.
 inline std::size_t surrounding_runs(const CellGrid& grid, std::size_t place,
                                     std::array<PlaceRun, 9>& runs) {
@@ -41,29 +41,35 @@ inline std::size_t surrounding_runs(const CellGrid& grid, std::size_t place,
   return count;
 }
 
+/// A grain or a wall grain: where its row is, and its permanent id.
+struct Site {
+  std::int32_t offset, id;
+};
+
 /// The grid of a cell in its untilted frame. Cells are at least as wide as the reach in x, y and z;
-/// grains that stand out of the walls are kept in the border cells.
+/// sites that stand out of the walls are kept in the border cells.
 class CellOrder {
  public:
-  /// Sorts the grains (kernel.hpp's rows) into cells for pairs up to `reach` [d] apart.
+  /// Sorts sites (kernel.hpp's rows) into cells for pairs up to `reach` [d] apart.
   void build(const Cell& cell, const WallPose& pose, double reach, const double* rows,
-             const std::vector<std::int32_t>& id);
+             const std::vector<Site>& sites);
 
   const CellGrid& grid() const { return grid_; }
-  /// Place in memory of the grain at each place of the grid.
-  const std::vector<std::int32_t>& grain() const { return grain_; }
+  std::size_t size() const { return site_.size(); }
+  /// Index among the given sites of that at each place of the grid.
+  const std::vector<std::int32_t>& site() const { return site_; }
   std::size_t bytes() const;
 
  private:
-  void choose_grid(const Cell& cell, const WallPose& pose, double reach, std::size_t grains);
+  void choose_grid(const Cell& cell, const WallPose& pose, double reach, std::size_t sites);
   std::uint32_t cell_of(const double* row, const Cell& cell, const WallPose& pose) const;
 
   CellGrid grid_;
   std::array<double, 3> per_cell_{};  // cells per d in x, y, z
-  std::vector<std::uint32_t> begin_, cell_, cell_of_grain_;
-  std::array<AlignedVector<double>, 3> position_;
+  std::vector<std::uint32_t> begin_, cell_, cell_of_site_;
+  std::array<AlignedVector<double>, 4> row_;  // x, y, z, margin
   AlignedVector<std::int32_t> id_;
-  std::vector<std::int32_t> grain_;
+  std::vector<std::int32_t> site_;
 };
 
 }  // namespace shearcell

@@ -5,90 +5,81 @@
 #include <cmath>
 
 namespace shearcell {
-void Reference::set(const double* rows, std::size_t grains, const WallPose& pose) {
-  pose_ = pose;
-  for (auto& axis : at_) axis.resize(padded(grains));
-  double largest = 0;
-  for (std::size_t g = 0; g < grains; ++g) {
-    const double* p = rows + 4 * g;
-    largest = std::max({largest, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
-    at_[0][g] = static_cast<float>(p[0] - pose.tan_theta * (p[1] - pose.top));
-    at_[1][g] = static_cast<float>(p[1]);
-    at_[2][g] = static_cast<float>(p[2]);
-  }
-  rounding_ = 0x1p-22 * largest;  // half a unit in the last place is 2^-25 of a coordinate at most
+namespace {
+
+// Of a grain in the frame that moves with the shear [d/s].
+double speed(const Snapshot& now, std::size_t g) {
+  const double vx =
+      now.velocity[0][g] - now.shear_rate * (now.rows[4 * g + 1] - now.pose.top);
+  const double vy = now.velocity[1][g];
+  const double vz = now.velocity[2][g];
+  return std::sqrt(vx * vx + vy * vy + vz * vz);
 }
 
-double Reference::farthest(const double* rows, std::size_t grains, const WallPose& pose) const {
-  double square = 0;
-  for (std::size_t g = 0; g < grains; ++g) {
-    const double* p = rows + 4 * g;
-    const double y = double{at_[1][g]};
-    const double wx = p[0] - (double{at_[0][g]} + pose.tan_theta * (y - pose.top));
-    const double wy = p[1] - y;
-    const double wz = p[2] - double{at_[2][g]};
-    square = std::max(square, wx * wx + wy * wy + wz * wz);
-  }
-  return std::sqrt(square);
+float round_down(double margin) {
+  return static_cast<float>(margin * (1 - 0x1p-23));
 }
 
-double Reference::wall_travel(const WallPose& pose) const {
-  // Side wall grains follow the shear exactly. Those of the bottom move with its plane, whose x is
-  // that of its own height: a grain behind it, by at most d, differs by the strain times that.
-  const double travel =
-      std::max(std::fabs(pose.bottom - pose_.bottom), std::fabs(pose.top - pose_.top));
-  return travel * (1 + std::fabs(pose.tan_theta)) + std::fabs(pose.tan_theta - pose_.tan_theta);
-}
+}  // namespace
 
-double Reference::stretch(const WallPose& pose) const {
-  // The smallest singular value of a simple shear e is sqrt(1 + e^2/4) - e/2.
-  return 1 - 0.5 * std::fabs(pose.tan_theta - pose_.tan_theta);
+double ListSettings::widest_margin() const {
+  return 0.5 * (std::max({widest_cutoff, outer_cutoff, inner_cutoff}) - 1);
 }
 
 NeighbourLists::NeighbourLists(const Kernels& kernels, const ListSettings& settings, double depth,
-                               Team& team)
-    : kernels_(kernels), team_(team), settings_(settings), depth_(depth) {}
+                               const Walls& walls, Team& team)
+    : kernels_(kernels), walls_(walls), team_(team), settings_(settings), depth_(depth) {}
 
-bool NeighbourLists::inner_valid(double farthest, const WallPose& pose) const {
+bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
   if (settings_.rebuild_every_step) return false;
-  const double moved =
-      std::max(farthest, inner_reference_.wall_travel(pose)) + inner_reference_.rounding();
-  return settings_.inner_cutoff * inner_reference_.stretch(pose) - 2 * moved > 1.0 + 1e-9;
+  const double room = settings_.inner_margin() - inner_reference_.loss(pose.tan_theta);
+  return excess <= 0 && inner_reference_.wall_moved(pose) < room;
 }
 
-bool NeighbourLists::outer_valid(const double* rows, std::size_t grains,
-                                 const WallPose& pose) const {
-  if (settings_.rebuild_every_step) return false;
-  const double moved =
-      std::max(outer_reference_.farthest(rows, grains, pose), outer_reference_.wall_travel(pose)) +
-      outer_reference_.rounding();
-  return settings_.outer_cutoff * outer_reference_.stretch(pose) - 2 * moved >
-         settings_.inner_cutoff + 1e-9;
-}
-
-void NeighbourLists::build(const double* rows, const std::vector<std::int32_t>& id,
-                           const CellOrder& order, const WallPose& pose) {
-  const std::size_t grains = id.size();
-  outer_reference_.set(rows, grains, pose);
-  offset_of_id_.resize(grains);
-  for (std::size_t g = 0; g < grains; ++g) {
-    offset_of_id_[static_cast<std::size_t>(id[g])] = static_cast<std::int32_t>(4 * g);
+void NeighbourLists::set_outer_margins(const Snapshot& now) {
+  const double least = settings_.outer_margin();
+  const double widest = settings_.widest_margin();
+  const double horizon = settings_.outer_horizon * now.time_step;
+  outer_margin_.resize(now.grains);
+  for (std::size_t g = 0; g < now.grains; ++g) {
+    now.rows[4 * g + 3] = std::min(least + horizon * speed(now, g), widest);
   }
+  walls_.place_all(now.pose, least, now.rows + wall_offset(now.grains));
+}
+
+void NeighbourLists::build(const Snapshot& now, const std::vector<std::int32_t>& id,
+                           const CellOrder& order) {
+  outer_reference_.set(now.rows, now.grains, now.pose, settings_.widest_margin());
+  for (std::size_t g = 0; g < now.grains; ++g) outer_margin_[g] = round_down(now.rows[4 * g + 3]);
+  const std::size_t walls = walls_.size();
+  offset_of_id_.resize(walls + now.grains);
+  for (std::size_t w = 0; w < walls; ++w) {
+    offset_of_id_[w] = wall_offset(now.grains) + static_cast<std::int32_t>(4 * w);
+  }
+  for (std::size_t g = 0; g < now.grains; ++g) {
+    offset_of_id_[walls + static_cast<std::size_t>(id[g])] = static_cast<std::int32_t>(4 * g);
+  }
+  search(order, now.grains);
+  set_inner_margins(now);
+  cut(now);
+}
+
+void NeighbourLists::search(const CellOrder& order, std::size_t grains) {
   outer_count_.resize(grains);
   SearchTask task;
   task.grid = order.grid();
+  task.first_grain = static_cast<std::int32_t>(walls_.size());
   task.offset_of_id = offset_of_id_.data();
   task.count = outer_count_.data();
   task.padding = padding_offset(grains);
   task.depth = depth_;
   task.per_depth = 1 / depth_;
-  task.cutoff_squared = settings_.outer_cutoff * settings_.outer_cutoff;
   for (;;) {
     outer_.resize(grains * outer_stride_);
     task.outer = outer_.data();
     task.stride = outer_stride_;
     std::vector<std::size_t> longest(team_.size(), 0);
-    team_.run(grains, [&](std::size_t thread, std::size_t first, std::size_t last) {
+    team_.run(order.size(), [&](std::size_t thread, std::size_t first, std::size_t last) {
       longest[thread] = kernels_.search(task, first, last);
     });
     const std::size_t most = *std::max_element(longest.begin(), longest.end());
@@ -97,27 +88,62 @@ void NeighbourLists::build(const double* rows, const std::vector<std::int32_t>& 
   }
 }
 
-void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPose& pose) {
-  inner_reference_.set(rows, grains, pose);
-  const std::size_t blocks = (grains + kernels_.lanes - 1) / kernels_.lanes;
+bool NeighbourLists::prune(const Snapshot& now) {
+  if (settings_.rebuild_every_step || !set_inner_margins(now)) return false;
+  cut(now);
+  return true;
+}
+
+// A pair that comes within its inner margins has to be in the outer list, so these fit into what is
+// left of the outer ones. False when that is too little for some grain or wall.
+bool NeighbourLists::set_inner_margins(const Snapshot& now) {
+  const double least = settings_.inner_margin();
+  const double horizon = settings_.inner_horizon * now.time_step;
+  const double loss = outer_reference_.loss(now.pose.tan_theta);
+  double smallest_room =
+      settings_.outer_margin() - outer_reference_.wall_moved(now.pose) - loss;
+  for (std::size_t g = 0; g < now.grains; ++g) {
+    const double room =
+        double{outer_margin_[g]} - outer_reference_.moved(now.rows, g, now.pose) - loss;
+    smallest_room = std::min(smallest_room, room);
+    now.rows[4 * g + 3] = std::min(least + horizon * speed(now, g), room);
+  }
+  double* wall_row = now.rows + wall_offset(now.grains);
+  for (std::size_t w = 0; w < walls_.size(); ++w) wall_row[4 * w + 3] = least;
+  return smallest_room >= least;
+}
+
+void NeighbourLists::cut(const Snapshot& now) {
+  inner_reference_.set(now.rows, now.grains, now.pose, settings_.widest_margin());
+  const std::size_t blocks = (now.grains + kernels_.lanes - 1) / kernels_.lanes;
   slots_.resize(blocks);
+  head_.resize(blocks);
   seam_.resize(blocks);
+  walled_.resize(blocks);
   begin_.resize(blocks);
+  inner_count_.resize(padded(now.grains));
+  grain_walled_.resize(padded(now.grains));
   PruneTask task;
-  task.grains = grains;
-  task.rows = rows;
+  task.grains = now.grains;
+  task.rows = now.rows;
   task.outer = outer_.data();
   task.outer_stride = outer_stride_;
   task.outer_count = outer_count_.data();
-  inner_count_.resize(padded(grains));
+  task.first_wall = wall_offset(now.grains);
+  task.moving_end = task.first_wall + static_cast<std::int32_t>(4 * walls_.moving_size());
+  const auto planes = walls_.planes(now.pose);
+  std::copy(planes.begin(), planes.end(), task.planes);
+  task.wall_margin = settings_.inner_margin();
   task.inner_count = inner_count_.data();
   task.slots = slots_.data();
+  task.head = head_.data();
   task.seam = seam_.data();
+  task.walled = walled_.data();
+  task.grain_walled = grain_walled_.data();
   task.begin = begin_.data();
-  task.padding = padding_offset(grains);
+  task.padding = padding_offset(now.grains);
   task.depth = depth_;
   task.per_depth = 1 / depth_;
-  task.cutoff_squared = settings_.inner_cutoff * settings_.inner_cutoff;
   for (;; inner_stride_ *= 2) {
     inner_.resize(blocks * kernels_.lanes * inner_stride_);
     task.inner = inner_.data();
@@ -126,13 +152,24 @@ void NeighbourLists::prune(const double* rows, std::size_t grains, const WallPos
     team_.run(blocks, [&](std::size_t thread, std::size_t first, std::size_t last) {
       fits[thread] = kernels_.prune(task, first, last) ? 1 : 0;
     });
-    if (std::count(fits.begin(), fits.end(), 0) == 0) return;
+    if (std::count(fits.begin(), fits.end(), 0) == 0) break;
+  }
+  at_moving_wall_.clear();
+  for (std::size_t i = walls_.size(); i < offset_of_id_.size(); ++i) {
+    const std::int32_t g = offset_of_id_[i] / 4;
+    const std::uint8_t near = grain_walled_[static_cast<std::size_t>(g)];
+    if ((near & kNearMovingWall) != 0) at_moving_wall_.push_back(g);
   }
 }
 
+NeighbourRows NeighbourLists::rows() const {
+  return {inner_.data(), begin_.data(), slots_.data(), head_.data(), seam_.data(), walled_.data()};
+}
+
 std::size_t NeighbourLists::bytes() const {
-  return 4 * (outer_.size() + inner_.size() + offset_of_id_.size()) + 4 * outer_count_.size() +
-         7 * slots_.size() + std::size_t{24} * outer_count_.size();
+  return 4 * (outer_.size() + inner_.size() + offset_of_id_.size() + outer_margin_.size()) +
+         2 * outer_count_.size() + 3 * inner_count_.size() + 10 * slots_.size() +
+         outer_reference_.bytes() + inner_reference_.bytes();
 }
 
 }  // namespace shearcell

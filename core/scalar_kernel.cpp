@@ -31,16 +31,52 @@ void add_contacts(Sum& sum, const double* own, const double* rows, const std::in
   }
 }
 
+double distance_to(const WallPlane& plane, const double* row) {
+  return std::fma(row[0] - plane.point[0], plane.normal[0],
+                  (row[1] - plane.point[1]) * plane.normal[1]);
+}
+
+void touch_plane(Sum& sum, const double* own, const WallPlane& plane) {
+  const double overlap = std::max(0.5 - distance_to(plane, own), 0.0);
+  sum.x = std::fma(overlap, plane.normal[0], sum.x);
+  sum.y = std::fma(overlap, plane.normal[1], sum.y);
+}
+
+// Sum over the contacts of grain g.
+Sum contact_sum(const StepTask& t, std::size_t g) {
+  const double* own = t.rows + 4 * g;
+  Sum sum{0, 0, 0};
+  const std::int32_t* list = t.neighbours.list + t.neighbours.begin[g];
+  const std::uint8_t walled = t.neighbours.walled[g];
+  if ((walled & kNearMovingWall) != 0) {
+    const std::size_t head = t.neighbours.head[g];
+    touch_plane(sum, own, t.planes[0]);
+    add_contacts(sum, own, t.rows, list, head, t.depth, t.per_depth);
+    t.push[g] = sum.y;
+    list += head;
+  }
+  if ((walled & kNearOtherWall) != 0) {
+    for (std::size_t w = 1; w < 4; ++w) touch_plane(sum, own, t.planes[w]);
+  }
+  add_contacts(sum, own, t.rows, list, t.neighbours.slots[g], t.depth, t.per_depth);
+  return sum;
+}
+
+// The square of how far a grain has moved from where it was when its list was made.
+double square_moved(const StepTask& t, std::size_t g, const double* at) {
+  const double ry = double{t.reference[1][g]};
+  const double wx = at[0] - std::fma(t.next_shear, ry - t.origin, double{t.reference[0][g]});
+  const double wy = at[1] - ry;
+  const double wz = at[2] - double{t.reference[2][g]};
+  return std::fma(wz, wz, std::fma(wy, wy, wx * wx));
+}
+
 template <bool kGravity, bool kFlow>
 double step(const StepTask& t, std::size_t first, std::size_t last) {
-  double farthest = 0;
+  double excess = -1;
   for (std::size_t g = first; g < std::min(last, t.grains); ++g) {
     const double* own = t.rows + 4 * g;
-    Sum sum{0, 0, 0};
-    if (t.walled[g] != 0) sum = {t.wall_sum[0][g], t.wall_sum[1][g], t.wall_sum[2][g]};
-    add_contacts(sum, own, t.rows, t.neighbours.list + t.neighbours.begin[g], t.neighbours.slots[g],
-                 t.depth, t.per_depth);
-
+    const Sum sum = contact_sum(t, g);
     double vx = std::fma(t.kick, sum.x, t.keep * t.velocity[0][g]);
     double vy = std::fma(t.kick, sum.y, t.keep * t.velocity[1][g]);
     const double vz = std::fma(t.kick, sum.z, t.keep * t.velocity[2][g]);
@@ -49,49 +85,25 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
     t.velocity[0][g] = vx;
     t.velocity[1][g] = vy;
     t.velocity[2][g] = vz;
-    const double x = std::fma(t.time_step, vx, own[0]);
-    const double y = std::fma(t.time_step, vy, own[1]);
-    const double z = std::fma(t.time_step, vz, own[2]);
     double* next = t.next_rows + 4 * g;
-    next[0] = x;
-    next[1] = y;
-    next[2] = z;
-    next[3] = 0;
-
-    const double ry = double{t.reference[1][g]};
-    const double wx = x - std::fma(t.next_shear, ry - t.next_top, double{t.reference[0][g]});
-    const double wy = y - ry;
-    const double wz = z - double{t.reference[2][g]};
-    farthest = std::max(farthest, std::fma(wz, wz, std::fma(wy, wy, wx * wx)));
+    next[0] = std::fma(t.time_step, vx, own[0]);
+    next[1] = std::fma(t.time_step, vy, own[1]);
+    next[2] = std::fma(t.time_step, vz, own[2]);
+    next[3] = own[3];
+    const double room = std::max(own[3] - t.loss, 0.0);
+    excess = std::max(excess, std::fma(-room, room, square_moved(t, g, next)));
   }
-  return farthest;
-}
-
-void walls(const WallTask& t) {
-  for (std::size_t m = 0; m < t.count; ++m) {
-    const double* own = t.rows + t.members[m];
-    const double distance =
-        std::fma(own[0] - t.point[0], t.normal[0], (own[1] - t.point[1]) * t.normal[1]);
-    const double overlap = std::max(0.5 - distance, 0.0);
-    Sum sum{overlap * t.normal[0], overlap * t.normal[1], 0};
-    add_contacts(sum, own, t.wall_rows, t.neighbours.list + t.neighbours.begin[m],
-                 t.neighbours.slots[m], t.depth, t.per_depth);
-    const std::size_t g = static_cast<std::size_t>(t.members[m]) / 4;
-    const bool first = t.first[m] != 0;
-    t.wall_sum[0][g] = (first ? 0.0 : t.wall_sum[0][g]) + sum.x;
-    t.wall_sum[1][g] = (first ? 0.0 : t.wall_sum[1][g]) + sum.y;
-    t.wall_sum[2][g] = (first ? 0.0 : t.wall_sum[2][g]) + sum.z;
-    if (t.push != nullptr) t.push[m] = sum.y;
-  }
+  return excess;
 }
 
 std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
   std::size_t most = 0;
   for (std::size_t place = first; place < last; ++place) {
+    const std::int32_t id = t.grid.id[place];
+    if (id < t.first_grain) continue;
     const double x = t.grid.position[0][place];
     const double y = t.grid.position[1][place];
     const double z = t.grid.position[2][place];
-    const std::int32_t id = t.grid.id[place];
     std::int32_t found[kMostNeighbours];
     std::size_t count = 0;
     std::array<PlaceRun, 9> runs;
@@ -101,7 +113,8 @@ std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
         const double dx = x - t.grid.position[0][p];
         const double dy = y - t.grid.position[1][p];
         const double dz = nearest_image(z - t.grid.position[2][p], t.depth, t.per_depth);
-        const bool near = dx * dx + dy * dy + dz * dz < t.cutoff_squared;
+        const double cutoff = 1 + (t.grid.margin[place] + t.grid.margin[p]);
+        const bool near = dx * dx + dy * dy + dz * dz < cutoff * cutoff;
         if (near && t.grid.id[p] != id && count < kMostNeighbours) found[count++] = t.grid.id[p];
       }
     }
@@ -116,24 +129,39 @@ std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
   return most;
 }
 
+std::uint8_t near_planes(const PruneTask& t, const double* own) {
+  std::uint8_t near = 0;
+  for (std::size_t w = 0; w < 4; ++w) {
+    const bool touches = distance_to(t.planes[w], own) < 0.5 + (own[3] + t.wall_margin);
+    if (touches) near |= w == 0 ? kNearMovingWall : kNearOtherWall;
+  }
+  return near;
+}
+
 bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
   std::size_t begin = first * t.inner_stride;
   for (std::size_t g = first; g < std::min(last, t.grains); ++g) {
     const double* own = t.rows + 4 * g;
     std::int32_t* inner = t.inner + begin;
-    std::size_t kept = 0;
+    std::size_t kept = 0, head = 0;
     for (std::size_t k = 0; k < t.outer_count[g]; ++k) {
       const std::int32_t offset = t.outer[g * t.outer_stride + k];
       const double* other = t.rows + offset;
       const double dx = own[0] - other[0];
       const double dy = own[1] - other[1];
       const double dz = nearest_image(own[2] - other[2], t.depth, t.per_depth);
-      if (!(dx * dx + dy * dy + dz * dz < t.cutoff_squared)) continue;
+      const double cutoff = 1 + (own[3] + other[3]);
+      if (!(dx * dx + dy * dy + dz * dz < cutoff * cutoff)) continue;
       if (kept == t.inner_stride) return false;
+      if (offset >= t.first_wall && offset < t.moving_end) ++head;
       inner[kept++] = offset;
     }
-    t.slots[g] = t.inner_count[g] = static_cast<std::uint16_t>(kept);
+    t.inner_count[g] = static_cast<std::uint16_t>(kept);
+    t.head[g] = static_cast<std::uint16_t>(head);
+    t.slots[g] = static_cast<std::uint16_t>(kept - head);
     t.seam[g] = 1;
+    t.walled[g] = t.grain_walled[g] =
+        static_cast<std::uint8_t>(near_planes(t, own) | (head > 0 ? kNearMovingWall : 0));
     t.begin[g] = static_cast<std::uint32_t>(begin);
     begin += kept;
   }
@@ -147,7 +175,6 @@ const Kernels& scalar_kernels() {
       "scalar",
       1,
       {{step<false, false>, step<false, true>}, {step<true, false>, step<true, true>}},
-      walls,
       search,
       prune};
   return kernels;

@@ -19,17 +19,11 @@ namespace HWY_NAMESPACE {
 // contact_factor(s) for s >= 0; kDeep: for s beyond the series too.
 template <bool kDeep>
 HWY_INLINE V contact_factors(V s) {
-  const auto& c = kContactSeries;
-  const V s2 = hn::Mul(s, s);
-  V odd = hn::Set(kD, c[7]);
-  V even = hn::Set(kD, c[6]);
-  odd = hn::MulAdd(odd, s2, hn::Set(kD, c[5]));
-  even = hn::MulAdd(even, s2, hn::Set(kD, c[4]));
-  odd = hn::MulAdd(odd, s2, hn::Set(kD, c[3]));
-  even = hn::MulAdd(even, s2, hn::Set(kD, c[2]));
-  odd = hn::MulAdd(odd, s2, hn::Set(kD, c[1]));
-  even = hn::MulAdd(even, s2, hn::Set(kD, c[0]));
-  const V series = hn::Mul(s, hn::MulAdd(odd, s, even));
+  V series = hn::Set(kD, kContactSeries.back());
+  for (std::size_t n = kContactSeries.size() - 1; n-- > 0;) {
+    series = hn::MulAdd(series, s, hn::Set(kD, kContactSeries[n]));
+  }
+  series = hn::Mul(s, series);
   if constexpr (!kDeep) return series;
   const V one = hn::Set(kD, 1.0);
   const V exact = hn::Sub(hn::Div(one, hn::Sqrt(hn::Sub(one, s))), one);
@@ -44,8 +38,9 @@ HWY_INLINE V sum_contacts(Vectors& sum, const Vectors& own, const double* HWY_RE
                           V per_depth) {
   V deepest = hn::Zero(kD);
   for (const std::int32_t* const end = list + slots * kLanes; list != end; list += kLanes) {
-    const Vectors other =
-        load_rows(rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{list[lane]}; });
+    V margin;
+    const Vectors other = load_rows(
+        rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{list[lane]}; }, margin);
     const Vectors dr = separation<kSeam>(own, other, depth, per_depth);
     V s = hn::NegMulAdd(dr.z, dr.z,
                         hn::NegMulAdd(dr.y, dr.y, hn::NegMulAdd(dr.x, dr.x, hn::Set(kD, 1.0))));
@@ -73,27 +68,67 @@ HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY
   }
 }
 
+HWY_INLINE void touch_plane(Vectors& sum, const Vectors& own, const WallPlane& plane) {
+  const V nx = hn::Set(kD, plane.normal[0]);
+  const V ny = hn::Set(kD, plane.normal[1]);
+  const V overlap = hn::Max(hn::Sub(hn::Set(kD, 0.5), distance_to(plane, own)), hn::Zero(kD));
+  sum.x = hn::MulAdd(overlap, nx, sum.x);
+  sum.y = hn::MulAdd(overlap, ny, sum.y);
+}
+
+// The square of how far grains have moved from where they were when their lists were made.
+HWY_INLINE V square_moved(const StepTask& t, std::size_t g, const Vectors& at) {
+  const hn::Rebind<float, D> single;
+  const auto reference = [&](std::size_t axis) HWY_ATTR {
+    return hn::PromoteTo(kD, hn::LoadU(single, t.reference[axis] + g));
+  };
+  const V ry = reference(1);
+  const V x = hn::MulAdd(hn::Set(kD, t.next_shear), hn::Sub(ry, hn::Set(kD, t.origin)),
+                         reference(0));
+  const V wx = hn::Sub(at.x, x);
+  const V wy = hn::Sub(at.y, ry);
+  const V wz = hn::Sub(at.z, reference(2));
+  return hn::MulAdd(wz, wz, hn::MulAdd(wy, wy, hn::Mul(wx, wx)));
+}
+
+// Sum over the contacts of one block of grains.
+HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vectors& own, V depth,
+                               V per_depth) {
+  Vectors sum{hn::Zero(kD), hn::Zero(kD), hn::Zero(kD)};
+  const std::int32_t* list = t.neighbours.list + t.neighbours.begin[block];
+  const std::size_t slots = t.neighbours.slots[block];
+  const std::uint8_t walled = t.neighbours.walled[block];
+  if (HWY_UNLIKELY(walled != 0)) {
+    if ((walled & kNearMovingWall) != 0) {
+      const std::size_t head = t.neighbours.head[block];
+      touch_plane(sum, own, t.planes[0]);
+      add_contacts<true>(sum, own, t.rows, list, head, depth, per_depth);
+      hn::StoreU(sum.y, kD, t.push + block * kLanes);
+      list += head * kLanes;
+    }
+    if ((walled & kNearOtherWall) != 0) {
+      for (std::size_t w = 1; w < 4; ++w) touch_plane(sum, own, t.planes[w]);
+    }
+  }
+  if (t.neighbours.seam[block] != 0) {
+    add_contacts<true>(sum, own, t.rows, list, slots, depth, per_depth);
+  } else {
+    add_contacts<false>(sum, own, t.rows, list, slots, depth, per_depth);
+  }
+  return sum;
+}
+
 template <bool kGravity, bool kFlow>
 double step(const StepTask& t, std::size_t first, std::size_t last) {
   const V depth = hn::Set(kD, t.depth);
   const V per_depth = hn::Set(kD, t.per_depth);
-  V farthest = hn::Zero(kD);
+  V excess = hn::Set(kD, -1.0);
   for (std::size_t block = first; block < last; ++block) {
     const std::size_t g = block * kLanes;
-    const auto row_of = [&](std::size_t lane) HWY_ATTR { return 4 * (g + lane); };
-    const Vectors own = load_rows(t.rows, row_of);
-    Vectors sum{hn::Zero(kD), hn::Zero(kD), hn::Zero(kD)};
-    if (t.walled[block] != 0) {
-      sum = {hn::LoadU(kD, t.wall_sum[0] + g), hn::LoadU(kD, t.wall_sum[1] + g),
-             hn::LoadU(kD, t.wall_sum[2] + g)};
-    }
-    const std::int32_t* list = t.neighbours.list + t.neighbours.begin[block];
-    const std::size_t slots = t.neighbours.slots[block];
-    if (t.neighbours.seam[block] != 0) {
-      add_contacts<true>(sum, own, t.rows, list, slots, depth, per_depth);
-    } else {
-      add_contacts<false>(sum, own, t.rows, list, slots, depth, per_depth);
-    }
+    V margin;
+    const Vectors own = load_rows(
+        t.rows, [&](std::size_t lane) HWY_ATTR { return 4 * (g + lane); }, margin);
+    const Vectors sum = contact_sum(t, block, own, depth, per_depth);
 
     const V keep = hn::Set(kD, t.keep);
     const V kick = hn::Set(kD, t.kick);
@@ -110,53 +145,15 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
     const V dt = hn::Set(kD, t.time_step);
     const Vectors next{hn::MulAdd(dt, vx, own.x), hn::MulAdd(dt, vy, own.y),
                        hn::MulAdd(dt, vz, own.z)};
-    store_rows(next, t.next_rows + 4 * g);
+    store_rows(next, margin, t.next_rows + 4 * g);
 
-    const hn::Rebind<float, D> single;
-    const auto reference = [&](std::size_t axis) HWY_ATTR {
-      return hn::PromoteTo(kD, hn::LoadU(single, t.reference[axis] + g));
-    };
-    const V ry = reference(1);
-    const V wx = hn::Sub(next.x, hn::MulAdd(hn::Set(kD, t.next_shear),
-                                            hn::Sub(ry, hn::Set(kD, t.next_top)), reference(0)));
-    const V wy = hn::Sub(next.y, ry);
-    const V wz = hn::Sub(next.z, reference(2));
-    const V square = hn::MulAdd(wz, wz, hn::MulAdd(wy, wy, hn::Mul(wx, wx)));
+    const V room = hn::Max(hn::Sub(margin, hn::Set(kD, t.loss)), hn::Zero(kD));
     // The last block's spare lanes hold no grain.
     const auto real = hn::FirstN(kD, t.grains - g);
-    farthest = hn::Max(farthest, hn::IfThenElseZero(real, square));
+    excess = hn::IfThenElse(
+        real, hn::Max(excess, hn::NegMulAdd(room, room, square_moved(t, g, next))), excess);
   }
-  return hn::GetLane(hn::MaxOfLanes(kD, farthest));
-}
-
-void walls(const WallTask& t) {
-  const V depth = hn::Set(kD, t.depth);
-  const V per_depth = hn::Set(kD, t.per_depth);
-  const V nx = hn::Set(kD, t.normal[0]);
-  const V ny = hn::Set(kD, t.normal[1]);
-  for (std::size_t m = 0; m < t.count; m += kLanes) {
-    const std::int32_t* HWY_RESTRICT members = t.members + m;
-    const Vectors own = load_rows(t.rows, [&](std::size_t lane) HWY_ATTR { return members[lane]; });
-    const V distance = hn::MulAdd(hn::Sub(own.x, hn::Set(kD, t.point[0])), nx,
-                                  hn::Mul(hn::Sub(own.y, hn::Set(kD, t.point[1])), ny));
-    const V overlap = hn::Max(hn::Sub(hn::Set(kD, 0.5), distance), hn::Zero(kD));
-    Vectors sum{hn::Mul(overlap, nx), hn::Mul(overlap, ny), hn::Zero(kD)};
-    add_contacts<true>(sum, own, t.wall_rows, t.neighbours.list + t.neighbours.begin[m / kLanes],
-                       t.neighbours.slots[m / kLanes], depth, per_depth);
-
-    HWY_ALIGN double lanes[3][kLanes];
-    hn::Store(sum.x, kD, lanes[0]);
-    hn::Store(sum.y, kD, lanes[1]);
-    hn::Store(sum.z, kD, lanes[2]);
-    for (std::size_t l = 0; l < kLanes && m + l < t.count; ++l) {
-      const std::size_t g = static_cast<std::size_t>(members[l]) / 4;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        double& wall_sum = t.wall_sum[axis][g];
-        wall_sum = (t.first[m + l] != 0 ? 0.0 : wall_sum) + lanes[axis][l];
-      }
-      if (t.push != nullptr) t.push[m + l] = lanes[1][l];
-    }
-  }
+  return hn::GetLane(hn::MaxOfLanes(kD, excess));
 }
 
 // simd_lists.cpp
@@ -168,7 +165,6 @@ const Kernels* kernels() {
       HWY_TARGET == HWY_AVX3 ? "AVX-512" : "AVX2",
       kLanes,
       {{step<false, false>, step<false, true>}, {step<true, false>, step<true, true>}},
-      walls,
       search,
       prune};
   return &table;

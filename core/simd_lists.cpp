@@ -56,36 +56,50 @@ HWY_INLINE void sort_ids(std::int32_t* HWY_RESTRICT ids, std::size_t count) {
   std::copy(sorted, sorted + count, ids);
 }
 
-std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
+// 1 and both margins, squared.
+HWY_INLINE V square_cutoff(V own_margin, V other_margin) {
+  const V cutoff = hn::Add(hn::Set(kD, 1.0), hn::Add(own_margin, other_margin));
+  return hn::Mul(cutoff, cutoff);
+}
+
+// Sites near the one at `place`, itself left out, in any order; returns their number.
+HWY_INLINE std::size_t find_near(const SearchTask& t, std::size_t place,
+                                 std::int32_t* HWY_RESTRICT found) {
   const V depth = hn::Set(kD, t.depth);
   const V per_depth = hn::Set(kD, t.per_depth);
-  const V cutoff = hn::Set(kD, t.cutoff_squared);
+  const Vectors own{hn::Set(kD, t.grid.position[0][place]), hn::Set(kD, t.grid.position[1][place]),
+                    hn::Set(kD, t.grid.position[2][place])};
+  const V own_margin = hn::Set(kD, t.grid.margin[place]);
+  // Compared as doubles, which hold every id exactly and whose mask fits.
+  const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
+  std::array<PlaceRun, 9> runs;
+  const std::size_t run_count = surrounding_runs(t.grid, place, runs);
+  std::size_t count = 0;
+  for (std::size_t r = 0; r < run_count; ++r) {
+    for (std::size_t p = runs[r].begin; p < runs[r].end; p += kLanes) {
+      const Vectors other{hn::LoadU(kD, t.grid.position[0] + p),
+                          hn::LoadU(kD, t.grid.position[1] + p),
+                          hn::LoadU(kD, t.grid.position[2] + p)};
+      const Vectors dr = separation(own, other, depth, per_depth);
+      const V square = hn::MulAdd(dr.x, dr.x, hn::MulAdd(dr.y, dr.y, hn::Mul(dr.z, dr.z)));
+      const V cutoff = square_cutoff(own_margin, hn::LoadU(kD, t.grid.margin + p));
+      const auto ids = hn::LoadU(kOffsets, t.grid.id + p);
+      const auto near =
+          hn::And(hn::And(hn::Lt(square, cutoff), hn::Ne(hn::PromoteTo(kD, ids), own_id)),
+                  hn::FirstN(kD, runs[r].end - p));
+      count = std::min(count + store_selected(ids, near, found + count), kMostNeighbours);
+    }
+  }
+  return count;
+}
+
+std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
   std::int32_t found[kMostNeighbours + 64];
   std::size_t most = 0;
   for (std::size_t place = first; place < last; ++place) {
-    const Vectors own{hn::Set(kD, t.grid.position[0][place]),
-                      hn::Set(kD, t.grid.position[1][place]),
-                      hn::Set(kD, t.grid.position[2][place])};
     const std::int32_t id = t.grid.id[place];
-    const V own_id = hn::Set(kD, static_cast<double>(id));
-    std::array<PlaceRun, 9> runs;
-    const std::size_t run_count = surrounding_runs(t.grid, place, runs);
-    std::size_t count = 0;
-    for (std::size_t r = 0; r < run_count; ++r) {
-      for (std::size_t p = runs[r].begin; p < runs[r].end; p += kLanes) {
-        const Vectors other{hn::LoadU(kD, t.grid.position[0] + p),
-                            hn::LoadU(kD, t.grid.position[1] + p),
-                            hn::LoadU(kD, t.grid.position[2] + p)};
-        const Vectors dr = separation(own, other, depth, per_depth);
-        const V square = hn::MulAdd(dr.x, dr.x, hn::MulAdd(dr.y, dr.y, hn::Mul(dr.z, dr.z)));
-        const auto ids = hn::LoadU(kOffsets, t.grid.id + p);
-        // Compared as doubles, which hold every id exactly and whose mask fits.
-        const auto near =
-            hn::And(hn::And(hn::Lt(square, cutoff), hn::Ne(hn::PromoteTo(kD, ids), own_id)),
-                    hn::FirstN(kD, runs[r].end - p));
-        count = std::min(count + store_selected(ids, near, found + count), kMostNeighbours);
-      }
-    }
+    if (id < t.first_grain) continue;
+    std::size_t count = find_near(t, place, found);
     most = std::max(most, count);
     count = std::min(count, t.stride);
     sort_ids(found, count);
@@ -103,54 +117,106 @@ HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g, std::int32_t
                                  hn::Mask<D>& seam) {
   const V depth = hn::Set(kD, t.depth);
   const V per_depth = hn::Set(kD, t.per_depth);
-  const V cutoff = hn::Set(kD, t.cutoff_squared);
   const double* own_row = t.rows + 4 * g;
   const Vectors own{hn::Set(kD, own_row[0]), hn::Set(kD, own_row[1]), hn::Set(kD, own_row[2])};
+  const V own_margin = hn::Set(kD, own_row[3]);
   const std::int32_t* HWY_RESTRICT outer = t.outer + g * t.outer_stride;
   std::size_t count = 0;
   for (std::size_t k = 0; k < t.outer_count[g]; k += kLanes) {
+    V margin;
     const Vectors other = load_rows(
-        t.rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{outer[k + lane]}; });
+        t.rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{outer[k + lane]}; }, margin);
     const V dz = hn::Sub(own.z, other.z);
     const V image = hn::Round(hn::Mul(dz, per_depth));
     const V z = hn::NegMulAdd(image, depth, dz);
     const V x = hn::Sub(own.x, other.x);
     const V y = hn::Sub(own.y, other.y);
     const V square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
-    const auto near = hn::Lt(square, cutoff);
+    const auto near = hn::Lt(square, square_cutoff(own_margin, margin));
     seam = hn::Or(seam, hn::And(near, hn::Ne(image, hn::Zero(kD))));
     count += store_selected(hn::LoadU(kOffsets, outer + k), near, kept + count);
   }
   return count;
 }
 
+// How many at the front of a row are grains of the moving wall.
+HWY_INLINE std::size_t head_of(const PruneTask& t, const std::int32_t* kept, std::size_t count) {
+  std::size_t head = 0;
+  while (head < count && kept[head] >= t.first_wall && kept[head] < t.moving_end) ++head;
+  return head;
+}
+
+// The walls' planes that each grain of a block may touch.
+HWY_INLINE void near_planes(const PruneTask& t, std::size_t block) {
+  V margin;
+  const Vectors own = load_rows(
+      t.rows, [&](std::size_t lane) HWY_ATTR { return 4 * (block * kLanes + lane); }, margin);
+  const V reach = hn::Add(hn::Set(kD, 0.5), hn::Add(margin, hn::Set(kD, t.wall_margin)));
+  auto other = hn::FirstN(kD, 0);
+  for (std::size_t w = 1; w < 4; ++w) {
+    other = hn::Or(other, hn::Lt(distance_to(t.planes[w], own), reach));
+  }
+  std::uint8_t moving_bits[8] = {};
+  std::uint8_t other_bits[8] = {};
+  hn::StoreMaskBits(kD, hn::Lt(distance_to(t.planes[0], own), reach), moving_bits);
+  hn::StoreMaskBits(kD, other, other_bits);
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const int near = (moving_bits[0] >> l & 1) * kNearMovingWall +
+                     (other_bits[0] >> l & 1) * kNearOtherWall;
+    t.grain_walled[block * kLanes + l] = static_cast<std::uint8_t>(near);
+  }
+}
+
+// Writes `slots` neighbours of each lane, or padding, beginning at from[lane].
+HWY_INLINE void write_slots(std::int32_t* HWY_RESTRICT to, std::size_t slots,
+                            std::int32_t (*rows)[kMostNeighbours + 64], const std::size_t* from) {
+  for (std::size_t k = 0; k < slots; ++k) {
+    for (std::size_t l = 0; l < kLanes; ++l) to[k * kLanes + l] = rows[l][from[l] + k];
+  }
+}
+
 bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
   std::int32_t rows[kLanes][kMostNeighbours + 64];
+  std::int32_t heads[kLanes][kMostNeighbours + 64];
   const auto padding = hn::Set(kOffsets, t.padding);
   std::size_t begin = first * t.inner_stride * kLanes;
   for (std::size_t block = first; block < last; ++block) {
-    std::size_t count[kLanes];
-    std::size_t most = 0;
+    std::size_t count[kLanes], head[kLanes];
+    std::size_t most = 0, most_head = 0;
     auto seam = hn::FirstN(kD, 0);
+    near_planes(t, block);
+    std::uint8_t walled = 0;
     for (std::size_t l = 0; l < kLanes; ++l) {
       const std::size_t g = block * kLanes + l;
-      count[l] = g < t.grains ? prune_row(t, g, rows[l], seam) : 0;
-      most = std::max(most, count[l]);
+      const bool real = g < t.grains;
+      count[l] = real ? prune_row(t, g, rows[l], seam) : 0;
+      head[l] = head_of(t, rows[l], count[l]);
+      if (!real) t.grain_walled[g] = 0;
+      if (head[l] > 0) t.grain_walled[g] |= kNearMovingWall;
+      walled |= t.grain_walled[g];
+      most = std::max(most, count[l] - head[l]);
+      most_head = std::max(most_head, head[l]);
     }
-    if (most > t.inner_stride) return false;
+    if (most_head + most > t.inner_stride) return false;
     for (std::size_t l = 0; l < kLanes; ++l) {
       t.inner_count[block * kLanes + l] = static_cast<std::uint16_t>(count[l]);
-      for (std::size_t k = count[l]; k < most; k += kLanes) {
+      if (most_head > 0) {
+        std::copy(rows[l], rows[l] + head[l], heads[l]);
+        std::fill(heads[l] + head[l], heads[l] + most_head, t.padding);
+      }
+      for (std::size_t k = count[l]; k < head[l] + most; k += kLanes) {
         hn::StoreU(padding, kOffsets, rows[l] + k);
       }
     }
     std::int32_t* HWY_RESTRICT inner = t.inner + begin;
     t.begin[block] = static_cast<std::uint32_t>(begin);
-    begin += most * kLanes;
-    for (std::size_t k = 0; k < most; ++k) {
-      for (std::size_t l = 0; l < kLanes; ++l) inner[k * kLanes + l] = rows[l][k];
-    }
+    begin += (most_head + most) * kLanes;
+    const std::size_t none[kLanes] = {};
+    write_slots(inner, most_head, heads, none);
+    write_slots(inner + most_head * kLanes, most, rows, head);
+    t.head[block] = static_cast<std::uint16_t>(most_head);
     t.slots[block] = static_cast<std::uint16_t>(most);
+    t.walled[block] = walled;
     t.seam[block] = hn::AllFalse(kD, seam) ? 0 : 1;
   }
   return true;

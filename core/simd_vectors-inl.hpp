@@ -12,6 +12,8 @@
 
 #include <cstddef>
 
+#include "core/kernel.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace shearcell {
 namespace HWY_NAMESPACE {
@@ -29,39 +31,39 @@ struct Vectors {
   V x, y, z;
 };
 
-// Rows {x, y, z, 0} of kLanes grains, transposed. `a` .. `d` hold rows 0 .. 3, and in their upper
-// halves, where there are any, rows 4 .. 7.
-HWY_INLINE Vectors transpose(V a, V b, V c, V d) {
+// Rows {x, y, z, margin} of kLanes grains, transposed. `a` .. `d` hold rows 0 .. 3, and in their
+// upper halves, where there are any, rows 4 .. 7.
+HWY_INLINE Vectors transpose(V a, V b, V c, V d, V& margin) {
   const V x_z_low = hn::InterleaveLower(kD, a, b);
   const V x_z_high = hn::InterleaveLower(kD, c, d);
-  const V y_low = hn::InterleaveUpper(kD, a, b);
-  const V y_high = hn::InterleaveUpper(kD, c, d);
+  const V y_m_low = hn::InterleaveUpper(kD, a, b);
+  const V y_m_high = hn::InterleaveUpper(kD, c, d);
+  margin = hn::OddEvenBlocks(y_m_high, hn::SwapAdjacentBlocks(y_m_low));
   return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(x_z_high), x_z_low),
-          hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y_high), y_low),
+          hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y_m_high), y_m_low),
           hn::OddEvenBlocks(x_z_high, hn::SwapAdjacentBlocks(x_z_low))};
 }
 
 // Loads kLanes rows; lane l takes the row at rows + offset(l).
 template <class Offset>
-HWY_INLINE Vectors load_rows(const double* HWY_RESTRICT rows, Offset&& offset) {
+HWY_INLINE Vectors load_rows(const double* HWY_RESTRICT rows, Offset&& offset, V& margin) {
 #if HWY_TARGET == HWY_AVX3
   const auto row = [&](std::size_t lane) HWY_ATTR { return hn::LoadU(kHalf, rows + offset(lane)); };
   return transpose(hn::Combine(kD, row(4), row(0)), hn::Combine(kD, row(5), row(1)),
-                   hn::Combine(kD, row(6), row(2)), hn::Combine(kD, row(7), row(3)));
+                   hn::Combine(kD, row(6), row(2)), hn::Combine(kD, row(7), row(3)), margin);
 #else
   return transpose(hn::LoadU(kD, rows + offset(0)), hn::LoadU(kD, rows + offset(1)),
-                   hn::LoadU(kD, rows + offset(2)), hn::LoadU(kD, rows + offset(3)));
+                   hn::LoadU(kD, rows + offset(2)), hn::LoadU(kD, rows + offset(3)), margin);
 #endif
 }
 
-// Stores x, y, z as kLanes consecutive rows.
-HWY_INLINE void store_rows(const Vectors& v, double* HWY_RESTRICT rows) {
-  const V zero = hn::Zero(kD);
+// Stores kLanes consecutive rows.
+HWY_INLINE void store_rows(const Vectors& v, V margin, double* HWY_RESTRICT rows) {
   const V xy_even = hn::InterleaveLower(kD, v.x, v.y);  // lanes 0, 2 (, 4, 6)
   const V xy_odd = hn::InterleaveUpper(kD, v.x, v.y);
-  const V z_even = hn::InterleaveLower(kD, v.z, zero);
-  const V z_odd = hn::InterleaveUpper(kD, v.z, zero);
-  // Rows of the even and odd 128-bit blocks: {x y} of one block beside {z 0} of the same block.
+  const V z_even = hn::InterleaveLower(kD, v.z, margin);
+  const V z_odd = hn::InterleaveUpper(kD, v.z, margin);
+  // Rows of the even and odd 128-bit blocks: {x y} of one block beside {z margin} of the same block.
   const V row0 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_even), xy_even);
   const V row1 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_odd), xy_odd);
   const V row2 = hn::OddEvenBlocks(z_even, hn::SwapAdjacentBlocks(xy_even));
@@ -89,6 +91,12 @@ HWY_INLINE Vectors separation(const Vectors& own, const Vectors& other, V depth,
   // Without a seam the nearest image is this one, and subtracting 0 * depth would change no bit.
   if constexpr (kSeam) dz = hn::NegMulAdd(hn::Round(hn::Mul(dz, per_depth)), depth, dz);
   return {hn::Sub(own.x, other.x), hn::Sub(own.y, other.y), dz};
+}
+
+HWY_INLINE V distance_to(const WallPlane& plane, const Vectors& at) {
+  return hn::MulAdd(hn::Sub(at.x, hn::Set(kD, plane.point[0])), hn::Set(kD, plane.normal[0]),
+                    hn::Mul(hn::Sub(at.y, hn::Set(kD, plane.point[1])),
+                            hn::Set(kD, plane.normal[1])));
 }
 
 #endif  // a target with fused multiply-add

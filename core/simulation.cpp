@@ -29,17 +29,17 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state, Engine
       settings_(settings),
       kernels_(require_kernels(settings.kernels)),
       team_(std::make_unique<Team>(settings.threads)),
-      lists_(kernels_, settings.lists, cell_.depth, *team_),
-      walls_(kernels_, cell_) {
+      walls_(cell_),
+      lists_(kernels_, settings.lists, cell_.depth, walls_, *team_) {
   if (state.position.cols() == 0 || state.position.cols() != state.velocity.cols()) {
     throw std::invalid_argument("a simulation needs as many velocities as positions, and a grain");
   }
   // A grain must not meet a neighbour through both seams.
-  if (!(cell_.depth > 2 * settings.lists.outer_cutoff)) {
+  if (!(cell_.depth > 2 + 4 * settings.lists.widest_margin())) {
     throw std::invalid_argument("the depth of the cell, " + std::to_string(cell_.depth) +
                                 " d, is less than twice the cutoff of the neighbour list");
   }
-  farthest_of_thread_.resize(team_->size());
+  excess_of_thread_.resize(team_->size());
   load(state);
   set_constants();
 }
@@ -53,11 +53,11 @@ void Simulation::load(const State& state) {
   id_.resize(grains);
   std::iota(id_.begin(), id_.end(), 0);
   for (auto& axis : velocity_) axis.assign(room, 0.0);
-  for (auto& axis : wall_sum_) axis.assign(room, 0.0);
+  push_.assign(room, 0.0);
   // Spare lanes sit far off on one side and the padding of the lists far off on the other, so that
   // neither touches anything (nor each other, for which NaN would not be safe: 0 * NaN).
   for (auto& rows : rows_) {
-    rows.assign(4 * (room + 1), 0.0);
+    rows.assign(4 * (room + 1 + walls_.size()), 0.0);
     for (std::size_t g = grains; g < room; ++g) rows[4 * g] = 1e30;
     rows[4 * room] = -1e30;
   }
@@ -91,52 +91,60 @@ WallPose Simulation::pose_at(const Drive& drive, std::uint64_t step) const {
   return wall_pose(cell_, tilt(drive, step).theta, wall_height_);
 }
 
+double Simulation::shear_rate(const Drive& drive) const {
+  if (drive.amplitude == 0) return 0;
+  // The rate of tan(theta) is theta' sec^2(theta).
+  const double omega =
+      2 * std::numbers::pi / (static_cast<double>(drive.steps_per_cycle) * scene_.time_step);
+  return tilt(drive, step_).rate * omega / (pose_.cos_theta * pose_.cos_theta);
+}
+
 void Simulation::advance(const Drive& drive, std::uint64_t steps) {
   if (steps == 0) return;
   pose_ = pose_at(drive, step_);
-  if (counts_.builds == 0) rebuild_lists();
+  if (counts_.builds == 0) refresh_lists(drive);
   for (std::uint64_t n = 0; n < steps; ++n) step_once(drive);
 }
 
-void Simulation::step_once(const Drive& drive) {
-  const double push = walls_.evaluate(rows_[0].data(), pose_, wall_sum_);
-  move_wall(push);
-  const WallPose next = pose_at(drive, step_ + 1);
+// The fluid's du/dy is Eq. S5 with the height counted from the top wall.
+void Simulation::set_flow(const Drive& drive) {
+  task_.flow = scene_.time_step * scene_.drag_rate * shear_rate(drive) /
+               (1 + 0.5 * scene_.drag_rate * scene_.time_step);
+  task_.top = pose_.top;
+}
 
+void Simulation::step_once(const Drive& drive) {
   const bool flow = scene_.fluid == Fluid::cell && drive.amplitude != 0;
-  if (flow) {
-    // du/dy of Eq. S5 with the height counted from the top wall: theta' sec^2(theta).
-    const double omega =
-        2 * std::numbers::pi / (static_cast<double>(drive.steps_per_cycle) * scene_.time_step);
-    const double shear_rate = tilt(drive, step_).rate * omega / (pose_.cos_theta * pose_.cos_theta);
-    task_.flow = scene_.time_step * scene_.drag_rate * shear_rate /
-                 (1 + 0.5 * scene_.drag_rate * scene_.time_step);
-    task_.top = pose_.top;
-  }
+  if (flow) set_flow(drive);
   task_.rows = rows_[0].data();
   task_.next_rows = rows_[1].data();
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    task_.velocity[axis] = velocity_[axis].data();
-    task_.wall_sum[axis] = wall_sum_[axis].data();
-    task_.reference[axis] = lists_.reference().data(axis);
-  }
-  task_.neighbours = lists_.rows();
-  task_.walled = walls_.walled().data();
+  WallPose next = pose_at(drive, step_ + 1);
   task_.next_shear = next.tan_theta;
-  task_.next_top = next.top;
+  task_.loss = lists_.reference().loss(task_.next_shear);
+  const auto planes = walls_.planes(pose_);
+  std::copy(planes.begin(), planes.end(), task_.planes);
   const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;
   const auto step = kernels_.step[scene_.gravity != 0][flow];
-  std::vector<double>& squares = farthest_of_thread_;
+  std::vector<double>& excess = excess_of_thread_;
   team_->run(blocks, [&](std::size_t thread, std::size_t first, std::size_t last) {
-    squares[thread] = step(task_, first, last);
+    excess[thread] = step(task_, first, last);
   });
-  const double square = *std::max_element(squares.begin(), squares.end());
 
+  move_wall(push_of_moving_wall());
+  (cell_.moving == MovingWall::bottom ? next.bottom : next.top) = wall_height_;
+  pose_ = next;
+  walls_.place(pose_, rows_[1].data() + wall_offset(id_.size()));
   std::swap(rows_[0], rows_[1]);
   ++step_;
-  pose_ = next;
-  if (!lists_.inner_valid(std::sqrt(square), pose_)) refresh_lists();
+  const double worst = *std::max_element(excess.begin(), excess.end());
+  if (!lists_.inner_valid(worst, pose_)) refresh_lists(drive);
   if (step_ % kWatchInterval == 0) check();
+}
+
+double Simulation::push_of_moving_wall() const {
+  double push = 0;
+  for (const std::int32_t g : lists_.at_moving_wall()) push += push_[static_cast<std::size_t>(g)];
+  return push;
 }
 
 void Simulation::check() const {
@@ -162,46 +170,72 @@ void Simulation::move_wall(double push) {
   wall_height_ += scene_.time_step * wall_velocity_;
 }
 
-void Simulation::refresh_lists() {
-  if (!lists_.outer_valid(rows_[0].data(), id_.size(), pose_)) {
-    rebuild_lists();
-  } else {
-    prune_lists();
-  }
+Snapshot Simulation::snapshot(const Drive& drive) {
+  Snapshot now;
+  now.rows = rows_[0].data();
+  for (std::size_t axis = 0; axis < 3; ++axis) now.velocity[axis] = velocity_[axis].data();
+  now.grains = id_.size();
+  now.pose = pose_;
+  now.time_step = scene_.time_step;
+  now.shear_rate = shear_rate(drive);
+  return now;
 }
 
-void Simulation::rebuild_lists() {
-  const double cutoff = settings_.lists.outer_cutoff;
-  order_.build(cell_, pose_, cutoff, rows_[0].data(), id_);
-  if (settings_.lists.sort_memory) sort_memory();
-  lists_.build(rows_[0].data(), id_, order_, pose_);
-  walls_.build(rows_[0].data(), id_, pose_, cutoff);
-  ++counts_.builds;
-  prune_lists();
-}
-
-void Simulation::prune_lists() {
-  lists_.prune(rows_[0].data(), id_.size(), pose_);
-  walls_.prune(rows_[0].data(), pose_, settings_.lists.inner_cutoff);
-  for (auto& axis : wall_sum_) std::fill(axis.begin(), axis.end(), 0.0);
+void Simulation::refresh_lists(const Drive& drive) {
+  if (counts_.builds == 0 || !lists_.prune(snapshot(drive))) rebuild_lists(drive);
   ++counts_.prunes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    task_.velocity[axis] = velocity_[axis].data();
+    task_.reference[axis] = lists_.reference().data(axis);
+  }
+  task_.push = push_.data();
+  task_.origin = lists_.reference().origin();
+  task_.neighbours = lists_.rows();
 }
 
-// Near in space is near in memory, and within a stretch of memory the grains with equally many
-// neighbours share a vector, whose lanes all wait for the longest list.
+void Simulation::rebuild_lists(const Drive& drive) {
+  const double reach = 1 + 2 * settings_.lists.widest_margin();
+  lists_.set_outer_margins(snapshot(drive));
+  walls_.choose_active(pose_, 2 * reach);
+  const auto walls = static_cast<std::int32_t>(walls_.size());
+  std::vector<Site> sites;
+  for (const std::int32_t w : walls_.active()) {
+    sites.push_back({wall_offset(id_.size()) + 4 * w, w});
+  }
+  for (std::size_t g = 0; g < id_.size(); ++g) {
+    sites.push_back({static_cast<std::int32_t>(4 * g), walls + id_[g]});
+  }
+  order_.build(cell_, pose_, reach, rows_[0].data(), sites);
+  if (settings_.lists.sort_memory) sort_memory();
+  lists_.build(snapshot(drive), id_, order_);
+  // Both buffers hold all that `place` does not write.
+  std::copy(rows_[0].begin() + padding_offset(id_.size()), rows_[0].end(),
+            rows_[1].begin() + padding_offset(id_.size()));
+  ++counts_.builds;
+}
+
+// Near in space is near in memory. Within a stretch of memory the grains near the same walls, and of
+// those the ones with equally many neighbours, share a vector: its lanes all wait for the longest
+// list and all look at the walls that one of them is near.
 void Simulation::sort_memory() {
-  constexpr std::size_t kStretch = 64;
-  std::vector<std::int32_t> from = order_.grain();
+  constexpr std::size_t kStretch = 256;
+  const auto first_grain = static_cast<std::int32_t>(walls_.active().size());
+  std::vector<std::int32_t> from;
+  from.reserve(id_.size());
+  for (const std::int32_t site : order_.site()) {
+    if (site >= first_grain) from.push_back(site - first_grain);
+  }
   const std::vector<std::uint16_t>& neighbours = lists_.inner_count();
   if (!neighbours.empty()) {
+    const auto key = [&](std::int32_t g) {
+      const auto at = static_cast<std::size_t>(g);
+      return (lists_.walled()[at] << 16) + neighbours[at];
+    };
     for (std::size_t first = 0; first < from.size(); first += kStretch) {
       const std::size_t last = std::min(first + kStretch, from.size());
       std::stable_sort(from.begin() + static_cast<std::ptrdiff_t>(first),
                        from.begin() + static_cast<std::ptrdiff_t>(last),
-                       [&](std::int32_t a, std::int32_t b) {
-                         return neighbours[static_cast<std::size_t>(a)] <
-                                neighbours[static_cast<std::size_t>(b)];
-                       });
+                       [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
     }
   }
   const auto old_id = id_;
@@ -209,11 +243,11 @@ void Simulation::sort_memory() {
   for (std::size_t g = 0; g < id_.size(); ++g) {
     const auto old = static_cast<std::size_t>(from[g]);
     id_[g] = old_id[old];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      rows_[1][4 * g + axis] = rows_[0][4 * old + axis];
-      velocity_[axis][g] = old_velocity[axis][old];
-    }
+    std::copy_n(rows_[0].data() + 4 * old, 4, rows_[1].data() + 4 * g);
+    for (std::size_t axis = 0; axis < 3; ++axis) velocity_[axis][g] = old_velocity[axis][old];
   }
+  std::copy(rows_[0].begin() + padding_offset(id_.size()), rows_[0].end(),
+            rows_[1].begin() + padding_offset(id_.size()));
   std::swap(rows_[0], rows_[1]);
 }
 
@@ -236,7 +270,7 @@ State Simulation::state() const {
 }
 
 std::size_t Simulation::bytes() const {
-  return 8 * (rows_[0].size() + rows_[1].size() + 3 * (velocity_[0].size() + wall_sum_[0].size())) +
+  return 8 * (rows_[0].size() + rows_[1].size() + 3 * velocity_[0].size() + push_.size()) +
          4 * id_.size() + lists_.bytes() + walls_.bytes() + order_.bytes();
 }
 

@@ -22,7 +22,7 @@
 #include "core/scene.hpp"
 #include "core/state.hpp"
 #include "core/team.hpp"
-#include "core/wall_contacts.hpp"
+#include "core/walls.hpp"
 #include "core/watchdog.hpp"
 
 namespace shearcell {
@@ -69,13 +69,16 @@ class Simulation {
  private:
   void load(const State& state);
   void set_constants();
-  void rebuild_lists();
-  void refresh_lists();
-  void prune_lists();
+  void rebuild_lists(const Drive& drive);
+  void refresh_lists(const Drive& drive);
   void sort_memory();
   void step_once(const Drive& drive);
+  void set_flow(const Drive& drive);
+  double push_of_moving_wall() const;
   void move_wall(double push);
   WallPose pose_at(const Drive& drive, std::uint64_t step) const;
+  double shear_rate(const Drive& drive) const;
+  Snapshot snapshot(const Drive& drive);
 
   Cell cell_;
   Scene scene_;
@@ -86,13 +89,14 @@ class Simulation {
   double wall_height_ = 0, wall_velocity_ = 0;
   std::vector<std::int32_t> id_;  // permanent id of each grain in memory
   std::array<AlignedVector<double>, 2> rows_;
-  std::array<AlignedVector<double>, 3> velocity_, wall_sum_;
+  std::array<AlignedVector<double>, 3> velocity_;
+  std::vector<double> push_;  // y of each grain's sum with the moving wall
   CellOrder order_;
+  Walls walls_;
   NeighbourLists lists_;
-  WallContacts walls_;
   WallPose pose_;  // at step_
   StepTask task_;
-  std::vector<double> farthest_of_thread_;  // squared displacements
+  std::vector<double> excess_of_thread_;
   ListCounts counts_;
 };
 

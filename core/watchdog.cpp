@@ -36,7 +36,8 @@ double largest_overlap(const WatchTask& task, std::size_t g, double depth) {
   const std::size_t block = g / task.lanes;
   const std::int32_t* list = task.neighbours.list + task.neighbours.begin[block] + g % task.lanes;
   double nearest = 1;
-  for (std::size_t k = 0; k < task.neighbours.slots[block]; ++k) {
+  const std::size_t slots = task.neighbours.head[block] + task.neighbours.slots[block];
+  for (std::size_t k = 0; k < slots; ++k) {
     const double* other = task.rows + list[k * task.lanes];
     const double dx = own[0] - other[0];
     const double dy = own[1] - other[1];

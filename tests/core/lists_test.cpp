@@ -2,6 +2,7 @@
 // Neighbour lists and linked cells against brute force, in tilted cells and across the seam.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -13,16 +14,18 @@
 namespace shearcell {
 namespace {
 
+// Random points of a tilted cell, some a little outside of it, unwrapped in z by several periods,
+// some fast.
 struct Points {
   AlignedVector<double> rows;
+  std::array<std::vector<double>, 3> velocity;
   std::vector<std::int32_t> id;
 };
 
-// Random points of a tilted cell, some a little outside of it, unwrapped in z by several periods.
 Points random_points(std::size_t grains, const Cell& cell, const WallPose& pose,
                      std::uint64_t seed) {
   Points points;
-  points.rows.assign(4 * (padded(grains) + 1), 0.0);
+  points.rows.assign(4 * (padded(grains) + 1 + cell.wall_grains.size()), 0.0);
   points.rows[4 * padded(grains)] = -1e30;
   for (std::size_t g = grains; g < padded(grains); ++g) points.rows[4 * g] = 1e30;
   for (std::uint32_t g = 0; g < grains; ++g) {
@@ -33,71 +36,127 @@ Points random_points(std::size_t grains, const Cell& cell, const WallPose& pose,
     row[0] = -0.2 + a[0] * (cell.width + 0.4) + pose.tan_theta * (row[1] - pose.top);
     row[2] = b[0] * cell.depth + std::floor(5 * b[1] - 2) * cell.depth;
     points.id.push_back(static_cast<std::int32_t>(grains - 1 - g));  // any order
+    for (auto& axis : points.velocity) axis.push_back(g % 7 == 0 ? 3 : 0);
   }
   return points;
 }
 
-TEST(NeighbourLists, HoldExactlyThePairsWithinTheCutoffsInAscendingId) {
+// Wall grains on the moving and on another wall, in mixed order.
+Cell cell_with_wall_grains() {
   Cell cell;
   cell.width = 6;
   cell.depth = 5;
   cell.top = 9;
+  for (int i = 0; i < 24; ++i) {
+    cell.wall_grains.push_back({WallSide::left, {-0.1, 0.3 * i + 1, 0.2 * i}});
+    cell.wall_grains.push_back({WallSide::bottom, {0.25 * i, -0.1, 0.2 * i}});
+  }
+  return cell;
+}
+
+Snapshot snapshot_of(Points& points, const WallPose& pose) {
+  Snapshot now;
+  now.rows = points.rows.data();
+  for (std::size_t axis = 0; axis < 3; ++axis) now.velocity[axis] = points.velocity[axis].data();
+  now.grains = points.id.size();
+  now.pose = pose;
+  now.time_step = 1e-4;
+  return now;
+}
+
+// Offsets of the sites that ought to be in the inner list of grain g, by brute force.
+std::vector<std::int32_t> expected_row(const Points& points, const Walls& walls, double depth,
+                                       std::size_t g) {
+  const std::size_t grains = points.id.size();
+  const double* p = points.rows.data() + 4 * g;
+  std::vector<std::int32_t> row;
+  const auto keep_near = [&](std::int32_t offset) {
+    const double* q = points.rows.data() + offset;
+    const double dz = nearest_image(p[2] - q[2], depth, 1 / depth);
+    const double square = std::pow(p[0] - q[0], 2) + std::pow(p[1] - q[1], 2) + dz * dz;
+    if (p != q && square < std::pow(1 + p[3] + q[3], 2)) row.push_back(offset);
+  };
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    keep_near(wall_offset(grains) + static_cast<std::int32_t>(4 * w));
+  }
+  for (std::size_t id = 0; id < grains; ++id) {
+    keep_near(static_cast<std::int32_t>(4 * (grains - 1 - id)));
+  }
+  return row;
+}
+
+TEST(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId) {
+  const Cell cell = cell_with_wall_grains();
+  Walls walls(cell);
+  const auto moving_end = [&](std::size_t grains) {
+    return wall_offset(grains) + static_cast<std::int32_t>(4 * walls.moving_size());
+  };
+  std::size_t at_wall = 0;
   for (const double theta : {0.0, 0.1, -0.3}) {
     const std::size_t grains = 301;
     const WallPose pose = wall_pose(cell, theta, 1.5);
-    const Points points = random_points(grains, cell, pose, 11);
-    ListSettings settings;
-    CellOrder order;
-    order.build(cell, pose, settings.outer_cutoff, points.rows.data(), points.id);
+    Points points = random_points(grains, cell, pose, 11);
+    const Snapshot now = snapshot_of(points, pose);
+    const ListSettings settings;
     for (const Simd simd : {Simd::scalar, Simd::avx2, Simd::avx512}) {
       const Kernels* kernels = find_kernels(simd);
       if (kernels == nullptr) continue;
+      const std::size_t lanes = kernels->lanes;
       Team team(1);
-      NeighbourLists lists(*kernels, settings, cell.depth, team);
-      lists.build(points.rows.data(), points.id, order, pose);
-      lists.prune(points.rows.data(), grains, pose);
+      NeighbourLists lists(*kernels, settings, cell.depth, walls, team);
+      lists.set_outer_margins(now);
+      walls.choose_active(pose, 3);
+      std::vector<Site> sites;
+      for (const std::int32_t w : walls.active()) sites.push_back({wall_offset(grains) + 4 * w, w});
+      for (std::size_t g = 0; g < grains; ++g) {
+        sites.push_back({static_cast<std::int32_t>(4 * g),
+                         static_cast<std::int32_t>(walls.size()) + points.id[g]});
+      }
+      CellOrder order;
+      order.build(cell, pose, 1 + 2 * settings.widest_margin(), points.rows.data(), sites);
+      lists.build(now, points.id, order);
       const NeighbourRows inner = lists.rows();
       for (std::size_t g = 0; g < grains; ++g) {
-        std::vector<std::int32_t> expected;
-        for (std::int32_t id = 0; id < static_cast<std::int32_t>(grains); ++id) {
-          const std::size_t j = grains - 1 - static_cast<std::size_t>(id);
-          const double* p = points.rows.data() + 4 * g;
-          const double* q = points.rows.data() + 4 * j;
-          const double dz = nearest_image(p[2] - q[2], cell.depth, 1 / cell.depth);
-          const double square = std::pow(p[0] - q[0], 2) + std::pow(p[1] - q[1], 2) + dz * dz;
-          if (j != g && square < std::pow(settings.inner_cutoff, 2)) {
-            expected.push_back(static_cast<std::int32_t>(4 * j));
-          }
-        }
+        const std::size_t block = g / lanes;
         std::vector<std::int32_t> found;
-        for (std::size_t k = 0; k < inner.slots[g / kernels->lanes]; ++k) {
-          const std::size_t lanes = kernels->lanes;
-          const std::int32_t offset = inner.list[inner.begin[g / lanes] + k * lanes + g % lanes];
-          if (offset != padding_offset(grains)) found.push_back(offset);
+        for (std::size_t k = 0; k < inner.head[block] + std::size_t{inner.slots[block]}; ++k) {
+          const std::int32_t offset = inner.list[inner.begin[block] + k * lanes + g % lanes];
+          if (offset == padding_offset(grains)) continue;
+          const bool of_moving = offset >= wall_offset(grains) && offset < moving_end(grains);
+          EXPECT_EQ(of_moving, k < inner.head[block]);
+          EXPECT_LE(int{of_moving}, lists.walled()[g] & kNearMovingWall);
+          at_wall += offset > padding_offset(grains) ? 1 : 0;
+          found.push_back(offset);
         }
-        ASSERT_EQ(found, expected) << kernels->name << " grain " << g << " theta " << theta;
+        ASSERT_EQ(found, expected_row(points, walls, cell.depth, g))
+            << kernels->name << " grain " << g << " theta " << theta;
       }
     }
   }
+  EXPECT_GT(at_wall, 100U);
 }
 
-TEST(NeighbourLists, AnAffineShearAloneCostsNoSkin) {
+TEST(Reference, AnAffineShearAloneMovesNothing) {
   Cell cell;
   cell.width = cell.depth = cell.top = 10;
   const Points points = random_points(64, cell, wall_pose(cell, 0, 0), 3);
   Reference reference;
-  reference.set(points.rows.data(), 64, wall_pose(cell, 0, 0));
+  reference.set(points.rows.data(), 64, wall_pose(cell, 0, 0), 0.2);
+  const double rounding = reference.loss(0);
+  EXPECT_LT(rounding, 1e-4);
   Points sheared = points;
   const WallPose pose = wall_pose(cell, 0.05, 0);
   for (std::size_t g = 0; g < 64; ++g) {
     double* p = sheared.rows.data() + 4 * g;
     p[0] += pose.tan_theta * (p[1] - pose.top);
   }
-  EXPECT_LT(reference.farthest(sheared.rows.data(), 64, pose), reference.rounding());
-  EXPECT_LT(reference.rounding(), 1e-4);
-  EXPECT_LT(reference.stretch(pose), 1);
+  for (std::size_t g = 0; g < 64; ++g) {
+    EXPECT_LT(reference.moved(sheared.rows.data(), g, pose), rounding);
+  }
+  // Two grains 1.4 apart along the direction that shrinks most, e/2 of a distance.
+  EXPECT_GT(reference.loss(pose.tan_theta), 1.4 * 0.5 * pose.tan_theta / 2);
   sheared.rows[4 * 17 + 2] += 0.25;
-  EXPECT_NEAR(reference.farthest(sheared.rows.data(), 64, pose), 0.25, reference.rounding());
+  EXPECT_NEAR(reference.moved(sheared.rows.data(), 17, pose), 0.25, rounding);
 }
 
 TEST(LinkedCells, VisitEveryPointNearbyOnceInShallowCellsToo) {

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/walls.hpp"
+
+#include <algorithm>
+
+namespace shearcell {
+namespace {
+
+WallSide moving_side(const Cell& cell) {
+  return cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
+}
+
+}  // namespace
+
+Walls::Walls(const Cell& cell) : cell_(cell), grains_(cell.wall_grains) {
+  const auto moves = [&](const WallGrain& grain) { return grain.side == moving_side(cell_); };
+  const auto others = std::stable_partition(grains_.begin(), grains_.end(), moves);
+  moving_size_ = static_cast<std::size_t>(others - grains_.begin());
+}
+
+std::array<WallPlane, 4> Walls::planes(const WallPose& pose) const {
+  const double c = pose.cos_theta;
+  const double s = pose.sin_theta;
+  // The side planes pass through the ends of the top wall, which does not move in x.
+  std::array<WallPlane, 4> planes = {WallPlane{{0, pose.top}, {c, -s}},
+                                     WallPlane{{cell_.width, pose.top}, {-c, s}},
+                                     WallPlane{{0, pose.bottom}, {0, 1}},
+                                     WallPlane{{0, pose.top}, {0, -1}}};
+  const auto moving = static_cast<std::ptrdiff_t>(moving_side(cell_));
+  std::rotate(planes.begin(), planes.begin() + moving, planes.begin() + moving + 1);
+  return planes;
+}
+
+void Walls::place_all(const WallPose& pose, double margin, double* rows) const {
+  for (const WallGrain& grain : grains_) {
+    const Eigen::Vector3d p = wall_grain_position(cell_, pose, grain);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) rows[axis] = p(axis);
+    rows[3] = margin;
+    rows += 4;
+  }
+}
+
+void Walls::choose_active(const WallPose& pose, double reach) {
+  active_.clear();
+  for (std::size_t w = 0; w < grains_.size(); ++w) {
+    const double y = wall_grain_position(cell_, pose, grains_[w]).y();
+    if (y > pose.bottom - reach && y < pose.top + reach) {
+      active_.push_back(static_cast<std::int32_t>(w));
+    }
+  }
+}
+
+// Operations and order are those of wall_grain_position().
+void Walls::place(const WallPose& pose, double* rows) const {
+  const double bottom_x = (pose.bottom - pose.top) * pose.tan_theta;
+  const double bottom_y = pose.bottom - cell_.bottom;
+  const double top_y = pose.top - cell_.top;
+  for (const std::int32_t w : active_) {
+    const auto& [side, p] = grains_[static_cast<std::size_t>(w)];
+    double* row = rows + 4 * static_cast<std::ptrdiff_t>(w);
+    if (side == WallSide::bottom) {
+      row[0] = p.x() + bottom_x;
+      row[1] = p.y() + bottom_y;
+    } else if (side == WallSide::top) {
+      row[1] = p.y() + top_y;
+    } else {
+      row[0] = p.x() + (p.y() - pose.top) * pose.tan_theta;
+    }
+  }
+}
+
+}  // namespace shearcell
