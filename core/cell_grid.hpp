@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains and wall grains copied into the order of a grid's cells, so that a search runs along contiguous memory.
+// Grains and wall grains copied into the order of a grid's cells, so that a search runs along
+// contiguous memory.
 #pragma once
 
 #include <array>

@@ -11,9 +11,9 @@
 //  3. A position is a row {x, y, z, margin} of four doubles. Lanes load whole rows and transpose
 //     them in registers: no gathers, and nothing is written but a grain's own row.
 //
-// The rows of one array are: the grains, padded; a place that nothing touches; the wall grains, those
-// of the moving wall first. The margin [d] is how far the grain may move in the frame of the shear
-// before its list has to be made again.
+// The rows of one array are: the grains, padded; a place that nothing touches; the wall grains,
+// those of the moving wall first. The margin [d] is how far the grain may move in the frame of the
+// shear before its list has to be made again.
 #pragma once
 
 #include <cstddef>
@@ -41,8 +41,10 @@ struct WallPlane {
   double point[2] = {}, normal[2] = {};
 };
 
-/// Bits of NeighbourRows::walled.
-inline constexpr std::uint8_t kNearMovingWall = 1, kNearOtherWall = 2;
+/// What a grain, or some grain of a block, is near to; the kernel need not look for the rest. With
+/// kNearSeam a neighbour is nearest through the seam in z.
+inline constexpr std::uint8_t kNearSeam = 1, kNearMovingWall = 2, kNearOtherWall = 4;
+inline constexpr std::uint8_t kNearWall = kNearMovingWall | kNearOtherWall;
 
 /// Neighbours as row offsets (4 * index, in doubles), in blocks of one vector of grains. Grain
 /// `lane` of block b has its k-th neighbour, k < head[b] + slots[b], at
@@ -53,11 +55,7 @@ struct NeighbourRows {
   const std::uint32_t* begin = nullptr;
   const std::uint16_t* slots = nullptr;
   const std::uint16_t* head = nullptr;
-  /// 1 for a block with a pair that is nearest through the seam in z; elsewhere the kernel need not
-  /// look for the nearest image.
-  const std::uint8_t* seam = nullptr;
-  /// Which wall planes some grain of the block may touch. 0 where head is 0 and no plane is near.
-  const std::uint8_t* walled = nullptr;
+  const std::uint8_t* near = nullptr;  ///< per block
 };
 
 /// One time step of the leapfrog for every grain of a range of blocks.
@@ -67,8 +65,9 @@ struct StepTask {
   double* next_rows = nullptr;   ///< positions at the next step
   double* velocity[3] = {};      ///< [d/s], half a step before -> half a step after
   NeighbourRows neighbours;
-  WallPlane planes[4];     ///< that of the moving wall first
-  double* push = nullptr;  ///< per grain of blocks near the moving wall: y of its sum with that wall
+  WallPlane planes[4];  ///< that of the moving wall first
+  double* push =
+      nullptr;  ///< per grain of blocks near the moving wall: y of its sum with that wall
   double depth = 0, per_depth = 0;
   double keep = 0;  ///< (1 - b dt / 2m) / (1 + b dt / 2m)
   double kick = 0;  ///< dt k/m / (1 + b dt / 2m)
@@ -116,7 +115,7 @@ struct PruneTask {
   const double* rows = nullptr;
   const std::int32_t* outer = nullptr;
   std::size_t outer_stride = 0;
-  const std::uint16_t* outer_count = nullptr;  ///< per grain
+  const std::uint16_t* outer_count = nullptr;   ///< per grain
   std::int32_t first_wall = 0, moving_end = 0;  ///< offsets of the moving wall's grains
   WallPlane planes[4];                          ///< that of the moving wall first
   double wall_margin = 0;                       ///< of the planes [d]
@@ -126,9 +125,8 @@ struct PruneTask {
   std::uint16_t* inner_count = nullptr;         ///< per grain and spare lane
   std::uint16_t* slots = nullptr;
   std::uint16_t* head = nullptr;
-  std::uint8_t* seam = nullptr;
-  std::uint8_t* walled = nullptr;
-  std::uint8_t* grain_walled = nullptr;  ///< the same bits per grain and spare lane
+  std::uint8_t* near = nullptr;        ///< per block
+  std::uint8_t* grain_near = nullptr;  ///< per grain and spare lane
   std::int32_t padding = 0;
   double depth = 0, per_depth = 0;
 };

@@ -9,8 +9,7 @@ namespace {
 
 // Of a grain in the frame that moves with the shear [d/s].
 double speed(const Snapshot& now, std::size_t g) {
-  const double vx =
-      now.velocity[0][g] - now.shear_rate * (now.rows[4 * g + 1] - now.pose.top);
+  const double vx = now.velocity[0][g] - now.shear_rate * (now.rows[4 * g + 1] - now.pose.top);
   const double vy = now.velocity[1][g];
   const double vz = now.velocity[2][g];
   return std::sqrt(vx * vx + vy * vy + vz * vz);
@@ -100,8 +99,7 @@ bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = settings_.inner_horizon * now.time_step;
   const double loss = outer_reference_.loss(now.pose.tan_theta);
-  double smallest_room =
-      settings_.outer_margin() - outer_reference_.wall_moved(now.pose) - loss;
+  double smallest_room = settings_.outer_margin() - outer_reference_.wall_moved(now.pose) - loss;
   for (std::size_t g = 0; g < now.grains; ++g) {
     const double room =
         double{outer_margin_[g]} - outer_reference_.moved(now.rows, g, now.pose) - loss;
@@ -118,11 +116,10 @@ void NeighbourLists::cut(const Snapshot& now) {
   const std::size_t blocks = (now.grains + kernels_.lanes - 1) / kernels_.lanes;
   slots_.resize(blocks);
   head_.resize(blocks);
-  seam_.resize(blocks);
-  walled_.resize(blocks);
+  near_.resize(blocks);
   begin_.resize(blocks);
   inner_count_.resize(padded(now.grains));
-  grain_walled_.resize(padded(now.grains));
+  grain_near_.resize(padded(now.grains));
   PruneTask task;
   task.grains = now.grains;
   task.rows = now.rows;
@@ -137,9 +134,8 @@ void NeighbourLists::cut(const Snapshot& now) {
   task.inner_count = inner_count_.data();
   task.slots = slots_.data();
   task.head = head_.data();
-  task.seam = seam_.data();
-  task.walled = walled_.data();
-  task.grain_walled = grain_walled_.data();
+  task.near = near_.data();
+  task.grain_near = grain_near_.data();
   task.begin = begin_.data();
   task.padding = padding_offset(now.grains);
   task.depth = depth_;
@@ -157,18 +153,18 @@ void NeighbourLists::cut(const Snapshot& now) {
   at_moving_wall_.clear();
   for (std::size_t i = walls_.size(); i < offset_of_id_.size(); ++i) {
     const std::int32_t g = offset_of_id_[i] / 4;
-    const std::uint8_t near = grain_walled_[static_cast<std::size_t>(g)];
+    const std::uint8_t near = grain_near_[static_cast<std::size_t>(g)];
     if ((near & kNearMovingWall) != 0) at_moving_wall_.push_back(g);
   }
 }
 
 NeighbourRows NeighbourLists::rows() const {
-  return {inner_.data(), begin_.data(), slots_.data(), head_.data(), seam_.data(), walled_.data()};
+  return {inner_.data(), begin_.data(), slots_.data(), head_.data(), near_.data()};
 }
 
 std::size_t NeighbourLists::bytes() const {
   return 4 * (outer_.size() + inner_.size() + offset_of_id_.size() + outer_margin_.size()) +
-         2 * outer_count_.size() + 3 * inner_count_.size() + 10 * slots_.size() +
+         2 * outer_count_.size() + 3 * inner_count_.size() + 9 * slots_.size() +
          outer_reference_.bytes() + inner_reference_.bytes();
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each grain may touch: an outer list found in a grid of cells, and an inner one pruned from it.
+// What each grain may touch: an outer list found in a grid of cells, and an inner one pruned from
+// it.
 //
 // Bursts of fast grains would make any single thin skin expire every few dozen steps. So the costly
 // search is done for wide margins, the list that the kernel walks is often cut down from that, and
@@ -24,11 +25,11 @@ namespace shearcell {
 
 /// How the lists are kept. These change the speed, never the bits.
 struct ListSettings {
-  double outer_cutoff = 1.25;    ///< of two grains that only follow the shear [d]
-  double inner_cutoff = 1.04;    ///< the same for the inner list
-  double widest_cutoff = 1.4;    ///< of the fastest grains [d]
-  double outer_horizon = 500;    ///< time steps that a fast grain's margin should last
-  double inner_horizon = 80;     ///< the same for the inner list
+  double outer_cutoff = 1.25;  ///< of two grains that only follow the shear [d]
+  double inner_cutoff = 1.04;  ///< the same for the inner list
+  double widest_cutoff = 1.4;  ///< of the fastest grains [d]
+  double outer_horizon = 500;  ///< time steps that a fast grain's margin should last
+  double inner_horizon = 80;   ///< the same for the inner list
   bool rebuild_every_step = false;
   bool sort_memory = true;  ///< keep grains that are near in space near in memory
 
@@ -62,15 +63,15 @@ class NeighbourLists {
   /// Finds the outer neighbours and cuts the inner list from them. `order` holds the sites with
   /// those margins; `id` is the permanent id of each grain in memory.
   void build(const Snapshot& now, const std::vector<std::int32_t>& id, const CellOrder& order);
-  /// Cuts the inner list anew. Returns false, leaving it unusable, when the outer list has to be made
-  /// again first.
+  /// Cuts the inner list anew. Returns false, leaving it unusable, when the outer list has to be
+  /// made again first.
   bool prune(const Snapshot& now);
 
   NeighbourRows rows() const;
   /// Length of each grain's inner list when it was last cut; empty before that.
   const std::vector<std::uint16_t>& inner_count() const { return inner_count_; }
-  /// NeighbourRows::walled of each grain.
-  const std::vector<std::uint8_t>& walled() const { return grain_walled_; }
+  /// What each grain is near to: bits of NeighbourRows::near.
+  const std::vector<std::uint8_t>& near() const { return grain_near_; }
   /// Places in memory of the grains that may touch the moving wall, in ascending permanent id.
   const std::vector<std::int32_t>& at_moving_wall() const { return at_moving_wall_; }
   const Reference& reference() const { return inner_reference_; }
@@ -93,7 +94,7 @@ class NeighbourLists {
   std::vector<std::int32_t> offset_of_id_, at_moving_wall_;
   std::vector<std::uint16_t> outer_count_, inner_count_, slots_, head_;
   std::vector<std::uint32_t> begin_;
-  std::vector<std::uint8_t> seam_, walled_, grain_walled_;
+  std::vector<std::uint8_t> near_, grain_near_;
 };
 
 }  // namespace shearcell

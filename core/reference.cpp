@@ -42,8 +42,8 @@ double Reference::wall_moved(const WallPose& pose) const {
 }
 
 double Reference::loss(double tan_theta) const {
-  // The smallest singular value of a simple shear e is sqrt(1 + e^2/4) - e/2 > 1 - e/2: that much is
-  // left of a distance of 1 and two margins, and each of two grains bears half of what is not.
+  // The smallest singular value of a simple shear e is sqrt(1 + e^2/4) - e/2 > 1 - e/2: that much
+  // is left of a distance of 1 and two margins, and each of two grains bears half of what is not.
   return 0.25 * std::fabs(tan_theta - pose_.tan_theta) * (1 + 2 * widest_) + rounding_ + 1e-9;
 }
 

@@ -2,8 +2,8 @@
 // Where everything was when a list was made, in the frame that moves with the affine shear.
 //
 // A pair that a list leaves out was at least 1 + m_i + m_j apart, with a margin m for each. Until a
-// grain has moved farther in that frame than its margin, less what the shear of the frame itself can
-// have taken since, no such pair can touch. So each grain watches over its own margin, and fast
+// grain has moved farther in that frame than its margin, less what the shear of the frame itself
+// can have taken since, no such pair can touch. So each grain watches over its own margin, and fast
 // grains can have wide ones without a longer list for the others.
 #pragma once
 

@@ -47,15 +47,15 @@ Sum contact_sum(const StepTask& t, std::size_t g) {
   const double* own = t.rows + 4 * g;
   Sum sum{0, 0, 0};
   const std::int32_t* list = t.neighbours.list + t.neighbours.begin[g];
-  const std::uint8_t walled = t.neighbours.walled[g];
-  if ((walled & kNearMovingWall) != 0) {
+  const std::uint8_t near = t.neighbours.near[g];
+  if ((near & kNearMovingWall) != 0) {
     const std::size_t head = t.neighbours.head[g];
     touch_plane(sum, own, t.planes[0]);
     add_contacts(sum, own, t.rows, list, head, t.depth, t.per_depth);
     t.push[g] = sum.y;
     list += head;
   }
-  if ((walled & kNearOtherWall) != 0) {
+  if ((near & kNearOtherWall) != 0) {
     for (std::size_t w = 1; w < 4; ++w) touch_plane(sum, own, t.planes[w]);
   }
   add_contacts(sum, own, t.rows, list, t.neighbours.slots[g], t.depth, t.per_depth);
@@ -159,8 +159,7 @@ bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
     t.inner_count[g] = static_cast<std::uint16_t>(kept);
     t.head[g] = static_cast<std::uint16_t>(head);
     t.slots[g] = static_cast<std::uint16_t>(kept - head);
-    t.seam[g] = 1;
-    t.walled[g] = t.grain_walled[g] =
+    t.near[g] = t.grain_near[g] =
         static_cast<std::uint8_t>(near_planes(t, own) | (head > 0 ? kNearMovingWall : 0));
     t.begin[g] = static_cast<std::uint32_t>(begin);
     begin += kept;

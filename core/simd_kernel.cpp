@@ -83,8 +83,8 @@ HWY_INLINE V square_moved(const StepTask& t, std::size_t g, const Vectors& at) {
     return hn::PromoteTo(kD, hn::LoadU(single, t.reference[axis] + g));
   };
   const V ry = reference(1);
-  const V x = hn::MulAdd(hn::Set(kD, t.next_shear), hn::Sub(ry, hn::Set(kD, t.origin)),
-                         reference(0));
+  const V x =
+      hn::MulAdd(hn::Set(kD, t.next_shear), hn::Sub(ry, hn::Set(kD, t.origin)), reference(0));
   const V wx = hn::Sub(at.x, x);
   const V wy = hn::Sub(at.y, ry);
   const V wz = hn::Sub(at.z, reference(2));
@@ -97,20 +97,20 @@ HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vecto
   Vectors sum{hn::Zero(kD), hn::Zero(kD), hn::Zero(kD)};
   const std::int32_t* list = t.neighbours.list + t.neighbours.begin[block];
   const std::size_t slots = t.neighbours.slots[block];
-  const std::uint8_t walled = t.neighbours.walled[block];
-  if (HWY_UNLIKELY(walled != 0)) {
-    if ((walled & kNearMovingWall) != 0) {
+  const std::uint8_t near = t.neighbours.near[block];
+  if (HWY_UNLIKELY((near & kNearWall) != 0)) {
+    if ((near & kNearMovingWall) != 0) {
       const std::size_t head = t.neighbours.head[block];
       touch_plane(sum, own, t.planes[0]);
       add_contacts<true>(sum, own, t.rows, list, head, depth, per_depth);
       hn::StoreU(sum.y, kD, t.push + block * kLanes);
       list += head * kLanes;
     }
-    if ((walled & kNearOtherWall) != 0) {
+    if ((near & kNearOtherWall) != 0) {
       for (std::size_t w = 1; w < 4; ++w) touch_plane(sum, own, t.planes[w]);
     }
   }
-  if (t.neighbours.seam[block] != 0) {
+  if ((near & kNearSeam) != 0) {
     add_contacts<true>(sum, own, t.rows, list, slots, depth, per_depth);
   } else {
     add_contacts<false>(sum, own, t.rows, list, slots, depth, per_depth);

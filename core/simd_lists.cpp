@@ -113,8 +113,8 @@ std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
 }
 
 // Keeps the near ones of one grain's outer list in `kept`; returns their number.
-HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g, std::int32_t* HWY_RESTRICT kept,
-                                 hn::Mask<D>& seam) {
+HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g,
+                                 std::int32_t* HWY_RESTRICT kept) {
   const V depth = hn::Set(kD, t.depth);
   const V per_depth = hn::Set(kD, t.per_depth);
   const double* own_row = t.rows + 4 * g;
@@ -122,6 +122,7 @@ HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g, std::int32_t
   const V own_margin = hn::Set(kD, own_row[3]);
   const std::int32_t* HWY_RESTRICT outer = t.outer + g * t.outer_stride;
   std::size_t count = 0;
+  auto seam = hn::FirstN(kD, 0);
   for (std::size_t k = 0; k < t.outer_count[g]; k += kLanes) {
     V margin;
     const Vectors other = load_rows(
@@ -136,6 +137,7 @@ HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g, std::int32_t
     seam = hn::Or(seam, hn::And(near, hn::Ne(image, hn::Zero(kD))));
     count += store_selected(hn::LoadU(kOffsets, outer + k), near, kept + count);
   }
+  if (!hn::AllFalse(kD, seam)) t.grain_near[g] |= kNearSeam;
   return count;
 }
 
@@ -146,8 +148,8 @@ HWY_INLINE std::size_t head_of(const PruneTask& t, const std::int32_t* kept, std
   return head;
 }
 
-// The walls' planes that each grain of a block may touch.
-HWY_INLINE void near_planes(const PruneTask& t, std::size_t block) {
+// Sets the planes that each grain of a block is near to.
+HWY_INLINE void find_planes(const PruneTask& t, std::size_t block) {
   V margin;
   const Vectors own = load_rows(
       t.rows, [&](std::size_t lane) HWY_ATTR { return 4 * (block * kLanes + lane); }, margin);
@@ -161,63 +163,72 @@ HWY_INLINE void near_planes(const PruneTask& t, std::size_t block) {
   hn::StoreMaskBits(kD, hn::Lt(distance_to(t.planes[0], own), reach), moving_bits);
   hn::StoreMaskBits(kD, other, other_bits);
   for (std::size_t l = 0; l < kLanes; ++l) {
-    const int near = (moving_bits[0] >> l & 1) * kNearMovingWall +
-                     (other_bits[0] >> l & 1) * kNearOtherWall;
-    t.grain_walled[block * kLanes + l] = static_cast<std::uint8_t>(near);
+    const int near =
+        (moving_bits[0] >> l & 1) * kNearMovingWall + (other_bits[0] >> l & 1) * kNearOtherWall;
+    t.grain_near[block * kLanes + l] = static_cast<std::uint8_t>(near);
   }
 }
 
-// Writes `slots` neighbours of each lane, or padding, beginning at from[lane].
-HWY_INLINE void write_slots(std::int32_t* HWY_RESTRICT to, std::size_t slots,
-                            std::int32_t (*rows)[kMostNeighbours + 64], const std::size_t* from) {
-  for (std::size_t k = 0; k < slots; ++k) {
-    for (std::size_t l = 0; l < kLanes; ++l) to[k * kLanes + l] = rows[l][from[l] + k];
+// The kept neighbours of one block, per lane, before they are interleaved.
+struct Kept {
+  std::int32_t rows[kLanes][kMostNeighbours + 64];
+  std::size_t count[kLanes], head[kLanes];
+  std::size_t slots, head_slots;  // of the longest lane
+};
+
+HWY_INLINE void prune_block(const PruneTask& t, std::size_t block, Kept& kept) {
+  find_planes(t, block);
+  kept.slots = kept.head_slots = 0;
+  std::uint8_t near = 0;
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const std::size_t g = block * kLanes + l;
+    if (g >= t.grains) t.grain_near[g] = 0;
+    const std::size_t count = g < t.grains ? prune_row(t, g, kept.rows[l]) : 0;
+    const std::size_t head = head_of(t, kept.rows[l], count);
+    if (head > 0) t.grain_near[g] |= kNearMovingWall;
+    near |= t.grain_near[g];
+    kept.count[l] = count;
+    kept.head[l] = head;
+    kept.slots = std::max(kept.slots, count - head);
+    kept.head_slots = std::max(kept.head_slots, head);
+    t.inner_count[g] = static_cast<std::uint16_t>(count);
+  }
+  t.near[block] = near;
+  t.head[block] = static_cast<std::uint16_t>(kept.head_slots);
+  t.slots[block] = static_cast<std::uint16_t>(kept.slots);
+}
+
+// Interleaves the lanes: first the grains of the moving wall, where a lane has any, then the
+// others.
+HWY_INLINE void write_block(const PruneTask& t, Kept& kept, std::int32_t* HWY_RESTRICT to) {
+  for (std::size_t l = 0; kept.head_slots > 0 && l < kLanes; ++l) {
+    for (std::size_t k = 0; k < kept.head_slots; ++k) {
+      to[k * kLanes + l] = k < kept.head[l] ? kept.rows[l][k] : t.padding;
+    }
+  }
+  to += kept.head_slots * kLanes;
+  const auto padding = hn::Set(kOffsets, t.padding);
+  const std::int32_t* from[kLanes];
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    for (std::size_t k = kept.count[l]; k < kept.head[l] + kept.slots; k += kLanes) {
+      hn::StoreU(padding, kOffsets, kept.rows[l] + k);
+    }
+    from[l] = kept.rows[l] + kept.head[l];
+  }
+  for (std::size_t k = 0; k < kept.slots; ++k) {
+    for (std::size_t l = 0; l < kLanes; ++l) to[k * kLanes + l] = from[l][k];
   }
 }
 
 bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
-  std::int32_t rows[kLanes][kMostNeighbours + 64];
-  std::int32_t heads[kLanes][kMostNeighbours + 64];
-  const auto padding = hn::Set(kOffsets, t.padding);
+  Kept kept;
   std::size_t begin = first * t.inner_stride * kLanes;
   for (std::size_t block = first; block < last; ++block) {
-    std::size_t count[kLanes], head[kLanes];
-    std::size_t most = 0, most_head = 0;
-    auto seam = hn::FirstN(kD, 0);
-    near_planes(t, block);
-    std::uint8_t walled = 0;
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const std::size_t g = block * kLanes + l;
-      const bool real = g < t.grains;
-      count[l] = real ? prune_row(t, g, rows[l], seam) : 0;
-      head[l] = head_of(t, rows[l], count[l]);
-      if (!real) t.grain_walled[g] = 0;
-      if (head[l] > 0) t.grain_walled[g] |= kNearMovingWall;
-      walled |= t.grain_walled[g];
-      most = std::max(most, count[l] - head[l]);
-      most_head = std::max(most_head, head[l]);
-    }
-    if (most_head + most > t.inner_stride) return false;
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      t.inner_count[block * kLanes + l] = static_cast<std::uint16_t>(count[l]);
-      if (most_head > 0) {
-        std::copy(rows[l], rows[l] + head[l], heads[l]);
-        std::fill(heads[l] + head[l], heads[l] + most_head, t.padding);
-      }
-      for (std::size_t k = count[l]; k < head[l] + most; k += kLanes) {
-        hn::StoreU(padding, kOffsets, rows[l] + k);
-      }
-    }
-    std::int32_t* HWY_RESTRICT inner = t.inner + begin;
+    prune_block(t, block, kept);
+    if (kept.head_slots + kept.slots > t.inner_stride) return false;
     t.begin[block] = static_cast<std::uint32_t>(begin);
-    begin += (most_head + most) * kLanes;
-    const std::size_t none[kLanes] = {};
-    write_slots(inner, most_head, heads, none);
-    write_slots(inner + most_head * kLanes, most, rows, head);
-    t.head[block] = static_cast<std::uint16_t>(most_head);
-    t.slots[block] = static_cast<std::uint16_t>(most);
-    t.walled[block] = walled;
-    t.seam[block] = hn::AllFalse(kD, seam) ? 0 : 1;
+    write_block(t, kept, t.inner + begin);
+    begin += (kept.head_slots + kept.slots) * kLanes;
   }
   return true;
 }

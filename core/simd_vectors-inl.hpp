@@ -63,7 +63,8 @@ HWY_INLINE void store_rows(const Vectors& v, V margin, double* HWY_RESTRICT rows
   const V xy_odd = hn::InterleaveUpper(kD, v.x, v.y);
   const V z_even = hn::InterleaveLower(kD, v.z, margin);
   const V z_odd = hn::InterleaveUpper(kD, v.z, margin);
-  // Rows of the even and odd 128-bit blocks: {x y} of one block beside {z margin} of the same block.
+  // Rows of the even and odd 128-bit blocks: {x y} of one block beside {z margin} of the same
+  // block.
   const V row0 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_even), xy_even);
   const V row1 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_odd), xy_odd);
   const V row2 = hn::OddEvenBlocks(z_even, hn::SwapAdjacentBlocks(xy_even));
@@ -94,9 +95,9 @@ HWY_INLINE Vectors separation(const Vectors& own, const Vectors& other, V depth,
 }
 
 HWY_INLINE V distance_to(const WallPlane& plane, const Vectors& at) {
-  return hn::MulAdd(hn::Sub(at.x, hn::Set(kD, plane.point[0])), hn::Set(kD, plane.normal[0]),
-                    hn::Mul(hn::Sub(at.y, hn::Set(kD, plane.point[1])),
-                            hn::Set(kD, plane.normal[1])));
+  return hn::MulAdd(
+      hn::Sub(at.x, hn::Set(kD, plane.point[0])), hn::Set(kD, plane.normal[0]),
+      hn::Mul(hn::Sub(at.y, hn::Set(kD, plane.point[1])), hn::Set(kD, plane.normal[1])));
 }
 
 #endif  // a target with fused multiply-add

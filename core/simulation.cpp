@@ -182,7 +182,9 @@ Snapshot Simulation::snapshot(const Drive& drive) {
 }
 
 void Simulation::refresh_lists(const Drive& drive) {
-  if (counts_.builds == 0 || !lists_.prune(snapshot(drive))) rebuild_lists(drive);
+  const bool first = counts_.builds == 0;
+  if (first || !lists_.prune(snapshot(drive))) rebuild_lists(drive);
+  if (first) rebuild_lists(drive);  // the order in memory depends on the lists before
   ++counts_.prunes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     task_.velocity[axis] = velocity_[axis].data();
@@ -214,9 +216,9 @@ void Simulation::rebuild_lists(const Drive& drive) {
   ++counts_.builds;
 }
 
-// Near in space is near in memory. Within a stretch of memory the grains near the same walls, and of
-// those the ones with equally many neighbours, share a vector: its lanes all wait for the longest
-// list and all look at the walls that one of them is near.
+// Near in space is near in memory. Within a stretch of memory the grains near the same walls or the
+// seam, and of those the ones with equally many neighbours, share a vector: its lanes all wait for
+// the longest list and all do what one of them needs.
 void Simulation::sort_memory() {
   constexpr std::size_t kStretch = 256;
   const auto first_grain = static_cast<std::int32_t>(walls_.active().size());
@@ -229,7 +231,7 @@ void Simulation::sort_memory() {
   if (!neighbours.empty()) {
     const auto key = [&](std::int32_t g) {
       const auto at = static_cast<std::size_t>(g);
-      return (lists_.walled()[at] << 16) + neighbours[at];
+      return (lists_.near()[at] << 16) + neighbours[at];
     };
     for (std::size_t first = 0; first < from.size(); first += kStretch) {
       const std::size_t last = std::min(first + kStretch, from.size());

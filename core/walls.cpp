@@ -22,10 +22,9 @@ std::array<WallPlane, 4> Walls::planes(const WallPose& pose) const {
   const double c = pose.cos_theta;
   const double s = pose.sin_theta;
   // The side planes pass through the ends of the top wall, which does not move in x.
-  std::array<WallPlane, 4> planes = {WallPlane{{0, pose.top}, {c, -s}},
-                                     WallPlane{{cell_.width, pose.top}, {-c, s}},
-                                     WallPlane{{0, pose.bottom}, {0, 1}},
-                                     WallPlane{{0, pose.top}, {0, -1}}};
+  std::array<WallPlane, 4> planes = {
+      WallPlane{{0, pose.top}, {c, -s}}, WallPlane{{cell_.width, pose.top}, {-c, s}},
+      WallPlane{{0, pose.bottom}, {0, 1}}, WallPlane{{0, pose.top}, {0, -1}}};
   const auto moving = static_cast<std::ptrdiff_t>(moving_side(cell_));
   std::rotate(planes.begin(), planes.begin() + moving, planes.begin() + moving + 1);
   return planes;

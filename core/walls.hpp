@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The walls as the kernel sees them: four planes, and wall grains as rows behind those of the grains.
+// The walls as the kernel sees them: four planes, and wall grains as rows behind those of the
+// grains.
 #pragma once
 
 #include <array>
@@ -12,8 +13,8 @@
 
 namespace shearcell {
 
-/// Where planes and wall grains are in a pose. Wall grains are numbered with those of the moving wall
-/// first and otherwise in the order of the cell; that is their permanent id.
+/// Where planes and wall grains are in a pose. Wall grains are numbered with those of the moving
+/// wall first and otherwise in the order of the cell; that is their permanent id.
 class Walls {
  public:
   explicit Walls(const Cell& cell);

@@ -124,7 +124,7 @@ TEST(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId) {
           if (offset == padding_offset(grains)) continue;
           const bool of_moving = offset >= wall_offset(grains) && offset < moving_end(grains);
           EXPECT_EQ(of_moving, k < inner.head[block]);
-          EXPECT_LE(int{of_moving}, lists.walled()[g] & kNearMovingWall);
+          EXPECT_LE(int{of_moving}, (lists.near()[g] & kNearMovingWall) / kNearMovingWall);
           at_wall += offset > padding_offset(grains) ? 1 : 0;
           found.push_back(offset);
         }
