@@ -13,23 +13,41 @@ constexpr double kLookInterval = 0.1;  // [s]
 constexpr std::uint64_t kLooksPerCheckpoint = 20;
 constexpr double kDenseGrains = 1.2;  // per d^3, of a packing at phi = 0.63
 
+std::uint64_t look_steps(const Scene& scene) {
+  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kLookInterval / scene.time_step));
+}
+
+// Looks during which the wall comes the way to a dense packing.
+double press_looks(const Cell& cell, const Scene& scene, std::size_t grains) {
+  const double per_area = static_cast<double>(grains) / (cell.width * cell.depth);
+  const double way = std::max(0.0, cell.top - cell.bottom - per_area / kDenseGrains);
+  const double speed = scene.pressure / (scene.wall_drag + scene.drag_rate * per_area);
+  return std::ceil((way / speed + 0.5) / kLookInterval);
+}
+
 }  // namespace
 
 Settle::Settle(const SettleParameters& parameters, const Scene& scene)
     : parameters_(parameters),
       scene_(scene),
-      look_steps_(
-          std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kLookInterval / scene.time_step))),
+      look_steps_(look_steps(scene)),
       limit_steps_(static_cast<std::uint64_t>(parameters.time_limit / scene.time_step)) {}
 
 std::uint64_t Settle::press_steps(const Cell& cell, std::size_t grains) const {
   if (scene_.gravity == 0 || scene_.pressure == 0) return 0;
-  const double per_area = static_cast<double>(grains) / (cell.width * cell.depth);
-  const double way = std::max(0.0, cell.top - cell.bottom - per_area / kDenseGrains);
-  const double speed = scene_.pressure / (scene_.wall_drag + scene_.drag_rate * per_area);
-  const double looks = std::ceil((way / speed + 0.5) / kLookInterval);
-  return look_steps_ *
-         static_cast<std::uint64_t>(std::min(looks, parameters_.time_limit / kLookInterval));
+  const double looks =
+      std::min(press_looks(cell, scene_, grains), parameters_.time_limit / kLookInterval);
+  return look_steps_ * static_cast<std::uint64_t>(looks);
+}
+
+State pressed(const Cell& cell, const State& loose, Scene scene, const EngineSettings& settings) {
+  scene.gravity = 0;
+  Simulation simulation(cell, scene, loose, settings);
+  const double looks = press_looks(cell, scene, simulation.grains());
+  simulation.advance(Drive{}, look_steps(scene) * static_cast<std::uint64_t>(looks));
+  State state = simulation.state();
+  state.step = 0;
+  return state;
 }
 
 bool Settle::settled(const Simulation& simulation) const {

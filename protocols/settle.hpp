@@ -42,4 +42,8 @@ class Settle final : public Protocol {
   std::uint64_t limit_steps_;
 };
 
+/// Loose grains -> the same pressed together without gravity by what `scene` has else, for as long
+/// as Settle would; a dense packing that has not come to rest. Step 0, upright.
+State pressed(const Cell& cell, const State& loose, Scene scene, const EngineSettings& settings);
+
 }  // namespace shearcell

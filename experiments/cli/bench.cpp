@@ -18,7 +18,8 @@ nlohmann::json facts(const SpeedResult& r) {
           {"million_particle_steps_per_second", r.median_rate},
           {"slowest", r.slowest_rate},
           {"fastest", r.fastest_rate},
-          {"share_step", r.step_share},
+          {"share_forces", r.force_share},
+          {"share_integration", r.integration_share},
           {"share_walls", r.wall_share},
           {"share_search", r.search_share},
           {"share_prune", r.prune_share},
@@ -42,13 +43,17 @@ void speed(const SpeedOptions& options, Context& context) {
     rows.push_back({std::to_string(r.grains), r.simd, std::to_string(r.threads),
                     fmt::format("{:.1f}", r.median_rate),
                     fmt::format("{:.0f}-{:.0f}", r.slowest_rate, r.fastest_rate),
-                    percent(r.step_share), percent(r.wall_share), percent(r.search_share),
-                    percent(r.prune_share), fmt::format("{:.0f}", r.bytes_per_grain)});
+                    percent(r.force_share), percent(r.integration_share), percent(r.wall_share),
+                    percent(r.search_share), percent(r.prune_share),
+                    fmt::format("{:.0f}", r.bytes_per_grain)});
   }
-  print_table(
-      {"N", "SIMD", "thr", "M/s", "range", "step%", "wall%", "search%", "prune%", "B/grain"}, rows);
-  fmt::print("M/s: million particle-steps/s, median of {}; step: forces and integration\n",
-             options.repeats);
+  print_table({"N", "SIMD", "thr", "M/s", "range", "force%", "integ%", "wall%", "search%", "prune%",
+               "B/grain"},
+              rows);
+  fmt::print(
+      "M/s: million particle-steps/s, median of {}. Shares of one thread's time; search: outer\n"
+      "neighbour list, prune: inner one.\n",
+      options.repeats);
 }
 
 }  // namespace

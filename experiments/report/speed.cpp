@@ -28,25 +28,52 @@ double seconds_since(Clock::time_point start) {
 // the time around those of the kernel in use. One simulation at a time, one thread.
 struct Stopwatch {
   const Kernels* inner = nullptr;
-  double step = 0, walls = 0, search = 0, prune = 0;
+  std::size_t calls = 0;
+  double step = 0, search = 0, prune = 0;
+  // Every so many steps the same step is done again to nowhere: whole, without looking at walls,
+  // and without any neighbours.
+  double sampled = 0, whole = 0, without_walls = 0, without_neighbours = 0;
+  std::vector<double> nowhere;
 };
 Stopwatch stopwatch;
 
 template <class Call>
 auto timed(double& total, Call&& call) {
   const auto start = Clock::now();
-  if constexpr (std::is_void_v<decltype(call())>) {
-    call();
-    total += seconds_since(start);
-  } else {
-    const auto result = call();
-    total += seconds_since(start);
-    return result;
+  const auto result = call();
+  total += seconds_since(start);
+  return result;
+}
+
+template <int kGravity, int kFlow>
+void sample_parts(StepTask task, std::size_t first, std::size_t last) {
+  constexpr std::size_t kInterval = 16;
+  if (++stopwatch.calls % kInterval != 0) return;
+  const auto start = Clock::now();
+  const std::size_t room = padded(task.grains);
+  stopwatch.nowhere.resize(8 * room);
+  task.next_rows = stopwatch.nowhere.data();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double* velocity = stopwatch.nowhere.data() + (4 + axis) * room;
+    std::copy_n(task.velocity[axis], room, velocity);
+    task.velocity[axis] = velocity;
   }
+  task.push = stopwatch.nowhere.data() + 7 * room;
+  const auto step = [&] { return stopwatch.inner->step[kGravity][kFlow](task, first, last); };
+  timed(stopwatch.whole, step);
+  std::vector<std::uint8_t> near(task.neighbours.near + first, task.neighbours.near + last);
+  for (std::uint8_t& bits : near) bits &= static_cast<std::uint8_t>(~kNearWall);
+  task.neighbours.near = near.data() - first;
+  timed(stopwatch.without_walls, step);
+  const std::vector<std::uint16_t> none(last - first, 0);
+  task.neighbours.slots = none.data() - first;
+  timed(stopwatch.without_neighbours, step);
+  stopwatch.sampled += seconds_since(start);
 }
 
 template <int kGravity, int kFlow>
 double timed_step(const StepTask& task, std::size_t first, std::size_t last) {
+  sample_parts<kGravity, kFlow>(task, first, last);
   return timed(stopwatch.step,
                [&] { return stopwatch.inner->step[kGravity][kFlow](task, first, last); });
 }
@@ -58,7 +85,6 @@ Kernels timed_kernels(const Kernels& inner) {
       inner.name,
       inner.lanes,
       {{timed_step<0, 0>, timed_step<0, 1>}, {timed_step<1, 0>, timed_step<1, 1>}},
-      [](const WallTask& task) { timed(stopwatch.walls, [&] { stopwatch.inner->walls(task); }); },
       [](const SearchTask& task, std::size_t first, std::size_t last) {
         return timed(stopwatch.search, [&] { return stopwatch.inner->search(task, first, last); });
       },
@@ -83,16 +109,10 @@ Prepared prepare(std::size_t grains) {
   made.state = fill_cell(made.cell, geometry(parameters), 1);
   made.scene = shear_scene(parameters);
   made.drive = drive(parameters);
-  // Time enough to press, with or without gravity afterwards.
-  Scene pressing = settle_scene(parameters);
-  pressing.gravity = 1;
-  const std::uint64_t steps = Settle({}, pressing).press_steps(made.cell, grains);
-  pressing.gravity = 0;
   EngineSettings settings;
   settings.threads = grains > 20000 ? std::max(1U, std::thread::hardware_concurrency()) : 1;
-  Simulation simulation(made.cell, pressing, made.state, settings);
-  simulation.advance(Drive{}, steps);
-  simulation.set_scene(made.scene);
+  made.state = pressed(made.cell, made.state, settle_scene(parameters), settings);
+  Simulation simulation(made.cell, made.scene, made.state, settings);
   simulation.advance(Drive{}, 2000);  // the weight
   made.state = simulation.state();
   made.state.step = 0;
@@ -116,9 +136,11 @@ void measure_shares(const Prepared& made, const Kernels& kernels, std::uint64_t 
   Simulation simulation(made.cell, made.scene, made.state, settings);
   const auto start = Clock::now();
   simulation.advance(made.drive, steps);
-  const double total = seconds_since(start);
-  result.step_share = stopwatch.step / total;
-  result.wall_share = stopwatch.walls / total;
+  const double total = seconds_since(start) - stopwatch.sampled;
+  const double step_share = stopwatch.step / total;
+  result.integration_share = step_share * stopwatch.without_neighbours / stopwatch.whole;
+  result.wall_share = step_share * std::max(0.0, 1 - stopwatch.without_walls / stopwatch.whole);
+  result.force_share = step_share - result.integration_share - result.wall_share;
   result.search_share = stopwatch.search / total;
   result.prune_share = stopwatch.prune / total;
   const ListCounts& counts = simulation.list_counts();

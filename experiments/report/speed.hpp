@@ -25,9 +25,10 @@ struct SpeedResult {
   std::string simd;
   std::size_t threads = 1;
   double median_rate = 0, slowest_rate = 0, fastest_rate = 0;
-  /// Shares of the time: forces with integration (one loop), walls, search of the outer list,
-  /// pruning of the inner one; the rest is the moving wall, the drive, sorting and the watchdog.
-  double step_share = 0, wall_share = 0, search_share = 0, prune_share = 0;
+  /// Shares of the time. Walls: planes and the moving wall's grains (those of the others are
+  /// neighbours among the forces). The rest is the moving wall, the drive, sorting, the watchdog.
+  double force_share = 0, integration_share = 0, wall_share = 0;
+  double search_share = 0, prune_share = 0;  ///< of the outer list, of the inner list
   double steps_per_search = 0, steps_per_prune = 0;
   double bytes_per_grain = 0;
   std::string state_hash;  ///< after 200 steps; the same for all results of one size

@@ -43,14 +43,7 @@ Kicked prepare(std::size_t grains) {
   Kicked kicked;
   kicked.cell = make_cell(geometry(parameters), 1);
   kicked.state = fill_cell(kicked.cell, geometry(parameters), 1);
-  Scene pressing = settle_scene(parameters);
-  pressing.gravity = 1;  // so that press_steps is not 0
-  const std::uint64_t steps = Settle({}, pressing).press_steps(kicked.cell, grains);
-  pressing.gravity = 0;
-  Simulation simulation(kicked.cell, pressing, kicked.state);
-  simulation.advance(Drive{}, steps);
-  kicked.state = simulation.state();
-  kicked.state.step = 0;
+  kicked.state = pressed(kicked.cell, kicked.state, settle_scene(parameters), {});
   kicked.state.wall_velocity = 0;
   for (Eigen::Index i = 0; i < kicked.state.position.cols(); ++i) {
     const auto a = uniform_pair({static_cast<std::uint32_t>(i), 0, 0, 9}, 1);
