@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/core/scenes.hpp"
 
+#include <bit>
 #include <cstring>
 
 namespace shearcell::test {
@@ -17,6 +18,22 @@ bool same_bits(const State& a, const State& b) {
   return a.step == b.step && same(a.position, b.position) && same(a.velocity, b.velocity) &&
          std::memcmp(&a.wall_height, &b.wall_height, sizeof(double)) == 0 &&
          std::memcmp(&a.wall_velocity, &b.wall_velocity, sizeof(double)) == 0;
+}
+
+std::uint64_t fingerprint(const State& state) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  const auto add = [&hash](double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    for (int byte = 0; byte < 8; ++byte) {
+      hash = (hash ^ (bits >> 8 * byte & 0xFF)) * 0x100000001b3U;
+    }
+  };
+  for (const double value : state.position.reshaped()) add(value);
+  for (const double value : state.velocity.reshaped()) add(value);
+  add(state.wall_height);
+  add(state.wall_velocity);
+  add(static_cast<double>(state.step));
+  return hash;
 }
 
 }  // namespace shearcell::test

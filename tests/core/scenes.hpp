@@ -2,6 +2,7 @@
 // Small cells and states that several tests start from.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/filling.hpp"
@@ -73,5 +74,8 @@ inline Sheared pressed(std::size_t grains, std::uint64_t steps,
 
 /// Equal to the last bit (so +0 and -0 differ).
 bool same_bits(const State& a, const State& b);
+
+/// FNV-1a of the bits of everything in a state.
+std::uint64_t fingerprint(const State& state);
 
 }  // namespace shearcell::test
