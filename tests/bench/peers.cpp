@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One packing for two programs: `bench_peers prepare DIR N` writes it for LAMMPS, `ours DIR` times
-// the same steps here, `compare DIR` sets LAMMPS's positions beside ours. peers.sh ties them up.
+// One packing for three programs: `bench_peers prepare DIR N` writes it for LAMMPS and LIGGGHTS,
+// `ours DIR N` times the same steps here, `compare DIR N` sets their positions beside ours.
+// peers.sh ties them up.
 //
 // The scene: the rough cell of Table I, pressed, then upright with all walls held fast (a moving
 // wall of huge mass), grains kicked to random velocities, no gravity.
@@ -81,7 +82,7 @@ void write_data(const Kicked& kicked, const fs::path& folder) {
   std::ofstream data(folder / "scene.data");
   data << "one packing, lengths in d, masses in m, times in s\n\n"
        << grains + walls.cols() << " atoms\n2 atom types\n\n"
-       << fmt::format("{} {} xlo xhi\n{} {} ylo yhi\n0 {:.17g} zlo zhi\n\nAtoms # sphere\n\n", -2,
+       << fmt::format("{} {} xlo xhi\n{} {} ylo yhi\n0 {:.17g} zlo zhi\n\nAtoms\n\n", -2,
                       kicked.cell.width + 2, kicked.cell.bottom - 2, kicked.cell.top + 2,
                       kicked.cell.depth);
   const double density = 6 / 3.14159265358979323846;  // mass 1
@@ -119,6 +120,36 @@ void write_input(const Kicked& kicked, const fs::path& folder, const std::string
      << "dump_modify out sort id format float %.17g\nrun 0\n";
 }
 
+// The same for LIGGGHTS, whose contact laws take their constants from named properties.
+void write_liggghts(const Kicked& kicked, const fs::path& folder, const std::string& name,
+                    double drag_rate, std::uint64_t steps) {
+  std::ofstream in(folder / (name + ".in"));
+  in << "units si\natom_style granular\nboundary f f p\nnewton off\ncommunicate single vel yes\n"
+     << "read_data scene.data\ngroup grains type 1\ngroup walls type 2\nneighbor 0.1 bin\n"
+     << "neigh_modify delay 0 every 1 check yes exclude group walls walls\n";
+  for (const char* property : {"kn", "kt", "gamman", "gammat"}) {
+    const double value = std::string(property) == "kn" ? kicked.scene.stiffness : 0;
+    in << fmt::format(
+        "fix {0} all property/global {0} peratomtypepair 2 {1:.17g} {1:.17g} "
+        "{1:.17g} {1:.17g}\n",
+        property, value);
+  }
+  const std::string law = "gran model hooke/stiffness tangential off";
+  in << "pair_style " << law << "\npair_coeff * *\n";
+  const auto plane = [&](const char* fix, const char* axis, double at) {
+    in << fmt::format("fix {} grains wall/{} primitive type 2 {} {:.17g}\n", fix, law, axis, at);
+  };
+  plane("left", "xplane", 0);
+  plane("right", "xplane", kicked.cell.width);
+  plane("bottom", "yplane", kicked.state.wall_height);
+  plane("top", "yplane", kicked.cell.top);
+  in << "fix move grains nve/sphere\n";
+  if (drag_rate > 0) in << fmt::format("fix drag grains viscous {:.17g}\n", drag_rate);
+  in << fmt::format("timestep {:.17g}\nthermo 1000000\nrun {}\n", kicked.scene.time_step, steps)
+     << "dump out grains custom 1 " << name << ".dump id x y z\n"
+     << "dump_modify out sort id format \"%d %.17g %.17g %.17g\"\nrun 0\n";
+}
+
 Eigen::Matrix3Xd read_dump(const fs::path& file, Eigen::Index grains) {
   std::ifstream dump(file);
   std::string line;
@@ -150,15 +181,17 @@ void compare(const Kicked& kicked, const fs::path& folder) {
                     read_dump(folder / (name + ".dump"), kicked.state.position.cols()),
                     kicked.cell.depth);
   };
-  const double without = distance("free", 0, 1);
+  const double lammps = distance("free", 0, 1);
+  const double liggghts = distance("liggghts-free", 0, 1);
   const double with = distance("drag", 64, 1);
   const double finer = distance("drag4", 64, 4);
-  fmt::print("largest distance from LAMMPS after {} steps [d]\n", kAccuracySteps);
-  fmt::print("  no drag            {:.3g}   (must be below 1e-9)\n", without);
-  fmt::print("  drag, dt           {:.3g}\n", with);
-  fmt::print("  drag, dt/4         {:.3g}   (LAMMPS takes the drag explicitly: order {:.2f})\n",
+  fmt::print("largest distance from ours after {} steps [d]\n", kAccuracySteps);
+  fmt::print("  LAMMPS, no drag      {:.3g}   (must be below 1e-9)\n", lammps);
+  fmt::print("  LIGGGHTS, no drag    {:.3g}   (must be below 1e-9)\n", liggghts);
+  fmt::print("  LAMMPS, drag, dt     {:.3g}\n", with);
+  fmt::print("  LAMMPS, drag, dt/4   {:.3g}   (it takes the drag explicitly: order {:.2f})\n",
              finer, std::log2(with / finer) / 2);
-  if (!(without < 1e-9)) throw std::runtime_error("the trajectories disagree");
+  if (!(lammps < 1e-9 && liggghts < 1e-9)) throw std::runtime_error("the trajectories disagree");
 }
 
 void time_ours(const Kicked& kicked) {
@@ -181,6 +214,8 @@ int run(int argc, char** argv) {
     write_input(kicked, folder, "drag", 64, kAccuracySteps, 1);
     write_input(kicked, folder, "drag4", 64, kAccuracySteps, 4);
     write_input(kicked, folder, "speed", 64, kSpeedSteps, 1);
+    write_liggghts(kicked, folder, "liggghts-free", 0, kAccuracySteps);
+    write_liggghts(kicked, folder, "liggghts-speed", 64, kSpeedSteps);
   } else if (what == "ours") {
     time_ours(kicked);
   } else {
