@@ -103,7 +103,10 @@ struct Prepared {
 Prepared prepare(std::size_t grains) {
   Parameters parameters;
   parameters.grains = grains;
-  if (!pressure_lifts_column(parameters)) parameters.gravity_m_per_s2 = 0;
+  // The pressure of Table I can lift no higher column than this size has: more grains go beside it.
+  constexpr double kHighest = 18200;
+  const double beside = static_cast<double>(grains) / kHighest;
+  if (beside > 1) parameters.height_over_width /= std::sqrt(beside);
   Prepared made;
   made.cell = make_cell(geometry(parameters), 1);
   made.state = fill_cell(made.cell, geometry(parameters), 1);
