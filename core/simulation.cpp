@@ -11,7 +11,7 @@
 namespace shearcell {
 namespace {
 
-// Steps between two looks of the watchdog, which cost less than two steps each.
+// Steps between two looks of the watchdog, which cost about four steps each.
 constexpr std::uint64_t kWatchInterval = 1024;
 
 const Kernels& require_kernels(const Kernels* kernels) {

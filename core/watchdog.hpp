@@ -43,7 +43,7 @@ struct WatchTask {
 
 /// Checks that every number is finite, every grain inside the walls, no overlap above its limit,
 /// and no grain faster than all the energy of twelve contacts at that limit could have thrown it.
-/// Costs less than two time steps. Throws NumericalFailure for the first grain in memory found so.
+/// Costs about four time steps. Throws NumericalFailure for the first grain in memory found so.
 void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, const WallPose& pose,
                   const WatchdogLimits& limits);
 

@@ -3,13 +3,14 @@
 //   cmake --build --preset release --target bench_pieces && build/release/tests/bench/bench_pieces
 #include <benchmark/benchmark.h>
 
+#include <filesystem>
 #include <map>
 
 #include "core/diagnostics.hpp"
 #include "core/simulation.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "protocols/settle.hpp"
-#include "provenance/checkpoint.hpp"
+#include "provenance/store.hpp"
 
 namespace shearcell {
 namespace {
@@ -203,6 +204,34 @@ void encode(benchmark::State& state) {
   count_grains(state);
 }
 
+// A checkpoint through the store, every sync included; `share` is of the time of one cycle of Table
+// I at 100 million particle-steps/s.
+void record(benchmark::State& state) {
+  namespace fs = std::filesystem;
+  const Packing& from = packing(static_cast<std::size_t>(state.range(0)));
+  const fs::path folder = fs::temp_directory_path() / "shearcell-bench-store";
+  fs::remove_all(folder);
+  Store store(folder, Access::create);
+  RunDeclaration run;
+  run.id = std::string(64, 'a');
+  run.kind = "shear";
+  store.declare_run(run);
+  store.start_run(run.id, {});
+  Checkpoint checkpoint;
+  checkpoint.run = run.id;
+  checkpoint.cell = from.cell;
+  checkpoint.state = from.state;
+  for (auto _ : state) {
+    ++checkpoint.state.step;
+    store.record_checkpoint(run.id, checkpoint);
+  }
+  fs::remove_all(folder);
+  const double cycle = 45600 * static_cast<double>(state.range(0)) / 1e8;
+  state.counters["share"] =
+      benchmark::Counter(cycle * static_cast<double>(state.iterations()),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
 const std::vector<std::int64_t> kSizes = {600, 5200, 18200};
 const std::vector<std::int64_t> kWidths = {static_cast<std::int64_t>(Simd::avx512),
                                            static_cast<std::int64_t>(Simd::avx2),
@@ -214,6 +243,7 @@ BENCHMARK(search)->ArgsProduct({kSizes, kWidths})->ArgNames(kNames);
 BENCHMARK(prune)->ArgsProduct({kSizes, kWidths})->ArgNames(kNames);
 BENCHMARK(place_walls)->ArgsProduct({kSizes, {0}})->ArgNames(kNames);
 BENCHMARK(watchdog)->ArgsProduct({kSizes})->ArgNames({"N"});
+BENCHMARK(record)->ArgsProduct({kSizes})->ArgNames({"N"})->UseRealTime();
 BENCHMARK(encode)->ArgsProduct({kSizes})->ArgNames({"N"});
 
 }  // namespace
