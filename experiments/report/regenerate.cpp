@@ -10,6 +10,7 @@
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
 #include "experiments/report/derive.hpp"
+#include "experiments/report/figure_lineage.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/sha256.hpp"
@@ -117,12 +118,6 @@ std::vector<FigureRun> figure_runs(const std::vector<Input>& inputs,
   return runs;
 }
 
-std::string file_sha256(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  return sha256_hex(bytes);
-}
-
 // What the figure came from, in terms that do not change when it is made again.
 nlohmann::json lineage(const RegeneratedFigure& result, const std::vector<Input>& inputs,
                        const std::vector<FigureRun>& runs) {
@@ -139,7 +134,8 @@ nlohmann::json lineage(const RegeneratedFigure& result, const std::vector<Input>
                     {"checkpoints", checkpoints}});
   }
   nlohmann::json outputs = nlohmann::json::object();
-  for (const auto& file : result.files) outputs[file.filename().string()] = file_sha256(file);
+  for (const auto& file : result.files)
+    outputs[file.filename().string()] = sha256_hex_of_file(file);
   return {{"figure", result.name},
           {"scale", result.scale},
           {"analysis_version", analysis_version},
@@ -149,9 +145,8 @@ nlohmann::json lineage(const RegeneratedFigure& result, const std::vector<Input>
 
 // Unless the newest record of the figure says the same, whoever made it.
 void record(Store& store, const std::string& name, nlohmann::json facts) {
-  for (FigureRecord& known : store.figures()) {
-    known.provenance.erase("made");
-    if (known.name == name && known.provenance == facts) return;
+  for (const FigureRecord& known : store.figures()) {
+    if (known.name == name && lineage_text(known.provenance) == lineage_text(facts)) return;
   }
   facts["made"] = host_facts();
   store.record_figure(name, facts);
@@ -192,7 +187,7 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
   const nlohmann::json facts = lineage(result, inputs, runs);
   const auto path = options.folder / (result.name + ".lineage.json");
   std::ofstream file(path);
-  file << facts.dump(1) << '\n';
+  file << lineage_text(facts);
   if (!file.flush()) throw std::runtime_error(path.string() + ": cannot write the lineage");
   result.files.push_back(path);
 
