@@ -95,7 +95,7 @@ TEST_F(DerivedCacheTest, NoFlippedByteGivesAnotherContent) {
     flipped[at] = static_cast<char>(flipped[at] ^ 0x10);
     test::write_bytes(file(), flipped);
     const auto content = get(key(1));
-    if (content) EXPECT_EQ(*content, bytes("content")) << "byte " << at;
+    EXPECT_EQ(content.value_or(bytes("content")), bytes("content")) << "byte " << at;
     ++(content ? given : lost);
   }
   std::printf("%d flipped bytes: %d times given right, %d times not given\n", given + lost, given,
