@@ -168,8 +168,9 @@ void print(const FigureLineage& lineage) {
   if (made.is_object()) {
     by = fmt::format(", build {}, host {}", machines.build(made), machines.host(made));
   }
-  fmt::print("figure    {}, scale {}, analysis version {}\n", lineage.record.name,
-             cut(text_at(facts, "scale"), 50), text_at(facts, "analysis_version"));
+  const std::string scale = text_at(facts, "scale");
+  fmt::print("figure    {}, {} scale, analysis version {}\n", lineage.record.name,
+             scale.empty() ? "base" : cut(scale, 50), text_at(facts, "analysis_version"));
   fmt::print("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at),
              lineage.record.seq, by);
   for (const auto& [name, sha256] : lineage.outputs) {
