@@ -38,6 +38,14 @@ constexpr std::array kFormats = {
     ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5, and PROV-JSON", ro_crate},
 };
 
+// Anything else would be read as a file of the crate.
+std::string check_uri(const std::string& text) {
+  const bool web = text.starts_with("https://") || text.starts_with("http://");
+  return web && text.find_first_of(" \"<>\\") == std::string::npos
+             ? ""
+             : text + " is no URI that begins with https://, as that of a licence does";
+}
+
 std::vector<std::string> names() {
   std::vector<std::string> list;
   for (const ExportFormat& format : kFormats) list.emplace_back(format.name);
@@ -72,7 +80,8 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("--to", options->format, "Format")->required()->check(CLI::IsMember(names()));
   command->add_option("--out", options->out, "Folder to write to")->required()->type_name("PATH");
   command->add_option("--license", options->licence, "URI of the licence of the data")
-      ->type_name("URI");
+      ->type_name("URI")
+      ->check(check_uri);
   add_common_options(*command, context, true);
   std::string formats = "Formats:\n";
   for (const ExportFormat& format : kFormats) {

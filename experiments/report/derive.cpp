@@ -70,12 +70,16 @@ class Deriving {
     }
     const auto found = cache_.get(all);
     for (std::size_t i = 0; i < distinct_.size(); ++i) {
-      std::vector<json> results;
-      for (std::size_t m = 0; m < measures_.size(); ++m) {
-        const auto& content = found[i * measures_.size() + m];
-        if (content) results.push_back(decode_result(*content));
+      try {
+        std::vector<json> results;
+        for (std::size_t m = 0; m < measures_.size(); ++m) {
+          const auto& content = found[i * measures_.size() + m];
+          if (content) results.push_back(decode_result(*content));
+        }
+        if (results.size() == measures_.size()) results_[i] = std::move(results);
+      } catch (const AnalysisError&) {
+        // Somebody else's bytes under a right hash: computed again and replaced.
       }
-      if (results.size() == measures_.size()) results_[i] = std::move(results);
     }
   }
 

@@ -12,6 +12,7 @@
 #include "experiments/report/derive.hpp"
 #include "experiments/report/figure_lineage.hpp"
 #include "experiments/runner/host.hpp"
+#include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/sha256.hpp"
 
@@ -91,8 +92,13 @@ std::vector<std::optional<Measures>> measure(const Store& store, const std::vect
   Derived derived = derive(store, records, std::span(&scalar_measures(), 1),
                            {options.workers, options.fresh, options.report});
   std::vector<std::optional<Measures>> measured;
-  for (const auto& results : derived.results) {
-    measured.push_back(results ? std::optional(read_measures(results->front())) : std::nullopt);
+  try {
+    for (const auto& results : derived.results) {
+      measured.push_back(results ? std::optional(read_measures(results->front())) : std::nullopt);
+    }
+  } catch (const AnalysisError& problem) {
+    throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
+                        problem.what() + "); delete it, or measure again with --fresh");
   }
   result.measured = derived.computed;
   result.damage = std::move(derived.damage);

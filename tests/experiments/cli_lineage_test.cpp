@@ -89,6 +89,7 @@ TEST_F(CommandLineLineage, ExportsACrateAndOverwritesNothing) {
     EXPECT_TRUE(contains(refused.err, out)) << refused.err;
   }
   EXPECT_EQ(run({"export", id, "--to", "zip", "--out", "b"}).code, 2);
+  EXPECT_EQ(run({"export", id, "--to", "ro-crate", "--out", "b", "--license", "MIT"}).code, 2);
   EXPECT_EQ(run({"export", "xyz", "--to", "ro-crate", "--out", "b"}).code, 2);
   EXPECT_EQ(listing(), before);
 }

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 
+#include "analysis/error.hpp"
 #include "experiments/report/regenerate.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/sqlite.hpp"
@@ -96,6 +97,22 @@ TEST_F(Derive, FreshNamesWhatWasKeptDifferently) {
   EXPECT_EQ(csv("fresh"), csv("first"));
   EXPECT_EQ(make("after").measured, 0U);
   EXPECT_EQ(csv("after"), csv("first"));
+}
+
+// Only who computes hashes can do this; it must neither crash nor give a wrong number.
+TEST_F(Derive, OtherContentUnderARightHashIsRefused) {
+  make("first");
+  DerivedCache kept(store_.folder());
+  DerivedObject object{{records().at(0).sha256, scalar_measures().key(), analysis_version}, {}};
+  object.content = {std::byte{0xff}, std::byte{0}};
+  kept.put(std::span(&object, 1));
+  EXPECT_EQ(make("second").measured, 1U);
+  EXPECT_EQ(csv("second"), csv("first"));
+  object.content = encode_result(nlohmann::json{{"phi", "dense"}});
+  kept.put(std::span(&object, 1));
+  EXPECT_THROW(make("third"), AnalysisError);
+  EXPECT_EQ(make("fourth", true).changed.size(), 1U);
+  EXPECT_EQ(csv("fourth"), csv("first"));
 }
 
 TEST_F(Derive, ResultsComeInTheOrderOfTheRecordsWhateverTheWorkers) {
