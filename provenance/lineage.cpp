@@ -57,6 +57,9 @@ class Folding {
     if (body.contains("from")) {
       attempt.from_run = lineage_.run.id;
       attempt.from_checkpoint = body["from"].at("sha256").get<std::string>();
+    } else if (body.contains("parent_checkpoint") && body["parent_checkpoint"].is_string()) {
+      attempt.from_run = lineage_.run.parent;
+      attempt.from_checkpoint = body["parent_checkpoint"].get<std::string>();
     }
     lineage_.attempts.push_back(std::move(attempt));
   }

@@ -60,7 +60,7 @@ TEST_F(Lineage, ARejectedCheckpointIsKnownAsSuchUntilItIsMadeAgain) {
   longer.parent = known.parent;
   longer.resolved = known.resolved;
   store_.declare_run(longer);
-  store_.start_run(history_.sheared, {});
+  store_.start_run(history_.sheared, {}, store_.checkpoints(history_.sheared).back().sha256);
   EXPECT_EQ(test::SampleHistory::record(store_, history_.sheared, 45600), history_.rejected);
   EXPECT_FALSE(rejected());
   const RunLineage run = run_lineage(store_, history_.sheared).back();
