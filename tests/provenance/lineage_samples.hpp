@@ -2,6 +2,7 @@
 // A small history with every way an attempt can end, for the tests of lineage and its exports.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "tests/provenance/samples.hpp"
@@ -69,5 +70,15 @@ struct SampleHistory {
     return store.record_checkpoint(run, sample_checkpoint(run, step)).sha256;
   }
 };
+
+/// Appends an event to a run as another program would, past the store.
+inline void append_to_run(const Store& store, const std::string& run, const NewEvent& event) {
+  sqlite::Database database(store.folder() / "store.sqlite", sqlite::Open::existing);
+  EventLog log(database);
+  sqlite::WriteTransaction lock(database);
+  const std::string stream = "run/" + run;
+  log.append(lock, stream, log.version(stream), std::span(&event, 1));
+  lock.commit();
+}
 
 }  // namespace shearcell::test

@@ -69,6 +69,21 @@ TEST_F(Lineage, ARejectedCheckpointIsKnownAsSuchUntilItIsMadeAgain) {
   EXPECT_TRUE(run.attempts.back().host.empty()) << "none was recorded";
 }
 
+TEST_F(Lineage, AStartMayNameTheStateItBeganWith) {
+  const std::string packing = store_.checkpoints(history_.packing).at(0).sha256;
+  test::append_to_run(store_, history_.sheared,
+                      {"RunStarted", {{"attempt", 5}, {"parent_checkpoint", packing}}});
+  const Attempt named = run_lineage(store_, history_.sheared).back().attempts.back();
+  EXPECT_EQ(named.from_run, history_.packing);
+  EXPECT_EQ(named.from_checkpoint, packing);
+  // A payload that is not what it must be is damage and names its event.
+  test::append_to_run(store_, history_.sheared, {"CheckpointRecorded", {{"sha256", "../../x"}}});
+  const std::string message =
+      test::message_of<StoreDamaged>([this] { run_lineage(store_, history_.sheared); });
+  EXPECT_NE(message.find("event " + std::to_string(store_.head().seq)), std::string::npos)
+      << message;
+}
+
 TEST_F(Lineage, TheManifestIsFoundByItsHash) {
   const auto manifest = find_manifest(store_, sha256_hex("manifest"));
   ASSERT_TRUE(manifest.has_value());
