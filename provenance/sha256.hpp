@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -34,6 +35,9 @@ class Sha256 {
 
 std::string sha256_hex(std::span<const std::byte> data);
 std::string sha256_hex(std::string_view text);
+
+/// Of a whole file, read in pieces. Throws std::runtime_error when it cannot be read.
+std::string sha256_hex_of_file(const std::filesystem::path& file);
 
 /// Whether the text is a digest as written here: 64 lower-case hex digits.
 bool is_sha256_hex(std::string_view text);

@@ -105,6 +105,14 @@ Statement& Statement::bind(int parameter, double value) {
   return *this;
 }
 
+Statement& Statement::bind(int parameter, std::span<const std::byte> blob) {
+  // A null pointer would bind NULL.
+  check(sqlite3_bind_blob64(handle_.get(), parameter,
+                            blob.empty() ? static_cast<const void*>("") : blob.data(), blob.size(),
+                            SQLITE_TRANSIENT));
+  return *this;
+}
+
 Statement& Statement::bind_or_null(int parameter, std::string_view text) {
   if (!text.empty()) return bind(parameter, text);
   check(sqlite3_bind_null(handle_.get(), parameter));
@@ -121,6 +129,10 @@ bool Statement::step() {
 void Statement::run() {
   while (step()) {
   }
+  reset();
+}
+
+void Statement::reset() {
   check(sqlite3_reset(handle_.get()));
 }
 
@@ -137,6 +149,12 @@ std::uint64_t Statement::u64(int column) const {
 
 double Statement::f64(int column) const {
   return sqlite3_column_double(handle_.get(), column);
+}
+
+std::vector<std::byte> Statement::blob(int column) const {
+  const auto* bytes = static_cast<const std::byte*>(sqlite3_column_blob(handle_.get(), column));
+  if (bytes == nullptr) return {};
+  return {bytes, bytes + sqlite3_column_bytes(handle_.get(), column)};
 }
 
 int Statement::columns() const {

@@ -2,11 +2,14 @@
 // The little of SQLite that the store needs, with lifetimes and errors in C++ terms.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -49,16 +52,20 @@ class Statement {
   Statement& bind(int parameter, std::string_view text);
   Statement& bind(int parameter, std::uint64_t value);
   Statement& bind(int parameter, double value);
+  Statement& bind(int parameter, std::span<const std::byte> blob);
   /// NULL when the text is empty.
   Statement& bind_or_null(int parameter, std::string_view text);
   /// Moves to the next row; false when there is none.
   bool step();
   /// Runs a statement that gives no rows and makes it ready to run again.
   void run();
+  /// Makes it ready to run again before its last row was read.
+  void reset();
 
   std::string text(int column) const;
   std::uint64_t u64(int column) const;
   double f64(int column) const;
+  std::vector<std::byte> blob(int column) const;
   int columns() const;
   /// The value as SQL would write it, to compare rows with.
   std::string literal(int column) const;

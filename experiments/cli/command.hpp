@@ -35,6 +35,7 @@ void add_log(CLI::App& app, Context& context);
 void add_show(CLI::App& app, Context& context);
 void add_verify(CLI::App& app, Context& context);
 void add_figures(CLI::App& app, Context& context);
+void add_export(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);
 
 /// --store DIR, and --json where the subcommand prints facts.

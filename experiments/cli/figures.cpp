@@ -17,6 +17,7 @@ namespace {
 struct FigureOptions {
   std::vector<std::string> names;
   bool all = false;
+  bool fresh = false;
   std::string out = "shearcell-figures";
   std::optional<std::string> scale;
 };
@@ -29,15 +30,23 @@ std::string known_figures() {
 
 void complain(const RegeneratedFigure& result) {
   for (const std::string& line : result.damage) fmt::print(stderr, "left out: {}\n", line);
+  for (const std::string& sha256 : result.changed) {
+    fmt::print(stderr, "checkpoint {:.12}: other measures than these were kept; replaced\n",
+               sha256);
+  }
+  if (!result.cache_trouble.empty()) {
+    fmt::print(stderr, "measures cannot be kept: {}\n", result.cache_trouble);
+  }
   if (!result.plot_error.empty()) fmt::print(stderr, "no plot: {}\n", result.plot_error);
 }
 
 nlohmann::json facts(const RegeneratedFigure& result) {
   nlohmann::json files = nlohmann::json::array();
   for (const auto& file : result.files) files.push_back(file.string());
-  return {{"figure", result.name}, {"scale", result.scale},
-          {"runs", result.runs},   {"checkpoints", result.checkpoints},
-          {"files", files},        {"damage", result.damage}};
+  return {{"figure", result.name},       {"scale", result.scale},
+          {"runs", result.runs},         {"checkpoints", result.checkpoints},
+          {"measured", result.measured}, {"files", files},
+          {"damage", result.damage},     {"changed", result.changed}};
 }
 
 void figures(const FigureOptions& options, Context& context) {
@@ -53,6 +62,7 @@ void figures(const FigureOptions& options, Context& context) {
   RegenerateOptions how;
   how.folder = options.out;
   how.scale = options.scale;
+  how.fresh = options.fresh;
   how.workers = std::max(1U, std::thread::hardware_concurrency());
   if (isatty(STDERR_FILENO) != 0) {
     how.report = [](std::size_t done, std::size_t total) {
@@ -68,8 +78,9 @@ void figures(const FigureOptions& options, Context& context) {
     if (!result.plot_error.empty() && context.exit_code == kDone) context.exit_code = kOtherError;
     list.push_back(facts(result));
     if (context.json) continue;
-    fmt::print("{} ({} scale): {} runs, {} checkpoints\n", result.name,
-               result.scale.empty() ? "base" : result.scale, result.runs, result.checkpoints);
+    fmt::print("{} ({} scale): {} runs, {} checkpoints, {} of them measured now\n", result.name,
+               result.scale.empty() ? "base" : result.scale, result.runs, result.checkpoints,
+               result.measured);
     for (const auto& file : result.files) fmt::print("  {}\n", file.string());
   }
   if (context.json) print_json({{"figures", list}});
@@ -86,10 +97,14 @@ void add_figures(CLI::App& app, Context& context) {
       ->capture_default_str()
       ->type_name("DIR");
   command->add_option("--scale", options->scale, "Scale of the runs (default: declared last)");
+  command->add_flag("--fresh", options->fresh,
+                    "Measure every checkpoint again and compare with what is kept");
   add_common_options(*command, context, true);
   command->footer(
       "Writes CSV and SVG for each panel, and NAME.lineage.json: which checkpoints they came "
       "from.\n"
+      "What is measured on a checkpoint is kept in the store's derived.sqlite, which may be\n"
+      "deleted at any time.\n"
       "Examples:\n  shearcell figures S2 --out figures\n  shearcell figures --all");
   command->callback([options, &context] { figures(*options, context); });
 }

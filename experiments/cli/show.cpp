@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `show`: everything the store knows about one run, checkpoint or figure.
+// `show`: everything the store knows about one run, checkpoint, figure or published file.
 #include <fmt/format.h>
 
 #include <memory>
 #include <optional>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/show_figure.hpp"
 #include "experiments/runner/progress.hpp"
 #include "provenance/errors.hpp"
 
@@ -107,11 +108,17 @@ std::optional<CheckpointRecord> find_checkpoint(const Store& store, const std::s
   return found;
 }
 
+// Neither a run nor a checkpoint has a dot or a slash in its name.
+bool is_file_name(const std::string& name) {
+  return name.find_first_of("./") != std::string::npos;
+}
+
 void show(const std::string& name, Context& context) {
   const Store store(context.store, Access::read);
   for (const FigureRecord& figure : store.figures()) {
-    if (figure.name == name) return print_json(figure.provenance);
+    if (figure.name == name) return show_figure(store, figure, context);
   }
+  if (is_file_name(name)) return show_published(store, name, context);
   if (name.size() >= 4) {
     if (const auto checkpoint = find_checkpoint(store, name)) {
       return show_checkpoint(store, *checkpoint, context);
@@ -124,11 +131,18 @@ void show(const std::string& name, Context& context) {
 
 void add_show(CLI::App& app, Context& context) {
   auto name = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("show", "Show one run, checkpoint or figure");
-  command->add_option("name", *name, "Run id, checkpoint SHA-256 (or beginnings), or a figure")
+  CLI::App* command =
+      app.add_subcommand("show", "Show one run, checkpoint, figure or figure's file");
+  command
+      ->add_option("name", *name,
+                   "Run id or checkpoint SHA-256 (or a beginning), figure, or a figure's file")
       ->required();
   add_common_options(*command, context, true);
-  command->footer("Examples:\n  shearcell show 3f9a\n  shearcell show S2");
+  command->footer(
+      "Of a figure: its files, manifest lines, runs, seeds, attempts, builds, hosts and the\n"
+      "SHA-256 of every checkpoint in it. Of a file (CSV, SVG or lineage): whether it is what the\n"
+      "store recorded, and whether every checkpoint behind it still is; exit code 4 when not.\n"
+      "Examples:\n  shearcell show 3f9a\n  shearcell show S2\n  shearcell show figures/S2a.csv");
   command->callback([name, &context] { show(*name, context); });
 }
 

@@ -2,16 +2,17 @@
 #include "experiments/report/regenerate.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <fstream>
-#include <mutex>
 #include <set>
-#include <thread>
+#include <span>
 
 #include "analysis/error.hpp"
-#include "analysis/measures.hpp"
 #include "analysis/plot.hpp"
+#include "experiments/report/derive.hpp"
+#include "experiments/report/figure_lineage.hpp"
+#include "experiments/runner/host.hpp"
+#include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/sha256.hpp"
 
@@ -80,57 +81,31 @@ std::vector<Input> inputs_of(const Store& store, std::string_view figure,
   return inputs;
 }
 
-// Measures every checkpoint, several at a time; those that cannot be read stay empty.
-class Measuring {
- public:
-  Measuring(const Store& store, const std::vector<Input>& inputs, const RegenerateOptions& options)
-      : store_(store), options_(options) {
-    for (const Input& input : inputs) {
-      for (const CheckpointRecord& record : input.checkpoints) work_.push_back(&record);
-    }
-    measured_.resize(work_.size());
+// Measures of the checkpoints of all inputs, one after the other; empty where one cannot be read.
+std::vector<std::optional<Measures>> measure(const Store& store, const std::vector<Input>& inputs,
+                                             const RegenerateOptions& options,
+                                             RegeneratedFigure& result) {
+  std::vector<CheckpointRecord> records;
+  for (const Input& input : inputs) {
+    records.insert(records.end(), input.checkpoints.begin(), input.checkpoints.end());
   }
-
-  std::vector<std::optional<Measures>> run(std::vector<std::string>& damage) {
-    std::vector<std::thread> threads;
-    for (std::size_t w = 0; w < std::max<std::size_t>(1, options_.workers); ++w) {
-      threads.emplace_back([this] { measure_some(); });
+  Derived derived = derive(store, records, std::span(&scalar_measures(), 1),
+                           {options.workers, options.fresh, options.report});
+  std::vector<std::optional<Measures>> measured;
+  try {
+    for (const auto& results : derived.results) {
+      measured.push_back(results ? std::optional(read_measures(results->front())) : std::nullopt);
     }
-    for (std::thread& thread : threads) thread.join();
-    if (error_) std::rethrow_exception(error_);
-    std::sort(damage_.begin(), damage_.end());
-    damage = damage_;
-    return std::move(measured_);
+  } catch (const AnalysisError& problem) {
+    throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
+                        problem.what() + "); delete it, or measure again with --fresh");
   }
-
- private:
-  void measure_some() {
-    for (std::size_t i = next_++; i < work_.size(); i = next_++) {
-      try {
-        measured_[i] = measure(store_.load_checkpoint(*work_[i]));
-      } catch (const StoreDamaged& error) {
-        const std::lock_guard lock(mutex_);
-        damage_.push_back(error.what());
-      } catch (...) {
-        const std::lock_guard lock(mutex_);
-        if (!error_) error_ = std::current_exception();
-        return;
-      }
-      const std::lock_guard lock(mutex_);
-      if (options_.report) options_.report(++done_, work_.size());
-    }
-  }
-
-  const Store& store_;
-  const RegenerateOptions& options_;
-  std::vector<const CheckpointRecord*> work_;
-  std::vector<std::optional<Measures>> measured_;
-  std::atomic<std::size_t> next_{0};
-  std::mutex mutex_;  // guards what follows
-  std::size_t done_ = 0;
-  std::vector<std::string> damage_;
-  std::exception_ptr error_;
-};
+  result.measured = derived.computed;
+  result.damage = std::move(derived.damage);
+  result.changed = std::move(derived.changed);
+  result.cache_trouble = std::move(derived.trouble);
+  return measured;
+}
 
 std::vector<FigureRun> figure_runs(const std::vector<Input>& inputs,
                                    const std::vector<std::optional<Measures>>& measured) {
@@ -149,12 +124,6 @@ std::vector<FigureRun> figure_runs(const std::vector<Input>& inputs,
   return runs;
 }
 
-std::string file_sha256(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  return sha256_hex(bytes);
-}
-
 // What the figure came from, in terms that do not change when it is made again.
 nlohmann::json lineage(const RegeneratedFigure& result, const std::vector<Input>& inputs,
                        const std::vector<FigureRun>& runs) {
@@ -171,8 +140,22 @@ nlohmann::json lineage(const RegeneratedFigure& result, const std::vector<Input>
                     {"checkpoints", checkpoints}});
   }
   nlohmann::json outputs = nlohmann::json::object();
-  for (const auto& file : result.files) outputs[file.filename().string()] = file_sha256(file);
-  return {{"figure", result.name}, {"scale", result.scale}, {"inputs", list}, {"outputs", outputs}};
+  for (const auto& file : result.files)
+    outputs[file.filename().string()] = sha256_hex_of_file(file);
+  return {{"figure", result.name},
+          {"scale", result.scale},
+          {"analysis_version", analysis_version},
+          {"inputs", list},
+          {"outputs", outputs}};
+}
+
+// Unless the newest record of the figure says the same, whoever made it.
+void record(Store& store, const std::string& name, nlohmann::json facts) {
+  for (const FigureRecord& known : store.figures()) {
+    if (known.name == name && lineage_text(known.provenance) == lineage_text(facts)) return;
+  }
+  facts["made"] = host_facts();
+  store.record_figure(name, facts);
 }
 
 }  // namespace
@@ -193,7 +176,7 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
   RegeneratedFigure result;
   result.name = figure.name;
   const std::vector<Input> inputs = inputs_of(store, figure.name, options.scale, result.scale);
-  const auto measured = Measuring(store, inputs, options).run(result.damage);
+  const auto measured = measure(store, inputs, options, result);
   const std::vector<FigureRun> runs = figure_runs(inputs, measured);
   result.runs = runs.size();
   for (const FigureRun& run : runs) result.checkpoints += run.checkpoints.size();
@@ -210,15 +193,11 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
   const nlohmann::json facts = lineage(result, inputs, runs);
   const auto path = options.folder / (result.name + ".lineage.json");
   std::ofstream file(path);
-  file << facts.dump(1) << '\n';
+  file << lineage_text(facts);
   if (!file.flush()) throw std::runtime_error(path.string() + ": cannot write the lineage");
   result.files.push_back(path);
 
-  bool recorded = false;
-  for (const FigureRecord& known : store.figures()) {
-    recorded = recorded || (known.name == result.name && known.provenance == facts);
-  }
-  if (!recorded) store.record_figure(result.name, facts);
+  record(store, result.name, facts);
   return result;
 }
 

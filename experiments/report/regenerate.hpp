@@ -18,6 +18,7 @@ struct RegenerateOptions {
   std::filesystem::path folder;      ///< made when missing
   std::optional<std::string> scale;  ///< default: the one that was declared last
   std::size_t workers = 1;
+  bool fresh = false;  ///< measure every checkpoint again, whatever the store keeps
   std::function<void(std::size_t done, std::size_t total)> report;  ///< may be empty
 };
 
@@ -26,8 +27,11 @@ struct RegeneratedFigure {
   std::string scale;
   std::size_t runs = 0;
   std::size_t checkpoints = 0;
+  std::size_t measured = 0;                  ///< checkpoints that were analysed for it now
   std::vector<std::filesystem::path> files;  ///< CSV and SVG of each panel, then the lineage
   std::vector<std::string> damage;           ///< checkpoints that could not be read, one line each
+  std::vector<std::string> changed;          ///< checkpoints whose kept measures were others
+  std::string cache_trouble;                 ///< why measures cannot be kept; "" when they can
   std::string plot_error;                    ///< why there is no SVG; empty when there is
 };
 
@@ -35,9 +39,10 @@ struct RegeneratedFigure {
 std::vector<std::string> figures_of_store(const Store& store);
 
 /// Writes FOLDER/PANEL.csv and .svg for each panel and FOLDER/NAME.lineage.json, and records a
-/// FigureGenerated event unless the newest one says the same. The same checkpoints give the same
-/// bytes. A checkpoint that cannot be read is left out and named.
-/// Throws NotFound when the store holds no run for the figure.
+/// FigureGenerated event, with the host and build that made it, unless the newest one says the
+/// same. The same checkpoints give the same bytes. A checkpoint that cannot be read is left out and
+/// named; one whose measures the store keeps is not read. Throws NotFound when the store holds no
+/// run for the figure.
 RegeneratedFigure regenerate(Store& store, const Figure& figure, const RegenerateOptions& options);
 
 }  // namespace shearcell

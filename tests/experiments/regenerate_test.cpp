@@ -76,7 +76,9 @@ TEST_F(Regenerate, TheLineageNamesInputsAndOutputs) {
   make("figures");
   const auto files = contents("figures");
   const auto lineage = nlohmann::json::parse(files.at("S2.lineage.json"));
-  EXPECT_EQ(lineage, store_.figures().at(0).provenance);
+  nlohmann::json recorded_facts = store_.figures().at(0).provenance;
+  EXPECT_EQ(recorded_facts.erase("made"), 1U) << "who made it may change, and the file must not";
+  EXPECT_EQ(lineage, recorded_facts);
   ASSERT_EQ(lineage.at("inputs").size(), 2U);
   for (const auto& input : lineage.at("inputs")) {
     std::vector<std::string> recorded;

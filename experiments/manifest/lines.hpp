@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which lines of a manifest make a run what it is.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace shearcell {
+
+struct ManifestLine {
+  std::string key;   ///< "experiment", "scales.desk", "sweep.grid.fluid", "seeds"
+  int line = 0;      ///< counted from 1
+  std::string text;  ///< the line, without surrounding blanks, fit for a message
+};
+
+/// Where a manifest states its experiment, the scale, the value of each swept key in `labels`, and
+/// the seeds that the scale uses. Empty when the text is no manifest that this program reads.
+std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
+                                         const nlohmann::json& labels);
+
+}  // namespace shearcell

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance/derived.hpp"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "provenance/errors.hpp"
+#include "provenance/sha256.hpp"
+
+namespace shearcell {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "shcd" in ASCII: tells this file from any other SQLite file.
+constexpr std::int64_t kApplicationId = 0x73686364;
+constexpr std::int64_t kLayout = 1;
+
+constexpr const char* kTable = R"sql(
+CREATE TABLE derived(
+  checkpoint TEXT NOT NULL,
+  measure TEXT NOT NULL,
+  version INTEGER NOT NULL,
+  sha256 TEXT NOT NULL,
+  content BLOB NOT NULL,
+  PRIMARY KEY (checkpoint, measure, version)
+) STRICT, WITHOUT ROWID;
+)sql";
+
+/// Over key and content, each field as a netstring, so that an object cannot stand for another.
+std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
+  Sha256 sha;
+  const auto field = [&sha](std::string_view text) {
+    sha.add(fmt::format("{}:", text.size())).add(text).add(",");
+  };
+  field("shearcell derived 1");
+  field(key.checkpoint);
+  field(key.measure);
+  field(fmt::format("{}", key.version));
+  return sha.add(content).hex();
+}
+
+}  // namespace
+
+DerivedCache::DerivedCache(const fs::path& store_folder) : file_(store_folder / kFile) {
+  try {
+    open();
+  } catch (const StoreDamaged&) {
+    start_over();
+  } catch (const std::exception& problem) {
+    give_up(problem.what());
+  }
+}
+
+void DerivedCache::open() {
+  const auto type = fs::symlink_status(file_).type();
+  if (type != fs::file_type::regular && type != fs::file_type::not_found) {
+    return give_up(file_.string() +
+                   ": a folder, link or device stands where measures are kept; remove it");
+  }
+  database_.emplace(file_, sqlite::Open::create);
+  sqlite::Database& database = *database_;
+  // What a power cut may spoil here is found by its hash and computed again: no syncs.
+  database.execute("PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA synchronous=OFF;");
+  if (database.integer("PRAGMA page_count") == 0) {
+    sqlite::WriteTransaction lock(database);
+    if (database.integer("SELECT count(*) FROM sqlite_schema") == 0) {
+      database.execute(kTable);
+      database.execute(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};",
+                                   kApplicationId, kLayout));
+    }
+    lock.commit();
+  }
+  if (database.integer("PRAGMA application_id") != kApplicationId) {
+    return give_up(file_.string() + ": this database belongs to another program; remove it");
+  }
+  if (database.integer("PRAGMA user_version") != kLayout) {
+    throw StoreDamaged(file_.string() + ": another layout");
+  }
+}
+
+void DerivedCache::start_over() {
+  database_.reset();
+  std::error_code ignored;
+  // A journal that outlives its database would be played back into the new one.
+  fs::remove(file_.string() + "-journal", ignored);
+  fs::remove(file_, ignored);
+  try {
+    open();
+  } catch (const std::exception& problem) {
+    give_up(problem.what());
+  }
+}
+
+void DerivedCache::give_up(const std::string& why) {
+  database_.reset();
+  trouble_ = why;
+}
+
+template <typename Work>
+void DerivedCache::attempt(Work&& work) {
+  for (const bool first : {true, false}) {
+    if (!database_) return;
+    try {
+      return work(*database_);
+    } catch (const StoreDamaged& damage) {
+      if (!first) return give_up(damage.what());
+      start_over();
+    } catch (const std::exception& problem) {
+      return give_up(problem.what());
+    }
+  }
+}
+
+std::vector<std::optional<std::vector<std::byte>>> DerivedCache::get(
+    std::span<const DerivedKey> keys) {
+  std::vector<std::optional<std::vector<std::byte>>> found;
+  attempt([&](sqlite::Database& database) {
+    found.assign(keys.size(), std::nullopt);
+    const sqlite::ReadTransaction snapshot(database);
+    sqlite::Statement query(database,
+                            "SELECT content, sha256 FROM derived WHERE checkpoint = ? AND "
+                            "measure = ? AND version = ?");
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      query.bind(1, keys[k].checkpoint).bind(2, keys[k].measure).bind(3, keys[k].version);
+      if (query.step()) {
+        std::vector<std::byte> content = query.blob(0);
+        if (digest(keys[k], content) == query.text(1)) found[k] = std::move(content);
+      }
+      query.reset();
+    }
+  });
+  found.resize(keys.size());
+  return found;
+}
+
+void DerivedCache::put(std::span<const DerivedObject> objects) {
+  attempt([&](sqlite::Database& database) {
+    sqlite::WriteTransaction lock(database);
+    sqlite::Statement insert(database, "INSERT OR REPLACE INTO derived VALUES(?,?,?,?,?)");
+    for (const DerivedObject& object : objects) {
+      insert.bind(1, object.key.checkpoint).bind(2, object.key.measure);
+      insert.bind(3, object.key.version).bind(4, digest(object.key, object.content));
+      insert.bind(5, object.content).run();
+    }
+    lock.commit();
+  });
+}
+
+}  // namespace shearcell

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance/ro_crate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "provenance/sha256.hpp"
+
+namespace shearcell {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kCrateSpecification = "https://w3id.org/ro/crate/1.1";
+constexpr const char* kProfile = "https://w3id.org/ro/wfrun/process/0.5";
+
+json reference(const std::string& id) {
+  return {{"@id", id}};
+}
+
+std::string text_at(const json& object, const char* key) {
+  if (!object.is_object() || !object.contains(key)) return "unknown";
+  return object[key].is_string() ? object[key].get<std::string>() : object[key].dump();
+}
+
+json part(const json& object, const char* key) {
+  return object.is_object() ? object.value(key, json::object()) : json::object();
+}
+
+/// The entities of the crate, each id once.
+class Graph {
+ public:
+  /// Returns a reference to the entity.
+  json add(json entity) {
+    const std::string id = entity.at("@id").get<std::string>();
+    if (known_.try_emplace(id, entities_.size()).second) entities_.push_back(std::move(entity));
+    return reference(id);
+  }
+  json take() { return std::move(entities_); }
+
+ private:
+  json entities_ = json::array();
+  std::map<std::string, std::size_t> known_;
+};
+
+json file_entity(const std::string& path, const std::string& name, const std::string& format,
+                 std::uint64_t size, const std::string& sha256) {
+  return {{"@id", path},
+          {"@type", "File"},
+          {"name", name},
+          {"encodingFormat", format},
+          {"contentSize", std::to_string(size)},  // RO-Crate asks for text, in bytes
+          {"sha256", sha256}};
+}
+
+json add_manifest(Graph& graph, const ManifestText& manifest) {
+  // Only the last part of the path: where it lay on somebody's machine is nobody's business.
+  const std::string name = std::filesystem::path(manifest.path).filename().string();
+  json entity = file_entity(crate_path_of_manifest(manifest.sha256), "Manifest " + name,
+                            "application/yaml", manifest.text.size(), manifest.sha256);
+  entity["description"] = "The experiment as it was declared";
+  entity["dateCreated"] = manifest.registered_at;
+  return graph.add(std::move(entity));
+}
+
+json add_checkpoint(Graph& graph, const CheckpointHistory& checkpoint) {
+  const CheckpointRecord& c = checkpoint.record;
+  const std::string name = fmt::format("State of run {:.12} at cycle {:g}", c.run, c.cycle);
+  const std::string identifier = "urn:x-shearcell:state:" + c.state_hash;
+  if (checkpoint.rejected || checkpoint.pruned) {
+    return graph.add(
+        {{"@id", "#checkpoint-" + c.sha256},
+         {"@type", "CreativeWork"},
+         {"name", name},
+         {"description", checkpoint.pruned ? "Not in this crate: its bytes were given up on purpose"
+                                           : "Not in this crate: it was rejected as damaged"},
+         {"dateCreated", checkpoint.recorded_at},
+         {"identifier", identifier},
+         {"contentSize", std::to_string(c.size)},
+         {"sha256", c.sha256}});
+  }
+  json entity =
+      file_entity(crate_path_of_checkpoint(c.sha256), name, "application/x-hdf5", c.size, c.sha256);
+  entity["description"] = fmt::format(
+      "H5MD 1.1 file with the exact state after {} time steps, {:.9g} s", c.step, c.time_s);
+  entity["dateCreated"] = checkpoint.recorded_at;
+  entity["identifier"] = identifier;
+  return graph.add(std::move(entity));
+}
+
+/// The program as it was built for this attempt.
+json add_software(Graph& graph, const json& host) {
+  const json build = part(host, "build"), libraries = part(host, "libraries");
+  json needs = json::array();
+  for (const auto& [name, version] : libraries.items()) {
+    needs.push_back(name + " " + text_at(libraries, name.c_str()));
+  }
+  const std::string digest = sha256_hex(build.dump() + libraries.dump());
+  return graph.add(
+      {{"@id", "#shearcell-" + digest.substr(0, 16)},
+       {"@type", "SoftwareApplication"},
+       {"name", "shearcell"},
+       {"softwareVersion",
+        fmt::format("{} ({})", text_at(build, "version"), text_at(build, "commit"))},
+       {"softwareRequirements", needs},
+       {"description",
+        fmt::format("Discrete element simulations of cyclically sheared grains; built by {} as "
+                    "{} with {}",
+                    text_at(build, "compiler"), text_at(build, "type"), text_at(build, "flags"))}});
+}
+
+json add_host(Graph& graph, const json& host) {
+  json machine = json::object();
+  for (const char* key : {"host", "system", "cpu", "cores", "simd"})
+    machine[key] = text_at(host, key);
+  return graph.add({{"@id", "#host-" + sha256_hex(machine.dump()).substr(0, 16)},
+                    {"@type", "Place"},
+                    {"name", text_at(host, "host")},
+                    {"description", fmt::format("{}; {}, {} cores, {}", text_at(host, "system"),
+                                                text_at(host, "cpu"), text_at(host, "cores"),
+                                                text_at(host, "simd"))}});
+}
+
+/// Seed and resolved parameters of a run, as what its attempts were given.
+json add_parameters(Graph& graph, const RunRecord& run) {
+  json given = json::array();
+  const auto add = [&](const std::string& name, const json& value) {
+    given.push_back(graph.add({{"@id", fmt::format("#parameter-{}-{}", run.id, name)},
+                               {"@type", "PropertyValue"},
+                               {"name", name},
+                               {"value", value.is_primitive() ? value : json(value.dump())}}));
+  };
+  for (const auto& [key, value] : run.resolved.items()) {
+    if (key == "parent") continue;  // its checkpoint is an object of its own
+    if (!value.is_object()) add(key, value);
+    if (!value.is_object()) continue;
+    for (const auto& [name, inner] : value.items()) add(name, inner);
+  }
+  return given;
+}
+
+json status_of(const Attempt& attempt) {
+  switch (attempt.outcome) {
+    case AttemptOutcome::completed:
+      return reference("http://schema.org/CompletedActionStatus");
+    case AttemptOutcome::running:
+      return reference("http://schema.org/ActiveActionStatus");
+    default:
+      return reference("http://schema.org/FailedActionStatus");
+  }
+}
+
+std::string error_of(const Attempt& attempt) {
+  if (attempt.outcome == AttemptOutcome::lost) {
+    return "ended without a record (a kill or a power cut); a later attempt went on";
+  }
+  return attempt.why;
+}
+
+/// What every attempt of a run is given.
+struct Given {
+  json manifests = json::array();
+  json parameters = json::array();
+};
+
+json add_attempt(Graph& graph, const CrateFacts& facts, std::size_t stage_number, std::size_t a,
+                 const Given& given) {
+  const RunLineage& stage = facts.stages[stage_number];
+  const Attempt& attempt = stage.attempts[a];
+  json objects = given.manifests;
+  for (const RunLineage& source : facts.stages) {
+    if (source.run.id != attempt.from_run) continue;
+    if (const auto* from = source.find(attempt.from_checkpoint)) {
+      objects.push_back(add_checkpoint(graph, *from));
+    }
+  }
+  objects.insert(objects.end(), given.parameters.begin(), given.parameters.end());
+  json results = json::array();
+  for (const std::string& sha256 : attempt.checkpoints) {
+    results.push_back(add_checkpoint(graph, *stage.find(sha256)));
+  }
+  json action = {
+      {"@id", fmt::format("#attempt-{}-{}", stage.run.id, a + 1)},
+      {"@type", "CreateAction"},
+      {"name", fmt::format("{} of run {:.12}, attempt {}", stage.run.kind, stage.run.id, a + 1)},
+      {"instrument", add_software(graph, attempt.host)},
+      {"location", add_host(graph, attempt.host)},
+      {"startTime", attempt.started_at},
+      {"actionStatus", status_of(attempt)},
+      {"object", objects},
+      {"result", results}};
+  if (!attempt.ended_at.empty()) action["endTime"] = attempt.ended_at;
+  if (const std::string error = error_of(attempt); !error.empty()) action["error"] = error;
+  return graph.add(std::move(action));
+}
+
+json add_licence(Graph& graph, const std::string& licence) {
+  if (!licence.empty()) {
+    return graph.add({{"@id", licence},
+                      {"@type", "CreativeWork"},
+                      {"name", licence},
+                      {"description", "The licence of the data in this crate"}});
+  }
+  return graph.add({{"@id", "#licence"},
+                    {"@type", "CreativeWork"},
+                    {"name", "No licence was chosen"},
+                    {"description",
+                     "Who exported these data chose no licence; ask them before you "
+                     "use the data."}});
+}
+
+std::string title_of(const RunRecord& run) {
+  if (run.memberships.empty()) return fmt::format("{} {:.12}", run.kind, run.id);
+  const Membership& member = run.memberships.front();
+  return fmt::format("{} {}, seed {}: {} of {} grains (run {:.12})", member.experiment,
+                     member.variant, member.seed, run.kind, run.grains, run.id);
+}
+
+std::string newest_moment(const CrateFacts& facts) {
+  std::string newest;
+  for (const RunLineage& stage : facts.stages) newest = std::max(newest, stage.run.updated_at);
+  return newest;
+}
+
+json parts_of(const json& entities) {
+  json parts = json::array();
+  for (const json& entity : entities) {
+    if (entity.at("@type") == "File") parts.push_back(reference(entity.at("@id")));
+  }
+  return parts;
+}
+
+}  // namespace
+
+CrateFacts crate_facts(const Store& store, const std::string& run, std::string licence) {
+  CrateFacts facts{run_lineage(store, run), {}, std::move(licence)};
+  for (const RunLineage& stage : facts.stages) {
+    for (const Membership& member : stage.run.memberships) {
+      const bool known =
+          std::any_of(facts.manifests.begin(), facts.manifests.end(),
+                      [&](const ManifestText& m) { return m.sha256 == member.manifest; });
+      if (known) continue;
+      if (auto manifest = find_manifest(store, member.manifest)) {
+        facts.manifests.push_back(std::move(*manifest));
+      }
+    }
+  }
+  return facts;
+}
+
+std::string crate_path_of_checkpoint(const std::string& sha256) {
+  return "checkpoints/" + sha256 + ".h5";
+}
+
+std::string crate_path_of_manifest(const std::string& sha256) {
+  return "manifests/" + sha256 + ".yaml";
+}
+
+std::string crate_identifier(const std::string& run) {
+  return "urn:x-shearcell:run:" + run;
+}
+
+json ro_crate_metadata(const CrateFacts& facts, const std::string& prov) {
+  Graph graph;
+  json actions = json::array();
+  for (std::size_t s = 0; s < facts.stages.size(); ++s) {
+    const RunLineage& stage = facts.stages[s];
+    Given given;
+    for (const ManifestText& manifest : facts.manifests) {
+      const auto& members = stage.run.memberships;
+      const bool asks = std::any_of(members.begin(), members.end(), [&](const Membership& m) {
+        return m.manifest == manifest.sha256;
+      });
+      if (asks) given.manifests.push_back(add_manifest(graph, manifest));
+    }
+    given.parameters = add_parameters(graph, stage.run);
+    for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
+      actions.push_back(add_attempt(graph, facts, s, a, given));
+    }
+  }
+  graph.add(file_entity(kCrateProv, "The same provenance as W3C PROV-JSON", "application/json",
+                        prov.size(), sha256_hex(prov)));
+  const json licence = add_licence(graph, facts.licence);
+  graph.add({{"@id", kProfile},
+             {"@type", "CreativeWork"},
+             {"name", "Process Run Crate"},
+             {"version", "0.5"}});
+  const json entities = graph.take();
+
+  const RunRecord& run = facts.stages.back().run;
+  json all = json::array();
+  all.push_back({{"@id", kCrateMetadata},
+                 {"@type", "CreativeWork"},
+                 {"conformsTo", reference(kCrateSpecification)},
+                 {"about", reference("./")}});
+  all.push_back(
+      {{"@id", "./"},
+       {"@type", "Dataset"},
+       {"name", title_of(run)},
+       {"description",
+        fmt::format("Checkpoints of run {} and of the stages before it, with the program, the "
+                    "machines, the manifests and the parameters that made them",
+                    run.id)},
+       {"identifier", crate_identifier(run.id)},
+       {"datePublished", newest_moment(facts)},
+       {"license", licence},
+       {"conformsTo", json::array({reference(kProfile)})},
+       {"hasPart", parts_of(entities)},
+       {"mentions", actions}});
+  all.insert(all.end(), entities.begin(), entities.end());
+  return {{"@context", json::array({kCrateSpecification + std::string("/context"),
+                                    "https://w3id.org/ro/terms/workflow-run/context"})},
+          {"@graph", all}};
+}
+
+}  // namespace shearcell

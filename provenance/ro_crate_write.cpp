@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+
+#include "provenance/prov_json.hpp"
+#include "provenance/ro_crate.hpp"
+#include "provenance/sha256.hpp"
+
+namespace shearcell {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Replaces a file whole: under a temporary name first, so that a link is replaced and not
+/// followed.
+void write_file(const fs::path& path, std::string_view bytes) {
+  const fs::path temporary = path.string() + fmt::format(".tmp-{}", getpid());
+  fs::remove(temporary);
+  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw std::runtime_error(path.string() + ": cannot be written; is the disk full?");
+  }
+  fs::rename(temporary, path);
+}
+
+/// Recorded text may hold bytes that are not UTF-8, and JSON may not.
+std::string dump(const json& value) {
+  return value.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
+}
+
+bool is_crate_of(const fs::path& folder, const std::string& run) {
+  const fs::path metadata = folder / kCrateMetadata;
+  if (!fs::is_regular_file(fs::symlink_status(metadata))) return false;
+  std::ifstream in(metadata, std::ios::binary);
+  const json crate = json::parse(in, nullptr, false);
+  if (!crate.is_object() || !crate.contains("@graph") || !crate["@graph"].is_array()) return false;
+  for (const json& entity : crate["@graph"]) {
+    if (entity.is_object() && entity.value("@id", json()) == "./" &&
+        entity.value("identifier", json()) == crate_identifier(run)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// A folder below the crate; a link to elsewhere is refused.
+fs::path subfolder(const fs::path& crate, const char* name) {
+  fs::path path = crate / name;
+  const fs::file_status status = fs::symlink_status(path);
+  if (fs::exists(status) && !fs::is_directory(status)) {
+    throw std::invalid_argument(
+        path.string() + ": a folder should stand here, and a file or a link does; remove it");
+  }
+  fs::create_directory(path);
+  return path;
+}
+
+std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const fs::path& folder) {
+  const ObjectStore objects(store.folder());
+  std::vector<std::string> written;
+  subfolder(folder, "checkpoints");
+  subfolder(folder, "manifests");
+  std::set<std::string> done;
+  for (const RunLineage& stage : facts.stages) {
+    for (const CheckpointHistory& c : stage.checkpoints) {
+      if (c.rejected || c.pruned || !done.insert(c.record.sha256).second) continue;
+      const std::vector<std::byte> bytes = objects.get(c.record.sha256, c.record.size);
+      const std::string path = crate_path_of_checkpoint(c.record.sha256);
+      write_file(folder / path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+      written.push_back(path);
+    }
+  }
+  for (const ManifestText& manifest : facts.manifests) {
+    written.push_back(crate_path_of_manifest(manifest.sha256));
+    write_file(folder / written.back(), manifest.text);
+  }
+  const std::string prov = dump(prov_json(facts));
+  write_file(folder / kCrateProv, prov);
+  written.emplace_back(kCrateProv);
+  // Last: what it describes is there.
+  write_file(folder / kCrateMetadata, dump(ro_crate_metadata(facts, prov)));
+  written.emplace_back(kCrateMetadata);
+  return written;
+}
+
+/// Beside the folder, so that it can be renamed to it.
+fs::path temporary_beside(const fs::path& folder) {
+  const fs::path parent = folder.parent_path();
+  if (!parent.empty()) fs::create_directories(parent);
+  return parent / fmt::format(".{}.tmp-{}", folder.filename().string(), getpid());
+}
+
+}  // namespace
+
+std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
+                                        const fs::path& where, const std::string& licence) {
+  const CrateFacts facts = crate_facts(store, run, licence);
+  // "crate/" and "crate" are the same folder; only the second has a name to put a dot before.
+  const fs::path folder = where.has_filename() ? where : where.parent_path();
+  const fs::file_status status = fs::symlink_status(folder);
+  if (fs::exists(status) && !fs::is_directory(status)) {
+    throw std::invalid_argument(folder.string() +
+                                ": a file or a link stands there; name another folder");
+  }
+  if (fs::exists(status) && !fs::is_empty(folder)) {
+    if (!is_crate_of(folder, run)) {
+      throw std::invalid_argument(
+          folder.string() +
+          ": the folder holds something that is no export of this run; name another one");
+    }
+    return fill(store, facts, folder);
+  }
+  const fs::path temporary = temporary_beside(folder);
+  if (!fs::create_directory(temporary)) {
+    throw std::invalid_argument(temporary.string() + ": left by another export; remove it");
+  }
+  try {
+    std::vector<std::string> written = fill(store, facts, temporary);
+    fs::rename(temporary, folder);
+    return written;
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(temporary, ignored);
+    throw;
+  }
+}
+
+}  // namespace shearcell

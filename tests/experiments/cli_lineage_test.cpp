@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the program tells of published figures, and the crates that it exports.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <sstream>
+
+#include "tests/experiments/program.hpp"
+
+namespace shearcell::test {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class CommandLineLineage : public ProgramTest {
+ protected:
+  void SetUp() override {
+    const std::string manifest = write("m.yaml", tiny_manifest("", kBothFluids));
+    ASSERT_EQ(run({"run", manifest, "--cycles", "1", "-q"}).code, 0);
+    ASSERT_EQ(run({"figures", "S2", "--out", "out"}).code, 0);
+  }
+};
+
+TEST_F(CommandLineLineage, ShowsAFigureWithin80Columns) {
+  const Outcome shown = run({"show", "S2"});
+  ASSERT_EQ(shown.code, 0) << shown.err;
+  std::printf("%s", shown.out.c_str());
+  std::istringstream lines(shown.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
+  const nlohmann::json all = json({"show", "S2", "--json"});
+  EXPECT_EQ(all.at("inputs").size(), 2U);
+  for (const auto& input : all.at("inputs")) {
+    EXPECT_TRUE(contains(shown.out, input.at("run")));
+    for (const auto& c : input.at("checkpoints")) EXPECT_TRUE(contains(shown.out, c.at("sha256")));
+  }
+  EXPECT_TRUE(contains(shown.out, "m.yaml"));
+  EXPECT_TRUE(contains(shown.out, "experiment: tiny"));
+  EXPECT_TRUE(contains(shown.out, all.at("made").at("build").at("commit")));
+}
+
+TEST_F(CommandLineLineage, JudgesAPublishedFile) {
+  const Outcome sound = run({"show", "out/S2a.csv"});
+  EXPECT_EQ(sound.code, 0) << sound.err;
+  EXPECT_TRUE(contains(sound.out, "matches")) << sound.out;
+  EXPECT_TRUE(contains(sound.out, "4 checkpoints, all present and right")) << sound.out;
+
+  const nlohmann::json all = json({"show", "out/S2a.csv", "--json"});
+  EXPECT_EQ(all.at("check").at("verdict"), "matches");
+  const std::string input = all.at("inputs").at(0).at("checkpoints").at(0).at("file");
+  std::filesystem::remove(path("shearcell-store/" + input));
+  const Outcome missing = run({"show", "out/S2a.csv"});
+  EXPECT_EQ(missing.code, 4);
+  EXPECT_TRUE(contains(missing.out, "1 of them")) << missing.out;
+  EXPECT_TRUE(contains(missing.out, "missing")) << missing.out;
+
+  write("out/S2b.csv", read_bytes(path("out/S2b.csv")) + "x");
+  const Outcome changed = run({"show", "out/S2b.csv"});
+  EXPECT_EQ(changed.code, 4);
+  EXPECT_TRUE(contains(changed.out, "CHANGED")) << changed.out;
+
+  write("other.csv", "a,b\n");
+  const Outcome unknown = run({"show", "other.csv"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_TRUE(contains(unknown.err, "unknown to this store")) << unknown.err;
+  EXPECT_EQ(run({"show", "missing.csv"}).code, 2);
+}
+
+TEST_F(CommandLineLineage, ExportsACrateAndOverwritesNothing) {
+  const nlohmann::json status = json({"status", "--json"});
+  const std::string id = status.at("runs").back().at("id");
+  const Outcome exported =
+      run({"export", id.substr(0, 12), "--to", "ro-crate", "--out", "a/crate"});
+  EXPECT_EQ(exported.code, 0) << exported.err;
+  EXPECT_TRUE(std::filesystem::exists(path("a/crate/ro-crate-metadata.json")));
+  EXPECT_TRUE(std::filesystem::exists(path("a/crate/prov.json")));
+  const nlohmann::json again =
+      json({"export", id, "--to", "ro-crate", "--out", "a/crate/", "--json", "--license",
+            "https://creativecommons.org/licenses/by/4.0/"});
+  EXPECT_EQ(again.at("files").size(), 3U + 3U) << "a packing and two states; three that describe";
+  EXPECT_TRUE(contains(read_bytes(path("a/crate/ro-crate-metadata.json")),
+                       "creativecommons.org/licenses/by/4.0/"));
+
+  const auto before = listing();
+  for (const std::string out : {"a", "m.yaml", "shearcell-store", "."}) {
+    const Outcome refused = run({"export", id, "--to", "ro-crate", "--out", out});
+    EXPECT_EQ(refused.code, 2) << out;
+    EXPECT_TRUE(contains(refused.err, out)) << refused.err;
+  }
+  EXPECT_EQ(run({"export", id, "--to", "zip", "--out", "b"}).code, 2);
+  EXPECT_EQ(run({"export", id, "--to", "ro-crate", "--out", "b", "--license", "MIT"}).code, 2);
+  EXPECT_EQ(run({"export", "xyz", "--to", "ro-crate", "--out", "b"}).code, 2);
+  EXPECT_EQ(listing(), before);
+}
+
+}  // namespace
+}  // namespace shearcell::test

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is kept of derived objects comes back exactly or not at all, whatever happens to the file.
+#include "provenance/derived.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/provenance/samples.hpp"
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::byte> bytes(const std::string& text) {
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  return {first, first + text.size()};
+}
+
+class DerivedCacheTest : public testing::Test {
+ protected:
+  static DerivedKey key(int checkpoint, const std::string& measure = "scalars {}",
+                        std::uint64_t version = 1) {
+    return {test::run_id(checkpoint), measure, version};
+  }
+  std::optional<std::vector<std::byte>> get(const DerivedKey& wanted) {
+    DerivedCache cache(folder_.path());
+    return cache.get(std::span(&wanted, 1)).at(0);
+  }
+  void put(const DerivedKey& name, const std::string& content) {
+    DerivedCache cache(folder_.path());
+    const DerivedObject object{name, bytes(content)};
+    cache.put(std::span(&object, 1));
+    EXPECT_EQ(cache.trouble(), "");
+  }
+  void sql(const std::string& statement) {
+    sqlite::Database(file(), sqlite::Open::existing).execute(statement);
+  }
+  fs::path file() const { return folder_.path() / DerivedCache::kFile; }
+
+  test::Folder folder_;
+};
+
+TEST_F(DerivedCacheTest, GivesBackWhatWasKept) {
+  const std::string content("\0\xff CBOR \0", 9);
+  put(key(1), content);
+  EXPECT_EQ(get(key(1)), bytes(content));
+  put(key(1), "newer");
+  EXPECT_EQ(get(key(1)), bytes("newer"));
+  put(key(2), "");
+  EXPECT_EQ(get(key(2)), bytes(""));
+}
+
+TEST_F(DerivedCacheTest, EveryPartOfTheKeyCounts) {
+  put(key(1), "content");
+  EXPECT_EQ(get(key(2)), std::nullopt);
+  EXPECT_EQ(get(key(1, "scalars {\"q6\":1}")), std::nullopt);
+  EXPECT_EQ(get(key(1, "scalars {}", 2)), std::nullopt);
+}
+
+TEST_F(DerivedCacheTest, ADamagedOrMisplacedObjectIsNotGiven) {
+  put(key(1), "content");
+  put(key(2), "content");
+  sql("UPDATE derived SET content = x'00' WHERE checkpoint = '" + test::run_id(1) + "'");
+  EXPECT_EQ(get(key(1)), std::nullopt);
+  EXPECT_EQ(get(key(2)), bytes("content"));
+  // A sound object under the key of another.
+  sql("UPDATE derived SET checkpoint = '" + test::run_id(3) + "' WHERE checkpoint = '" +
+      test::run_id(2) + "'");
+  EXPECT_EQ(get(key(3)), std::nullopt);
+  put(key(1), "content");
+  EXPECT_EQ(get(key(1)), bytes("content"));
+}
+
+TEST_F(DerivedCacheTest, BeginsAnewWhereTheFileIsNoDatabase) {
+  put(key(1), "content");
+  const std::string sound = test::read_bytes(file());
+  for (const std::string& damaged : {std::string("no database at all, and long enough to be read"),
+                                     sound.substr(0, sound.size() / 2), std::string(8192, '\0'),
+                                     sound.substr(0, 100) + std::string(sound.size() - 100, 'x')}) {
+    test::write_bytes(file(), damaged);
+    EXPECT_EQ(get(key(1)), std::nullopt) << damaged.size() << " bytes";
+    put(key(1), "content");
+    EXPECT_EQ(get(key(1)), bytes("content")) << damaged.size() << " bytes";
+  }
+}
+
+TEST_F(DerivedCacheTest, NoFlippedByteGivesAnotherContent) {
+  put(key(1), "content");
+  const std::string sound = test::read_bytes(file());
+  int given = 0, lost = 0;
+  for (std::size_t at = 0; at < sound.size(); at += 37) {
+    std::string flipped = sound;
+    flipped[at] = static_cast<char>(flipped[at] ^ 0x10);
+    test::write_bytes(file(), flipped);
+    const auto content = get(key(1));
+    EXPECT_EQ(content.value_or(bytes("content")), bytes("content")) << "byte " << at;
+    ++(content ? given : lost);
+  }
+  std::printf("%d flipped bytes: %d times given right, %d times not given\n", given + lost, given,
+              lost);
+  EXPECT_GT(lost, 0);
+}
+
+TEST_F(DerivedCacheTest, MayBeDeletedWhileItIsUsed) {
+  DerivedCache cache(folder_.path());
+  fs::remove(file());
+  const DerivedObject object{key(1), bytes("content")};
+  cache.put(std::span(&object, 1));
+  put(key(2), "content");
+  EXPECT_EQ(get(key(2)), bytes("content"));
+}
+
+TEST_F(DerivedCacheTest, TouchesNoForeignFile) {
+  const std::string elsewhere = (folder_.path() / "elsewhere").string();
+  test::write_bytes(elsewhere, "mine");
+  fs::create_symlink(elsewhere, file());
+  {
+    DerivedCache cache(folder_.path());
+    EXPECT_NE(cache.trouble().find("link"), std::string::npos) << cache.trouble();
+    const DerivedObject object{key(1), bytes("content")};
+    cache.put(std::span(&object, 1));
+  }
+  EXPECT_EQ(test::read_bytes(elsewhere), "mine");
+  fs::remove(file());
+  sqlite::Database(file(), sqlite::Open::create)
+      .execute("PRAGMA application_id=7; CREATE TABLE mine(x); INSERT INTO mine VALUES(1);");
+  DerivedCache cache(folder_.path());
+  EXPECT_NE(cache.trouble().find("another program"), std::string::npos) << cache.trouble();
+  EXPECT_EQ(sqlite::Database(file(), sqlite::Open::existing).integer("SELECT x FROM mine"), 1);
+}
+
+TEST_F(DerivedCacheTest, SeveralMayKeepAtOnce) {
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([this, t] {
+      DerivedCache cache(folder_.path());  // a connection of its own, as another process has
+      for (int i = 0; i < 50; ++i) {
+        const DerivedObject object{key(i), bytes("content " + std::to_string(i))};
+        cache.put(std::span(&object, 1));
+      }
+      EXPECT_EQ(cache.trouble(), "") << t;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(get(key(i)), bytes("content " + std::to_string(i)));
+}
+
+}  // namespace
+}  // namespace shearcell

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The log tells of every checkpoint which attempt made it, with what, and from what.
+#include "provenance/lineage.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/provenance/lineage_samples.hpp"
+
+namespace shearcell {
+namespace {
+
+class Lineage : public testing::Test {
+ protected:
+  test::Folder folder_;
+  Store store_{folder_.path() / "store", Access::create};
+  test::SampleHistory history_{store_};
+};
+
+TEST_F(Lineage, AttemptsAreToldFromTheirStartToTheirEnd) {
+  const std::vector<RunLineage> stages = run_lineage(store_, history_.sheared);
+  ASSERT_EQ(stages.size(), 2U);
+  EXPECT_EQ(stages[0].run.id, history_.packing);
+  EXPECT_EQ(stages[1].run.id, history_.sheared);
+  const std::vector<Attempt>& attempts = stages[1].attempts;
+  ASSERT_EQ(attempts.size(), 4U);
+  EXPECT_EQ(attempts[0].outcome, AttemptOutcome::interrupted);
+  EXPECT_EQ(attempts[0].why, "stopped by a signal");
+  EXPECT_EQ(attempts[1].outcome, AttemptOutcome::lost);
+  EXPECT_EQ(attempts[1].ended_at, "") << "nobody saw it end";
+  EXPECT_EQ(attempts[2].outcome, AttemptOutcome::failed);
+  EXPECT_EQ(attempts[3].outcome, AttemptOutcome::completed);
+  for (const Attempt& attempt : attempts) {
+    EXPECT_FALSE(attempt.started_at.empty());
+    EXPECT_EQ(attempt.host["host"], "node7");
+  }
+  EXPECT_EQ(attempts[1].host["build"]["commit"], "aaaa");
+  EXPECT_EQ(attempts[3].host["build"]["commit"], "bbbb");
+  EXPECT_EQ(attempts[3].checkpoints.size(), 2U);
+}
+
+TEST_F(Lineage, TheFirstAttemptBeganWithThePackingAndLaterOnesWithTheirOwnState) {
+  const std::vector<RunLineage> stages = run_lineage(store_, history_.sheared);
+  const std::string packing = stages[0].checkpoints.at(0).record.sha256;
+  const std::vector<Attempt>& attempts = stages[1].attempts;
+  EXPECT_EQ(stages[0].attempts.at(0).from_checkpoint, "");
+  EXPECT_EQ(attempts[0].from_run, history_.packing);
+  EXPECT_EQ(attempts[0].from_checkpoint, packing);
+  EXPECT_EQ(attempts[1].from_run, history_.sheared);
+  EXPECT_EQ(attempts[1].from_checkpoint, attempts[0].checkpoints.at(0));
+  EXPECT_EQ(attempts[3].from_checkpoint, attempts[0].checkpoints.at(0)) << "not the rejected one";
+}
+
+TEST_F(Lineage, ARejectedCheckpointIsKnownAsSuchUntilItIsMadeAgain) {
+  const auto rejected = [&] {
+    return run_lineage(store_, history_.sheared).back().find(history_.rejected)->rejected;
+  };
+  EXPECT_TRUE(rejected());
+  RunDeclaration longer = test::sample_run(2, 9);
+  const RunRecord known = store_.run(history_.sheared);
+  longer.parent = known.parent;
+  longer.resolved = known.resolved;
+  store_.declare_run(longer);
+  store_.start_run(history_.sheared, {}, store_.checkpoints(history_.sheared).back().sha256);
+  EXPECT_EQ(test::SampleHistory::record(store_, history_.sheared, 45600), history_.rejected);
+  EXPECT_FALSE(rejected());
+  const RunLineage run = run_lineage(store_, history_.sheared).back();
+  EXPECT_EQ(run.find(history_.rejected)->attempt, 4U);
+  EXPECT_EQ(run.attempts.back().outcome, AttemptOutcome::running);
+  EXPECT_TRUE(run.attempts.back().host.empty()) << "none was recorded";
+}
+
+TEST_F(Lineage, AStartMayNameTheStateItBeganWith) {
+  const std::string packing = store_.checkpoints(history_.packing).at(0).sha256;
+  test::append_to_run(store_, history_.sheared,
+                      {"RunStarted", {{"attempt", 5}, {"parent_checkpoint", packing}}});
+  const Attempt named = run_lineage(store_, history_.sheared).back().attempts.back();
+  EXPECT_EQ(named.from_run, history_.packing);
+  EXPECT_EQ(named.from_checkpoint, packing);
+  // A payload that is not what it must be is damage and names its event.
+  test::append_to_run(store_, history_.sheared, {"CheckpointRecorded", {{"sha256", "../../x"}}});
+  const std::string message =
+      test::message_of<StoreDamaged>([this] { run_lineage(store_, history_.sheared); });
+  EXPECT_NE(message.find("event " + std::to_string(store_.head().seq)), std::string::npos)
+      << message;
+}
+
+TEST_F(Lineage, TheManifestIsFoundByItsHash) {
+  const auto manifest = find_manifest(store_, sha256_hex("manifest"));
+  ASSERT_TRUE(manifest.has_value());
+  EXPECT_EQ(manifest->text, "manifest");
+  EXPECT_FALSE(find_manifest(store_, sha256_hex("another")).has_value());
+  EXPECT_THROW(run_lineage(store_, test::run_id(99)), NotFound);
+}
+
+}  // namespace
+}  // namespace shearcell
