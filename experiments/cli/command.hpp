@@ -34,6 +34,10 @@ void add_status(CLI::App& app, Context& context);
 void add_log(CLI::App& app, Context& context);
 void add_show(CLI::App& app, Context& context);
 void add_verify(CLI::App& app, Context& context);
+void add_rebuild(CLI::App& app, Context& context);
+void add_prune(CLI::App& app, Context& context);
+void add_regenerate(CLI::App& app, Context& context);
+void add_merge(CLI::App& app, Context& context);
 void add_figures(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);
 

@@ -29,15 +29,17 @@ std::string known_figures() {
 
 void complain(const RegeneratedFigure& result) {
   for (const std::string& line : result.damage) fmt::print(stderr, "left out: {}\n", line);
+  for (const std::string& line : result.pruned) fmt::print(stderr, "left out: {}\n", line);
   if (!result.plot_error.empty()) fmt::print(stderr, "no plot: {}\n", result.plot_error);
 }
 
 nlohmann::json facts(const RegeneratedFigure& result) {
   nlohmann::json files = nlohmann::json::array();
   for (const auto& file : result.files) files.push_back(file.string());
-  return {{"figure", result.name}, {"scale", result.scale},
-          {"runs", result.runs},   {"checkpoints", result.checkpoints},
-          {"files", files},        {"damage", result.damage}};
+  return {{"figure", result.name},  {"scale", result.scale},
+          {"runs", result.runs},    {"checkpoints", result.checkpoints},
+          {"files", files},         {"damage", result.damage},
+          {"pruned", result.pruned}};
 }
 
 void figures(const FigureOptions& options, Context& context) {
@@ -65,7 +67,8 @@ void figures(const FigureOptions& options, Context& context) {
     const RegeneratedFigure result = regenerate(store, *find_figure(name), how);
     complain(result);
     if (!result.damage.empty()) context.exit_code = kStoreDamaged;
-    if (!result.plot_error.empty() && context.exit_code == kDone) context.exit_code = kOtherError;
+    const bool incomplete = !result.plot_error.empty() || !result.pruned.empty();
+    if (incomplete && context.exit_code == kDone) context.exit_code = kOtherError;
     list.push_back(facts(result));
     if (context.json) continue;
     fmt::print("{} ({} scale): {} runs, {} checkpoints\n", result.name,

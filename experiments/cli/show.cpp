@@ -21,6 +21,7 @@ nlohmann::json facts(const CheckpointRecord& c) {
           {"size", c.size},
           {"sha256", c.sha256},
           {"state_hash", c.state_hash},
+          {"state", name_of(c.state)},
           {"rejected", c.state == CheckpointState::rejected},
           {"observables", c.observables}};
 }
@@ -70,7 +71,7 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   for (const CheckpointRecord& c : checkpoints) {
     rows.push_back({fmt::format("{:g}", c.cycle), std::to_string(c.step), c.sha256.substr(0, 12),
                     c.state_hash.substr(0, 12), format_bytes(static_cast<double>(c.size)),
-                    c.state == CheckpointState::rejected ? "rejected" : ""});
+                    c.state == CheckpointState::recorded ? "" : name_of(c.state)});
   }
   print_table({"cycle", "step", "checkpoint", "state", "size", ""}, rows);
 }

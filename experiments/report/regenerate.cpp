@@ -73,7 +73,8 @@ std::vector<Input> inputs_of(const Store& store, std::string_view figure,
                               [&](const Input& i) { return i.membership.scale != scale; }),
                inputs.end());
   for (Input& input : inputs) {
-    for (const CheckpointRecord& record : store.checkpoints(input.run.id)) {
+    for (const CheckpointRecord& record : store.checkpoints(input.run.id, true)) {
+      if (record.state == CheckpointState::rejected) continue;
       if (record.cycle == std::floor(record.cycle)) input.checkpoints.push_back(record);
     }
   }
@@ -91,7 +92,7 @@ class Measuring {
     measured_.resize(work_.size());
   }
 
-  std::vector<std::optional<Measures>> run(std::vector<std::string>& damage) {
+  std::vector<std::optional<Measures>> run(RegeneratedFigure& result) {
     std::vector<std::thread> threads;
     for (std::size_t w = 0; w < std::max<std::size_t>(1, options_.workers); ++w) {
       threads.emplace_back([this] { measure_some(); });
@@ -99,7 +100,9 @@ class Measuring {
     for (std::thread& thread : threads) thread.join();
     if (error_) std::rethrow_exception(error_);
     std::sort(damage_.begin(), damage_.end());
-    damage = damage_;
+    std::sort(pruned_.begin(), pruned_.end());
+    result.damage = damage_;
+    result.pruned = pruned_;
     return std::move(measured_);
   }
 
@@ -111,6 +114,9 @@ class Measuring {
       } catch (const StoreDamaged& error) {
         const std::lock_guard lock(mutex_);
         damage_.push_back(error.what());
+      } catch (const CheckpointPruned& error) {
+        const std::lock_guard lock(mutex_);
+        pruned_.push_back(error.what());
       } catch (...) {
         const std::lock_guard lock(mutex_);
         if (!error_) error_ = std::current_exception();
@@ -128,7 +134,7 @@ class Measuring {
   std::atomic<std::size_t> next_{0};
   std::mutex mutex_;  // guards what follows
   std::size_t done_ = 0;
-  std::vector<std::string> damage_;
+  std::vector<std::string> damage_, pruned_;
   std::exception_ptr error_;
 };
 
@@ -193,7 +199,7 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
   RegeneratedFigure result;
   result.name = figure.name;
   const std::vector<Input> inputs = inputs_of(store, figure.name, options.scale, result.scale);
-  const auto measured = Measuring(store, inputs, options).run(result.damage);
+  const auto measured = Measuring(store, inputs, options).run(result);
   const std::vector<FigureRun> runs = figure_runs(inputs, measured);
   result.runs = runs.size();
   for (const FigureRun& run : runs) result.checkpoints += run.checkpoints.size();

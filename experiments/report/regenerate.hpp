@@ -28,6 +28,7 @@ struct RegeneratedFigure {
   std::size_t checkpoints = 0;
   std::vector<std::filesystem::path> files;  ///< CSV and SVG of each panel, then the lineage
   std::vector<std::string> damage;           ///< checkpoints that could not be read, one line each
+  std::vector<std::string> pruned;           ///< checkpoints whose files were pruned, likewise
   std::string plot_error;                    ///< why there is no SVG; empty when there is
 };
 
@@ -36,7 +37,7 @@ std::vector<std::string> figures_of_store(const Store& store);
 
 /// Writes FOLDER/PANEL.csv and .svg for each panel and FOLDER/NAME.lineage.json, and records a
 /// FigureGenerated event unless the newest one says the same. The same checkpoints give the same
-/// bytes. A checkpoint that cannot be read is left out and named.
+/// bytes. A checkpoint that cannot be read, or was pruned, is left out and named.
 /// Throws NotFound when the store holds no run for the figure.
 RegeneratedFigure regenerate(Store& store, const Figure& figure, const RegenerateOptions& options);
 
