@@ -124,6 +124,45 @@ TEST_F(Care, MergesAndRefusesConflicts) {
   EXPECT_EQ(hashes("all"), hashes("whole"));
 }
 
+TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
+  ASSERT_EQ(run({"run", manifest(), "--cycles", "1", "-q"}).code, 0);
+  const auto stage = [](const nlohmann::json& plan, const std::string& kind,
+                        std::uint64_t seed) -> nlohmann::json {
+    for (const auto& line : plan.at("stages")) {
+      if (line.at("stage") == kind && line.at("seed") == seed) return line;
+    }
+    ADD_FAILURE() << "no such stage: " << plan.dump(1);
+    return {};
+  };
+  // The same again: done. Longer: to extend. More seeds: new, and only because of the seed.
+  for (const auto& line : json({"plan", "m.yaml", "--cycles", "1", "--json"}).at("stages")) {
+    EXPECT_EQ(line.at("state"), "done");
+    EXPECT_TRUE(line.at("new").is_null());
+    EXPECT_TRUE(line.at("shared_with").empty());
+  }
+  const auto more = json({"plan", "m.yaml", "--cycles", "3", "--seeds", "2", "--json"});
+  EXPECT_EQ(stage(more, "prepare", 1).at("state"), "done");
+  EXPECT_EQ(stage(more, "shear", 1).at("state"), "to extend");
+  EXPECT_EQ(stage(more, "shear", 1).at("particle_steps_left"), 300.0 * 2 * 10000);
+  EXPECT_EQ(stage(more, "shear", 2).at("state"), "to do");
+  EXPECT_EQ(stage(more, "shear", 2).at("new").at("fields"),
+            nlohmann::json::parse(R"([{"field": "seed", "value": 2, "store_has": 1}])"));
+
+  // Another experiment: one run is shared, one is new by its amplitude.
+  std::string twin = tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.0833, 0.1]}}\n");
+  twin.replace(twin.find("tiny"), 4, "twin");
+  write("twin.yaml", twin);
+  const auto other = json({"plan", "twin.yaml", "--cycles", "1", "--json"});
+  EXPECT_EQ(stage(other, "shear", 1).at("state"), "done");
+  EXPECT_EQ(stage(other, "shear", 1).at("shared_with"), nlohmann::json::parse(R"(["tiny"])"));
+  const auto fields = other.at("stages").at(2).at("new").at("fields");
+  EXPECT_EQ(fields, nlohmann::json::parse(
+                        R"([{"field": "amplitude_rad", "value": 0.1, "store_has": 0.0833}])"));
+  const Outcome words = run({"plan", "twin.yaml", "--cycles", "1"});
+  EXPECT_TRUE(contains(words.out, "also in tiny")) << words.out;
+  EXPECT_TRUE(contains(words.out, "new: amplitude_rad 0.1 (store has 0.0833)")) << words.out;
+}
+
 class Sharing : public Care {
  protected:
   static std::string many_runs() {

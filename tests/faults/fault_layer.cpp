@@ -128,7 +128,7 @@ bool goes_wrong(const char* call, const char* path) {
   }
 }
 
-// Bytes to report, or -1 to let the call pass.
+// Bytes to report, -1 to fail with errno, or -2 to let the call pass.
 template <typename Write>
 ssize_t wrong_write(const char* call, int fd, size_t size, Write&& write_some) {
   const OpenFile file(fd);
