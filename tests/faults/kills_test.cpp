@@ -20,9 +20,9 @@ class Kills : public testing::Test {
   // Runs long enough that a kill finds work in progress, and seeds enough that there is always
   // more.
   static std::string manifest(std::size_t kills) {
-    std::string text = small_manifest("seeds: " + std::to_string(2 + kills / 4) + "\n");
+    std::string text = small_manifest("seeds: " + std::to_string(2 + kills) + "\n");
     const auto cycles = text.find("cycles: 2");
-    return text.replace(cycles, 9, "cycles: 12");
+    return text.replace(cycles, 9, "cycles: 40");
   }
 
   void kill_and_go_on(std::size_t kills) {
@@ -35,11 +35,13 @@ class Kills : public testing::Test {
     pid_t programs[2] = {start_campaign(shared.path(), {}), start_campaign(shared.path(), {})};
     std::size_t found_at_work = 0;
     for (std::size_t i = 0; i < kills; ++i) {
-      std::this_thread::sleep_for(std::chrono::microseconds(1000 + random() % 60000));
+      std::this_thread::sleep_for(std::chrono::microseconds(1000 + random() % 120000));
       pid_t& victim = programs[random() % 2];
       kill(victim, SIGKILL);
       found_at_work += wait_for_exit(victim) == -SIGKILL ? 1 : 0;
-      for (const std::string& wrong : check_left_behind(shared.path())) ADD_FAILURE() << wrong;
+      if (i % 10 == 0) {  // it takes a while, in which the other one comes forward undisturbed
+        for (const std::string& wrong : check_left_behind(shared.path())) ADD_FAILURE() << wrong;
+      }
       victim = start_campaign(shared.path(), {});
     }
     for (const pid_t program : programs) {
@@ -55,7 +57,7 @@ class Kills : public testing::Test {
     EXPECT_TRUE(store.verify().ok());
     std::printf("%zu kills, %zu of them at work, %zu runs cut short; %zu runs, the golden states\n",
                 kills, found_at_work, interrupted, golden.size());
-    EXPECT_GE(found_at_work, 1U);
+    EXPECT_GE(2 * found_at_work, kills) << "too little work for so many kills";
   }
 };
 
