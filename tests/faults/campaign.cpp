@@ -17,6 +17,19 @@ namespace shearcell::test {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+Words campaign_words(const fs::path& folder) {
+  return {"run", (folder / "small.yaml").string(), "-q", "-j", "1"};
+}
+
+bool is_write(const std::string& operation) {
+  return operation.find(" write ") != std::string::npos ||
+         operation.find(" pwrite") != std::string::npos;
+}
+
+}  // namespace
+
 std::string small_manifest(const std::string& more) {
   return "experiment: small\n"
          "question: Does the store survive?\n"
@@ -33,21 +46,15 @@ std::string small_manifest(const std::string& more) {
          more;
 }
 
-pid_t start_campaign(const fs::path& folder, const Fault& fault, const std::string& jobs) {
+pid_t start_program(const fs::path& folder, Words words, const Fault& fault) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   constexpr int flags = O_WRONLY | O_CREAT | O_APPEND;
   for (int fd : {1, 2}) {
     posix_spawn_file_actions_addopen(&actions, fd, (folder / "said").c_str(), flags, 0600);
   }
-  std::vector<std::string> words = {SHEARCELL_PROGRAM,
-                                    "run",
-                                    (folder / "small.yaml").string(),
-                                    "--store",
-                                    (folder / "store").string(),
-                                    "-q",
-                                    "-j",
-                                    jobs};
+  words.insert(words.begin(), SHEARCELL_PROGRAM);
+  words.insert(words.end(), {"--store", (folder / "store").string()});
   std::vector<std::string> variables;
   for (char** variable = environ; *variable != nullptr; ++variable) {
     if (std::strncmp(*variable, "SHEARCELL_STORE=", 16) != 0) variables.emplace_back(*variable);
@@ -79,14 +86,33 @@ int wait_for_exit(pid_t program) {
   return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
 }
 
+pid_t start_campaign(const fs::path& folder, const Fault& fault) {
+  return start_program(folder, campaign_words(folder), fault);
+}
+
 std::vector<std::string> list_operations(const fs::path& folder) {
-  if (wait_for_exit(start_campaign(folder, {0, "none"})) != 0) {
-    throw std::runtime_error("the campaign fails without a fault: " + read_bytes(folder / "said"));
+  return list_operations(folder, campaign_words(folder));
+}
+
+std::vector<std::string> list_operations(const fs::path& folder, const Words& words) {
+  if (wait_for_exit(start_program(folder, words, {0, "none"})) != 0) {
+    throw std::runtime_error("it fails without a fault: " + read_bytes(folder / "said"));
   }
   std::vector<std::string> lines;
   std::ifstream file(folder / "operations");
   for (std::string line; std::getline(file, line);) lines.push_back(line);
   return lines;
+}
+
+std::vector<Fault> fault_points(const std::vector<std::string>& operations) {
+  std::vector<Fault> all;
+  for (std::size_t i = 0; i < operations.size(); ++i) {
+    for (const char* kind : {"kill", "enospc", "eio", "torn", "lost"}) {
+      const bool of_writes = std::string(kind) == "torn" || std::string(kind) == "lost";
+      if (!of_writes || is_write(operations[i])) all.push_back({static_cast<long>(i + 1), kind});
+    }
+  }
+  return all;
 }
 
 std::vector<std::string> check_left_behind(const fs::path& folder) {

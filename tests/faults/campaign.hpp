@@ -20,15 +20,23 @@ struct Fault {
   std::string kind;
 };
 
-/// Starts `shearcell run MANIFEST` on the store, with the fault layer when a fault is named.
-pid_t start_campaign(const std::filesystem::path& folder, const Fault& fault,
-                     const std::string& jobs = "1");
+using Words = std::vector<std::string>;
+
+/// Starts `shearcell WORDS --store FOLDER/store`, with the fault layer when a fault is named.
+pid_t start_program(const std::filesystem::path& folder, Words words, const Fault& fault);
+
+/// `run` of the manifest in the folder.
+pid_t start_campaign(const std::filesystem::path& folder, const Fault& fault);
 
 /// Waits for it: the exit code, or minus the signal that ended it.
 int wait_for_exit(pid_t program);
 
 /// Runs it to its end under the fault layer; the operations that it did on the store, one a line.
+std::vector<std::string> list_operations(const std::filesystem::path& folder, const Words& words);
 std::vector<std::string> list_operations(const std::filesystem::path& folder);
+
+/// Every way in which each of the operations may go wrong.
+std::vector<Fault> fault_points(const std::vector<std::string>& operations);
 
 /// What must hold of the store as a fault left it: it opens, `verify` finds no error, and every
 /// recorded checkpoint is there. Each thing that does not hold is a line.

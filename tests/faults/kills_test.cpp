@@ -62,7 +62,7 @@ class Kills : public testing::Test {
 };
 
 TEST_F(Kills, OfTwoProgramsLeaveNoTrace) {
-  kill_and_go_on(6);
+  kill_and_go_on(4);
 }
 
 // With the label `sweep`.

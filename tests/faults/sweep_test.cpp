@@ -17,11 +17,6 @@ namespace fs = std::filesystem;
 
 using Hashes = std::map<std::string, std::string>;
 
-bool is_write(const std::string& operation) {
-  return operation.find(" write ") != std::string::npos ||
-         operation.find(" pwrite") != std::string::npos;
-}
-
 class Faults : public testing::Test {
  protected:
   Faults() {
@@ -31,16 +26,7 @@ class Faults : public testing::Test {
     golden_ = run_on(folder.path());
   }
 
-  std::vector<Fault> points() const {
-    std::vector<Fault> all;
-    for (std::size_t i = 0; i < operations_.size(); ++i) {
-      for (const char* kind : {"kill", "enospc", "eio", "torn", "lost"}) {
-        const bool of_writes = std::string(kind) == "torn" || std::string(kind) == "lost";
-        if (!of_writes || is_write(operations_[i])) all.push_back({static_cast<long>(i + 1), kind});
-      }
-    }
-    return all;
-  }
+  std::vector<Fault> points() const { return fault_points(operations_); }
 
   void survive(const Fault& fault) {
     const TemporaryFolder folder;
