@@ -48,6 +48,8 @@ TEST_F(Care, PruneShowsFirstAndRegenerateBringsBack) {
   const std::string sha = done.at("checkpoints").at(0).at("sha256");
   EXPECT_TRUE(contains(figures.err, "shearcell regenerate " + sha.substr(0, 12))) << figures.err;
 
+  EXPECT_TRUE(contains(run({"show", sha}).out, "pruned; `shearcell regenerate")) << sha;
+  EXPECT_EQ(json({"show", sha, "--json"}).at("state"), "pruned");
   for (const auto& checkpoint : done.at("checkpoints")) {
     const Outcome again = run({"regenerate", checkpoint.at("sha256").get<std::string>()});
     EXPECT_EQ(again.code, 0) << again.err;
