@@ -19,6 +19,12 @@ class ConcurrencyConflict : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Another program holds the run (lease.hpp) and is at work on it.
+class RunHeld : public ConcurrencyConflict {
+ public:
+  using ConcurrencyConflict::ConcurrencyConflict;
+};
+
 /// Another process held the store's write lock for longer than the waiting time.
 class StoreBusy : public std::runtime_error {
  public:
@@ -29,6 +35,18 @@ class StoreBusy : public std::runtime_error {
 class NotFound : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// Two stores tell different things about the same run, so they cannot be merged.
+class MergeConflict : public StoreDamaged {
+ public:
+  using StoreDamaged::StoreDamaged;
+};
+
+/// The checkpoint was pruned: its record stays and its file was removed on purpose.
+class CheckpointPruned : public NotFound {
+ public:
+  using NotFound::NotFound;
 };
 
 }  // namespace shearcell

@@ -9,6 +9,7 @@
 
 #include "provenance/errors.hpp"
 #include "provenance/sha256.hpp"
+#include "provenance/upcast.hpp"
 
 namespace shearcell {
 
@@ -75,7 +76,11 @@ nlohmann::json Event::body() const {
     throw StoreDamaged(fmt::format(
         "event {} ({} of {}): its payload is not a JSON object; run `verify`", seq, type, stream));
   }
-  return body;
+  try {
+    return upcast(type, schema, std::move(body));
+  } catch (const StoreDamaged& newer) {
+    throw StoreDamaged(fmt::format("event {} ({}): {}", seq, type, newer.what()));
+  }
 }
 
 std::string event_hash(const Event& event) {
@@ -115,7 +120,7 @@ std::vector<Event> EventLog::append(const sqlite::WriteTransaction&, std::string
     event.stream = stream;
     event.version = ++expected_version;
     event.type = fresh.type;
-    event.schema = fresh.schema;
+    event.schema = newest_schema(fresh.type);
     event.recorded_at = now_utc();
     // Paths may hold bytes that are not UTF-8, and JSON cannot: such bytes become U+FFFD.
     event.payload = fresh.payload.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -125,6 +130,17 @@ std::vector<Event> EventLog::append(const sqlite::WriteTransaction&, std::string
     appended.push_back(std::move(event));
   }
   return appended;
+}
+
+Event EventLog::append_copy(const sqlite::WriteTransaction&, const Event& original) {
+  const Head last = head();
+  Event event = original;
+  event.seq = last.seq + 1;
+  event.version = version(original.stream) + 1;
+  event.prev_hash = last.hash;
+  event.hash = event_hash(event);
+  insert_event(database_, event);
+  return event;
 }
 
 std::uint64_t EventLog::version(std::string_view stream) const {
@@ -137,6 +153,12 @@ Head EventLog::head() const {
   sqlite::Statement query(database_, "SELECT seq, hash FROM events ORDER BY seq DESC LIMIT 1");
   if (!query.step()) return {.seq = 0, .hash = zeros()};
   return {.seq = query.u64(0), .hash = query.text(1)};
+}
+
+std::string EventLog::hash_at(std::uint64_t seq) const {
+  if (seq == 0) return zeros();
+  sqlite::Statement query(database_, "SELECT hash FROM events WHERE seq = ?");
+  return query.bind(1, seq).step() ? query.text(0) : "";
 }
 
 std::vector<Event> EventLog::events(std::string_view stream, std::uint64_t after_version) const {

@@ -27,14 +27,14 @@ struct Event {
   std::string prev_hash;
   std::string hash;
 
-  /// The payload parsed. Throws StoreDamaged when it is not a JSON object.
+  /// The payload parsed, in the newest layout of its type (upcast.hpp). Throws StoreDamaged when it
+  /// is not a JSON object or newer than this program.
   nlohmann::json body() const;
 };
 
 struct NewEvent {
   std::string type;
-  nlohmann::json payload;
-  std::uint64_t schema = 1;
+  nlohmann::json payload;  ///< in the newest layout of its type
 };
 
 /// Names one state of the log: the same head means the same log, event by event.
@@ -67,9 +67,15 @@ class EventLog {
   std::vector<Event> append(const sqlite::WriteTransaction& lock, std::string_view stream,
                             std::uint64_t expected_version, std::span<const NewEvent> events);
 
+  /// Appends an event of another log at the end of its stream, as it stands there: type, layout,
+  /// time and payload. Its place in the chain is new.
+  Event append_copy(const sqlite::WriteTransaction& lock, const Event& original);
+
   /// Number of events in the stream.
   std::uint64_t version(std::string_view stream) const;
   Head head() const;
+  /// Hash of the event with this number: 64 zeros for 0, "" when there is none.
+  std::string hash_at(std::uint64_t seq) const;
   /// Events of one stream after a version, or of the whole log ("") in order of seq.
   std::vector<Event> events(std::string_view stream = "", std::uint64_t after_version = 0) const;
   /// The same, one by one, for logs that are better not held in memory.

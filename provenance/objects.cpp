@@ -188,6 +188,28 @@ std::vector<std::byte> ObjectStore::get(std::string_view sha256, std::uint64_t s
   return bytes;
 }
 
+bool ObjectStore::contains(std::string_view sha256) const {
+  if (!is_sha256_hex(sha256)) return false;
+  const Descriptor folder = open_object_folder(folder_, sha256, false);
+  const std::string name = std::filesystem::path(file_of(sha256)).filename();
+  struct stat status {};
+  return folder.get() >= 0 &&
+         fstatat(folder.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0;
+}
+
+bool ObjectStore::remove(std::string_view sha256) {
+  if (!is_sha256_hex(sha256)) return false;
+  const std::filesystem::path path = folder_ / file_of(sha256);
+  const Descriptor folder = open_object_folder(folder_, sha256, false);
+  if (folder.get() < 0) return false;
+  if (unlinkat(folder.get(), path.filename().c_str(), 0) != 0) {
+    if (errno == ENOENT) return false;
+    fail(path, "remove the file");
+  }
+  sync(folder, path);
+  return true;
+}
+
 std::vector<std::string> ObjectStore::strangers(const std::set<std::string>& known) const {
   namespace fs = std::filesystem;
   std::set<std::string> expected;

@@ -34,6 +34,12 @@ class ObjectStore {
   /// Throws StoreDamaged, naming the file, unless it has this size and hash.
   std::vector<std::byte> get(std::string_view sha256, std::uint64_t size) const;
 
+  /// Whether something has the object's name; its bytes are not looked at.
+  bool contains(std::string_view sha256) const;
+
+  /// Frees the bytes for good; false when there was no such file. Throws std::system_error.
+  bool remove(std::string_view sha256);
+
   /// Files under `objects` that are not in `known` (SHA-256 digests), temporaries of interrupted
   /// writes included; relative to the store's folder, sorted.
   std::vector<std::string> strangers(const std::set<std::string>& known) const;

@@ -124,6 +124,16 @@ void set_state(Database& database, const Event& event, std::string_view state,
   update.bind(4, new_attempts).run();
 }
 
+/// A target that was raised while the run was at work leaves work to do.
+void complete_run(Database& database, const Event& event, const json& body) {
+  const json& reached = body.at("target_cycles");
+  Statement update(database,
+                   "UPDATE runs SET error = '', state = CASE WHEN ?2 AND target_cycles > ?3 THEN "
+                   "'declared' ELSE 'completed' END WHERE id = ?1");
+  update.bind(1, after_slash(event.stream)).bind(2, std::uint64_t{!reached.is_null()});
+  update.bind(3, reached.is_null() ? 0 : reached.get<std::uint64_t>()).run();
+}
+
 void move_to_furthest_checkpoint(Database& database, const std::string& run) {
   Statement update(database,
                    "UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
@@ -167,8 +177,21 @@ void reject_checkpoint(Database& database, const Event& event, const json& body)
   move_to_furthest_checkpoint(database, run);
 }
 
+void move_checkpoint(Database& database, const Event& event, const json& body,
+                     std::string_view state) {
+  const std::string run = after_slash(event.stream);
+  Statement update(database, "UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2");
+  update.bind(1, run).bind(2, body.at("sha256").get_ref<const std::string&>());
+  update.bind(3, state).run();
+  move_to_furthest_checkpoint(database, run);
+}
+
 void record_figure(Database& database, const Event& event, const json& body) {
-  Statement insert(database, "INSERT OR REPLACE INTO figures VALUES(?,?,?,?)");
+  // The one that was made last; a merge brings in older ones after it.
+  Statement insert(database,
+                   "INSERT INTO figures VALUES(?,?,?,?) ON CONFLICT DO UPDATE SET seq = "
+                   "excluded.seq, recorded_at = excluded.recorded_at, provenance = "
+                   "excluded.provenance WHERE excluded.recorded_at >= figures.recorded_at");
   insert.bind(1, after_slash(event.stream)).bind(2, event.seq).bind(3, event.recorded_at);
   insert.bind(4, body.dump()).run();
 }
@@ -179,13 +202,15 @@ void apply_to_run(Database& database, const Event& event, const json& body) {
   if (event.type == "RunResumed") set_state(database, event, "running", "", 1);
   if (event.type == "CheckpointRecorded") record_checkpoint(database, event, body);
   if (event.type == "CheckpointRejected") reject_checkpoint(database, event, body);
+  if (event.type == "CheckpointPruned") move_checkpoint(database, event, body, "pruned");
+  if (event.type == "CheckpointRegenerated") move_checkpoint(database, event, body, "recorded");
   if (event.type == "RunInterrupted") {
     set_state(database, event, "interrupted", body.at("why").get<std::string>(), 0);
   }
   if (event.type == "RunFailed") {
     set_state(database, event, "failed", body.at("why").get<std::string>(), 0);
   }
-  if (event.type == "RunCompleted") set_state(database, event, "completed", "", 0);
+  if (event.type == "RunCompleted") complete_run(database, event, body);
   Statement touch(database, "UPDATE runs SET updated_at = ?2 WHERE id = ?1");
   touch.bind(1, after_slash(event.stream)).bind(2, event.recorded_at).run();
 }
@@ -197,12 +222,6 @@ void create_projections(Database& database) {
 }
 
 void apply(Database& database, const Event& event) {
-  if (event.schema != 1) {
-    throw StoreDamaged(fmt::format(
-        "event {} ({}): its payload has layout {}, and this program knows layout 1; use the newer "
-        "shearcell that wrote it",
-        event.seq, event.type, event.schema));
-  }
   try {
     if (event.stream.starts_with("run/")) apply_to_run(database, event, event.body());
     if (event.stream.starts_with("figure/")) record_figure(database, event, event.body());

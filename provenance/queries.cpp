@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "provenance/errors.hpp"
-
 namespace shearcell {
 
 namespace {
@@ -29,6 +27,15 @@ RunState state_of(const Database& database, const std::string& text) {
   }
   throw StoreDamaged(
       fmt::format("{}: a run has the unknown state '{}'; run `rebuild`", database.name(), text));
+}
+
+CheckpointState checkpoint_state_of(const Database& database, const std::string& text) {
+  for (const CheckpointState state :
+       {CheckpointState::recorded, CheckpointState::rejected, CheckpointState::pruned}) {
+    if (text == name_of(state)) return state;
+  }
+  throw StoreDamaged(fmt::format("{}: a checkpoint has the unknown state '{}'; run `rebuild`",
+                                 database.name(), text));
 }
 
 std::vector<Membership> query_memberships(const Database& database, const std::string& run) {
@@ -58,18 +65,17 @@ std::string checkpoint_columns(std::string_view where) {
 }
 
 CheckpointRecord read_checkpoint(const Database& database, const Statement& row) {
-  CheckpointRecord record{
-      .run = row.text(0),
-      .step = row.u64(1),
-      .cycle = row.f64(2),
-      .time_s = row.f64(3),
-      .file = row.text(4),
-      .size = row.u64(5),
-      .sha256 = row.text(6),
-      .state_hash = row.text(7),
-      .observables = {},
-      .state = row.text(9) == "recorded" ? CheckpointState::recorded : CheckpointState::rejected,
-      .seq = row.u64(10)};
+  CheckpointRecord record{.run = row.text(0),
+                          .step = row.u64(1),
+                          .cycle = row.f64(2),
+                          .time_s = row.f64(3),
+                          .file = row.text(4),
+                          .size = row.u64(5),
+                          .sha256 = row.text(6),
+                          .state_hash = row.text(7),
+                          .observables = {},
+                          .state = checkpoint_state_of(database, row.text(9)),
+                          .seq = row.u64(10)};
   const json observables = parse(database, row.text(8));
   for (const auto& [name, value] : observables.items()) {
     if (value.is_number()) record.observables[name] = value.get<double>();
@@ -78,6 +84,11 @@ CheckpointRecord read_checkpoint(const Database& database, const Statement& row)
 }
 
 }  // namespace
+
+NotFound unknown_run(std::string_view id) {
+  return NotFound(
+      fmt::format("the store has no run '{}'; `shearcell status` lists the runs it has", id));
+}
 
 const char* name_of(RunState state) {
   switch (state) {
@@ -91,6 +102,18 @@ const char* name_of(RunState state) {
       return "failed";
     case RunState::completed:
       return "completed";
+  }
+  return "unknown";
+}
+
+const char* name_of(CheckpointState state) {
+  switch (state) {
+    case CheckpointState::recorded:
+      return "recorded";
+    case CheckpointState::rejected:
+      return "rejected";
+    case CheckpointState::pruned:
+      return "pruned";
   }
   return "unknown";
 }
@@ -150,6 +173,17 @@ std::optional<CheckpointRecord> query_checkpoint(const Database& database, std::
   query.bind(1, run).bind(2, sha256);
   if (!query.step()) return std::nullopt;
   return read_checkpoint(database, query);
+}
+
+std::vector<CheckpointRecord> query_checkpoints_by_prefix(const Database& database,
+                                                          std::string_view prefix,
+                                                          std::size_t limit) {
+  Statement query(database,
+                  checkpoint_columns("WHERE substr(sha256, 1, length(?1)) = ?1") + " LIMIT ?2");
+  query.bind(1, prefix).bind(2, std::uint64_t{limit});
+  std::vector<CheckpointRecord> found;
+  while (query.step()) found.push_back(read_checkpoint(database, query));
+  return found;
 }
 
 std::vector<FigureRecord> query_figures(const Database& database) {

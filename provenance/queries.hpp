@@ -7,10 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "provenance/errors.hpp"
 #include "provenance/records.hpp"
 #include "provenance/sqlite.hpp"
 
 namespace shearcell {
+
+NotFound unknown_run(std::string_view id);
 
 /// One run, or all in the order of their declaration ("").
 std::vector<RunRecord> query_runs(const sqlite::Database& database, std::string_view id = "");
@@ -22,6 +25,10 @@ std::vector<CheckpointRecord> query_checkpoints(const sqlite::Database& database
                                                 std::string_view run = "");
 std::optional<CheckpointRecord> query_checkpoint(const sqlite::Database& database,
                                                  std::string_view run, std::string_view sha256);
+/// Checkpoints whose SHA-256 begins so, at most `limit`.
+std::vector<CheckpointRecord> query_checkpoints_by_prefix(const sqlite::Database& database,
+                                                          std::string_view prefix,
+                                                          std::size_t limit);
 std::vector<FigureRecord> query_figures(const sqlite::Database& database);
 
 }  // namespace shearcell

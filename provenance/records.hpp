@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,13 +60,23 @@ struct RunRecord {
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
+/// Which checkpoints need no file any more. Choices narrow each other down.
+struct PruneChoice {
+  std::vector<std::string> runs;  ///< ids; empty for all
+  std::optional<RunState> state;  ///< only runs in this state
+  std::uint64_t keep_every = 0;   ///< keep cycles 0, K, 2K, ...; 0 keeps none of them
+};
+
 /// Work spent since the previous record of the same attempt.
 struct Effort {
   double wall_seconds = 0;
   double particle_steps = 0;  ///< grains times time steps
 };
 
-enum class CheckpointState { recorded, rejected };
+/// `pruned`: the file was removed to free its bytes, and the record stays.
+enum class CheckpointState { recorded, rejected, pruned };
+
+const char* name_of(CheckpointState state);
 
 struct CheckpointRecord {
   std::string run;

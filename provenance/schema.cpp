@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "provenance/errors.hpp"
+#include "provenance/lease.hpp"
 #include "provenance/projections.hpp"
 
 namespace shearcell {
@@ -29,6 +32,17 @@ CREATE TRIGGER events_are_never_deleted BEFORE DELETE ON events
 BEGIN SELECT RAISE(ABORT, 'events are never deleted'); END;
 )sql";
 
+/// What takes a store from schema `from` to the next one. It may change every table but `events`.
+struct Migration {
+  std::int64_t from;
+  void (*migrate)(sqlite::Database&);
+};
+
+constexpr std::array<Migration, 1> kMigrations = {{
+    {1, [](sqlite::Database& database) { create_leases(database); }},
+}};
+static_assert(kMigrations.back().from + 1 == kSchemaVersion);
+
 void require_plain_file(const std::filesystem::path& file) {
   const auto type = std::filesystem::symlink_status(file).type();
   if (type != std::filesystem::file_type::regular &&
@@ -46,6 +60,7 @@ void create_tables(sqlite::Database& database) {
   if (database.integer("SELECT count(*) FROM sqlite_schema") == 0) {
     database.execute(kEvents);
     create_projections(database);
+    create_leases(database);
     database.execute(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};",
                                  kApplicationId, kSchemaVersion));
   }
@@ -74,6 +89,20 @@ void require_known_schema(sqlite::Database& database) {
   }
 }
 
+/// One transaction for each step: one that is cut short leaves the version before it.
+void migrate(sqlite::Database& database) {
+  for (const Migration& step : kMigrations) {
+    if (database.integer("PRAGMA user_version") > step.from) continue;
+    sqlite::WriteTransaction lock(database);
+    // Another process may have taken the step while this one waited for the lock.
+    if (database.integer("PRAGMA user_version") == step.from) {
+      step.migrate(database);
+      database.execute(fmt::format("PRAGMA user_version={}", step.from + 1));
+    }
+    lock.commit();
+  }
+}
+
 }  // namespace
 
 sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open mode,
@@ -96,6 +125,7 @@ sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open m
   }
   require_known_schema(database);
   database.execute(read_only ? "PRAGMA query_only=ON" : "PRAGMA journal_mode=DELETE");
+  if (!read_only) migrate(database);
   return database;
 }
 

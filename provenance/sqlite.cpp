@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "provenance/errors.hpp"
 
@@ -74,15 +75,29 @@ std::int64_t Database::integer(const std::string& sql) {
   return static_cast<std::int64_t>(query.u64(0));
 }
 
-void Statement::Finalize::operator()(sqlite3_stmt* handle) const {
+void Database::Finalize::operator()(sqlite3_stmt* handle) const {
   sqlite3_finalize(handle);
 }
 
-Statement::Statement(const Database& database, std::string_view sql) : database_(&database) {
+Statement::Statement(const Database& database, std::string_view sql)
+    : database_(&database), sql_(sql) {
+  if (auto idle = database.idle_.extract(sql_)) {
+    handle_ = std::move(idle.mapped());
+    return;
+  }
   sqlite3_stmt* handle = nullptr;
   check(sqlite3_prepare_v2(database.handle(), sql.data(), static_cast<int>(sql.size()), &handle,
                            nullptr));
   handle_.reset(handle);
+}
+
+Statement::~Statement() {
+  constexpr std::size_t kMostIdle = 64;
+  if (!handle_ || database_->idle_.size() >= kMostIdle) return;
+  // An unfinished statement would hold its lock on the file.
+  sqlite3_reset(handle_.get());
+  sqlite3_clear_bindings(handle_.get());
+  database_->idle_.emplace(std::move(sql_), std::move(handle_));
 }
 
 void Statement::check(int code) const {

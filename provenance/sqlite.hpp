@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+#include <unordered_map>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -36,18 +37,29 @@ class Database {
   [[noreturn]] void fail(int code, std::string_view doing) const;
 
  private:
+  friend class Statement;
   Database() = default;
   struct Close {
     void operator()(sqlite3* handle) const;
   };
+  struct Finalize {
+    void operator()(sqlite3_stmt* handle) const;
+  };
+  using Prepared = std::unique_ptr<sqlite3_stmt, Finalize>;
   std::string name_;
   std::unique_ptr<sqlite3, Close> handle_;
+  /// Statements that are not in use, by their text: preparing one takes longer than running it.
+  mutable std::unordered_map<std::string, Prepared> idle_;
 };
 
-/// A prepared statement. Columns are read by position after `step` returned true.
+/// A prepared statement, for less long than its database. Columns are read by position after `step`
+/// returned true.
 class Statement {
  public:
   Statement(const Database& database, std::string_view sql);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
 
   Statement& bind(int parameter, std::string_view text);
   Statement& bind(int parameter, std::uint64_t value);
@@ -72,11 +84,9 @@ class Statement {
 
  private:
   void check(int code) const;
-  struct Finalize {
-    void operator()(sqlite3_stmt* handle) const;
-  };
   const Database* database_;
-  std::unique_ptr<sqlite3_stmt, Finalize> handle_;
+  std::string sql_;
+  Database::Prepared handle_;
 };
 
 /// Holds the write lock from its construction (BEGIN IMMEDIATE); undone unless committed.

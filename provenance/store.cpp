@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "provenance/projections.hpp"
@@ -46,10 +47,13 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   return folder;
 }
 
-/// Events that only the holder of a run writes. Others (a new membership, a rejected checkpoint)
-/// say nothing about who runs it and so conflict with nobody.
+/// Events that only the holder of a run writes. Others (a new membership, a rejected checkpoint, a
+/// replay) say nothing about who runs it and so conflict with nobody.
 bool claims_run(const Event& event) {
-  return event.type != "RunDeclared" && event.type != "CheckpointRejected";
+  constexpr std::array<std::string_view, 6> kClaims = {"RunStarted",         "RunResumed",
+                                                       "CheckpointRecorded", "RunInterrupted",
+                                                       "RunFailed",          "RunCompleted"};
+  return std::find(kClaims.begin(), kClaims.end(), event.type) != kClaims.end();
 }
 
 json membership_json(const Membership& m) {
@@ -73,14 +77,9 @@ bool adds_something(const RunRecord& known, const RunDeclaration& declared) {
       });
 }
 
-NotFound unknown_run(std::string_view id) {
-  return NotFound(
-      fmt::format("the store has no run '{}'; `shearcell status` lists the runs it has", id));
-}
-
 }  // namespace
 
-Store::Store(std::filesystem::path folder, Access access)
+Store::Store(std::filesystem::path folder, Access access, const StoreOptions& options)
     : folder_(prepare_folder(std::move(folder), access)),
       access_(access),
       objects_(folder_),
@@ -88,7 +87,29 @@ Store::Store(std::filesystem::path folder, Access access)
           open_database(folder_ / kLogFile,
                         access == Access::create ? sqlite::Open::create : sqlite::Open::existing,
                         access == Access::read)),
-      log_(database_) {}
+      log_(database_),
+      self_(this_process()),
+      lease_ms_(static_cast<std::uint64_t>(std::max(0.0, options.lease_seconds) * 1000)) {}
+
+Store::~Store() {
+  if (held_.empty()) return;
+  try {
+    sqlite::WriteTransaction lock(database_);
+    for (const auto& [id, held] : held_) drop_lease(database_, id, self_.token);
+    lock.commit();
+  } catch (const std::exception&) {
+    // They expire.
+  }
+}
+
+void Store::hold(const std::string& id, std::uint64_t attempt) {
+  const std::uint64_t now = now_ms();
+  put_lease(database_, {.run = id,
+                        .holder = self_,
+                        .attempt = attempt,
+                        .renewed_at_ms = now,
+                        .expires_at_ms = now + lease_ms_});
+}
 
 void Store::must_write() const {
   if (access_ == Access::read) throw std::logic_error("this store was opened for reading only");
@@ -108,7 +129,15 @@ void Store::append_held(const std::string& id, NewEvent event, bool release) {
         fmt::format("run {}: this program does not hold the run; start it first", id));
   }
   sqlite::WriteTransaction lock(database_);
-  std::uint64_t version = held->second;
+  const auto lease = query_lease(database_, id);
+  if (lease && lease->holder.token != self_.token) {
+    held_.erase(held);
+    throw ConcurrencyConflict(
+        fmt::format("run {}: its lease expired and another program took it ({}); leave it to that "
+                    "one",
+                    id, describe(lease->holder)));
+  }
+  std::uint64_t version = held->second.version;
   for (const Event& e : log_.events(run_stream(id), version)) {
     if (claims_run(e)) {
       held_.erase(held);
@@ -119,11 +148,16 @@ void Store::append_held(const std::string& id, NewEvent event, bool release) {
     version = e.version;
   }
   append(run_stream(id), version, std::move(event), lock);
+  if (release) {
+    drop_lease(database_, id, self_.token);
+  } else {
+    hold(id, held->second.attempt);
+  }
   lock.commit();
   if (release) {
     held_.erase(held);
   } else {
-    held->second = version + 1;
+    held->second.version = version + 1;
   }
 }
 
@@ -179,7 +213,8 @@ void Store::declare_run(const RunDeclaration& declared) {
 }
 
 std::uint64_t Store::start_run(const std::string& id, const json& host,
-                               const std::optional<std::string>& from_sha256) {
+                               const std::optional<std::string>& from_sha256,
+                               const std::string& parent_checkpoint) {
   must_write();
   const std::scoped_lock guard(mutex_);
   if (held_.contains(id)) {
@@ -188,22 +223,58 @@ std::uint64_t Store::start_run(const std::string& id, const json& host,
   sqlite::WriteTransaction lock(database_);
   const std::vector<RunRecord> known = query_runs(database_, id);
   if (known.empty()) throw unknown_run(id);
+  const auto lease = query_lease(database_, id);
+  if (lease && lease->holder.token != self_.token && !lapsed(*lease, now_ms())) {
+    throw RunHeld(
+        fmt::format("run {}: another program is at work on it ({})", id, describe(lease->holder)));
+  }
   if (known.front().state == RunState::completed) {
     throw ConcurrencyConflict(fmt::format("run {}: it is completed; nothing is left to do", id));
   }
-  json payload = {{"attempt", known.front().attempts + 1}, {"host", host}};
+  const std::uint64_t attempt = known.front().attempts + 1;
+  json payload = {{"attempt", attempt},
+                  {"host", host},
+                  {"process", {{"host", self_.host}, {"pid", self_.pid}, {"token", self_.token}}}};
+  std::uint64_t from_step = 0;
   if (from_sha256) {
     const auto from = query_checkpoint(database_, id, *from_sha256);
     if (!from) {
       throw NotFound(fmt::format("run {}: it has no checkpoint {}", id, *from_sha256));
     }
+    from_step = from->step;
     payload["from"] = {{"sha256", from->sha256}, {"step", from->step}, {"cycle", from->cycle}};
+  } else {
+    payload["parent_checkpoint"] = parent_checkpoint.empty() ? json() : json(parent_checkpoint);
+  }
+  if (known.front().step > from_step) {
+    throw ConcurrencyConflict(fmt::format(
+        "run {}: step {} was recorded meanwhile; go on from there", id, known.front().step));
   }
   const std::uint64_t version = log_.version(run_stream(id));
   append(run_stream(id), version, {from_sha256 ? "RunResumed" : "RunStarted", payload}, lock);
+  hold(id, attempt);
   lock.commit();
-  held_[id] = version + 1;
-  return known.front().attempts + 1;
+  held_[id] = {version + 1, attempt};
+  return attempt;
+}
+
+void Store::renew_leases() {
+  must_write();
+  const std::scoped_lock guard(mutex_);
+  if (held_.empty()) return;
+  sqlite::WriteTransaction lock(database_);
+  for (auto run = held_.begin(); run != held_.end();) {
+    const auto lease = query_lease(database_, run->first);
+    const bool lost = lease && lease->holder.token != self_.token;
+    if (!lost) hold(run->first, run->second.attempt);
+    run = lost ? held_.erase(run) : std::next(run);
+  }
+  lock.commit();
+}
+
+bool Store::holds(const std::string& id) const {
+  const std::scoped_lock guard(mutex_);
+  return held_.contains(id);
 }
 
 CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoint& checkpoint,
@@ -216,7 +287,8 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
   // The slow part, and the file before the event: a crash in between leaves a file that no event
   // names, never an event without its file.
   const std::string state = state_hash(checkpoint);
-  const ObjectInfo object = objects_.put(encode_checkpoint(checkpoint));
+  const std::vector<std::byte> bytes = encode_checkpoint(checkpoint);
+  const ObjectInfo object = objects_.put(bytes);
   const std::scoped_lock guard(mutex_);
   const auto old = query_checkpoint(database_, id, object.sha256);
   if (old && old->state == CheckpointState::recorded && held_.contains(id)) return *old;
@@ -233,6 +305,8 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
                 {"wall_seconds", effort.wall_seconds},
                 {"particle_steps", effort.particle_steps}}},
               false);
+  // A `prune` at work may have removed the file; now that it is recorded again it stays.
+  if (old && !objects_.contains(object.sha256)) objects_.put(bytes);
   return query_checkpoint(database_, id, object.sha256).value();
 }
 
@@ -248,10 +322,12 @@ void Store::fail_run(const std::string& id, const std::string& why, const json& 
   append_held(id, {"RunFailed", {{"why", why}, {"numbers", numbers}}}, true);
 }
 
-void Store::complete_run(const std::string& id, const json& summary) {
+void Store::complete_run(const std::string& id, const json& summary,
+                         std::optional<std::uint64_t> target_cycles) {
   must_write();
   const std::scoped_lock guard(mutex_);
-  append_held(id, {"RunCompleted", {{"summary", summary}}}, true);
+  const json reached = target_cycles ? json(*target_cycles) : json();
+  append_held(id, {"RunCompleted", {{"summary", summary}, {"target_cycles", reached}}}, true);
 }
 
 void Store::reject_checkpoint(const std::string& id, const std::string& sha256,
@@ -261,25 +337,10 @@ void Store::reject_checkpoint(const std::string& id, const std::string& sha256,
   sqlite::WriteTransaction lock(database_);
   const auto record = query_checkpoint(database_, id, sha256);
   if (!record) throw NotFound(fmt::format("run {}: it has no checkpoint {}", id, sha256));
-  if (record->state == CheckpointState::rejected) return;
+  if (record->state != CheckpointState::recorded) return;
   append(run_stream(id), log_.version(run_stream(id)),
          {"CheckpointRejected", {{"sha256", sha256}, {"step", record->step}, {"why", why}}}, lock);
   lock.commit();
-}
-
-std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string& id,
-                                                               std::vector<std::string>* damage) {
-  std::vector<CheckpointRecord> records = checkpoints(id);
-  std::reverse(records.begin(), records.end());
-  for (const CheckpointRecord& record : records) {
-    try {
-      return LoadedCheckpoint{record, load_checkpoint(record)};
-    } catch (const StoreDamaged& error) {
-      if (damage != nullptr) damage->push_back(error.what());
-      if (access_ != Access::read) reject_checkpoint(id, record.sha256, error.what());
-    }
-  }
-  return std::nullopt;
 }
 
 void Store::record_figure(const std::string& name, const json& provenance) {
@@ -289,96 +350,6 @@ void Store::record_figure(const std::string& name, const json& provenance) {
   sqlite::WriteTransaction lock(database_);
   append(stream, log_.version(stream), {"FigureGenerated", provenance}, lock);
   lock.commit();
-}
-
-std::vector<RunRecord> Store::runs() const {
-  const std::scoped_lock guard(mutex_);
-  const sqlite::ReadTransaction snapshot(database_);
-  return query_runs(database_);
-}
-
-RunRecord Store::run(const std::string& id) const {
-  const std::scoped_lock guard(mutex_);
-  const sqlite::ReadTransaction snapshot(database_);
-  const std::vector<RunRecord> found =
-      id.empty() ? std::vector<RunRecord>() : query_runs(database_, id);
-  if (found.empty()) throw unknown_run(id);
-  return found.front();
-}
-
-RunRecord Store::find_run(std::string_view prefix) const {
-  constexpr std::size_t kListed = 10;
-  std::vector<std::string> ids;
-  {
-    const std::scoped_lock guard(mutex_);
-    ids = query_run_ids(database_, prefix, kListed);
-  }
-  if (ids.empty()) throw unknown_run(prefix);
-  if (ids.size() > 1) {
-    std::string list;
-    for (const std::string& id : ids) list += "\n  " + id;
-    if (ids.size() == kListed) list += "\n  ...";
-    throw NotFound(
-        fmt::format("several runs begin with '{}'; give more digits of one of{}", prefix, list));
-  }
-  return run(ids.front());
-}
-
-std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, bool with_rejected) const {
-  std::vector<CheckpointRecord> found;
-  {
-    const std::scoped_lock guard(mutex_);
-    if (query_run_ids(database_, id, 1) != std::vector{id}) throw unknown_run(id);
-    found = query_checkpoints(database_, id);
-  }
-  if (!with_rejected) {
-    std::erase_if(found, [](const CheckpointRecord& record) {
-      return record.state != CheckpointState::recorded;
-    });
-  }
-  return found;
-}
-
-Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
-  const std::vector<std::byte> bytes = objects_.get(record.sha256, record.size);
-  const std::string file = (folder_ / record.file).string();
-  Checkpoint checkpoint;
-  try {
-    checkpoint = decode_checkpoint(bytes);
-  } catch (const StoreDamaged& damage) {
-    throw StoreDamaged(fmt::format("{}: {}", file, damage.what()));
-  }
-  if (checkpoint.run != record.run || state_hash(checkpoint) != record.state_hash) {
-    throw StoreDamaged(fmt::format(
-        "{}: it holds another state than the log says; `resume` goes on from an older one", file));
-  }
-  return checkpoint;
-}
-
-std::vector<FigureRecord> Store::figures() const {
-  const std::scoped_lock guard(mutex_);
-  return query_figures(database_);
-}
-
-std::vector<Event> Store::events(std::string_view stream) const {
-  const std::scoped_lock guard(mutex_);
-  return log_.events(stream);
-}
-
-Head Store::head() const {
-  const std::scoped_lock guard(mutex_);
-  return log_.head();
-}
-
-void Store::rebuild() {
-  must_write();
-  const std::scoped_lock guard(mutex_);
-  rebuild_projections(database_, log_);
-}
-
-VerifyReport Store::verify() const {
-  const std::scoped_lock guard(mutex_);
-  return shearcell::verify(database_, log_, objects_);
 }
 
 }  // namespace shearcell

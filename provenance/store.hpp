@@ -14,6 +14,8 @@
 #include "provenance/checkpoint.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/event_log.hpp"
+#include "provenance/lease.hpp"
+#include "provenance/merge.hpp"
 #include "provenance/objects.hpp"
 #include "provenance/records.hpp"
 #include "provenance/verify.hpp"
@@ -26,6 +28,11 @@ enum class Access {
   read     ///< the store must exist; the recording functions throw std::logic_error
 };
 
+struct StoreOptions {
+  /// After this long without a sign of life of its holder a run may be taken by others.
+  double lease_seconds = 60;
+};
+
 struct LoadedCheckpoint {
   CheckpointRecord record;
   Checkpoint checkpoint;
@@ -34,16 +41,21 @@ struct LoadedCheckpoint {
 /// Thread-safe: any thread may call any function at any time. Several processes may open one store
 /// on a local disk; the log decides who came first.
 ///
-/// Between `start_run` and `interrupt_run`, `fail_run` or `complete_run` this object holds the run.
-/// When another process starts the same run meanwhile, the next record throws ConcurrencyConflict
-/// and the run is no longer held: stop stepping it.
+/// Between `start_run` and `interrupt_run`, `fail_run` or `complete_run` this object holds the run,
+/// by a lease that every record and `renew_leases` prolong. Others may take the run when the lease
+/// has expired, at once when the holder's process is dead; then the next record throws
+/// ConcurrencyConflict and the run is no longer held: stop stepping it. A Store that goes away
+/// gives its leases back.
 ///
 /// Every function may throw StoreDamaged, StoreBusy and std::runtime_error (disk full, ...).
 class Store {
  public:
   /// Throws StoreDamaged when the folder is a plain file, holds something else or has a newer
   /// schema; NotFound when it is missing and `access` does not create it.
-  Store(std::filesystem::path folder, Access access);
+  Store(std::filesystem::path folder, Access access, const StoreOptions& options = {});
+  ~Store();
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
 
   const std::filesystem::path& folder() const { return folder_; }
 
@@ -59,10 +71,19 @@ class Store {
   void declare_run(const RunDeclaration& declaration);
 
   /// Begins an attempt, from `from_sha256` (the checkpoint of this run that it continues) when
-  /// given. Returns the attempt's number, 1 for the first. Throws NotFound when the run or the
-  /// checkpoint is unknown and ConcurrencyConflict when this object holds the run already.
+  /// given; else from `parent_checkpoint`, which is only noted. Returns the attempt's number, 1 for
+  /// the first. Throws NotFound when the run or the checkpoint is unknown, RunHeld when another
+  /// program is at work on it, and ConcurrencyConflict when this object holds the run already, when
+  /// nothing is left to do, or when somebody recorded a later checkpoint than `from_sha256`.
   std::uint64_t start_run(const std::string& id, const nlohmann::json& host,
-                          const std::optional<std::string>& from_sha256 = std::nullopt);
+                          const std::optional<std::string>& from_sha256 = std::nullopt,
+                          const std::string& parent_checkpoint = "");
+
+  /// Shows that this program is still at work on what it holds; call it a few times within
+  /// `lease_seconds`. A run that somebody else took is held no longer.
+  void renew_leases();
+  double lease_seconds() const { return static_cast<double>(lease_ms_) / 1000; }
+  bool holds(const std::string& id) const;
 
   /// Writes the file, then the event. A checkpoint that is recorded already gives its old record.
   /// Throws std::invalid_argument when the checkpoint names another run or holds NaN.
@@ -71,8 +92,10 @@ class Store {
   void interrupt_run(const std::string& id, const std::string& why);
   void fail_run(const std::string& id, const std::string& why,
                 const nlohmann::json& numbers = nlohmann::json::object());
-  void complete_run(const std::string& id,
-                    const nlohmann::json& summary = nlohmann::json::object());
+  /// `target_cycles` is the length that was reached: a run whose target is longer by now is
+  /// declared again.
+  void complete_run(const std::string& id, const nlohmann::json& summary = nlohmann::json::object(),
+                    std::optional<std::uint64_t> target_cycles = std::nullopt);
 
   /// From now on the checkpoint is passed over; its file stays.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
@@ -90,12 +113,15 @@ class Store {
 
   std::vector<RunRecord> runs() const;  ///< in the order in which they were declared
   RunRecord run(const std::string& id) const;
+  /// Who works on which run now. Leases that anybody may take are left out.
+  std::vector<Lease> leases() const;
   /// The run whose id begins so. Throws NotFound, listing the candidates when there are several.
   RunRecord find_run(std::string_view prefix) const;
-  /// In ascending order of step. Rejected ones only on request.
-  std::vector<CheckpointRecord> checkpoints(const std::string& id,
-                                            bool with_rejected = false) const;
-  /// Reads, verifies and decodes. Throws StoreDamaged naming the file.
+  /// In ascending order of step: those that can be read, or all that were ever recorded.
+  std::vector<CheckpointRecord> checkpoints(const std::string& id, bool all = false) const;
+  /// The checkpoint whose SHA-256 begins so, whatever its state. Throws as find_run does.
+  CheckpointRecord find_checkpoint(std::string_view prefix) const;
+  /// Reads, verifies and decodes. Throws StoreDamaged naming the file, and CheckpointPruned.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
   std::vector<FigureRecord> figures() const;  ///< the newest of each name, by name
   /// Of one stream ("run/<id>", ...), or of all ("").
@@ -106,12 +132,33 @@ class Store {
 
   /// Drops what was derived from the events and derives it again.
   void rebuild();
-  VerifyReport verify() const;
+  /// `against` is a head that `verify` told earlier: the log must extend it.
+  VerifyReport verify(const std::optional<Head>& against = std::nullopt) const;
+
+  /// The checkpoints that `prune` would free. Left out are the newest checkpoint of each run, the
+  /// newest that can be read, and those that another stage started from.
+  std::vector<CheckpointRecord> prunable(const PruneChoice& choice) const;
+  /// Files of pruned checkpoints that a crash left behind.
+  std::vector<CheckpointRecord> prune_leftovers() const;
+  /// Records that they are pruned and then removes their files; a crash in between leaves files
+  /// that `verify` notes and the next `prune` removes. What became unfit to be pruned since is
+  /// kept. Returns the bytes that were freed.
+  std::uint64_t prune(const std::vector<CheckpointRecord>& records);
+  /// Keeps what was computed again for a record whose file is gone. Throws StoreDamaged when it is
+  /// not the same, byte for byte.
+  void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
+  /// ReplayVerified or ReplayDiverged: what came of computing a part of the run again.
+  void record_replay(const std::string& id, bool same, const nlohmann::json& facts);
+
+  /// Folds the events and checkpoints of other stores in (merge.hpp). Throws StoreDamaged or
+  /// MergeConflict, naming what is wrong, before anything is changed.
+  std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources);
 
  private:
   void append(std::string_view stream, std::uint64_t expected_version, NewEvent event,
               const sqlite::WriteTransaction& lock);
   void append_held(const std::string& id, NewEvent event, bool release);
+  void hold(const std::string& id, std::uint64_t attempt);
   void must_write() const;
 
   std::filesystem::path folder_;
@@ -120,7 +167,13 @@ class Store {
   mutable std::mutex mutex_;  ///< guards everything below
   mutable sqlite::Database database_;
   EventLog log_;
-  std::map<std::string, std::uint64_t> held_;  ///< run id -> version of its stream when last seen
+  struct Held {
+    std::uint64_t version = 0;  ///< of the run's stream when last seen
+    std::uint64_t attempt = 0;
+  };
+  Holder self_;
+  std::uint64_t lease_ms_;
+  std::map<std::string, Held> held_;  ///< by run id
 };
 
 }  // namespace shearcell

@@ -36,6 +36,25 @@ void check_chain(const EventLog& log, VerifyReport& report) {
   }
 }
 
+/// The chain proves that no event before a head was changed while the head stays what it was.
+void check_extends(const EventLog& log, const Head& earlier, VerifyReport& report) {
+  const auto damaged = [&](const std::string& message) {
+    report.findings.push_back({Severity::error, fmt::format("event {}", earlier.seq), "", message});
+  };
+  if (report.head.seq < earlier.seq) {
+    return damaged(
+        fmt::format("the log was cut off: it ends at event {}, and the head that was kept is event "
+                    "{}; restore the log from a backup",
+                    report.head.seq, earlier.seq));
+  }
+  const std::string found = log.hash_at(earlier.seq);
+  if (found == earlier.hash) return;
+  damaged(fmt::format(
+      "the log was rewritten: event {} has hash {}, and the head that was kept says {}; "
+      "restore the log from a backup",
+      earlier.seq, found, earlier.hash));
+}
+
 /// The tables as the events alone give them. Events that cannot be applied are named and left out.
 sqlite::Database derive(const EventLog& log, VerifyReport& report) {
   sqlite::Database fresh = sqlite::Database::in_memory();
@@ -74,6 +93,14 @@ void check_objects(const std::vector<CheckpointRecord>& records, const ObjectSto
   for (const CheckpointRecord& record : records) {
     const bool rejected = record.state == CheckpointState::rejected;
     known.insert(record.sha256);
+    if (record.state == CheckpointState::pruned) {
+      if (objects.contains(record.sha256)) {
+        report.findings.push_back({Severity::note, record.file, record.run,
+                                   "it was pruned and its file is still there, as a crash leaves "
+                                   "it; `shearcell prune` removes it"});
+      }
+      continue;
+    }
     try {
       objects.get(record.sha256, record.size);
       ++report.checkpoints;
@@ -114,7 +141,8 @@ bool VerifyReport::ok() const {
                       [](const Finding& finding) { return finding.severity == Severity::error; });
 }
 
-VerifyReport verify(sqlite::Database& database, const EventLog& log, const ObjectStore& objects) {
+VerifyReport verify(sqlite::Database& database, const EventLog& log, const ObjectStore& objects,
+                    const std::optional<Head>& against) {
   VerifyReport report;
   std::vector<CheckpointRecord> records;
   try {
@@ -122,6 +150,7 @@ VerifyReport verify(sqlite::Database& database, const EventLog& log, const Objec
     const sqlite::ReadTransaction snapshot(database);
     check_file(database, report);
     check_chain(log, report);
+    if (against) check_extends(log, *against, report);
     const sqlite::Database fresh = derive(log, report);
     compare_tables(projection_rows(database), projection_rows(fresh), report);
     records = query_checkpoints(fresh);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,9 @@ struct VerifyReport {
   bool ok() const;
 };
 
-/// Damage becomes findings; the rest is still examined. Throws only when the machine fails.
-VerifyReport verify(sqlite::Database& database, const EventLog& log, const ObjectStore& objects);
+/// Damage becomes findings; the rest is still examined. With `against`, a head that was told
+/// earlier, a log that does not extend it is damaged as well. Throws only when the machine fails.
+VerifyReport verify(sqlite::Database& database, const EventLog& log, const ObjectStore& objects,
+                    const std::optional<Head>& against = std::nullopt);
 
 }  // namespace shearcell

@@ -30,6 +30,7 @@ std::string known_figures() {
 
 void complain(const RegeneratedFigure& result) {
   for (const std::string& line : result.damage) fmt::print(stderr, "left out: {}\n", line);
+  for (const std::string& line : result.pruned) fmt::print(stderr, "left out: {}\n", line);
   for (const std::string& sha256 : result.changed) {
     fmt::print(stderr, "checkpoint {:.12}: other measures than these were kept; replaced\n",
                sha256);
@@ -46,7 +47,8 @@ nlohmann::json facts(const RegeneratedFigure& result) {
   return {{"figure", result.name},       {"scale", result.scale},
           {"runs", result.runs},         {"checkpoints", result.checkpoints},
           {"measured", result.measured}, {"files", files},
-          {"damage", result.damage},     {"changed", result.changed}};
+          {"damage", result.damage},     {"pruned", result.pruned},
+          {"changed", result.changed}};
 }
 
 void figures(const FigureOptions& options, Context& context) {
@@ -75,7 +77,8 @@ void figures(const FigureOptions& options, Context& context) {
     const RegeneratedFigure result = regenerate(store, *find_figure(name), how);
     complain(result);
     if (!result.damage.empty()) context.exit_code = kStoreDamaged;
-    if (!result.plot_error.empty() && context.exit_code == kDone) context.exit_code = kOtherError;
+    const bool incomplete = !result.plot_error.empty() || !result.pruned.empty();
+    if (incomplete && context.exit_code == kDone) context.exit_code = kOtherError;
     list.push_back(facts(result));
     if (context.json) continue;
     fmt::print("{} ({} scale): {} runs, {} checkpoints, {} of them measured now\n", result.name,

@@ -12,6 +12,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/cost.hpp"
+#include "experiments/runner/novelty.hpp"
 #include "experiments/runner/progress.hpp"
 
 namespace shearcell::cli {
@@ -39,7 +40,33 @@ struct Line {
   std::string state = "to do";
   double cycle = 0;
   StageCost left;
+  std::vector<std::string> shared_with = {};  // other experiments that contain it
+  std::optional<Novelty> novelty = {};        // nothing when the store knows it, or none like it
 };
+
+// "also in twin", "new: amplitude_rad 0.1 (store has 0.0833)".
+std::string remark(const Line& line) {
+  if (line.novelty) return "new: " + describe(*line.novelty);
+  return line.shared_with.empty() ? ""
+                                  : fmt::format("also in {}", fmt::join(line.shared_with, ", "));
+}
+
+void add_shares(const RunRecord& record, const std::string& experiment, Line& line) {
+  for (const Membership& m : record.memberships) {
+    auto& names = line.shared_with;
+    const bool known = std::find(names.begin(), names.end(), m.experiment) != names.end();
+    if (m.experiment != experiment && !known) names.push_back(m.experiment);
+  }
+}
+
+nlohmann::json facts(const std::optional<Novelty>& novelty) {
+  if (!novelty) return nullptr;
+  nlohmann::json fields = nlohmann::json::array();
+  for (const Difference& d : novelty->differences) {
+    fields.push_back({{"field", d.field}, {"value", d.planned}, {"store_has", d.known}});
+  }
+  return {{"nearest", novelty->nearest}, {"fields", fields}};
+}
 
 std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store) {
   std::vector<RunRecord> known;
@@ -49,10 +76,12 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store) 
   for (const PlannedRun& run : plan.runs) {
     for (const StageSpec* stage : {&run.prepare, &run.shear}) {
       if (!seen.insert(stage->key).second) continue;
-      Line line{&run, stage, "to do", 0, {}};
+      Line line{.run = &run, .stage = stage, .left = {}};
+      line.novelty = novelty(*stage, known);
       for (const RunRecord& record : known) {
         if (record.id != stage->key) continue;
         line.cycle = record.cycle;
+        add_shares(record, plan.experiment, line);
         const bool reached =
             stage->stage == Stage::prepare || record.cycle >= static_cast<double>(run.cycles);
         line.state = record.state == RunState::completed && reached ? "done"
@@ -95,6 +124,8 @@ void plan(const PlanOptions& options, Context& context) {
                       {"N", line.run->grains},
                       {"cycles", line.run->cycles},
                       {"state", line.state},
+                      {"shared_with", line.shared_with},
+                      {"new", facts(line.novelty)},
                       {"particle_steps_left", line.left.particle_steps},
                       {"bytes_left", line.left.bytes}});
     }
@@ -119,9 +150,9 @@ void plan(const PlanOptions& options, Context& context) {
                     prepare ? "" : line.run->variant, std::to_string(line.run->seed),
                     std::to_string(line.run->grains),
                     prepare ? "" : fmt::format("{:.4g}/{}", line.cycle, line.run->cycles),
-                    line.state});
+                    line.state, remark(line)});
   }
-  print_table({"run", "stage", "variant", "seed", "N", "cycle", "state"}, rows);
+  print_table({"run", "stage", "variant", "seed", "N", "cycle", "state", ""}, rows);
   fmt::print(
       "\nleft: {:.3g} particle-steps, about {} on {} cores at {:.0f} M particle-steps/s each ({}),"
       "\n      about {} on disk\n",
@@ -142,7 +173,11 @@ void add_plan(CLI::App& app, Context& context) {
   command->add_option("--seeds", options->expand.seeds,
                       "Number of seeds instead of the manifest's");
   add_common_options(*command, context, true);
-  command->footer("Examples:\n  shearcell plan experiments/drag.yaml --scale paper");
+  command->footer(
+      "A run that the store does not know is compared with the nearest one that it knows: the "
+      "values\n"
+      "in which they differ are what makes it new.\n"
+      "Examples:\n  shearcell plan experiments/drag.yaml --scale paper");
   command->callback([options, &context] { plan(*options, context); });
 }
 

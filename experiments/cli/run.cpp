@@ -34,6 +34,7 @@ void report(const CampaignResult& result, Context& context) {
   if (context.json) {
     print_json({{"completed", result.completed},
                 {"already_done", result.already},
+                {"done_elsewhere", result.elsewhere},
                 {"failed", result.failed},
                 {"interrupted", result.interrupted},
                 {"not_begun", result.blocked},
@@ -43,6 +44,9 @@ void report(const CampaignResult& result, Context& context) {
     fmt::print(
         "{} stages computed, {} were done already, {} failed, {} interrupted, {} not begun\n",
         result.completed, result.already, result.failed, result.interrupted, result.blocked);
+    if (result.elsewhere > 0) {
+      fmt::print("{} were computed by other programs meanwhile\n", result.elsewhere);
+    }
   }
   if (result.damaged > 0) {
     context.exit_code = kStoreDamaged;
@@ -52,7 +56,7 @@ void report(const CampaignResult& result, Context& context) {
     context.exit_code = kInterrupted;
     fmt::print(stderr, "Interrupted. Continue with: shearcell resume --store {}\n", context.store);
   } else if (result.blocked > 0) {
-    context.exit_code = kOtherError;  // another process has them
+    context.exit_code = kOtherError;
   }
 }
 
@@ -114,7 +118,9 @@ void add_run(CLI::App& app, Context& context) {
       "  shearcell run experiments/drag.yaml --scale desk --cycles 100   # extend\n"
       "\n"
       "What the store holds already is not computed again. Ctrl-C writes checkpoints and ends\n"
-      "with code 85; run again, or resume, to continue bit for bit.");
+      "with code 85; run again, or resume, to continue bit for bit. Several programs may run on "
+      "one\n"
+      "store at once, on one machine: they share the work.");
   command->callback([options, &context] { run(*options, context); });
 
   auto resume_options = std::make_shared<RunOptions>();

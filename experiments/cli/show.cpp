@@ -22,6 +22,7 @@ nlohmann::json facts(const CheckpointRecord& c) {
           {"size", c.size},
           {"sha256", c.sha256},
           {"state_hash", c.state_hash},
+          {"state", name_of(c.state)},
           {"rejected", c.state == CheckpointState::rejected},
           {"observables", c.observables}};
 }
@@ -71,12 +72,24 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   for (const CheckpointRecord& c : checkpoints) {
     rows.push_back({fmt::format("{:g}", c.cycle), std::to_string(c.step), c.sha256.substr(0, 12),
                     c.state_hash.substr(0, 12), format_bytes(static_cast<double>(c.size)),
-                    c.state == CheckpointState::rejected ? "rejected" : ""});
+                    c.state == CheckpointState::recorded ? "" : name_of(c.state)});
   }
   print_table({"cycle", "step", "checkpoint", "state", "size", ""}, rows);
 }
 
+// What stays on record of a checkpoint whose file was freed.
+void show_pruned(const CheckpointRecord& record, Context& context) {
+  if (context.json) return print_json(facts(record));
+  fmt::print("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
+             record.run);
+  fmt::print("file        pruned; `shearcell regenerate {:.12}` makes it again\n", record.sha256);
+  fmt::print("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step,
+             record.time_s);
+  for (const auto& [name, value] : record.observables) fmt::print("{:<42} {:.6g}\n", name, value);
+}
+
 void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
+  if (record.state == CheckpointState::pruned) return show_pruned(record, context);
   const Checkpoint checkpoint = store.load_checkpoint(record);
   if (context.json) {
     nlohmann::json all = facts(record);

@@ -48,6 +48,7 @@ class Deriving {
     keep();
     if (error_) std::rethrow_exception(error_);
     std::sort(outcome_.damage.begin(), outcome_.damage.end());
+    std::sort(outcome_.pruned.begin(), outcome_.pruned.end());
     std::sort(outcome_.changed.begin(), outcome_.changed.end());
     for (const std::size_t i : place_) outcome_.results.push_back(results_[i]);
     outcome_.trouble = cache_.trouble();
@@ -92,6 +93,10 @@ class Deriving {
         const std::lock_guard lock(mutex_);
         results_[i].reset();
         outcome_.damage.emplace_back(error.what());
+      } catch (const CheckpointPruned& error) {
+        const std::lock_guard lock(mutex_);
+        results_[i].reset();
+        outcome_.pruned.emplace_back(error.what());
       } catch (...) {
         const std::lock_guard lock(mutex_);
         if (!error_) error_ = std::current_exception();

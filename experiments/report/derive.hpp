@@ -30,6 +30,7 @@ struct Derived {
   std::size_t computed = 0;         ///< checkpoints
   std::size_t kept = 0;             ///< checkpoints whose results were there
   std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each, sorted
+  std::vector<std::string> pruned;  ///< likewise, whose files were pruned
   std::vector<std::string>
       changed;          ///< with `fresh`: checkpoints for which something else was kept
   std::string trouble;  ///< why results cannot be kept; "" when they can

@@ -74,7 +74,8 @@ std::vector<Input> inputs_of(const Store& store, std::string_view figure,
                               [&](const Input& i) { return i.membership.scale != scale; }),
                inputs.end());
   for (Input& input : inputs) {
-    for (const CheckpointRecord& record : store.checkpoints(input.run.id)) {
+    for (const CheckpointRecord& record : store.checkpoints(input.run.id, true)) {
+      if (record.state == CheckpointState::rejected) continue;
       if (record.cycle == std::floor(record.cycle)) input.checkpoints.push_back(record);
     }
   }
@@ -102,6 +103,7 @@ std::vector<std::optional<Measures>> measure(const Store& store, const std::vect
   }
   result.measured = derived.computed;
   result.damage = std::move(derived.damage);
+  result.pruned = std::move(derived.pruned);
   result.changed = std::move(derived.changed);
   result.cache_trouble = std::move(derived.trouble);
   return measured;

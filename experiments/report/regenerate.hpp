@@ -30,6 +30,7 @@ struct RegeneratedFigure {
   std::size_t measured = 0;                  ///< checkpoints that were analysed for it now
   std::vector<std::filesystem::path> files;  ///< CSV and SVG of each panel, then the lineage
   std::vector<std::string> damage;           ///< checkpoints that could not be read, one line each
+  std::vector<std::string> pruned;           ///< checkpoints whose files were pruned, likewise
   std::vector<std::string> changed;          ///< checkpoints whose kept measures were others
   std::string cache_trouble;                 ///< why measures cannot be kept; "" when they can
   std::string plot_error;                    ///< why there is no SVG; empty when there is
@@ -40,9 +41,9 @@ std::vector<std::string> figures_of_store(const Store& store);
 
 /// Writes FOLDER/PANEL.csv and .svg for each panel and FOLDER/NAME.lineage.json, and records a
 /// FigureGenerated event, with the host and build that made it, unless the newest one says the
-/// same. The same checkpoints give the same bytes. A checkpoint that cannot be read is left out and
-/// named; one whose measures the store keeps is not read. Throws NotFound when the store holds no
-/// run for the figure.
+/// same. The same checkpoints give the same bytes. A checkpoint whose measures the store keeps is
+/// not read; one that would have to be, and cannot or was pruned, is left out and named. Throws
+/// NotFound when the store holds no run for the figure.
 RegeneratedFigure regenerate(Store& store, const Figure& figure, const RegenerateOptions& options);
 
 }  // namespace shearcell

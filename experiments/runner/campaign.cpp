@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <set>
+#include <stop_token>
 #include <thread>
 
 #include "core/filling.hpp"
@@ -17,7 +19,37 @@
 namespace shearcell {
 namespace {
 
-enum class JobState { waiting, running, done, ended };  // ended: without reaching its target
+using Clock = std::chrono::steady_clock;
+
+// held: another program is at work on it. ended: without reaching its target.
+enum class JobState { waiting, running, held, done, ended };
+
+// How often a run that another program holds is looked at.
+constexpr std::chrono::milliseconds kLook{500};
+// A run that slips away so often, while nobody holds it, has a fault of its own.
+constexpr int kMostLosses = 20;
+
+// Shows every now and then that this program is alive, while simulations take their time.
+class Heartbeat {
+ public:
+  explicit Heartbeat(Store& store)
+      : thread_([this, &store](const std::stop_token& stop) {
+          const std::chrono::duration<double> interval(store.lease_seconds() / 4);
+          std::unique_lock lock(mutex_);
+          while (!wake_.wait_for(lock, stop, interval, [&stop] { return stop.stop_requested(); })) {
+            try {
+              store.renew_leases();
+            } catch (const std::exception&) {
+              // Tried again soon; meanwhile the log alone decides whose records count.
+            }
+          }
+        }) {}
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread thread_;  // last, so that it ends before what it uses
+};
 
 class Campaign {
  public:
@@ -26,9 +58,11 @@ class Campaign {
         jobs_(jobs),
         progress_(progress),
         threads_(threads),
-        states_(jobs.size(), JobState::waiting) {}
+        states_(jobs.size(), JobState::waiting),
+        holds_(jobs.size()) {}
 
   CampaignResult run(std::size_t workers) {
+    const Heartbeat heartbeat(store_);
     std::vector<std::thread> threads;
     for (std::size_t w = 0; w < std::max<std::size_t>(1, workers); ++w) {
       threads.emplace_back([this] { work(); });
@@ -41,19 +75,30 @@ class Campaign {
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-  // The first job that may begin; kNone when none may now. Jobs that can no longer begin are ended.
+  // What is known of a job that another program holds, or took.
+  struct Hold {
+    Clock::time_point look_at;
+    int losses = 0;
+  };
+
+  // The first job that may begin, or that was held and may be looked at again; kNone when there is
+  // none now. Jobs that can no longer begin are ended.
   std::size_t next_job() {
+    std::size_t look = kNone;
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
-      if (states_[j] != JobState::waiting) continue;
+      const bool held = states_[j] == JobState::held;
+      if (states_[j] != JobState::waiting && !held) continue;
       const JobState before = parent_state(j);
       if (before == JobState::ended || error_ || stop_requested()) {
         states_[j] = JobState::ended;
         ++result_.blocked;
+      } else if (held) {
+        if (look == kNone && Clock::now() >= holds_[j].look_at) look = j;
       } else if (before == JobState::done) {
         return j;
       }
     }
-    return kNone;
+    return look;
   }
 
   JobState parent_state(std::size_t j) const {
@@ -63,21 +108,29 @@ class Campaign {
     return JobState::done;  // a first stage, or one whose parent was not asked for
   }
 
+  std::size_t count(JobState state) const {
+    return static_cast<std::size_t>(std::count(states_.begin(), states_.end(), state));
+  }
+
   void work() {
     std::unique_lock lock(mutex_);
     for (;;) {
       const std::size_t j = next_job();
       if (j == kNone) {
-        const auto count = [this](JobState s) {
-          return std::count(states_.begin(), states_.end(), s);
-        };
-        if (count(JobState::waiting) == 0 || count(JobState::running) == 0) break;
-        changed_.wait(lock);
+        const std::size_t held = count(JobState::held);
+        if (held == 0 && (count(JobState::waiting) == 0 || count(JobState::running) == 0)) break;
+        if (held > 0) {
+          tell_waiting(held);
+          changed_.wait_for(lock, kLook);
+        } else {
+          changed_.wait(lock);
+        }
         continue;
       }
+      const bool was_held = states_[j] == JobState::held;
       states_[j] = JobState::running;
       lock.unlock();
-      const JobState state = run_job(jobs_[j]);
+      const JobState state = run_job(j, was_held);
       lock.lock();
       states_[j] = state;
       changed_.notify_all();
@@ -85,16 +138,21 @@ class Campaign {
     changed_.notify_all();
   }
 
-  JobState run_job(const StageJob& job) {
+  void tell_waiting(std::size_t held) {
+    if (count(JobState::running) > 0 || held == told_held_) return;
+    told_held_ = held;
+    progress_.note(fmt::format("waiting for {} stage{} that another program is at work on", held,
+                               held == 1 ? "" : "s"));
+  }
+
+  JobState run_job(std::size_t j, bool was_held) {
+    const StageJob& job = jobs_[j];
     try {
-      return compute(job);
+      return compute(j, was_held);
     } catch (const StoreDamaged& damage) {
       note(job, &CampaignResult::damaged, damage.what());
     } catch (const GeometryError& error) {
       note(job, &CampaignResult::failed, error.what());
-    } catch (const ConcurrencyConflict& conflict) {
-      note(job, &CampaignResult::blocked,
-           std::string("another process took the run over: ") + conflict.what());
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
@@ -102,21 +160,36 @@ class Campaign {
     return JobState::ended;
   }
 
-  JobState compute(const StageJob& job) {
-    if (stage_done(store_, store_.run(job.id))) {
-      const std::lock_guard lock(mutex_);
-      ++result_.already;
+  bool held_by_another(const std::string& run) const {
+    const std::vector<Lease> leases = store_.leases();
+    return std::any_of(leases.begin(), leases.end(),
+                       [&run](const Lease& lease) { return lease.run == run; });
+  }
+
+  JobState put_off(std::size_t j) {
+    holds_[j].look_at = Clock::now() + kLook;
+    return JobState::held;
+  }
+
+  JobState compute(std::size_t j, bool was_held) {
+    const StageJob& job = jobs_[j];
+    const RunRecord run = store_.run(job.id);
+    if (stage_done(store_, run)) {
+      if (was_held) {
+        finish(job, &CampaignResult::elsewhere, "done by another program");
+      } else {
+        const std::lock_guard lock(mutex_);
+        ++result_.already;
+      }
       return JobState::done;
     }
+    if (held_by_another(job.id)) return put_off(j);
+    if (was_held && run.state == RunState::failed) {
+      note(job, &CampaignResult::failed, run.error);  // and so it would fail here
+      return JobState::ended;
+    }
     progress_.begin(job.name);
-    StageOptions options;
-    options.checkpoint_every = job.checkpoint_every;
-    options.threads = threads_;
-    options.damaged = [&](const std::string& what) {
-      note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
-    };
-    options.report = [&](const StageStatus& status) { progress_.update(job.name, status); };
-    const StageOutcome outcome = run_stage(store_, job.id, options);
+    const StageOutcome outcome = run_stage(store_, job.id, options_of(job));
     switch (outcome) {
       case StageOutcome::completed:
         finish(job, &CampaignResult::completed, "done");
@@ -128,8 +201,28 @@ class Campaign {
         note(job, &CampaignResult::failed, store_.run(job.id).error);
         progress_.end(job.name, "FAILED");
         return JobState::ended;
+      case StageOutcome::held:
+      case StageOutcome::lost:
+        progress_.drop(job.name);
+        if (++holds_[j].losses > kMostLosses && !held_by_another(job.id)) {
+          note(job, &CampaignResult::blocked,
+               "it cannot be begun; `shearcell verify` may tell why");
+          return JobState::ended;
+        }
+        return put_off(j);
     }
     return JobState::ended;
+  }
+
+  StageOptions options_of(const StageJob& job) {
+    StageOptions options;
+    options.checkpoint_every = job.checkpoint_every;
+    options.threads = threads_;
+    options.damaged = [&](const std::string& what) {
+      note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
+    };
+    options.report = [&](const StageStatus& status) { progress_.update(job.name, status); };
+    return options;
   }
 
   void finish(const StageJob& job, std::size_t CampaignResult::*count, const char* how) {
@@ -155,6 +248,8 @@ class Campaign {
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   std::vector<JobState> states_;
+  std::vector<Hold> holds_;  // each used by the one thread that runs its job
+  std::size_t told_held_ = 0;
   CampaignResult result_;
   std::exception_ptr error_;
 };

@@ -23,6 +23,7 @@ struct StageJob {
 struct CampaignResult {
   std::size_t completed = 0;  ///< stages computed now
   std::size_t already = 0;    ///< stages that were done before
+  std::size_t elsewhere = 0;  ///< stages that another program completed meanwhile
   std::size_t failed = 0;     ///< stopped by the watchdog
   std::size_t interrupted = 0;
   std::size_t blocked = 0;  ///< not begun, because the stage before failed or was interrupted
@@ -38,8 +39,10 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
 /// with the stages before them. Throws NotFound for a prefix that fits no run or several.
 std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes);
 
-/// Computes every job that is not done. A failure stops only the stages that depend on it.
-/// `threads` is how many each simulation uses; it changes no bit.
+/// Computes every job that is not done. A failure stops only the stages that depend on it. Stages
+/// that another program is at work on are left to it while there is other work, then waited for,
+/// and taken over when that program ends or its lease expires. `threads` is how many each
+/// simulation uses; it changes no bit.
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
                             Progress& progress, std::size_t threads = 1);
 

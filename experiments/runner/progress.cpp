@@ -79,6 +79,16 @@ void Progress::end(const std::string& name, const std::string& how) {
   if (terminal_) draw();
 }
 
+void Progress::drop(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  running_.erase(name);
+  erase();
+}
+
+void Progress::note(const std::string& line) {
+  if (!quiet_) say(line);
+}
+
 void Progress::say(const std::string& line) {
   const std::lock_guard lock(mutex_);
   erase();

@@ -22,6 +22,10 @@ class Progress {
   void begin(const std::string& name);
   void update(const std::string& name, const StageStatus& status);
   void end(const std::string& name, const std::string& how);
+  /// It was begun and is left to another program.
+  void drop(const std::string& name);
+  /// A line that stays, unless progress is not wanted.
+  void note(const std::string& line);
   /// A line that stays.
   void say(const std::string& line);
 

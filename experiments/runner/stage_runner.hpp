@@ -11,8 +11,9 @@
 
 namespace shearcell {
 
-/// How a stage ended in this process.
-enum class StageOutcome : std::uint8_t { completed, interrupted, failed };
+/// How a stage ended in this process. `held`: another program is at work on it, and nothing was
+/// begun. `lost`: another program took it over, completed it or recorded a later state meanwhile.
+enum class StageOutcome : std::uint8_t { completed, interrupted, failed, held, lost };
 
 /// Where a running stage stands, for people who watch.
 struct StageStatus {
@@ -33,7 +34,8 @@ struct StageOptions {
 
 /// Computes the stage `id` until its target: continues from its newest checkpoint that verifies,
 /// or else begins from its parent's last state, or from a fresh filling. Checks for
-/// stop_requested() between chunks of steps of about 50 ms.
+/// stop_requested(), and whether the store still holds the run, between chunks of steps of about
+/// 50 ms.
 /// Throws StoreDamaged when the parent's last state cannot be read and GeometryError for a cell
 /// that cannot be filled, both before an attempt is recorded.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);

@@ -36,8 +36,8 @@ TEST_F(CommandLine, EverySubcommandHasHelpWithAnExample) {
   const Outcome all = run({"--help"});
   EXPECT_EQ(all.code, 0);
   EXPECT_TRUE(contains(all.out, "Exit codes"));
-  for (const char* command :
-       {"plan", "run", "resume", "status", "log", "show", "verify", "figures"}) {
+  for (const char* command : {"plan", "run", "resume", "status", "log", "show", "verify", "rebuild",
+                              "prune", "regenerate", "merge", "figures"}) {
     EXPECT_TRUE(contains(all.out, std::string("  ") + command)) << command;
     const Outcome help = run({command, "--help"});
     EXPECT_EQ(help.code, 0) << command;

@@ -2,11 +2,13 @@
 // However often and wherever a run is interrupted, it ends in the same bits as one that never was.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <thread>
 
 #include "experiments/runner/stage_runner.hpp"
+#include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
 namespace shearcell {
@@ -85,7 +87,7 @@ TEST_F(Interruption, BeforeTheFirstStageBeginsNothing) {
   EXPECT_EQ(resume(store_).completed, 3U);
 }
 
-// Two programs at once on one store: the later one takes runs over, and nothing is mixed up.
+// Two programs at once on one store share the work, and nothing is mixed up.
 TEST_F(Interruption, ByAnotherProgramOnTheSameStoreLeavesNoTrace) {
   const std::string text = tiny_manifest("  cycles: 4\n", kBothFluids);
   compute(whole_, text);
@@ -102,6 +104,40 @@ TEST_F(Interruption, ByAnotherProgramOnTheSameStoreLeavesNoTrace) {
   EXPECT_EQ(final_hashes(store_), final_hashes(whole_));
   for (const RunRecord& run : store_.runs()) EXPECT_EQ(run.state, RunState::completed);
   EXPECT_TRUE(store_.verify().ok());
+}
+
+// Two seconds without a record, at a lease of a quarter of it.
+TEST_F(Interruption, IsNotInvitedByALongWayBetweenCheckpoints) {
+  const std::string text = tiny_manifest("  cycles: 40\n", "checkpoints: {every_cycles: 40}\n");
+  Store runner(store_.folder(), Access::write, {.lease_seconds = 0.5});
+  std::atomic<bool> done = false;
+  int refused = 0, taken = 0;
+  std::thread other([&] {
+    while (!done) {
+      for (const RunRecord& run : runs_of_kind(store_, "shear")) {
+        if (run.state != RunState::running) continue;
+        try {
+          store_.start_run(run.id, {},
+                           store_.checkpoints(run.id).empty()
+                               ? std::nullopt
+                               : std::optional(store_.checkpoints(run.id).back().sha256));
+          ++taken;
+        } catch (const RunHeld&) {
+          ++refused;
+        } catch (const ConcurrencyConflict&) {
+          // It was completed between the look and the call.
+        }
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  });
+  const CampaignResult result = compute(runner, text, {}, 1);
+  done = true;
+  other.join();
+  std::printf("refused %d times\n", refused);
+  EXPECT_EQ(result.completed, 2U);
+  EXPECT_EQ(taken, 0);
+  EXPECT_GT(refused, 5);
 }
 
 // A run that is interrupted within a cycle goes on at the cadence that was declared.

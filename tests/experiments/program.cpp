@@ -17,10 +17,10 @@ namespace shearcell::test {
 
 namespace fs = std::filesystem;
 
-pid_t ProgramTest::start(const Arguments& arguments) {
+ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::string& name) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  const std::string out = outputs_.path() / "out", err = outputs_.path() / "err";
+  const std::string out = outputs_.path() / ("out" + name), err = outputs_.path() / ("err" + name);
   constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC;
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), flags, 0600);
@@ -43,26 +43,32 @@ pid_t ProgramTest::start(const Arguments& arguments) {
       posix_spawn(&child, SHEARCELL_PROGRAM, &actions, nullptr, argv.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw std::runtime_error(std::string("posix_spawn: ") + std::strerror(error));
-  return child;
+  return {child, out, err};
 }
 
-Outcome ProgramTest::wait(pid_t child) {
+ProgramTest::Running ProgramTest::start_beside(const Arguments& arguments,
+                                               const std::string& name) {
+  return start(arguments, "-" + name);
+}
+
+Outcome ProgramTest::wait_for(const Running& program) {
   int status = 0;
-  waitpid(child, &status, 0);
+  waitpid(program.pid, &status, 0);
   Outcome outcome;
   if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
-  outcome.out = read_bytes(outputs_.path() / "out");
-  outcome.err = read_bytes(outputs_.path() / "err");
+  outcome.out = read_bytes(program.out);
+  outcome.err = read_bytes(program.err);
   return outcome;
 }
 
 Outcome ProgramTest::run(const Arguments& arguments) {
-  return wait(start(arguments));
+  return wait_for(start(arguments));
 }
 
 Outcome ProgramTest::run_until(const Arguments& arguments, std::size_t files, int signal) {
-  const pid_t child = start(arguments);
+  const Running program = start(arguments);
+  const pid_t child = program.pid;
   siginfo_t ended{};
   while (objects() < files) {
     waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT);
@@ -70,7 +76,7 @@ Outcome ProgramTest::run_until(const Arguments& arguments, std::size_t files, in
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   kill(child, signal);
-  return wait(child);
+  return wait_for(program);
 }
 
 nlohmann::json ProgramTest::json(const Arguments& arguments) {

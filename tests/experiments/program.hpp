@@ -33,6 +33,14 @@ class ProgramTest : public testing::Test {
   /// Sends `signal` as soon as the store has at least `files` checkpoint files.
   Outcome run_until(const Arguments& arguments, std::size_t files, int signal);
 
+  /// One that runs beside the test; its output goes to files of its own.
+  struct Running {
+    pid_t pid = 0;
+    std::filesystem::path out, err;
+  };
+  Running start_beside(const Arguments& arguments, const std::string& name);
+  static Outcome wait_for(const Running& program);
+
   /// Output of a command that must succeed, read as JSON.
   nlohmann::json json(const Arguments& arguments);
 
@@ -57,8 +65,7 @@ class ProgramTest : public testing::Test {
   std::string newest_file(const std::string& run, const std::string& store = "shearcell-store");
 
  private:
-  pid_t start(const Arguments& arguments);
-  Outcome wait(pid_t child);
+  Running start(const Arguments& arguments, const std::string& name = "");
 
   TemporaryFolder folder_;
   TemporaryFolder outputs_;  // apart, so that they do not show in the listing

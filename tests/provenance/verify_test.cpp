@@ -151,7 +151,7 @@ TEST_F(VerifyTest, NamesOrphans) {
 TEST_F(VerifyTest, NotesAStepThatWasReproducedDifferently) {
   {
     Store store(path_, Access::write);
-    store.start_run(run_id(1), {});
+    store.start_run(run_id(1), {}, records_[4].sha256);
     Checkpoint other = sample_checkpoint(run_id(1), 1);
     other.state.position(0, 0) += 1e-16;
     other.state.position(0, 1) += 1;

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `merge`: folds other stores into this one.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "experiments/cli/command.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+void merge(const std::vector<std::string>& sources, Context& context) {
+  Store store(context.store, Access::create);
+  const auto reports = store.merge({sources.begin(), sources.end()});
+  if (context.json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const MergeReport& report : reports) {
+      list.push_back({{"source", report.source},
+                      {"head", {{"seq", report.head.seq}, {"hash", report.head.hash}}},
+                      {"events", report.events},
+                      {"checkpoints", report.checkpoints},
+                      {"bytes", report.bytes}});
+    }
+    print_json({{"merged", list}});
+    return;
+  }
+  for (const MergeReport& report : reports) {
+    fmt::print("{}: {} of {} events and {} checkpoints ({}) were new\n", report.source,
+               report.events, report.head.seq, report.checkpoints,
+               format_bytes(static_cast<double>(report.bytes)));
+  }
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app, Context& context) {
+  auto sources = std::make_shared<std::vector<std::string>>();
+  CLI::App* command =
+      app.add_subcommand("merge", "Fold the runs of other stores into the one that --store names");
+  command->add_option("source", *sources, "Folders of the stores to merge")
+      ->required()
+      ->type_name("STORE");
+  add_common_options(*command, context, true);
+  command->footer(
+      "The chain of each source and every copied file are checked first, and two stores that tell\n"
+      "different states of one run at one step are refused, before anything is changed. The "
+      "sources\n"
+      "stay as they are, and merging twice changes nothing.\n"
+      "Examples:\n  shearcell merge task-1 task-2 --store all");
+  command->callback([sources, &context] { merge(*sources, context); });
+}
+
+}  // namespace shearcell::cli

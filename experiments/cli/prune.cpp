@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `prune`: frees the bytes of checkpoints that can be computed again; their records stay.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <iostream>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "experiments/cli/command.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+struct PruneOptions {
+  std::vector<std::string> runs;
+  std::string state;
+  std::uint64_t keep_every = 0;
+  bool yes = false;
+};
+
+PruneChoice choice_of(const PruneOptions& options, const Store& store) {
+  if (options.runs.empty() && options.state.empty() && options.keep_every == 0) {
+    throw CLI::ValidationError(
+        "prune", "say what may go: --keep-every K, --state STATE, or runs; see prune --help");
+  }
+  PruneChoice choice;
+  for (const std::string& prefix : options.runs) choice.runs.push_back(store.find_run(prefix).id);
+  choice.keep_every = options.keep_every;
+  for (const RunState state : {RunState::declared, RunState::running, RunState::interrupted,
+                               RunState::failed, RunState::completed}) {
+    if (options.state == name_of(state)) choice.state = state;
+  }
+  return choice;
+}
+
+double bytes_of(const std::vector<CheckpointRecord>& records) {
+  double bytes = 0;
+  for (const CheckpointRecord& record : records) bytes += static_cast<double>(record.size);
+  return bytes;
+}
+
+void print_plan(const Store& store, const std::vector<CheckpointRecord>& records) {
+  std::map<std::string, std::vector<CheckpointRecord>> by_run;
+  for (const CheckpointRecord& record : records) by_run[record.run].push_back(record);
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [id, of_run] : by_run) {
+    const RunRecord run = store.run(id);
+    rows.push_back({id.substr(0, 8), name_of(run.state), std::to_string(of_run.size()),
+                    std::to_string(store.checkpoints(id).size()), format_bytes(bytes_of(of_run))});
+  }
+  print_table({"run", "state", "to free", "of", "bytes"}, rows);
+}
+
+bool agreed() {
+  if (isatty(STDIN_FILENO) == 0) return false;
+  fmt::print(stderr, "Free them? [y/N] ");
+  std::string answer;
+  return std::getline(std::cin, answer) && (answer == "y" || answer == "Y");
+}
+
+void prune(const PruneOptions& options, Context& context) {
+  Store store(context.store, Access::write);
+  std::vector<CheckpointRecord> records = store.prunable(choice_of(options, store));
+  const std::size_t news = records.size();
+  for (CheckpointRecord& left : store.prune_leftovers()) records.push_back(std::move(left));
+  if (!context.json) {
+    print_plan(store, records);
+    fmt::print("{} checkpoints, {}\n", records.size(), format_bytes(bytes_of(records)));
+  }
+  const bool go = !records.empty() && (options.yes || (!context.json && agreed()));
+  const std::uint64_t freed = go ? store.prune(records) : 0;
+  if (context.json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const CheckpointRecord& record : records) {
+      list.push_back({{"run", record.run},
+                      {"cycle", record.cycle},
+                      {"sha256", record.sha256},
+                      {"size", record.size}});
+    }
+    print_json({{"checkpoints", list},
+                {"leftovers", records.size() - news},
+                {"bytes", bytes_of(records)},
+                {"pruned", go},
+                {"bytes_freed", freed}});
+  } else if (go) {
+    fmt::print("{} freed; `shearcell regenerate CHECKPOINT` makes one again\n",
+               format_bytes(static_cast<double>(freed)));
+  } else if (!records.empty()) {
+    fmt::print("Nothing was freed. To do it: the same with --yes\n");
+  }
+}
+
+}  // namespace
+
+void add_prune(CLI::App& app, Context& context) {
+  auto options = std::make_shared<PruneOptions>();
+  CLI::App* command =
+      app.add_subcommand("prune", "Free the bytes of checkpoints that can be computed again");
+  command->add_option("run", options->runs, "Only these runs: ids, or unique beginnings of them");
+  command->add_option("--state", options->state, "Only runs in this state")
+      ->check(CLI::IsMember({"declared", "running", "interrupted", "failed", "completed"}));
+  command->add_option("--keep-every", options->keep_every, "Keep every K-th cycle")
+      ->check(CLI::Range(1, 1'000'000'000))
+      ->type_name("K");
+  command->add_flag("--yes,-y", options->yes, "Do it, instead of asking");
+  add_common_options(*command, context, true);
+  command->footer(
+      "Shows first what it would free. Kept in any case are the newest checkpoint of each run, "
+      "and\n"
+      "those that other stages started from. What was pruned stays on record, and figures that "
+      "need\n"
+      "it say so.\n"
+      "Examples:\n  shearcell prune --keep-every 10\n  shearcell prune --state failed --yes");
+  command->callback([options, &context] { prune(*options, context); });
+}
+
+}  // namespace shearcell::cli

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/runner/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <random>
+#include <utility>
+
+#include "core/watchdog.hpp"
+#include "experiments/runner/host.hpp"
+#include "experiments/runner/stage.hpp"
+#include "experiments/runner/stop.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell {
+namespace {
+
+// Numbers in the order of the reals, so that neighbours are one apart; -0 and +0 are, too.
+std::int64_t ordered_bits(double x) {
+  const auto bits = std::bit_cast<std::int64_t>(x);
+  return bits >= 0 ? bits : std::int64_t{-1} - (bits & INT64_MAX);
+}
+
+std::uint64_t ulp_distance(double a, double b) {
+  const std::int64_t x = ordered_bits(a), y = ordered_bits(b);
+  return x > y ? static_cast<std::uint64_t>(x) - static_cast<std::uint64_t>(y)
+               : static_cast<std::uint64_t>(y) - static_cast<std::uint64_t>(x);
+}
+
+void compare(const char* field, const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b,
+             Divergence& worst) {
+  if (a.cols() != b.cols()) return;
+  for (Eigen::Index i = 0; i < a.cols(); ++i) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const std::uint64_t ulp = ulp_distance(a(k, i), b(k, i));
+      if (ulp <= worst.ulp) continue;
+      worst.field = field;
+      worst.grain = i;
+      worst.ulp = ulp;
+    }
+  }
+}
+
+void compare(const char* field, double a, double b, Divergence& worst) {
+  const std::uint64_t ulp = ulp_distance(a, b);
+  if (ulp <= worst.ulp) return;
+  worst.field = field;
+  worst.grain = -1;
+  worst.ulp = ulp;
+}
+
+// The recorded state, where its file can still be read.
+std::optional<Checkpoint> recorded_state(const Store& store, const CheckpointRecord& record) {
+  try {
+    return store.load_checkpoint(record);
+  } catch (const CheckpointPruned&) {
+    return std::nullopt;
+  } catch (const StoreDamaged&) {
+    return std::nullopt;
+  }
+}
+
+Beginning nearest_beginning(Store& store, const StagePlan& plan, std::uint64_t step) {
+  std::vector<CheckpointRecord> earlier = store.checkpoints(plan.run.id);
+  std::erase_if(earlier, [step](const CheckpointRecord& c) { return c.step >= step; });
+  std::reverse(earlier.begin(), earlier.end());
+  for (CheckpointRecord& record : earlier) {
+    if (auto kept = recorded_state(store, record)) {
+      return {std::move(kept->cell), std::move(kept->state), std::move(record), ""};
+    }
+  }
+  std::vector<std::string> ignored;
+  return begin_stage(store, plan, ignored);
+}
+
+class Replaying {
+ public:
+  Replaying(Store& store, const CheckpointRecord& record)
+      : store_(store), plan_(plan_stage(store.run(record.run), 1)) {
+    replay_.record = record;
+  }
+
+  /// The state at the record's step; nothing when that was not reached.
+  std::optional<Checkpoint> compute(std::size_t threads) {
+    const CheckpointRecord& record = replay_.record;
+    Beginning beginning = nearest_beginning(store_, plan_, record.step);
+    replay_.from = beginning.from;
+    try {
+      Simulation simulation = make_simulation(plan_, std::move(beginning), threads);
+      first_ = simulation.step();
+      const std::uint64_t chunk = chunk_steps(simulation.grains());
+      while (simulation.step() < record.step) {
+        const std::uint64_t left = record.step - simulation.step();
+        const StageProgress progress = plan_.protocol->advance(simulation, std::min(chunk, left));
+        replay_.steps = simulation.step() - first_;
+        if (progress.finished && simulation.step() < record.step) {
+          diverge(simulation.step(),
+                  fmt::format("the stage ended at step {} already", simulation.step()));
+          return std::nullopt;
+        }
+        if (stop_requested()) {
+          replay_.interrupted = true;
+          return std::nullopt;
+        }
+      }
+      return make_checkpoint(plan_, simulation, record.cycle);
+    } catch (const NumericalFailure& failure) {
+      diverge(failure.step, failure.what());
+      return std::nullopt;
+    }
+  }
+
+  void compare_with(const Checkpoint& found) {
+    const CheckpointRecord& record = replay_.record;
+    const std::string hash = state_hash(found);
+    if (hash == record.state_hash) return;
+    diverge(record.step, fmt::format("state {:.12} instead of {:.12}", hash, record.state_hash));
+    Divergence& worst = *replay_.divergence;
+    if (const auto recorded = recorded_state(store_, record)) {
+      const State& a = recorded->state;
+      const State& b = found.state;
+      compare("position", a.position, b.position, worst);
+      compare("velocity", a.velocity, b.velocity, worst);
+      compare("wall_height", a.wall_height, b.wall_height, worst);
+      compare("wall_velocity", a.wall_velocity, b.wall_velocity, worst);
+    }
+  }
+
+  void diverge(std::uint64_t step, const std::string& message, const std::string& field = "") {
+    replay_.divergence = Divergence{first_, step, field, -1, 0, message};
+  }
+
+  void record_outcome() {
+    const CheckpointRecord& record = replay_.record;
+    nlohmann::json facts = {{"sha256", record.sha256}, {"step", record.step},
+                            {"cycle", record.cycle},   {"state_hash", record.state_hash},
+                            {"from", nullptr},         {"steps", replay_.steps},
+                            {"host", host_facts()}};
+    if (replay_.from) {
+      facts["from"] = {{"sha256", replay_.from->sha256}, {"step", replay_.from->step}};
+    }
+    if (const auto& d = replay_.divergence) {
+      facts["last_same_step"] = d->same_step;
+      facts["first_step"] = d->first_step;
+      facts["field"] = d->field;
+      facts["grain"] = d->grain;
+      facts["ulp"] = d->ulp;
+      facts["why"] = d->message;
+    }
+    store_.record_replay(record.run, !replay_.divergence, facts);
+  }
+
+  Replay& result() { return replay_; }
+
+ private:
+  Store& store_;
+  StagePlan plan_;
+  Replay replay_;
+  std::uint64_t first_ = 0;
+};
+
+}  // namespace
+
+std::vector<CheckpointRecord> replayable(const Store& store) {
+  std::vector<CheckpointRecord> found;
+  for (const RunRecord& run : store.runs()) {
+    for (CheckpointRecord& record : store.checkpoints(run.id, true)) {
+      if (record.state != CheckpointState::rejected) found.push_back(std::move(record));
+    }
+  }
+  return found;
+}
+
+std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
+                                     std::uint64_t seed) {
+  count = std::min(count, records.size());
+  // Distributions of the standard library differ between libraries; a remainder does not.
+  std::mt19937_64 random(seed);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::swap(records[i], records[i + random() % (records.size() - i)]);
+  }
+  records.resize(count);
+  return records;
+}
+
+Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads) {
+  Replaying replaying(store, record);
+  if (const auto found = replaying.compute(threads)) replaying.compare_with(*found);
+  if (!replaying.result().interrupted) replaying.record_outcome();
+  return std::move(replaying.result());
+}
+
+Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads) {
+  Replaying replaying(store, record);
+  const auto found = replaying.compute(threads);
+  if (found) replaying.compare_with(*found);
+  if (found && !replaying.result().divergence) {
+    try {
+      store.restore_checkpoint(record, *found);
+    } catch (const StoreDamaged& other_bytes) {
+      replaying.diverge(record.step, other_bytes.what(), "file");
+    }
+  }
+  if (replaying.result().divergence) replaying.record_outcome();
+  return std::move(replaying.result());
+}
+
+}  // namespace shearcell

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Computes recorded states again, from a kept state before them, to prove or to restore them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+/// Where a state that was computed again parts from the one that is recorded.
+struct Divergence {
+  std::uint64_t same_step = 0;   ///< last step known to be the same: where the replay began
+  std::uint64_t first_step = 0;  ///< first step known to differ
+  std::string field;  ///< "position", "velocity", "wall_height", "wall_velocity"; "file" when the
+                      ///< states are equal and their files are not; "" when it is not known
+  std::int64_t grain = -1;
+  std::uint64_t ulp = 0;  ///< largest distance in the field [units in the last place]
+  std::string message;
+};
+
+struct Replay {
+  CheckpointRecord record;
+  std::optional<CheckpointRecord> from;  ///< nothing: from the beginning of the stage
+  std::uint64_t steps = 0;               ///< that were computed again
+  std::optional<Divergence> divergence;
+  bool interrupted = false;  ///< by a signal; nothing is known and nothing was recorded
+};
+
+/// Every checkpoint that can be replayed, in the order of their runs and steps. Pruned ones can.
+std::vector<CheckpointRecord> replayable(const Store& store);
+
+/// `count` of them without repetition, or all; the same for the same seed.
+std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
+                                     std::uint64_t seed);
+
+/// Computes from the nearest earlier checkpoint that is kept, or the beginning of the stage, up to
+/// the record's step, compares, and records ReplayVerified or ReplayDiverged.
+Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
+
+/// The same, and keeps the file: a pruned, missing or damaged checkpoint is there again, with the
+/// same SHA-256. When it came out otherwise, ReplayDiverged is recorded and nothing is kept.
+Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
+
+}  // namespace shearcell

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/runner/stage.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/diagnostics.hpp"
+#include "core/drive.hpp"
+#include "core/filling.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "protocols/cyclic_shear.hpp"
+#include "protocols/settle.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell {
+namespace {
+
+std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t cycles,
+                                        std::uint64_t checkpoint_every) {
+  const Parameters& p = stage.parameters;
+  if (stage.stage == Stage::prepare) {
+    return std::make_unique<Settle>(
+        SettleParameters{p.settle_force_tolerance, p.settle_kinetic_tolerance,
+                         p.settle_time_limit_s},
+        settle_scene(p));
+  }
+  return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every);
+}
+
+}  // namespace
+
+StagePlan plan_stage(RunRecord run, std::uint64_t checkpoint_every) {
+  if (stage_key(run.resolved) != run.id) {
+    throw StoreDamaged("run " + run.id.substr(0, 12) +
+                       ": its recorded parameters are not those that it is named after");
+  }
+  StageRecord stage = read_stage(run.resolved);
+  const Scene scene = stage.stage == Stage::prepare ? settle_scene(stage.parameters)
+                                                    : shear_scene(stage.parameters);
+  auto protocol = make_protocol(stage, run.target_cycles, checkpoint_every);
+  return {std::move(run), std::move(stage), scene, std::move(protocol)};
+}
+
+Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>& damage) {
+  const RunRecord& run = plan.run;
+  if (run.parent.empty()) {
+    const Geometry shape = geometry(plan.stage.parameters);
+    Cell cell = make_cell(shape, plan.stage.seed);
+    State state = fill_cell(cell, shape, plan.stage.seed);
+    return {std::move(cell), std::move(state), std::nullopt, ""};
+  }
+  auto parent = store.newest_valid_checkpoint(run.parent, &damage);
+  if (!parent) {
+    throw StoreDamaged("run " + run.parent.substr(0, 12) + ": the settled packing that run " +
+                       run.id.substr(0, 12) +
+                       " starts from is missing; run the manifest again to make it anew");
+  }
+  parent->checkpoint.state.step = 0;
+  return {std::move(parent->checkpoint.cell), std::move(parent->checkpoint.state), std::nullopt,
+          parent->record.sha256};
+}
+
+Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>& damage) {
+  if (auto newest = store.newest_valid_checkpoint(plan.run.id, &damage)) {
+    return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
+            std::move(newest->record), ""};
+  }
+  return begin_stage(store, plan, damage);
+}
+
+Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads) {
+  EngineSettings settings;
+  settings.threads = threads;
+  settings.limits.overlap = plan.stage.parameters.max_overlap_diameters;
+  return Simulation(std::move(beginning.cell), plan.scene, beginning.state, settings);
+}
+
+// At 50 million particle-steps/s.
+std::uint64_t chunk_steps(std::size_t grains) {
+  return std::max<std::uint64_t>(1, 2'500'000 / std::max<std::size_t>(1, grains));
+}
+
+Checkpoint make_checkpoint(const StagePlan& plan, const Simulation& simulation, double cycle) {
+  simulation.check();
+  Checkpoint checkpoint;
+  checkpoint.run = plan.run.id;
+  checkpoint.cell = simulation.cell();
+  checkpoint.state = simulation.state();
+  checkpoint.cycle = cycle;
+  checkpoint.time_s = static_cast<double>(simulation.step()) * plan.scene.time_step;
+  checkpoint.theta = tilt(plan.protocol->drive(), simulation.step()).theta;
+  checkpoint.units = units(plan.stage.parameters);
+  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  const Diagnostics facts = diagnose(checkpoint.cell, plan.scene, checkpoint.state, pose);
+  checkpoint.observables = {{"kinetic_energy_per_grain_m_d2_per_s2", facts.kinetic_energy},
+                            {"mean_overlap_d", facts.mean_overlap},
+                            {"largest_overlap_d", facts.largest_overlap},
+                            {"contacts_per_grain", facts.contacts_per_grain},
+                            {"wall_force_imbalance", facts.wall_imbalance},
+                            {"cell_height_d", pose.top - pose.bottom}};
+  return checkpoint;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One stage of a run as the store knows it, made ready to be stepped: the same for a first
+// computation, a continuation and a replay.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/simulation.hpp"
+#include "experiments/manifest/identity.hpp"
+#include "protocols/protocol.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+/// What acts during the stage, and what is done to it.
+struct StagePlan {
+  RunRecord run;
+  StageRecord stage;
+  Scene scene;
+  std::unique_ptr<Protocol> protocol;
+};
+
+/// Throws StoreDamaged when the recorded parameters are not those that the run is named after.
+StagePlan plan_stage(RunRecord run, std::uint64_t checkpoint_every);
+
+/// The state from which a stage is stepped on.
+struct Beginning {
+  Cell cell;
+  State state;
+  std::optional<CheckpointRecord> from;  ///< checkpoint of this stage that it continues
+  std::string parent_checkpoint;         ///< that the stage begins from, or ""
+};
+
+/// Where the stage itself begins: its parent's last state, or a fresh filling. Throws StoreDamaged
+/// when the parent's last state cannot be read.
+Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>& damage);
+
+/// The newest checkpoint that verifies, or else where the stage begins.
+Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>& damage);
+
+/// Takes the beginning's cell and state over.
+Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads);
+
+/// Steps between two looks at the outside: about 50 ms of work.
+std::uint64_t chunk_steps(std::size_t grains);
+
+/// What is recorded of the present state: a function of the state alone. Throws NumericalFailure
+/// rather than keep a state that went wrong.
+Checkpoint make_checkpoint(const StagePlan& plan, const Simulation& simulation, double cycle);
+
+}  // namespace shearcell

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance/lease.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <system_error>
+
+namespace shearcell {
+
+namespace {
+
+using sqlite::Database;
+using sqlite::Statement;
+
+constexpr const char* kTable = R"sql(
+CREATE TABLE leases(
+  run TEXT PRIMARY KEY,
+  host TEXT NOT NULL,
+  place TEXT NOT NULL,
+  pid INTEGER NOT NULL,
+  started INTEGER NOT NULL,
+  token TEXT NOT NULL,
+  attempt INTEGER NOT NULL,
+  renewed_at_ms INTEGER NOT NULL,
+  expires_at_ms INTEGER NOT NULL
+) STRICT;
+)sql";
+
+constexpr std::string_view kColumns =
+    "SELECT run, host, place, pid, started, token, attempt, renewed_at_ms, expires_at_ms FROM "
+    "leases ";
+
+// Clocks are corrected by a little now and then; that is no reason to take a run from its holder.
+constexpr std::uint64_t kClockSlackMs = 5000;
+
+bool has_table(const Database& database) {
+  return Statement(database, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = 'leases'")
+      .step();
+}
+
+Lease read_lease(const Statement& row) {
+  return {.run = row.text(0),
+          .holder = {.host = row.text(1),
+                     .place = row.text(2),
+                     .pid = row.u64(3),
+                     .started = row.u64(4),
+                     .token = row.text(5)},
+          .attempt = row.u64(6),
+          .renewed_at_ms = row.u64(7),
+          .expires_at_ms = row.u64(8)};
+}
+
+/// This boot and this space of process ids: within both, a process id means one process.
+std::string this_place() {
+  std::string boot;
+  std::getline(std::ifstream("/proc/sys/kernel/random/boot_id") >> std::ws, boot);
+  std::array<char, 64> space{};
+  const ssize_t length = readlink("/proc/self/ns/pid", space.data(), space.size() - 1);
+  if (boot.empty() || length <= 0) return {};  // without /proc nothing is known of the others
+  return boot + " " + std::string(space.data(), static_cast<std::size_t>(length));
+}
+
+/// When a process began, in clock ticks since boot; nothing when it has ended.
+std::optional<std::uint64_t> start_of(std::uint64_t pid) {
+  std::ifstream file(fmt::format("/proc/{}/stat", pid));
+  std::string line;
+  if (!std::getline(file, line)) return std::nullopt;
+  // The second field is the program's name in brackets, which may hold anything.
+  const auto end_of_name = line.rfind(')');
+  if (end_of_name == std::string::npos) return std::nullopt;
+  std::istringstream fields(line.substr(end_of_name + 1));
+  std::string state, skipped;
+  fields >> state;
+  if (state == "Z" || state == "X") return std::nullopt;  // dead, and not yet waited for
+  constexpr int kBetween = 18;                            // fields 4 to 21; field 22 is the start
+  for (int i = 0; i < kBetween; ++i) fields >> skipped;
+  std::uint64_t started = 0;
+  if (!(fields >> started)) return std::nullopt;
+  return started;
+}
+
+bool known_dead(const Holder& holder) {
+  if (holder.place.empty() || holder.place != this_place()) return false;
+  return start_of(holder.pid) != holder.started;
+}
+
+}  // namespace
+
+Holder this_process() {
+  std::array<char, 256> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0) name[0] = '\0';
+  std::random_device random;
+  Holder holder{.host = name.data(),
+                .place = this_place(),
+                .pid = static_cast<std::uint64_t>(getpid()),
+                .started = 0,
+                .token = {}};
+  for (int word = 0; word < 4; ++word) holder.token += fmt::format("{:08x}", random());
+  if (const auto started = start_of(holder.pid)) {
+    holder.started = *started;
+  } else {
+    holder.place.clear();
+  }
+  return holder;
+}
+
+std::uint64_t now_ms() {
+  using namespace std::chrono;
+  return static_cast<std::uint64_t>(
+      duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count());
+}
+
+bool lapsed(const Lease& lease, std::uint64_t now) {
+  return now >= lease.expires_at_ms || lease.renewed_at_ms > now + kClockSlackMs ||
+         known_dead(lease.holder);
+}
+
+std::string describe(const Holder& holder) {
+  return fmt::format("host {}, process {}", holder.host, holder.pid);
+}
+
+void create_leases(Database& database) {
+  database.execute(kTable);
+}
+
+std::optional<Lease> query_lease(const Database& database, std::string_view run) {
+  if (!has_table(database)) return std::nullopt;
+  Statement query(database, std::string(kColumns) + "WHERE run = ?");
+  query.bind(1, run);
+  if (!query.step()) return std::nullopt;
+  return read_lease(query);
+}
+
+std::vector<Lease> query_leases(const Database& database) {
+  std::vector<Lease> found;
+  if (!has_table(database)) return found;
+  Statement query(database, std::string(kColumns) + "ORDER BY run");
+  while (query.step()) found.push_back(read_lease(query));
+  return found;
+}
+
+void put_lease(Database& database, const Lease& lease) {
+  Statement put(database, "INSERT OR REPLACE INTO leases VALUES(?,?,?,?,?,?,?,?,?)");
+  put.bind(1, lease.run).bind(2, lease.holder.host).bind(3, lease.holder.place);
+  put.bind(4, lease.holder.pid).bind(5, lease.holder.started).bind(6, lease.holder.token);
+  put.bind(7, lease.attempt).bind(8, lease.renewed_at_ms).bind(9, lease.expires_at_ms).run();
+}
+
+void drop_lease(Database& database, std::string_view run, std::string_view token) {
+  Statement drop(database, "DELETE FROM leases WHERE run = ? AND token = ?");
+  drop.bind(1, run).bind(2, token).run();
+}
+
+}  // namespace shearcell

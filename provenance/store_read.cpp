@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the store knows, as plain records.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "provenance/queries.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+namespace {
+
+constexpr std::size_t kListed = 10;  // candidates for an ambiguous name
+
+NotFound ambiguous(const char* what, std::string_view prefix,
+                   const std::vector<std::string>& candidates) {
+  std::string list;
+  for (const std::string& candidate : candidates) list += "\n  " + candidate;
+  if (candidates.size() == kListed) list += "\n  ...";
+  return NotFound(
+      fmt::format("several {} begin with '{}'; give more digits of one of{}", what, prefix, list));
+}
+
+}  // namespace
+
+std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string& id,
+                                                               std::vector<std::string>* damage) {
+  std::vector<CheckpointRecord> records = checkpoints(id);
+  std::reverse(records.begin(), records.end());
+  for (const CheckpointRecord& record : records) {
+    try {
+      return LoadedCheckpoint{record, load_checkpoint(record)};
+    } catch (const CheckpointPruned&) {
+      continue;
+    } catch (const StoreDamaged& error) {
+      if (damage != nullptr) damage->push_back(error.what());
+      if (access_ != Access::read) reject_checkpoint(id, record.sha256, error.what());
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<RunRecord> Store::runs() const {
+  const std::scoped_lock guard(mutex_);
+  const sqlite::ReadTransaction snapshot(database_);
+  return query_runs(database_);
+}
+
+RunRecord Store::run(const std::string& id) const {
+  const std::scoped_lock guard(mutex_);
+  const sqlite::ReadTransaction snapshot(database_);
+  const std::vector<RunRecord> found =
+      id.empty() ? std::vector<RunRecord>() : query_runs(database_, id);
+  if (found.empty()) throw unknown_run(id);
+  return found.front();
+}
+
+std::vector<Lease> Store::leases() const {
+  const std::scoped_lock guard(mutex_);
+  std::vector<Lease> found = query_leases(database_);
+  const std::uint64_t now = now_ms();
+  std::erase_if(found, [now](const Lease& lease) { return lapsed(lease, now); });
+  return found;
+}
+
+RunRecord Store::find_run(std::string_view prefix) const {
+  std::vector<std::string> ids;
+  {
+    const std::scoped_lock guard(mutex_);
+    ids = query_run_ids(database_, prefix, kListed);
+  }
+  if (ids.empty()) throw unknown_run(prefix);
+  if (ids.size() > 1) throw ambiguous("runs", prefix, ids);
+  return run(ids.front());
+}
+
+CheckpointRecord Store::find_checkpoint(std::string_view prefix) const {
+  std::vector<CheckpointRecord> found;
+  {
+    const std::scoped_lock guard(mutex_);
+    found = query_checkpoints_by_prefix(database_, prefix, kListed);
+  }
+  if (found.empty()) {
+    throw NotFound(fmt::format(
+        "the store has no checkpoint '{}'; `shearcell show RUN` lists those of a run", prefix));
+  }
+  if (found.size() > 1) {
+    std::vector<std::string> names;
+    for (const CheckpointRecord& record : found) names.push_back(record.sha256);
+    throw ambiguous("checkpoints", prefix, names);
+  }
+  return found.front();
+}
+
+std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, bool all) const {
+  std::vector<CheckpointRecord> found;
+  {
+    const std::scoped_lock guard(mutex_);
+    if (query_run_ids(database_, id, 1) != std::vector{id}) throw unknown_run(id);
+    found = query_checkpoints(database_, id);
+  }
+  if (!all) {
+    std::erase_if(found, [](const CheckpointRecord& record) {
+      return record.state != CheckpointState::recorded;
+    });
+  }
+  return found;
+}
+
+Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
+  const std::string file = (folder_ / record.file).string();
+  const auto require_kept = [&] {
+    const std::scoped_lock guard(mutex_);
+    const auto now = query_checkpoint(database_, record.run, record.sha256);
+    if (!now || now->state != CheckpointState::pruned) return;
+    throw CheckpointPruned(fmt::format(
+        "{}: checkpoint {:.12} (run {:.12}, cycle {:g}) was pruned; `shearcell regenerate {:.12}` "
+        "makes it again",
+        file, record.sha256, record.run, record.cycle, record.sha256));
+  };
+  if (record.state == CheckpointState::pruned) require_kept();
+  std::vector<std::byte> bytes;
+  try {
+    bytes = objects_.get(record.sha256, record.size);
+  } catch (const StoreDamaged&) {
+    require_kept();  // somebody may have pruned it since the record was read
+    throw;
+  }
+  Checkpoint checkpoint;
+  try {
+    checkpoint = decode_checkpoint(bytes);
+  } catch (const StoreDamaged& damage) {
+    throw StoreDamaged(fmt::format("{}: {}", file, damage.what()));
+  }
+  if (checkpoint.run != record.run || state_hash(checkpoint) != record.state_hash) {
+    throw StoreDamaged(fmt::format(
+        "{}: it holds another state than the log says; `resume` goes on from an older one", file));
+  }
+  return checkpoint;
+}
+
+std::vector<FigureRecord> Store::figures() const {
+  const std::scoped_lock guard(mutex_);
+  return query_figures(database_);
+}
+
+std::vector<Event> Store::events(std::string_view stream) const {
+  const std::scoped_lock guard(mutex_);
+  return log_.events(stream);
+}
+
+Head Store::head() const {
+  const std::scoped_lock guard(mutex_);
+  return log_.head();
+}
+
+}  // namespace shearcell

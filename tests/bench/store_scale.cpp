@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the store fares with 100 runs of 100 checkpoints: bench_store [RUNS] [CHECKPOINTS] [FOLDER].
+//
+// Each number is the time of the call that the program's command makes, the opening of the store
+// included; the slowest of three, where it can be repeated. Every result is checked before it is
+// told. The store is removed afterwards, unless a folder is named for it.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "provenance/schema.hpp"
+#include "provenance/sha256.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds(const std::function<void()>& work) {
+  const auto start = Clock::now();
+  work();
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double slowest_of_three(const std::function<void()>& work) {
+  double slowest = 0;
+  for (int i = 0; i < 3; ++i) slowest = std::max(slowest, seconds(work));
+  return slowest;
+}
+
+void require(bool holds, const char* what) {
+  if (!holds) throw std::runtime_error(std::string("not as it must be: ") + what);
+}
+
+Checkpoint make_checkpoint(const std::string& run, std::uint64_t cycle) {
+  constexpr Eigen::Index kGrains = 20;
+  std::mt19937_64 random(cycle + 1);
+  const auto number = [&random] { return static_cast<double>(random() >> 11) * 0x1p-50 - 4.0; };
+  Checkpoint c;
+  c.run = run;
+  c.cycle = static_cast<double>(cycle);
+  c.cell = {.width = 12,
+            .depth = 11.5,
+            .bottom = 0,
+            .top = 20,
+            .moving = MovingWall::bottom,
+            .wall_grains = {}};
+  c.state.step = cycle * 45600;
+  c.state.position = Eigen::Matrix3Xd::NullaryExpr(3, kGrains, number);
+  c.state.velocity = Eigen::Matrix3Xd::NullaryExpr(3, kGrains, number);
+  c.observables = {{"mean_overlap_d", 2.7e-3}, {"contacts_per_grain", 6.4}};
+  return c;
+}
+
+/// Seconds that each recorded checkpoint took: file, event and all syncs.
+std::vector<double> fill(const fs::path& folder, int runs, int checkpoints) {
+  Store store(folder, Access::create);
+  const std::string manifest = store.register_manifest("bench: 1\n", "bench.yaml", {});
+  std::vector<double> took;
+  for (int r = 0; r < runs; ++r) {
+    RunDeclaration run;
+    run.id = sha256_hex(fmt::format("run {}", r));
+    run.kind = "shear";
+    run.resolved = {{"seed", r}};
+    run.grains = 20;
+    run.target_cycles = static_cast<std::uint64_t>(checkpoints) - 1;
+    run.membership.experiment = "bench";
+    run.membership.variant = "base";
+    run.membership.seed = static_cast<std::uint64_t>(r);
+    run.membership.manifest = manifest;
+    store.declare_run(run);
+    store.start_run(run.id, {{"host", "bench"}});
+    for (int c = 0; c < checkpoints; ++c) {
+      const Checkpoint checkpoint = make_checkpoint(run.id, static_cast<std::uint64_t>(c));
+      took.push_back(seconds([&] { store.record_checkpoint(run.id, checkpoint, {1, 1}); }));
+    }
+    store.complete_run(run.id, {}, run.target_cycles);
+  }
+  return took;
+}
+
+/// What the disk takes for the least that a durable append could do.
+void sync_one_page(const fs::path& path) {
+  const std::vector<char> page(4096, 'x');
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  require(file >= 0 && write(file, page.data(), page.size()) == 4096 && fsync(file) == 0, "a file");
+  close(file);
+}
+
+void tell(const char* what, double value, const char* unit, double limit) {
+  fmt::print("{:<52} {:9.3f} {:<3} (limit {:g}{})\n", what, value, unit, limit,
+             value < limit ? "" : ": OVER");
+}
+
+void measure(const fs::path& folder, int runs, int checkpoints) {
+  std::vector<double> took = fill(folder, runs, checkpoints);
+  std::sort(took.begin(), took.end());
+  tell("recording a checkpoint, file and syncs, median", 1e3 * took[took.size() / 2], "ms", 20);
+  tell("the same, 99th percentile", 1e3 * took[took.size() * 99 / 100], "ms", 20);
+
+  std::vector<double> each, plain;
+  {
+    Store store(folder, Access::write);
+    const fs::path probe = folder / "probe";
+    for (int i = 0; i < 300; ++i) {
+      each.push_back(seconds([&] { store.record_figure("bench", {{"i", i}}); }));
+      plain.push_back(seconds([&] { sync_one_page(probe); }));
+    }
+    fs::remove(probe);
+  }
+  std::sort(each.begin(), each.end());
+  std::sort(plain.begin(), plain.end());
+  tell("appending an event, with its syncs, median", 1e3 * each[150], "ms", 20);
+  tell("the same, 99th percentile", 1e3 * each[297], "ms", 20);
+  fmt::print("{:<52} {:9.3f} ms\n", "  one write and fsync of 4 kB at the same time, median",
+             1e3 * plain[150]);
+
+  tell("status: open, all runs, who holds them", slowest_of_three([&] {
+         const Store store(folder, Access::read);
+         require(store.runs().size() == static_cast<std::size_t>(runs), "the runs");
+         require(store.leases().empty(), "no leases");
+       }),
+       "s", 0.5);
+
+  tell("verify: the chain alone", slowest_of_three([&] {
+         sqlite::Database database =
+             open_database(folder / "store.sqlite", sqlite::Open::existing, true);
+         require(!EventLog(database).verify_chain(), "the chain");
+       }),
+       "s", 2);
+
+  VerifyReport report;
+  const double all = slowest_of_three([&] { report = Store(folder, Access::read).verify(); });
+  require(report.ok() && report.checkpoints == took.size(), "the store");
+  const double reading = slowest_of_three([&] {
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "objects")) {
+      if (!entry.is_regular_file()) continue;
+      std::ifstream file(entry.path(), std::ios::binary);
+      sha256_hex(std::string((std::istreambuf_iterator<char>(file)), {}));
+    }
+  });
+  tell("verify: chain, tables and every file hashed", all, "s", 2 + reading);
+  fmt::print("{:<52} {:9.3f} s\n", "  of which reading and hashing the files alone takes", reading);
+
+  tell("rebuild", slowest_of_three([&] { Store(folder, Access::write).rebuild(); }), "s", 5);
+  require(Store(folder, Access::read).verify().ok(), "the store after rebuild");
+  fmt::print("{} events, {} checkpoints ({:.0f} MB), log {:.1f} MB\n", report.events,
+             report.checkpoints, static_cast<double>(report.bytes) * 1e-6,
+             static_cast<double>(fs::file_size(folder / "store.sqlite")) * 1e-6);
+}
+
+}  // namespace
+}  // namespace shearcell
+
+int main(int argc, char** argv) {
+  const int runs = argc > 1 ? std::atoi(argv[1]) : 100;
+  const int checkpoints = argc > 2 ? std::atoi(argv[2]) : 100;
+  const std::filesystem::path folder =
+      argc > 3 ? argv[3] : std::filesystem::temp_directory_path() / "shearcell-bench-store";
+  if (runs < 1 || checkpoints < 1 || std::filesystem::exists(folder)) {
+    fmt::print(stderr, "usage: bench_store [RUNS] [CHECKPOINTS] [FOLDER]; {} must not exist\n",
+               folder.string());
+    return 2;
+  }
+  int code = 0;
+  try {
+    shearcell::measure(folder, runs, checkpoints);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "bench_store: {}\n", error.what());
+    code = 1;
+  }
+  if (argc <= 3) std::filesystem::remove_all(folder);
+  return code;
+}

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What was recorded can be computed again, to the last bit, from any state before it; and what
+// cannot is told apart from what was changed.
+#include "experiments/runner/replay.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <set>
+
+#include "experiments/report/regenerate.hpp"
+#include "provenance/errors.hpp"
+#include "provenance/sha256.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
+class ReplayTest : public testing::Test {
+ protected:
+  ReplayTest() { compute(store_, tiny_manifest("  cycles: 4\n")); }
+
+  RunRecord sheared() const { return runs_of_kind(store_, "shear").at(0); }
+  RunRecord packing() const { return runs_of_kind(store_, "prepare").at(0); }
+  bool there(const CheckpointRecord& record) const {
+    return std::filesystem::exists(store_.folder() / record.file);
+  }
+
+  TemporaryFolder folder_;
+  StopWish wish_;
+  Store store_{folder_.path() / "store", Access::create};
+};
+
+TEST_F(ReplayTest, GivesEveryRecordedState) {
+  const auto all = replayable(store_);
+  ASSERT_EQ(all.size(), store_.checkpoints(packing().id).size() + 5);
+  const auto before = final_hashes(store_);
+  for (const CheckpointRecord& record : all) {
+    const Replay replay = verify_by_replay(store_, record, 1);
+    EXPECT_FALSE(replay.divergence) << replay.divergence->message;
+    EXPECT_EQ(replay.steps, record.step - (replay.from ? replay.from->step : 0));
+  }
+  EXPECT_EQ(count_events(store_, "ReplayVerified"), all.size());
+  EXPECT_EQ(final_hashes(store_), before);
+  for (const RunRecord& run : store_.runs()) EXPECT_EQ(run.state, RunState::completed);
+  EXPECT_TRUE(store_.verify().ok());
+}
+
+TEST_F(ReplayTest, SamplesWithoutRepetitionAndAlikeForOneSeed) {
+  const auto all = replayable(store_);
+  const auto names = [](const std::vector<CheckpointRecord>& records) {
+    std::vector<std::string> found;
+    for (const CheckpointRecord& record : records) found.push_back(record.sha256);
+    return found;
+  };
+  const auto three = names(sample(all, 3, 7));
+  EXPECT_EQ(std::set<std::string>(three.begin(), three.end()).size(), 3U);
+  EXPECT_EQ(names(sample(all, 3, 7)), three);
+  EXPECT_NE(names(sample(all, 3, 8)), three);
+  EXPECT_EQ(sample(all, 100, 7).size(), all.size());
+}
+
+TEST_F(ReplayTest, MakesPrunedCheckpointsAgain) {
+  const auto records = store_.checkpoints(sheared().id);
+  std::map<std::string, std::string> bytes;
+  for (const CheckpointRecord& r : records) bytes[r.sha256] = read_bytes(store_.folder() / r.file);
+  store_.prune(store_.prunable({.runs = {sheared().id}, .state = {}, .keep_every = 0}));
+  EXPECT_EQ(cycles_of(store_, sheared().id), std::vector<double>{4});
+
+  // From the packing, across two pruned ones; then from the nearest kept one; then cycle 0 itself.
+  for (const auto& [at, steps] : {std::pair(2, 2 * kStepsPerCycle), std::pair(3, kStepsPerCycle),
+                                  std::pair(0, std::size_t{0})}) {
+    const CheckpointRecord& record = records[static_cast<std::size_t>(at)];
+    ASSERT_FALSE(there(record));
+    const Replay replay = regenerate_checkpoint(store_, record);
+    ASSERT_FALSE(replay.divergence) << replay.divergence->message;
+    EXPECT_EQ(replay.steps, steps);
+    EXPECT_EQ(read_bytes(store_.folder() / record.file), bytes.at(record.sha256));
+  }
+  EXPECT_EQ(cycles_of(store_, sheared().id), (std::vector<double>{0, 2, 3, 4}));
+  EXPECT_EQ(count_events(store_, "CheckpointRegenerated"), 3U);
+  EXPECT_TRUE(store_.verify().ok());
+}
+
+TEST_F(ReplayTest, MendsADamagedFile) {
+  const auto records = store_.checkpoints(sheared().id);
+  truncate_file(store_.folder() / records[2].file);
+  EXPECT_FALSE(store_.verify().ok());
+  EXPECT_FALSE(regenerate_checkpoint(store_, records[2]).divergence);
+  EXPECT_TRUE(store_.verify().ok());
+  store_.reject_checkpoint(sheared().id, records[4].sha256, "a test");
+  EXPECT_EQ(store_.run(sheared().id).cycle, 3);
+  EXPECT_FALSE(regenerate_checkpoint(store_, records[4]).divergence);
+  EXPECT_EQ(store_.run(sheared().id).cycle, 4);
+}
+
+TEST_F(ReplayTest, WorksOnPackingsAndOnStatesWithinACycle) {
+  // Interrupted after a chunk of steps, and so within the settling and within a cycle.
+  Store other(folder_.path() / "other", Access::create);
+  const Manifest manifest = parse_manifest(tiny_manifest(), "t");
+  const std::vector<StageJob> jobs = declare(other, manifest, expand(manifest));
+  request_stop(true);
+  for (const StageJob& job : jobs) {
+    while (run_stage(other, job.id, {}) == StageOutcome::interrupted) {
+    }
+  }
+  request_stop(false);
+  const auto records = replayable(other);
+  ASSERT_GT(records.size(), 10U);
+  other.prune(other.prunable({}));
+  for (const CheckpointRecord& record : records) {
+    if (std::filesystem::exists(other.folder() / record.file)) continue;
+    const Replay replay = regenerate_checkpoint(other, record);
+    EXPECT_FALSE(replay.divergence) << replay.divergence->message;
+  }
+  EXPECT_EQ(replayable(other).size(), records.size());
+  const VerifyReport report = other.verify();
+  EXPECT_TRUE(report.ok());
+  EXPECT_EQ(report.checkpoints, records.size());
+}
+
+// A state that no computation gives, well recorded: as by a processor that erred.
+TEST_F(ReplayTest, TellsWhereAStateDiverges) {
+  const auto records = store_.checkpoints(sheared().id);
+  Checkpoint wrong = store_.load_checkpoint(records[4]);
+  wrong.state.step += kStepsPerCycle;
+  wrong.cycle = 5;
+  wrong.state.velocity(1, 17) += 0.25;
+  ExpandOptions longer;
+  longer.cycles = 6;
+  const Manifest manifest = parse_manifest(tiny_manifest("  cycles: 4\n"), "t");
+  declare(store_, manifest, expand(manifest, longer));
+  store_.start_run(sheared().id, {}, records[4].sha256);
+  const CheckpointRecord record = store_.record_checkpoint(sheared().id, wrong);
+  store_.interrupt_run(sheared().id, "a test");
+
+  const Replay replay = verify_by_replay(store_, record);
+  ASSERT_TRUE(replay.divergence);
+  EXPECT_EQ(replay.divergence->same_step, records[4].step);
+  EXPECT_EQ(replay.divergence->first_step, record.step);
+  EXPECT_FALSE(replay.divergence->field.empty());
+  EXPECT_GT(replay.divergence->ulp, 0U);
+  std::printf("%s: %s of grain %lld, %llu ulp\n", replay.divergence->message.c_str(),
+              replay.divergence->field.c_str(), static_cast<long long>(replay.divergence->grain),
+              static_cast<unsigned long long>(replay.divergence->ulp));
+  const Event last = store_.events("run/" + sheared().id).back();
+  EXPECT_EQ(last.type, "ReplayDiverged");
+  EXPECT_EQ(last.body().at("first_step"), record.step);
+
+  // Regenerating it keeps nothing, and says so.
+  std::filesystem::remove(store_.folder() / record.file);
+  const Replay again = regenerate_checkpoint(store_, record);
+  ASSERT_TRUE(again.divergence);
+  EXPECT_EQ(again.divergence->field, "") << "there is nothing to compare with";
+  EXPECT_FALSE(there(record));
+  EXPECT_EQ(count_events(store_, "ReplayDiverged"), 2U);
+}
+
+TEST_F(ReplayTest, FiguresNameWhatWasPruned) {
+  const auto records = store_.checkpoints(sheared().id);
+  store_.prune({records[1], records[2]});
+  RegenerateOptions options;
+  options.folder = folder_.path() / "figures";
+  const RegeneratedFigure figure = regenerate(store_, *find_figure("S2"), options);
+  EXPECT_TRUE(figure.damage.empty());
+  ASSERT_EQ(figure.pruned.size(), 2U);
+  for (const std::string& line : figure.pruned) {
+    EXPECT_NE(line.find("shearcell regenerate"), std::string::npos) << line;
+  }
+  for (const std::size_t at : {1U, 2U}) regenerate_checkpoint(store_, records[at]);
+  EXPECT_TRUE(regenerate(store_, *find_figure("S2"), options).pruned.empty());
+}
+
+}  // namespace
+}  // namespace shearcell

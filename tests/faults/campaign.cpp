@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/faults/campaign.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <cstring>
+#include <stdexcept>
+
+#include "provenance/errors.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+extern char** environ;
+
+namespace shearcell::test {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Words campaign_words(const fs::path& folder) {
+  return {"run", (folder / "small.yaml").string(), "-q", "-j", "1"};
+}
+
+bool is_write(const std::string& operation) {
+  return operation.find(" write ") != std::string::npos ||
+         operation.find(" pwrite") != std::string::npos;
+}
+
+}  // namespace
+
+std::string small_manifest(const std::string& more) {
+  return "experiment: small\n"
+         "question: Does the store survive?\n"
+         "figures: [S2]\n"
+         "base:\n"
+         "  grains: 60\n"
+         "  walls: smooth\n"
+         "  period_s: 0.05\n"
+         "  steps_per_cycle: 500\n"
+         "  amplitude_rad: 0.01\n"
+         "  settle_time_step_s: 1.0e-4\n"
+         "  cycles: 2\n"
+         "sweep: {grid: {fluid: [still, cell]}}\n" +
+         more;
+}
+
+pid_t start_program(const fs::path& folder, Words words, const Fault& fault) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  constexpr int flags = O_WRONLY | O_CREAT | O_APPEND;
+  for (int fd : {1, 2}) {
+    posix_spawn_file_actions_addopen(&actions, fd, (folder / "said").c_str(), flags, 0600);
+  }
+  words.insert(words.begin(), SHEARCELL_PROGRAM);
+  words.insert(words.end(), {"--store", (folder / "store").string()});
+  std::vector<std::string> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    if (std::strncmp(*variable, "SHEARCELL_STORE=", 16) != 0) variables.emplace_back(*variable);
+  }
+  if (!fault.kind.empty()) {
+    variables.push_back("LD_PRELOAD=" SHEARCELL_FAULT_LAYER);
+    variables.push_back("FAULT_FOLDER=" + (folder / "store").string());
+    variables.push_back("FAULT_KIND=" + fault.kind);
+    variables.push_back("FAULT_AT=" + std::to_string(fault.at));
+    if (fault.at == 0) variables.push_back("FAULT_COUNT=" + (folder / "operations").string());
+  }
+  const auto pointers = [](std::vector<std::string>& texts) {
+    std::vector<char*> found;
+    for (std::string& text : texts) found.push_back(text.data());
+    found.push_back(nullptr);
+    return found;
+  };
+  pid_t child = 0;
+  const int error = posix_spawn(&child, SHEARCELL_PROGRAM, &actions, nullptr,
+                                pointers(words).data(), pointers(variables).data());
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw std::runtime_error(std::string("posix_spawn: ") + std::strerror(error));
+  return child;
+}
+
+int wait_for_exit(pid_t program) {
+  int status = 0;
+  waitpid(program, &status, 0);
+  return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+pid_t start_campaign(const fs::path& folder, const Fault& fault) {
+  return start_program(folder, campaign_words(folder), fault);
+}
+
+std::vector<std::string> list_operations(const fs::path& folder) {
+  return list_operations(folder, campaign_words(folder));
+}
+
+std::vector<std::string> list_operations(const fs::path& folder, const Words& words) {
+  if (wait_for_exit(start_program(folder, words, {0, "none"})) != 0) {
+    throw std::runtime_error("it fails without a fault: " + read_bytes(folder / "said"));
+  }
+  std::vector<std::string> lines;
+  std::ifstream file(folder / "operations");
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<Fault> fault_points(const std::vector<std::string>& operations) {
+  std::vector<Fault> all;
+  for (std::size_t i = 0; i < operations.size(); ++i) {
+    for (const char* kind : {"kill", "enospc", "eio", "torn", "lost"}) {
+      const bool of_writes = std::string(kind) == "torn" || std::string(kind) == "lost";
+      if (!of_writes || is_write(operations[i])) all.push_back({static_cast<long>(i + 1), kind});
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> check_left_behind(const fs::path& folder) {
+  const fs::path store_folder = folder / "store";
+  std::vector<std::string> wrong;
+  try {
+    const Store store(store_folder, Access::read);
+    const VerifyReport report = store.verify();
+    for (const Finding& finding : report.findings) {
+      if (finding.severity == Finding::Severity::error) {
+        wrong.push_back(finding.subject + ": " + finding.message);
+      }
+    }
+    for (const RunRecord& run : store.runs()) {
+      for (const CheckpointRecord& record : store.checkpoints(run.id)) {
+        store.load_checkpoint(record);  // throws when it is missing or wrong
+      }
+    }
+  } catch (const std::exception& error) {
+    // A store whose making was cut short is no store yet: nothing of it was ever recorded.
+    std::error_code missing;
+    const auto size = fs::file_size(store_folder / "store.sqlite", missing);
+    if (!missing && size > 0) wrong.emplace_back(error.what());
+  }
+  return wrong;
+}
+
+std::map<std::string, std::string> run_on(const fs::path& folder) {
+  Store store(folder / "store", Access::create);
+  compute(store, read_bytes(folder / "small.yaml"), {}, 1);
+  std::map<std::string, std::string> hashes;
+  for (const RunRecord& run : store.runs()) {
+    hashes[run.id] = run.state == RunState::completed ? run.state_hash : "";
+  }
+  return hashes;
+}
+
+}  // namespace shearcell::test

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Merging is a union of what several stores know: nothing is lost, repeated or mixed up.
+#include "provenance/merge.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "provenance/projections.hpp"
+#include "tests/provenance/samples.hpp"
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+using test::message_of;
+using test::run_id;
+using test::sample_checkpoint;
+using test::sample_run;
+
+constexpr std::uint64_t kCycle = 45600;
+
+class MergeTest : public ::testing::Test {
+ protected:
+  fs::path path(const std::string& name) const { return folder_.path() / name; }
+  Store open(const std::string& name) const { return Store(path(name), Access::create); }
+
+  /// Brings the run from its newest checkpoint to cycle `to` of `target`, and completes it there.
+  static void advance(Store& store, int run, std::uint64_t to, std::uint64_t target) {
+    const std::string id = run_id(run);
+    store.declare_run(sample_run(run, target));
+    const auto known = store.checkpoints(id);
+    std::uint64_t cycle = 0;
+    if (known.empty()) {
+      store.start_run(id, {});
+      store.record_checkpoint(id, sample_checkpoint(id, 0));
+    } else {
+      cycle = static_cast<std::uint64_t>(known.back().cycle);
+      store.start_run(id, {}, known.back().sha256);
+    }
+    while (cycle < to) store.record_checkpoint(id, sample_checkpoint(id, ++cycle * kCycle), {1, 2});
+    if (to == target) {
+      store.complete_run(id, {}, target);
+    } else {
+      store.interrupt_run(id, "SIGTERM");
+    }
+  }
+
+  /// Every row of the tables, without what tells when, by whom and in how many attempts it was
+  /// computed: seq and ordinals, times, attempts, efforts.
+  std::map<std::string, std::set<std::string>> facts(const std::string& name) const {
+    const std::vector<std::pair<std::string, std::string>> queries = {
+        {"runs",
+         "id, parent, kind, resolved, state, grains, target_cycles, cycle, step, "
+         "state_hash, error"},
+        {"memberships",
+         "run, experiment, scale, variant, seed, manifest, labels, target_cycles, "
+         "checkpoint_every"},
+        {"checkpoints",
+         "run, sha256, step, cycle, time_s, file, size, state_hash, observables, "
+         "state"},
+        {"figures", "name, provenance"}};
+    const sqlite::Database database(path(name) / "store.sqlite", sqlite::Open::existing);
+    std::map<std::string, std::set<std::string>> found;
+    for (const auto& [table, columns] : queries) {
+      sqlite::Statement query(database, "SELECT " + columns + " FROM " + table);
+      while (query.step()) {
+        std::string row;
+        for (int c = 0; c < query.columns(); ++c) row += query.literal(c) + " ";
+        found[table].insert(row);
+      }
+    }
+    return found;
+  }
+
+  test::Folder folder_;
+};
+
+// Run 0 is shared by all, run 1 by the first two, run 2 is the third one's own. The stores got to
+// different cycles of them, and the third one's target is longer.
+TEST_F(MergeTest, ThreeThatOverlapEqualOneThatDidItAll) {
+  const std::string manifest = "a: 1\n";
+  {
+    Store a = open("a");
+    a.register_manifest(manifest, "a.yaml", {{"n", 1}});
+    advance(a, 0, 3, 3);
+    advance(a, 1, 2, 4);
+    a.record_figure("S2", {{"inputs", "of a"}});
+  }
+  {
+    Store b = open("b");
+    b.register_manifest(manifest, "b.yaml", {{"n", 1}});
+    advance(b, 0, 1, 3);
+    advance(b, 1, 4, 4);
+  }
+  {
+    Store c = open("c");
+    c.register_manifest("c: 1\n", "c.yaml", {{"n", 3}});
+    advance(c, 0, 4, 5);
+    advance(c, 2, 2, 2);
+    c.record_figure("S2", {{"inputs", "of c"}});  // the later one
+  }
+  {
+    Store whole = open("whole");
+    whole.register_manifest(manifest, "a.yaml", {{"n", 1}});
+    whole.register_manifest("c: 1\n", "c.yaml", {{"n", 3}});
+    advance(whole, 0, 3, 3);
+    advance(whole, 1, 4, 4);
+    advance(whole, 0, 4, 5);
+    advance(whole, 2, 2, 2);
+    whole.record_figure("S2", {{"inputs", "of c"}});
+  }
+  const auto expected = facts("whole");
+  ASSERT_EQ(expected.at("runs").size(), 3u);
+  ASSERT_EQ(expected.at("checkpoints").size(), 5u + 5u + 3u);
+  std::vector<std::string> order = {"a", "b", "c"};
+  do {  // whatever comes first
+    const std::string name = "merged-" + order[0] + order[1] + order[2];
+    SCOPED_TRACE(name);
+    Store merged = open(name);
+    const auto reports = merged.merge({path(order[0]), path(order[1]), path(order[2])});
+    EXPECT_EQ(facts(name), expected);
+    EXPECT_EQ(merged.events("store/merge").size(), 3u);
+    std::uint64_t copied = 0;
+    for (const MergeReport& report : reports) copied += report.checkpoints;
+    EXPECT_EQ(copied, 13u);
+    const VerifyReport verified = merged.verify();
+    EXPECT_TRUE(verified.ok());
+    EXPECT_TRUE(verified.findings.empty());
+    merged.rebuild();
+    EXPECT_EQ(facts(name), expected);
+
+    const Head head = merged.head();
+    for (const MergeReport& report : merged.merge({path("a"), path("b"), path("c")})) {
+      EXPECT_EQ(report.events + report.checkpoints, 0u);
+    }
+    EXPECT_EQ(merged.head().hash, head.hash) << "merging again recorded something";
+  } while (std::next_permutation(order.begin(), order.end()));
+  // And by way of another merge.
+  Store some = open("some");
+  some.merge({path("c"), path("a")});
+  Store rest = open("rest");
+  rest.merge({path("b"), path("some")});
+  EXPECT_EQ(facts("rest"), expected);
+}
+
+TEST_F(MergeTest, IntoOneOfThemAndBack) {
+  {
+    Store a = open("a");
+    advance(a, 0, 3, 3);
+  }
+  fs::copy(path("a"), path("b"), fs::copy_options::recursive);  // a common past
+  Store a = open("a");
+  Store b = open("b");
+  advance(a, 0, 4, 6);
+  advance(b, 0, 6, 6);
+  advance(b, 1, 1, 1);
+  a.merge({path("b")});
+  EXPECT_EQ(a.run(run_id(0)).state, RunState::completed);
+  EXPECT_EQ(a.run(run_id(0)).cycle, 6);
+  b.merge({path("a")});
+  EXPECT_EQ(facts("a"), facts("b"));
+  EXPECT_TRUE(a.verify().ok());
+  EXPECT_TRUE(b.verify().ok());
+  // One effort for each checkpoint: none was counted twice.
+  EXPECT_EQ(a.run(run_id(0)).wall_seconds, 6);
+}
+
+// An older attempt with states of its own must not make a completed run unfinished.
+TEST_F(MergeTest, TheFurthestStateWins) {
+  {
+    Store a = open("a");
+    advance(a, 0, 3, 3);
+  }
+  {
+    Store b = open("b");
+    const std::string id = run_id(0);
+    b.declare_run(sample_run(0, 3));
+    b.start_run(id, {});
+    b.record_checkpoint(id, sample_checkpoint(id, kCycle / 2));  // interrupted within a cycle
+    b.interrupt_run(id, "SIGTERM");
+  }
+  for (const auto& [into, from] : {std::pair("a", "b"), std::pair("b", "a")}) {
+    const std::string name = std::string(into) + "-and-" + from;
+    fs::copy(path(into), path(name), fs::copy_options::recursive);
+    Store store = open(name);
+    store.merge({path(from)});
+    const RunRecord run = store.run(run_id(0));
+    EXPECT_EQ(run.state, RunState::completed) << name;
+    EXPECT_EQ(run.cycle, 3) << name;
+    EXPECT_EQ(run.error, "") << name;
+    EXPECT_EQ(store.checkpoints(run.id).size(), 5u) << name;
+    EXPECT_TRUE(store.verify().ok()) << name;
+  }
+}
+
+TEST_F(MergeTest, RefusesDifferentStatesByNameAndChangesNothing) {
+  const std::string id = run_id(0);
+  {
+    Store a = open("a");
+    advance(a, 0, 1, 3);
+    Store c = open("c");
+    advance(c, 1, 1, 1);
+    Store b = open("b");
+    b.declare_run(sample_run(0, 3));
+    b.start_run(id, {});
+    Checkpoint other = sample_checkpoint(id, kCycle);
+    other.state.velocity(0, 0) += 1e-12;
+    b.record_checkpoint(id, other);
+  }
+  Store a = open("a");
+  const Head head = a.head();
+  for (const auto& sources : {std::vector{path("b")}, std::vector{path("c"), path("b")}}) {
+    const std::string message = message_of<MergeConflict>([&] { a.merge(sources); });
+    for (const std::string& part :
+         {id, std::string("step 45600"), path("a").string(), path("b").string()}) {
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+    }
+  }
+  Store fresh = open("fresh");  // the two sources disagree with each other
+  EXPECT_THROW(fresh.merge({path("a"), path("b")}), MergeConflict);
+  EXPECT_EQ(fresh.head().seq, 0u);
+  EXPECT_EQ(a.head().hash, head.hash);
+  EXPECT_EQ(a.verify().orphans, 0u);
+}
+
+TEST_F(MergeTest, RefusesDamagedSources) {
+  { open("a"); }
+  {
+    Store b = open("b");
+    advance(b, 0, 2, 2);
+  }
+  Store a = open("a");
+  const auto record = open("b").checkpoints(run_id(0)).at(1);
+  fs::copy(path("b"), path("cut"), fs::copy_options::recursive);
+  fs::resize_file(path("cut") / record.file, 1000);
+  std::string message = message_of<StoreDamaged>([&] { a.merge({path("b"), path("cut")}); });
+  EXPECT_NE(message.find(record.file), std::string::npos) << message;
+  fs::copy(path("b"), path("forged"), fs::copy_options::recursive);
+  sqlite::Database(path("forged") / "store.sqlite", sqlite::Open::existing)
+      .execute(
+          "DROP TRIGGER events_are_never_updated; UPDATE events SET type = 'RunFailed' WHERE "
+          "type = 'RunCompleted'");
+  message = message_of<StoreDamaged>([&] { a.merge({path("forged")}); });
+  EXPECT_NE(message.find("forged: event 6"), std::string::npos) << message;
+  EXPECT_EQ(a.head().seq, 0u);
+  EXPECT_EQ(a.verify().orphans, 0u);
+  EXPECT_THROW(a.merge({path("a")}), NotFound);
+  EXPECT_THROW(a.merge({path("nowhere")}), NotFound);
+}
+
+TEST_F(MergeTest, WaitsForNobodyAndDisturbsNobody) {
+  {
+    Store b = open("b");
+    advance(b, 0, 2, 2);
+  }
+  Store a = open("a");
+  Store runner = open("a");
+  runner.declare_run(sample_run(0, 2));
+  runner.start_run(run_id(0), {});
+  EXPECT_THROW(a.merge({path("b")}), StoreBusy);
+  runner.interrupt_run(run_id(0), "done");
+  EXPECT_EQ(a.merge({path("b")}).at(0).checkpoints, 3u);
+}
+
+TEST_F(MergeTest, HealsAndRespectsPruning) {
+  Store a = open("a");
+  advance(a, 0, 3, 3);
+  fs::copy(path("a"), path("b"), fs::copy_options::recursive);
+  Store fresh = open("fresh");
+  const auto records = a.checkpoints(run_id(0));
+  a.prune({records[1]});
+  fs::remove(path("a") / records[2].file);
+  fresh.merge({path("b")});
+  a.merge({path("fresh")});
+  EXPECT_FALSE(fs::exists(path("a") / records[1].file)) << "it was pruned on purpose";
+  // The record of a pruned checkpoint comes without its file.
+  Store other = open("other");
+  fs::copy(path("b") / records[2].file, path("a") / records[2].file);
+  other.merge({path("a")});
+  EXPECT_EQ(other.checkpoints(run_id(0), true).size(), 4u);
+  EXPECT_EQ(other.checkpoints(run_id(0)).size(), 3u);
+  EXPECT_TRUE(other.verify().ok());
+}
+
+TEST_F(MergeTest, ReadsAStoreOfTheFirstSchema) {
+  Store a = open("a");
+  a.merge({fs::path(SHEARCELL_TEST_DATA) / "store_v1"});
+  EXPECT_EQ(a.runs().size(), 2u);
+  EXPECT_EQ(a.events().size(), 16u);
+  EXPECT_EQ(a.events().at(4).schema, 1u);
+  EXPECT_TRUE(a.verify().ok());
+}
+
+}  // namespace
+}  // namespace shearcell

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A store of schema 1, as the first program wrote it, opens, migrates and verifies.
+#include <gtest/gtest.h>
+
+#include "provenance/projections.hpp"
+#include "provenance/schema.hpp"
+#include "provenance/upcast.hpp"
+#include "tests/provenance/samples.hpp"
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Told by the program that made it; see tests/data/store_v1/README.md.
+constexpr const char* kHead = "65f80af869fde3002a7de4d3cf7376c4fdb49de6523dfc78cdf827a1924e3e66";
+constexpr const char* kSheared = "a61190aacbadf7a5f4f7ca8babc7607320644ed281a483fd2c845db08c2563b0";
+constexpr const char* kLastState =
+    "d7dbfa231195ea8d5af40cd93ffadc3a09bb084aedc8a84156ef5162c7ba96d1";
+
+class MigrationTest : public ::testing::Test {
+ protected:
+  MigrationTest() {
+    fs::copy(fs::path(SHEARCELL_TEST_DATA) / "store_v1", path_, fs::copy_options::recursive);
+    for (const auto& entry : fs::recursive_directory_iterator(path_)) {
+      fs::permissions(entry, fs::perms::owner_write, fs::perm_options::add);
+    }
+  }
+
+  std::int64_t integer(const std::string& sql) {
+    return sqlite::Database(path_ / "store.sqlite", sqlite::Open::existing).integer(sql);
+  }
+  std::int64_t version() { return integer("PRAGMA user_version"); }
+
+  test::Folder folder_;
+  fs::path path_ = folder_.path() / "store";
+};
+
+void expect_what_was_stored(const Store& store) {
+  EXPECT_EQ(store.head().seq, 15u);
+  EXPECT_EQ(store.head().hash, kHead);
+  const RunRecord run = store.run(kSheared);
+  EXPECT_EQ(run.state, RunState::completed);
+  EXPECT_EQ(run.cycle, 2);
+  EXPECT_EQ(run.attempts, 2u);
+  EXPECT_EQ(run.state_hash, kLastState);
+  EXPECT_EQ(state_hash(store.load_checkpoint(store.checkpoints(kSheared).back())), kLastState);
+  const VerifyReport report = store.verify(Head{15, kHead});
+  EXPECT_TRUE(report.ok());
+  EXPECT_TRUE(report.findings.empty());
+  EXPECT_EQ(report.checkpoints, 4u);
+}
+
+TEST_F(MigrationTest, AReaderLeavesTheOldSchemaAlone) {
+  ASSERT_EQ(version(), 1);
+  const std::string before = test::read_bytes(path_ / "store.sqlite");
+  const Store store(path_, Access::read);
+  expect_what_was_stored(store);
+  EXPECT_TRUE(store.leases().empty());
+  EXPECT_EQ(test::read_bytes(path_ / "store.sqlite"), before);
+}
+
+TEST_F(MigrationTest, AWriterMigratesAndChangesNoEvent) {
+  {
+    const Store store(path_, Access::write);
+    expect_what_was_stored(store);
+  }
+  EXPECT_EQ(version(), kSchemaVersion);
+  EXPECT_EQ(integer("SELECT count(*) FROM leases"), 0);
+  expect_what_was_stored(Store(path_, Access::write));  // once is enough
+}
+
+TEST_F(MigrationTest, RebuildGivesTheTablesOfThatTime) {
+  const auto rows = [this] {
+    return projection_rows(sqlite::Database(path_ / "store.sqlite", sqlite::Open::existing));
+  };
+  const auto before = rows();
+  Store(path_, Access::write).rebuild();
+  EXPECT_EQ(rows(), before);
+}
+
+TEST_F(MigrationTest, GoesOnFromThere) {
+  Store store(path_, Access::write);
+  RunDeclaration longer;
+  const RunRecord run = store.run(kSheared);
+  longer.id = run.id;
+  longer.parent = run.parent;
+  longer.kind = run.kind;
+  longer.resolved = run.resolved;
+  longer.grains = run.grains;
+  longer.target_cycles = 3;
+  longer.membership = run.memberships.at(0);
+  store.declare_run(longer);
+  store.start_run(run.id, {}, store.checkpoints(run.id).back().sha256);
+  EXPECT_EQ(store.events("run/" + run.id).back().schema, 2u);
+  store.complete_run(run.id, {}, 3);
+  EXPECT_TRUE(store.verify(Head{15, kHead}).ok());
+}
+
+TEST_F(MigrationTest, WhenItIsCutShortTheOldVersionStays) {
+  {
+    sqlite::Database database(path_ / "store.sqlite", sqlite::Open::existing);
+    database.execute("CREATE TABLE leases(in_the_way)");  // so that the step fails
+  }
+  EXPECT_THROW(Store(path_, Access::write), StoreDamaged);
+  EXPECT_EQ(version(), 1);
+  sqlite::Database(path_ / "store.sqlite", sqlite::Open::existing).execute("DROP TABLE leases");
+  expect_what_was_stored(Store(path_, Access::write));
+  EXPECT_EQ(version(), kSchemaVersion);
+}
+
+TEST_F(MigrationTest, ANewerSchemaIsRefused) {
+  sqlite::Database(path_ / "store.sqlite", sqlite::Open::existing).execute("PRAGMA user_version=3");
+  EXPECT_THROW(Store(path_, Access::write), StoreDamaged);
+  EXPECT_THROW(Store(path_, Access::read), StoreDamaged);
+  EXPECT_EQ(version(), 3);
+}
+
+TEST_F(MigrationTest, OldEventsAreReadInTheirNewLayout) {
+  const Store store(path_, Access::read);
+  int started = 0, completed = 0;
+  for (const Event& event : store.events()) {
+    EXPECT_EQ(event.schema, 1u);
+    EXPECT_EQ(event_hash(event), event.hash);
+    const nlohmann::json body = event.body();
+    if (event.type == "RunStarted") {
+      ++started;
+      EXPECT_TRUE(body.at("process").is_null());
+      EXPECT_TRUE(body.at("parent_checkpoint").is_null());
+      EXPECT_EQ(body.at("host").at("host"), "example");
+      EXPECT_EQ(event.payload.find("process"), std::string::npos) << "it was rewritten";
+    }
+    if (event.type == "RunCompleted") {
+      ++completed;
+      EXPECT_TRUE(body.at("target_cycles").is_null());
+    }
+  }
+  EXPECT_EQ(started, 2);
+  EXPECT_EQ(completed, 3);
+}
+
+TEST_F(MigrationTest, NewerPayloadsAreRefusedByName) {
+  EXPECT_EQ(newest_schema("RunStarted"), 2u);
+  EXPECT_EQ(newest_schema("CheckpointRecorded"), 1u);
+  Event event;
+  event.seq = 7;
+  event.type = "RunStarted";
+  event.schema = 3;
+  event.payload = "{}";
+  const std::string message = test::message_of<StoreDamaged>([&] { event.body(); });
+  EXPECT_NE(message.find("event 7 (RunStarted)"), std::string::npos) << message;
+  EXPECT_NE(message.find("layout 3"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace shearcell
