@@ -27,28 +27,47 @@ double ListSettings::widest_margin() const {
 
 NeighbourLists::NeighbourLists(const Kernels& kernels, const ListSettings& settings, double depth,
                                const Walls& walls, Team& team)
-    : kernels_(kernels), walls_(walls), team_(team), settings_(settings), depth_(depth) {}
+    : kernels_(kernels),
+      walls_(walls),
+      team_(team),
+      settings_(settings),
+      depth_(depth),
+      widest_margin_(settings.widest_margin()) {}
 
 bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
   if (settings_.rebuild_every_step) return false;
-  const double room = settings_.inner_margin() - inner_reference_.loss(pose.tan_theta);
+  const double room = inner_wall_margin_ - inner_reference_.loss(pose.tan_theta);
   return excess <= 0 && inner_reference_.wall_moved(pose) < room;
 }
 
+// While many grains are fast (a wall that comes down on loose ones), a wider reach costs less than
+// to search every few dozen steps.
+void NeighbourLists::choose_widest_margin(const Snapshot& now) {
+  const std::uint64_t age = now.step - built_at_;
+  built_at_ = now.step;
+  // Nobody may meet a neighbour through both seams.
+  const double most = std::min(0.5, 0.24 * (depth_ - 2));
+  const double least = settings_.widest_margin();
+  if (age > 0 && age < 100) widest_margin_ = std::min(1.3 * widest_margin_, most);
+  if (age > 250) widest_margin_ /= 1.3;
+  widest_margin_ = std::max(widest_margin_, least);
+}
+
 void NeighbourLists::set_outer_margins(const Snapshot& now) {
+  choose_widest_margin(now);
   const double least = settings_.outer_margin();
-  const double widest = settings_.widest_margin();
   const double horizon = settings_.outer_horizon * now.time_step;
   outer_margin_.resize(now.grains);
   for (std::size_t g = 0; g < now.grains; ++g) {
-    now.rows[4 * g + 3] = std::min(least + horizon * speed(now, g), widest);
+    now.rows[4 * g + 3] = std::min(least + horizon * speed(now, g), widest_margin_);
   }
-  walls_.place_all(now.pose, least, now.rows + wall_offset(now.grains));
+  outer_wall_margin_ = std::min(least + horizon * now.wall_speed, widest_margin_);
+  walls_.place_all(now.pose, outer_wall_margin_, now.rows + wall_offset(now.grains));
 }
 
 void NeighbourLists::build(const Snapshot& now, const std::vector<std::int32_t>& id,
                            const CellOrder& order) {
-  outer_reference_.set(now.rows, now.grains, now.pose, settings_.widest_margin());
+  outer_reference_.set(now.rows, now.grains, now.pose, widest_margin_);
   for (std::size_t g = 0; g < now.grains; ++g) outer_margin_[g] = round_down(now.rows[4 * g + 3]);
   const std::size_t walls = walls_.size();
   offset_of_id_.resize(walls + now.grains);
@@ -99,7 +118,8 @@ bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = settings_.inner_horizon * now.time_step;
   const double loss = outer_reference_.loss(now.pose.tan_theta);
-  double smallest_room = settings_.outer_margin() - outer_reference_.wall_moved(now.pose) - loss;
+  double smallest_room = outer_wall_margin_ - outer_reference_.wall_moved(now.pose) - loss;
+  inner_wall_margin_ = std::min(least + horizon * now.wall_speed, smallest_room);
   for (std::size_t g = 0; g < now.grains; ++g) {
     const double room =
         double{outer_margin_[g]} - outer_reference_.moved(now.rows, g, now.pose) - loss;
@@ -107,12 +127,12 @@ bool NeighbourLists::set_inner_margins(const Snapshot& now) {
     now.rows[4 * g + 3] = std::min(least + horizon * speed(now, g), room);
   }
   double* wall_row = now.rows + wall_offset(now.grains);
-  for (std::size_t w = 0; w < walls_.size(); ++w) wall_row[4 * w + 3] = least;
+  for (std::size_t w = 0; w < walls_.size(); ++w) wall_row[4 * w + 3] = inner_wall_margin_;
   return smallest_room >= least;
 }
 
 void NeighbourLists::cut(const Snapshot& now) {
-  inner_reference_.set(now.rows, now.grains, now.pose, settings_.widest_margin());
+  inner_reference_.set(now.rows, now.grains, now.pose, widest_margin_);
   const std::size_t blocks = (now.grains + kernels_.lanes - 1) / kernels_.lanes;
   slots_.resize(blocks);
   head_.resize(blocks);
@@ -130,7 +150,7 @@ void NeighbourLists::cut(const Snapshot& now) {
   task.moving_end = task.first_wall + static_cast<std::int32_t>(4 * walls_.moving_size());
   const auto planes = walls_.planes(now.pose);
   std::copy(planes.begin(), planes.end(), task.planes);
-  task.wall_margin = settings_.inner_margin();
+  task.wall_margin = inner_wall_margin_;
   task.inner_count = inner_count_.data();
   task.slots = slots_.data();
   task.head = head_.data();

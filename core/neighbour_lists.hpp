@@ -46,6 +46,8 @@ struct Snapshot {
   WallPose pose;
   double time_step = 0;   ///< [s]
   double shear_rate = 0;  ///< of tan(theta) [1/s]
+  double wall_speed = 0;  ///< of the moving wall [d/s]
+  std::uint64_t step = 0;
 };
 
 class NeighbourLists {
@@ -58,7 +60,7 @@ class NeighbourLists {
   /// kernel's step returned.
   bool inner_valid(double excess, const WallPose& pose) const;
 
-  /// Gives every grain and wall grain the margin of a new outer list.
+  /// Gives every grain and wall grain the margin of a new outer list, none above widest_margin().
   void set_outer_margins(const Snapshot& now);
   /// Finds the outer neighbours and cuts the inner list from them. `order` holds the sites with
   /// those margins; `id` is the permanent id of each grain in memory.
@@ -67,6 +69,8 @@ class NeighbourLists {
   /// made again first.
   bool prune(const Snapshot& now);
 
+  /// Of the newest outer list [d].
+  double widest_margin() const { return widest_margin_; }
   NeighbourRows rows() const;
   /// Length of each grain's inner list when it was last cut; empty before that.
   const std::vector<std::uint16_t>& inner_count() const { return inner_count_; }
@@ -79,6 +83,7 @@ class NeighbourLists {
 
  private:
   void search(const CellOrder& order, std::size_t grains);
+  void choose_widest_margin(const Snapshot& now);
   bool set_inner_margins(const Snapshot& now);
   void cut(const Snapshot& now);
 
@@ -87,6 +92,9 @@ class NeighbourLists {
   Team& team_;
   ListSettings settings_;
   double depth_;
+  double widest_margin_;
+  std::uint64_t built_at_ = 0;  // step of the newest outer list
+  double outer_wall_margin_ = 0, inner_wall_margin_ = 0;
   Reference outer_reference_, inner_reference_;
   AlignedVector<float> outer_margin_;
   std::size_t outer_stride_ = 32, inner_stride_ = 16;

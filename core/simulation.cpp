@@ -178,6 +178,8 @@ Snapshot Simulation::snapshot(const Drive& drive) {
   now.pose = pose_;
   now.time_step = scene_.time_step;
   now.shear_rate = shear_rate(drive);
+  now.wall_speed = std::fabs(wall_velocity_);
+  now.step = step_;
   return now;
 }
 
@@ -196,11 +198,12 @@ void Simulation::refresh_lists(const Drive& drive) {
 }
 
 void Simulation::rebuild_lists(const Drive& drive) {
-  const double reach = 1 + 2 * settings_.lists.widest_margin();
   lists_.set_outer_margins(snapshot(drive));
+  const double reach = 1 + 2 * lists_.widest_margin();
   walls_.choose_active(pose_, 2 * reach);
   const auto walls = static_cast<std::int32_t>(walls_.size());
   std::vector<Site> sites;
+  sites.reserve(walls_.active().size() + id_.size());
   for (const std::int32_t w : walls_.active()) {
     sites.push_back({wall_offset(id_.size()) + 4 * w, w});
   }
@@ -208,7 +211,9 @@ void Simulation::rebuild_lists(const Drive& drive) {
     sites.push_back({static_cast<std::int32_t>(4 * g), walls + id_[g]});
   }
   order_.build(cell_, pose_, reach, rows_[0].data(), sites);
-  if (settings_.lists.sort_memory) sort_memory();
+  // Grains stay near each other for longer than the lists of a loose, fast packing last.
+  const bool stale = counts_.builds < 2 || step_ - sorted_at_ >= 200;
+  if (settings_.lists.sort_memory && stale) sort_memory();
   lists_.build(snapshot(drive), id_, order_);
   // Both buffers hold all that `place` does not write.
   std::copy(rows_[0].begin() + padding_offset(id_.size()), rows_[0].end(),
@@ -251,6 +256,7 @@ void Simulation::sort_memory() {
   std::copy(rows_[0].begin() + padding_offset(id_.size()), rows_[0].end(),
             rows_[1].begin() + padding_offset(id_.size()));
   std::swap(rows_[0], rows_[1]);
+  sorted_at_ = step_;
 }
 
 State Simulation::state() const {

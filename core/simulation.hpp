@@ -86,6 +86,7 @@ class Simulation {
   const Kernels& kernels_;
   std::unique_ptr<Team> team_;
   std::uint64_t step_ = 0;
+  std::uint64_t sorted_at_ = 0;  // step when memory was last put in order
   double wall_height_ = 0, wall_velocity_ = 0;
   std::vector<std::int32_t> id_;  // permanent id of each grain in memory
   std::array<AlignedVector<double>, 2> rows_;
