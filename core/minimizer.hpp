@@ -13,7 +13,7 @@ namespace shearcell {
 struct MinimizeSettings {
   /// Largest net force on any grain over P d^2, and |net force on the moving wall| over P A.
   double force_tolerance = 1e-4;
-  std::uint64_t most_evaluations = 4'000'000;  ///< of the forces, before it counts as a failure
+  std::uint64_t most_evaluations = 1'000'000;  ///< of the forces, before it counts as a failure
 };
 
 struct Minimum {
