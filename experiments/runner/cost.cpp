@@ -25,8 +25,8 @@ double settling_time(double height) {
 }
 
 // Evaluations of the forces in one minimization at the default tolerance, on average over the nine
-// of B.2.
-constexpr double kMinimization = 20e3;
+// of B.2: 7e3 to 21e3 measured at N = 600 and 2000.
+constexpr double kMinimization = 15e3;
 
 double checkpoint_bytes(const Geometry& shape, double width) {
   // Two side walls of the fill height, and bottom and top.

@@ -45,6 +45,15 @@ TEST(Cost, CountsCheckpoints) {
   EXPECT_NEAR(stage_cost(rare, rare.last, 0).bytes, 2 * file, 1e-6 * file);
 }
 
+TEST(Cost, OfStiffeningIsThatOfTheSpringConstantsLeft) {
+  const PlannedRun run = only_run(tiny_manifest("  protocol: stiffen\n"));
+  const StageCost all = stage_cost(run, run.last, 0);
+  EXPECT_GT(all.particle_steps, 0);
+  EXPECT_NEAR(stage_cost(run, run.last, 6).particle_steps, all.particle_steps / 3, 1);
+  EXPECT_NEAR(stage_cost(run, run.last, 6).bytes, all.bytes * 3 / 10, 1) << "cycles 0 to 9";
+  EXPECT_EQ(stage_cost(run, run.last, 9).particle_steps, 0);
+}
+
 TEST(Cost, OfDiskAndSettlingAreNearWhatTheyTurnOutToBe) {
   const TemporaryFolder folder;
   Store store(folder.path() / "store", Access::create);
