@@ -102,8 +102,73 @@ double Simulation::shear_rate(const Drive& drive) const {
 void Simulation::advance(const Drive& drive, std::uint64_t steps) {
   if (steps == 0) return;
   pose_ = pose_at(drive, step_);
-  if (counts_.builds == 0) refresh_lists(drive);
+  if (counts_.builds == 0 || was_set_) refresh_lists(drive);
+  was_set_ = false;
   for (std::uint64_t n = 0; n < steps; ++n) step_once(drive);
+}
+
+void Simulation::set_state(const State& state) {
+  const auto grains = static_cast<Eigen::Index>(id_.size());
+  if (state.position.cols() != grains || state.velocity.cols() != grains) {
+    throw std::invalid_argument("a state of other grains than those of the simulation");
+  }
+  step_ = state.step;
+  wall_height_ = state.wall_height;
+  wall_velocity_ = state.wall_velocity;
+  for (std::size_t g = 0; g < id_.size(); ++g) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      rows_[0][4 * g + axis] = state.position(a, id_[g]);
+      velocity_[axis][g] = state.velocity(a, id_[g]);
+    }
+  }
+  pose_ = pose_at(Drive{}, step_);
+  if (counts_.builds > 0) walls_.place(pose_, rows_[0].data() + wall_offset(id_.size()));
+  was_set_ = true;
+}
+
+// A step of the kernel that keeps no velocity and goes nowhere leaves the sums. False when the
+// lists did not hold.
+bool Simulation::sum_contacts() {
+  StepTask task = task_;
+  task.rows = rows_[0].data();
+  task.next_rows = rows_[1].data();
+  for (std::size_t axis = 0; axis < 3; ++axis) task.velocity[axis] = sum_[axis].data();
+  task.keep = task.time_step = 0;
+  task.kick = 1;
+  task.next_shear = pose_.tan_theta;
+  task.loss = lists_.reference().loss(task.next_shear);
+  const auto planes = walls_.planes(pose_);
+  std::copy(planes.begin(), planes.end(), task.planes);
+  const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;
+  const auto sum = kernels_.step[0][0];
+  std::vector<double>& excess = excess_of_thread_;
+  team_->run(blocks, [&](std::size_t thread, std::size_t first, std::size_t last) {
+    excess[thread] = sum(task, first, last);
+  });
+  ++evaluations_;
+  return lists_.inner_valid(*std::max_element(excess.begin(), excess.end()), pose_);
+}
+
+const Forces& Simulation::forces() {
+  const Drive upright;
+  pose_ = pose_at(upright, step_);
+  for (auto& axis : sum_) axis.resize(padded(id_.size()), 0.0);
+  if (counts_.builds == 0) refresh_lists(upright);
+  if (!sum_contacts()) {
+    refresh_lists(upright);
+    sum_contacts();
+  }
+  was_set_ = false;
+  forces_.on_grain.resize(3, static_cast<Eigen::Index>(id_.size()));
+  for (std::size_t g = 0; g < id_.size(); ++g) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      forces_.on_grain(static_cast<Eigen::Index>(axis), id_[g]) =
+          scene_.stiffness * sum_[axis][g] - (axis == 1 ? scene_.gravity : 0.0);
+    }
+  }
+  forces_.on_wall = force_on_wall(push_of_moving_wall());
+  return forces_;
 }
 
 // The fluid's du/dy is Eq. S5 with the height counted from the top wall.
@@ -130,6 +195,7 @@ void Simulation::step_once(const Drive& drive) {
     excess[thread] = step(task_, first, last);
   });
 
+  ++evaluations_;
   move_wall(push_of_moving_wall());
   (cell_.moving == MovingWall::bottom ? next.bottom : next.top) = wall_height_;
   pose_ = next;
@@ -159,12 +225,16 @@ void Simulation::check() const {
   check_grains(task, cell_, scene_, pose_, settings_.limits);
 }
 
-void Simulation::move_wall(double push) {
+double Simulation::force_on_wall(double push) const {
   // Contacts push the wall by minus what they push the grains by. The pressure points inwards.
   const double area = cell_.width * cell_.depth;
   const double inwards = cell_.moving == MovingWall::bottom ? 1.0 : -1.0;
-  const double force = inwards * scene_.pressure * area - scene_.stiffness * push;
-  const double mass = scene_.wall_mass * area;
+  return inwards * scene_.pressure * area - scene_.stiffness * push;
+}
+
+void Simulation::move_wall(double push) {
+  const double force = force_on_wall(push);
+  const double mass = scene_.wall_mass * (cell_.width * cell_.depth);
   const double half = 0.5 * scene_.time_step * scene_.wall_drag / scene_.wall_mass;
   wall_velocity_ = ((1 - half) * wall_velocity_ + scene_.time_step * (force / mass)) / (1 + half);
   wall_height_ += scene_.time_step * wall_velocity_;

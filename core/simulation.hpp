@@ -41,6 +41,12 @@ struct ListCounts {
   std::uint64_t prunes = 0;
 };
 
+/// Net forces [m d/s^2] on all that can move.
+struct Forces {
+  Eigen::Matrix3Xd on_grain;  ///< of contacts and gravity, in the order of the permanent ids
+  double on_wall = 0;         ///< upwards on the moving wall: pressure and contacts
+};
+
 class Simulation {
  public:
   /// Takes the state over. Throws std::invalid_argument when the sizes disagree, the cell is too
@@ -53,12 +59,22 @@ class Simulation {
   /// Looks for what the watchdog looks for, now. Throws NumericalFailure.
   void check() const;
 
+  /// Goes on from another state of the same grains, between upright walls. Throws
+  /// std::invalid_argument when their number differs.
+  void set_state(const State& state);
+
+  /// Forces at the present positions without drag, walls upright; the same bits as a step finds.
+  /// The reference holds until the next call.
+  const Forces& forces();
+
   /// The state in the order of the permanent ids.
   State state() const;
   std::uint64_t step() const { return step_; }
   const Cell& cell() const { return cell_; }
   const Scene& scene() const { return scene_; }
   std::size_t grains() const { return id_.size(); }
+  /// How often forces were summed since construction, in steps and otherwise.
+  std::uint64_t evaluations() const { return evaluations_; }
   const ListCounts& list_counts() const { return counts_; }
   /// Memory held for grains, walls and lists [bytes].
   std::size_t bytes() const;
@@ -73,8 +89,10 @@ class Simulation {
   void refresh_lists(const Drive& drive);
   void sort_memory();
   void step_once(const Drive& drive);
+  bool sum_contacts();
   void set_flow(const Drive& drive);
   double push_of_moving_wall() const;
+  double force_on_wall(double push) const;
   void move_wall(double push);
   WallPose pose_at(const Drive& drive, std::uint64_t step) const;
   double shear_rate(const Drive& drive) const;
@@ -98,6 +116,10 @@ class Simulation {
   WallPose pose_;  // at step_
   StepTask task_;
   std::vector<double> excess_of_thread_;
+  std::array<AlignedVector<double>, 3> sum_;  // of contacts, where forces are asked for
+  Forces forces_;
+  bool was_set_ = false;  // to a state for which the lists have not been looked at
+  std::uint64_t evaluations_ = 0;
   ListCounts counts_;
 };
 

@@ -9,8 +9,7 @@
 namespace shearcell::cli {
 
 void add_common_options(CLI::App& command, Context& context, bool with_json) {
-  command.add_option("--store", context.store, "Folder of the store")
-      ->envname("SHEARCELL_STORE")
+  command.add_option("--store", context.store, "Folder of the store; else $SHEARCELL_STORE")
       ->capture_default_str()
       ->type_name("DIR");
   if (with_json) command.add_flag("--json", context.json, "Print JSON for programs");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include "core/filling.hpp"
@@ -45,6 +46,10 @@ int complain(int code, const char* what) {
 
 int run(int argc, char** argv) {
   Context context;
+  // Not the option's own envname: CLI11 reads that for every subcommand, and so over what was
+  // parsed.
+  const char* store = std::getenv("SHEARCELL_STORE");
+  if (store != nullptr && *store != '\0') context.store = store;
   CLI::App app{kDescription, "shearcell"};
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());

@@ -74,7 +74,7 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store) 
   std::vector<Line> lines;
   std::set<std::string> seen;
   for (const PlannedRun& run : plan.runs) {
-    for (const StageSpec* stage : {&run.prepare, &run.shear}) {
+    for (const StageSpec* stage : {&run.prepare, &run.last}) {
       if (!seen.insert(stage->key).second) continue;
       Line line{.run = &run, .stage = stage, .left = {}};
       line.novelty = novelty(*stage, known);

@@ -29,6 +29,7 @@ class VariantChecker {
       }
       check_shear_step(p, where);
       check_settle_step(p, where);
+      check_pause(p, where);
       check_depth(p, where);
       if (p.fill_packing_fraction >= p.nominal_packing_fraction) {
         report("fill_packing_fraction", where("fill_packing_fraction"),
@@ -97,6 +98,15 @@ class VariantChecker {
         fmt::format("the time step {:.4g} s is over the stability limit 2/sqrt(8 k/m) = {:.4g} s",
                     p.settle_time_step_s, limit),
         fmt::format("Use less than {:.4g} s.", limit));
+  }
+
+  template <class Where>
+  void check_pause(const Parameters& p, const Where& where) {
+    if (p.protocol != "paused" || pause_time_steps(p) <= kMostPauseSteps) return;
+    report("pause_s", where("pause_s"),
+           fmt::format("the pause takes {:.3g} time steps", pause_time_steps(p)),
+           fmt::format("Use a pause of at most {:g} steps of period_s/steps_per_cycle.",
+                       kMostPauseSteps));
   }
 
   template <class Where>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/manifest/conversion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace shearcell {
@@ -26,8 +27,24 @@ Scene settle_scene(const Parameters& p) {
   return scene;
 }
 
+Scene stiffen_scene(const Parameters& p) {
+  Scene scene = settle_scene(p);
+  scene.time_step = 0;
+  return scene;
+}
+
+std::uint64_t target_cycles(const Parameters& p) {
+  if (p.protocol != "stiffen") return p.cycles;
+  return 1 + p.stiffness_decades * p.stiffness_steps_per_decade;
+}
+
 Drive drive(const Parameters& p) {
-  return {.amplitude = p.amplitude_rad, .steps_per_cycle = p.steps_per_cycle, .pause_steps = 0};
+  Drive drive{.amplitude = p.amplitude_rad, .steps_per_cycle = p.steps_per_cycle, .pause_steps = 0};
+  if (p.protocol == "paused") {
+    const double steps = std::clamp(std::nearbyint(pause_time_steps(p)), 1.0, kMostPauseSteps);
+    drive.pause_steps = static_cast<std::uint64_t>(steps);
+  }
+  return drive;
 }
 
 Geometry geometry(const Parameters& p) {
@@ -43,6 +60,10 @@ Geometry geometry(const Parameters& p) {
 
 double shear_time_step_s(const Parameters& p) {
   return p.period_s / static_cast<double>(p.steps_per_cycle);
+}
+
+double pause_time_steps(const Parameters& p) {
+  return p.pause_s / shear_time_step_s(p);
 }
 
 double stability_limit_s(const Parameters& p) {

@@ -17,7 +17,20 @@ Scene shear_scene(const Parameters& parameters);
 /// What acts on them while they settle: upright walls, a fluid at rest, its own time step.
 Scene settle_scene(const Parameters& parameters);
 
+/// Motion of the walls; a pause has the whole number of time steps nearest to pause_s, at least 1.
 Drive drive(const Parameters& parameters);
+
+/// Most time steps of one pause.
+inline constexpr double kMostPauseSteps = 1e9;
+
+/// pause_s in time steps of the shear, not rounded.
+double pause_time_steps(const Parameters& parameters);
+
+/// What acts on them while they stiffen: as while they settle, and no time passes.
+Scene stiffen_scene(const Parameters& parameters);
+
+/// Length of the stage after settling: cycles of shear, or stiffnesses.
+std::uint64_t target_cycles(const Parameters& parameters);
 
 /// What the cell is built and filled from.
 Geometry geometry(const Parameters& parameters);

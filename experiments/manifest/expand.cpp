@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "experiments/manifest/conversion.hpp"
@@ -100,8 +101,15 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   }
 
   Plan plan{manifest.experiment, scale == nullptr ? "" : scale->name, {}, {}};
+  std::map<std::string, std::string> variant_of;  // by the last stage's key
   for_each_variant(resolved, [&](const Variant& variant) {
     add_warnings(variant, plan);
+    if (options.cycles && variant.parameters.protocol == "stiffen") {
+      plan.warnings.push_back(fmt::format(
+          "{}: variant {}: a number of cycles has no effect on stiffening, whose length is "
+          "stiffness_decades",
+          plan.experiment, variant.name()));
+    }
     for (const std::uint64_t seed : seeds) {
       PlannedRun run;
       run.experiment = plan.experiment;
@@ -110,11 +118,17 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       run.labels = variant.labels();
       run.seed = seed;
       run.prepare = prepare_stage(variant.parameters, seed);
-      run.shear = shear_stage(variant.parameters, seed, run.prepare);
-      run.cycles = variant.parameters.cycles;
+      run.last = last_stage(variant.parameters, seed, run.prepare);
+      run.cycles = target_cycles(variant.parameters);
       run.checkpoint_every = resolved.checkpoint_every;
       run.grains = static_cast<std::size_t>(variant.parameters.grains);
       run.parameters = variant.parameters;
+      const std::string& same = variant_of.emplace(run.last.key, run.variant).first->second;
+      if (same != run.variant && seed == seeds.front()) {
+        plan.warnings.push_back(
+            fmt::format("{}: variants {} and {} are the same runs, computed once", plan.experiment,
+                        same, run.variant));
+      }
       plan.runs.push_back(std::move(run));
     }
   });

@@ -28,8 +28,8 @@ struct PlannedRun {
   nlohmann::json labels;  ///< the swept keys and their values, an object
   std::uint64_t seed = 0;
   StageSpec prepare;
-  StageSpec shear;
-  std::uint64_t cycles = 0;            ///< target length of the shear stage
+  StageSpec last;                      ///< what is done to the packing: shear, or stiffening
+  std::uint64_t cycles = 0;            ///< target length of the last stage
   std::uint64_t checkpoint_every = 1;  ///< cycles
   std::size_t grains = 0;
   Parameters parameters;

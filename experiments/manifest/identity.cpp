@@ -20,20 +20,29 @@ using nlohmann::json;
 // Changes with the meaning of a key, so that keys of different meanings never meet.
 constexpr std::string_view kDomain = "shearcell stage 1\n";
 
-bool enters_prepare(const Field& field) {
-  return field.identity == Identity::prepare;
-}
-
-// A sheared cell feels what it settled under as well.
-bool enters_shear(const Field& field) {
-  return field.identity != Identity::none;
+// Whether the record of a stage holds the parameter. A sheared cell feels what it settled under as
+// well.
+bool enters(const Field& field, Stage stage, std::string_view protocol) {
+  switch (field.identity) {
+    case Identity::prepare:
+      return true;
+    case Identity::shear:
+      return stage == Stage::shear;
+    case Identity::paused_shear:
+      return stage == Stage::shear && protocol == "paused";
+    case Identity::stiffen:
+      return stage == Stage::stiffen;
+    case Identity::none:
+      break;
+  }
+  return false;
 }
 
 json resolve(Stage stage, const Parameters& parameters, std::uint64_t seed) {
-  const auto enters = stage == Stage::prepare ? enters_prepare : enters_shear;
   json values = json::object();
   for (const Field& field : schema()) {
-    if (enters(field)) values[std::string(field.name)] = get_value(field, parameters);
+    if (enters(field, stage, parameters.protocol))
+      values[std::string(field.name)] = get_value(field, parameters);
   }
   return {{"stage", stage_name(stage)}, {"seed", seed}, {"parameters", std::move(values)}};
 }
@@ -83,10 +92,33 @@ std::string text_member(const json& object, const char* key) {
   return value.get<std::string>();
 }
 
+StageSpec following(Stage stage, const Parameters& parameters, std::uint64_t seed,
+                    const StageSpec& parent) {
+  json resolved = resolve(stage, parameters, seed);
+  resolved["parent"] = parent.key;
+  std::string key = stage_key(resolved);
+  return {stage, std::move(key), parent.key, std::move(resolved)};
+}
+
+// Decides which parameters the record must hold; read_parameters refuses what is not a protocol.
+std::string protocol_of(const json& values) {
+  if (!values.is_object()) return "";
+  const auto found = values.find("protocol");
+  return found != values.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
 }  // namespace
 
 std::string_view stage_name(Stage stage) {
-  return stage == Stage::prepare ? "prepare" : "shear";
+  switch (stage) {
+    case Stage::shear:
+      return "shear";
+    case Stage::stiffen:
+      return "stiffen";
+    case Stage::prepare:
+      break;
+  }
+  return "prepare";
 }
 
 StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed) {
@@ -96,10 +128,16 @@ StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed) {
 }
 
 StageSpec shear_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent) {
-  json resolved = resolve(Stage::shear, parameters, seed);
-  resolved["parent"] = parent.key;
-  std::string key = stage_key(resolved);
-  return {Stage::shear, std::move(key), parent.key, std::move(resolved)};
+  return following(Stage::shear, parameters, seed, parent);
+}
+
+StageSpec stiffen_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent) {
+  return following(Stage::stiffen, parameters, seed, parent);
+}
+
+StageSpec last_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent) {
+  const bool stiffens = parameters.protocol == stage_name(Stage::stiffen);
+  return following(stiffens ? Stage::stiffen : Stage::shear, parameters, seed, parent);
 }
 
 std::string stage_key(const json& resolved) {
@@ -110,19 +148,28 @@ StageRecord read_stage(const json& resolved) {
   if (!resolved.is_object()) throw std::runtime_error("record of a stage: not a JSON object");
   const std::string name = text_member(resolved, "stage");
   StageRecord record;
-  if (name == stage_name(Stage::shear)) {
-    record.stage = Stage::shear;
+  for (const Stage stage : {Stage::shear, Stage::stiffen}) {
+    if (name == stage_name(stage)) record.stage = stage;
+  }
+  if (record.stage != Stage::prepare) {
     record.parent = text_member(resolved, "parent");
     if (!is_sha256_hex(record.parent)) throw damaged("parent", "is not a run's id");
   } else if (name != stage_name(Stage::prepare)) {
-    throw damaged("stage", "is neither prepare nor shear");
+    throw damaged("stage", "is none of prepare, shear, stiffen");
   }
   const json& seed = member(resolved, "seed");
   if (!seed.is_number_unsigned()) throw damaged("seed", "is not a whole number >= 0");
   record.seed = seed.get<std::uint64_t>();
   const bool prepares = record.stage == Stage::prepare;
-  record.parameters =
-      read_parameters(member(resolved, "parameters"), prepares ? enters_prepare : enters_shear);
+  const json& values = member(resolved, "parameters");
+  const std::string protocol = protocol_of(values);
+  record.parameters = read_parameters(
+      values, [&](const Field& field) { return enters(field, record.stage, protocol); });
+  if (record.stage == Stage::stiffen) record.parameters.protocol = name;
+  // A record of a shear that says it stiffens is one that this program never wrote.
+  if (record.stage == Stage::shear && record.parameters.protocol == stage_name(Stage::stiffen)) {
+    throw damaged("protocol", "is not one that shears");
+  }
   const std::set<std::string> known =
       prepares ? std::set<std::string>{"stage", "seed", "parameters"}
                : std::set<std::string>{"stage", "seed", "parameters", "parent"};

@@ -11,7 +11,7 @@
 
 namespace shearcell {
 
-enum class Stage : std::uint8_t { prepare, shear };
+enum class Stage : std::uint8_t { prepare, shear, stiffen };
 std::string_view stage_name(Stage stage);
 
 /// One link in a run's chain. Equal keys mean equal trajectories, so a stage is computed once.
@@ -22,8 +22,8 @@ struct StageSpec {
   nlohmann::json resolved;  ///< exactly what `key` is the hash of; `read_stage` reads it back
 };
 
-/// What a stage is, as its `resolved` record says. Parameters that it does not feel, and `cycles`,
-/// are at their defaults.
+/// What a stage is, as its `resolved` record says. Parameters that it does not feel, and lengths,
+/// are at their defaults; the protocol of a stiffening is `stiffen`.
 struct StageRecord {
   Stage stage = Stage::prepare;
   std::string parent;
@@ -36,6 +36,12 @@ StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed);
 
 /// Shear of the packing that `parent` prepared.
 StageSpec shear_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent);
+
+/// Stiffening of the packing that `parent` prepared.
+StageSpec stiffen_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent);
+
+/// Whichever of the two the protocol asks for.
+StageSpec last_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent);
 
 /// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. A reader recomputes it to
 /// check that a recorded run is what it is called.

@@ -16,7 +16,8 @@ nlohmann::json to_json(const Parameters& parameters) {
   return json;
 }
 
-Parameters read_parameters(const nlohmann::json& json, bool (*expected)(const Field&)) {
+Parameters read_parameters(const nlohmann::json& json,
+                           const std::function<bool(const Field&)>& expected) {
   if (!json.is_object()) throw std::runtime_error("parameters: not a JSON object");
   for (const auto& [key, value] : json.items()) {
     const Field* field = find_field(key);

@@ -48,9 +48,15 @@ struct Parameters {
   double amplitude_rad = 0.0833;
   double period_s = 2;
   std::uint64_t steps_per_cycle = 45600;
+  double pause_s = 2;
 
-  /// How far to go; a longer run is the same run, extended.
+  // Stiffening.
+  std::uint64_t stiffness_steps_per_decade = 4;
+  double minimize_force_tolerance = 1e-4;
+
+  // How far to go; a longer run is the same run, extended.
   std::uint64_t cycles = 200;
+  std::uint64_t stiffness_decades = 2;
 
   bool operator==(const Parameters&) const = default;
 };

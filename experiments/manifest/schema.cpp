@@ -16,8 +16,8 @@ using std::string_view;
 constexpr std::array<string_view, 2> kFluids = {"still", "cell"};
 constexpr std::array<string_view, 2> kTextures = {"rough", "smooth"};
 constexpr std::array<string_view, 2> kMovingWalls = {"bottom", "top"};
-// The protocols that shear a settled packing. One more is one more name here.
-constexpr std::array<string_view, 1> kProtocols = {"continuous"};
+// What can be done to a settled packing. One more protocol is one more name here.
+constexpr std::array<string_view, 3> kProtocols = {"continuous", "paused", "stiffen"};
 
 template <auto Member>
 ChoiceMember choice(std::span<const string_view> names) {
@@ -130,22 +130,42 @@ std::vector<Field> settle_fields() {
 std::vector<Field> shear_fields() {
   using P = Parameters;
   return {
-      names("protocol", "", protocol_choice(), Identity::shear,
-            "what is done to the settled packing (B.5)"),
+      names(
+          "protocol", "", protocol_choice(), Identity::shear,
+          "what is done to the settled packing: shear without or with pauses (B.5), or stiffening "
+          "(B.2)"),
       from_zero("amplitude_rad", "A", "rad", &P::amplitude_rad, 0.5, Identity::shear,
                 "amplitude of the tilt theta = A sin(omega t)"),
       above_zero("period_s", "T", "s", &P::period_s, 1e6, Identity::shear,
                  "duration of a cycle, 2 pi/omega (Table I: omega = pi rad/s)"),
       integer("steps_per_cycle", "", &P::steps_per_cycle, 4, 1e9, Identity::shear,
               "time steps in a cycle (Table I, B.4)"),
+      above_zero("pause_s", "", "s", &P::pause_s, 1e6, Identity::paused_shear,
+                 "rest between fixed walls after each cycle, under protocol paused (B.5); rounded "
+                 "to whole time steps"),
       integer("cycles", "n", &P::cycles, 0, 1e6, Identity::none,
               "cycles to shear for; a larger value extends a run"),
   };
 }
 
+std::vector<Field> stiffen_fields() {
+  using P = Parameters;
+  return {
+      integer("stiffness_decades", "", &P::stiffness_decades, 0, 6, Identity::none,
+              "under protocol stiffen the spring constant is raised by 10 to this power (B.2); a "
+              "larger value extends a run"),
+      integer("stiffness_steps_per_decade", "", &P::stiffness_steps_per_decade, 1, 100,
+              Identity::stiffen, "in this many equal factors for each power of ten (B.2)"),
+      above_zero("minimize_force_tolerance", "", "1", &P::minimize_force_tolerance, 1,
+                 Identity::stiffen,
+                 "and then the enthalpy is minimized until the largest net force on a grain over "
+                 "P d^2, and that on the moving wall over P A_w, are below this"),
+  };
+}
+
 std::vector<Field> make_schema() {
   std::vector<Field> all = grain_fields();
-  for (const auto& part : {cell_fields(), settle_fields(), shear_fields()}) {
+  for (const auto& part : {cell_fields(), settle_fields(), shear_fields(), stiffen_fields()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;
@@ -164,6 +184,10 @@ string_view identity_markdown(Identity identity) {
       return "prepare";
     case Identity::shear:
       return "shear";
+    case Identity::paused_shear:
+      return "shear, if paused";
+    case Identity::stiffen:
+      return "stiffen";
     case Identity::none:
       break;
   }

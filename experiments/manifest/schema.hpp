@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -18,8 +19,9 @@
 namespace shearcell {
 
 /// The stage whose key a parameter enters. Settling comes first, so what settling feels enters the
-/// key of `prepare` and, through its parent's key, that of `shear` as well.
-enum class Identity : std::uint8_t { prepare, shear, none };
+/// key of `prepare` and, through its parent's key, that of `shear` as well. `paused_shear` enters
+/// that of `shear` where the protocol is `paused`, and `stiffen` that of the stage of that name.
+enum class Identity : std::uint8_t { prepare, shear, paused_shear, stiffen, none };
 
 /// A parameter that takes one of a few names; the index of the name stands for its value.
 struct ChoiceMember {
@@ -66,7 +68,8 @@ void set_value(const Field& field, const nlohmann::json& value, Parameters& para
 
 /// Reads exactly the parameters for which `expected` holds; the others keep their defaults. The
 /// JSON is not trusted: throws std::runtime_error that names the key.
-Parameters read_parameters(const nlohmann::json& json, bool (*expected)(const Field&));
+Parameters read_parameters(const nlohmann::json& json,
+                           const std::function<bool(const Field&)>& expected);
 
 /// "a number > 0 and <= 1e+06", "one of still, cell".
 std::string expected_values(const Field& field);

@@ -39,6 +39,11 @@ std::size_t edit_distance(string_view a, string_view b) {
   return d[a.size()][b.size()];
 }
 
+bool has_no_unit(string_view name) {
+  const Field* field = find_field(name);
+  return field != nullptr && (field->unit.empty() || field->unit == "1");
+}
+
 }  // namespace
 
 Suggestion suggest_name(string_view unknown, std::span<const string_view> candidates) {
@@ -50,7 +55,9 @@ Suggestion suggest_name(string_view unknown, std::span<const string_view> candid
     if (field != nullptr && field->symbol == unknown) return {std::string(candidate), false};
     if (lower(candidate).starts_with(written + "_")) with_unit.push_back(candidate);
   }
-  // `settle` begins several names; then none of them lacks just its unit.
+  // `stiffness` begins several names, of which one lacks just its unit; `settle` begins several
+  // too.
+  if (with_unit.size() > 1) std::erase_if(with_unit, has_no_unit);
   if (with_unit.size() == 1) return {std::string(with_unit.front()), true};
 
   const std::size_t allowed = std::max<std::size_t>(2, written.size() / 3);

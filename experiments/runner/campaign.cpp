@@ -280,7 +280,7 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   std::vector<StageJob> jobs;
   std::set<std::string> known;
   for (const PlannedRun& run : plan.runs) {
-    for (const StageSpec* stage : {&run.prepare, &run.shear}) {
+    for (const StageSpec* stage : {&run.prepare, &run.last}) {
       const bool prepare = stage->stage == Stage::prepare;
       RunDeclaration declaration;
       declaration.id = stage->key;

@@ -24,6 +24,10 @@ double settling_time(double height) {
   return 0.6 + 0.00175 * height * height;
 }
 
+// Evaluations of the forces in one minimization at the default tolerance, on average over the nine
+// of B.2: 7e3 to 21e3 measured at N = 600 and 2000.
+constexpr double kMinimization = 15e3;
+
 double checkpoint_bytes(const Geometry& shape, double width) {
   // Two side walls of the fill height, and bottom and top.
   const double grains = static_cast<double>(shape.grains);
@@ -45,6 +49,10 @@ StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle
   if (stage.stage == Stage::prepare) {
     const double time = settling_time(shape.height_over_width * width);
     return {grains * time / run.parameters.settle_time_step_s, bytes * (1 + std::floor(time / 2))};
+  }
+  if (stage.stage == Stage::stiffen) {
+    const double left = std::max(0.0, static_cast<double>(run.cycles) - cycle);
+    return {grains * kMinimization * left, bytes * (left + (cycle == 0 ? 1 : 0))};
   }
   const double cycles = std::max(0.0, static_cast<double>(run.cycles) - cycle);
   const auto steps = static_cast<double>(cycle_steps(drive(run.parameters)));

@@ -10,10 +10,23 @@
 #include "experiments/manifest/conversion.hpp"
 #include "protocols/cyclic_shear.hpp"
 #include "protocols/settle.hpp"
+#include "protocols/stiffen.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
 namespace {
+
+Scene make_scene(const StageRecord& stage) {
+  switch (stage.stage) {
+    case Stage::shear:
+      return shear_scene(stage.parameters);
+    case Stage::stiffen:
+      return stiffen_scene(stage.parameters);
+    case Stage::prepare:
+      break;
+  }
+  return settle_scene(stage.parameters);
+}
 
 std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t cycles,
                                         std::uint64_t checkpoint_every) {
@@ -23,6 +36,11 @@ std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t 
         SettleParameters{p.settle_force_tolerance, p.settle_kinetic_tolerance,
                          p.settle_time_limit_s},
         settle_scene(p));
+  }
+  if (stage.stage == Stage::stiffen) {
+    StiffenParameters stiffen{p.stiffness_steps_per_decade, cycles, {}};
+    stiffen.minimize.force_tolerance = p.minimize_force_tolerance;
+    return std::make_unique<Stiffen>(stiffen, stiffen_scene(p));
   }
   return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every);
 }
@@ -35,8 +53,7 @@ StagePlan plan_stage(RunRecord run, std::uint64_t checkpoint_every) {
                        ": its recorded parameters are not those that it is named after");
   }
   StageRecord stage = read_stage(run.resolved);
-  const Scene scene = stage.stage == Stage::prepare ? settle_scene(stage.parameters)
-                                                    : shear_scene(stage.parameters);
+  const Scene scene = make_scene(stage);
   auto protocol = make_protocol(stage, run.target_cycles, checkpoint_every);
   return {std::move(run), std::move(stage), scene, std::move(protocol)};
 }
@@ -91,13 +108,20 @@ Checkpoint make_checkpoint(const StagePlan& plan, const Simulation& simulation, 
   checkpoint.theta = tilt(plan.protocol->drive(), simulation.step()).theta;
   checkpoint.units = units(plan.stage.parameters);
   const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
-  const Diagnostics facts = diagnose(checkpoint.cell, plan.scene, checkpoint.state, pose);
+  const Diagnostics facts = diagnose(checkpoint.cell, simulation.scene(), checkpoint.state, pose);
   checkpoint.observables = {{"kinetic_energy_per_grain_m_d2_per_s2", facts.kinetic_energy},
                             {"mean_overlap_d", facts.mean_overlap},
                             {"largest_overlap_d", facts.largest_overlap},
                             {"contacts_per_grain", facts.contacts_per_grain},
                             {"wall_force_imbalance", facts.wall_imbalance},
                             {"cell_height_d", pose.top - pose.bottom}};
+  if (plan.stage.stage == Stage::stiffen) {
+    const Parameters& p = plan.stage.parameters;
+    const double raised = simulation.scene().stiffness / plan.scene.stiffness;
+    checkpoint.observables["stiffness_N_per_m"] = raised * p.stiffness_N_per_m;
+    checkpoint.observables["force_residual_P_d2"] =
+        force_residual(checkpoint.cell, simulation.scene(), checkpoint.state);
+  }
   return checkpoint;
 }
 

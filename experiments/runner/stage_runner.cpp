@@ -39,9 +39,9 @@ class Attempt {
                      beginning.parent_checkpoint);
     try {
       Simulation simulation = make_simulation(plan_, std::move(beginning), options_.threads);
-      first_step_ = recorded_step_ = simulation.step();
+      first_step_ = simulation.step();
       // The settled packing is cycle 0 of what follows.
-      if (fresh && plan_.stage.stage == Stage::shear) record(simulation, 0);
+      if (fresh && plan_.stage.stage != Stage::prepare) record(simulation, 0);
       return advance(simulation);
     } catch (const NumericalFailure& failure) {
       store_.fail_run(id(), failure.what(),
@@ -78,12 +78,12 @@ class Attempt {
 
   void record(const Simulation& simulation, double cycle) {
     const Checkpoint checkpoint = make_checkpoint(plan_, simulation, cycle);
-    const auto steps = static_cast<double>(simulation.step() - recorded_step_);
+    const auto steps = static_cast<double>(simulation.evaluations() - recorded_evaluations_);
     store_.record_checkpoint(
         id(), checkpoint,
         {seconds_since(recorded_at_), steps * static_cast<double>(simulation.grains())});
     recorded_at_ = Clock::now();
-    recorded_step_ = simulation.step();
+    recorded_evaluations_ = simulation.evaluations();
   }
 
   void report(const Simulation& simulation, double cycle) {
@@ -92,8 +92,9 @@ class Attempt {
     StageStatus status;
     status.cycle = cycle;
     status.target_cycles =
-        plan_.stage.stage == Stage::shear ? static_cast<double>(plan_.run.target_cycles) : 0;
-    status.steps_per_second = static_cast<double>(simulation.step() - reported_step_) / since;
+        plan_.stage.stage != Stage::prepare ? static_cast<double>(plan_.run.target_cycles) : 0;
+    status.steps_per_second =
+        static_cast<double>(simulation.evaluations() - reported_evaluations_) / since;
     status.grains = simulation.grains();
     status.step = simulation.step();
     const std::uint64_t end = plan_.protocol->expected_steps();
@@ -102,13 +103,13 @@ class Attempt {
     status.seconds_left = end == 0 ? -1 : static_cast<double>(end - simulation.step()) / mean_rate;
     options_.report(status);
     reported_at_ = Clock::now();
-    reported_step_ = simulation.step();
+    reported_evaluations_ = simulation.evaluations();
   }
 
   Store& store_;
   const StageOptions& options_;
   StagePlan plan_;
-  std::uint64_t first_step_ = 0, recorded_step_ = 0, reported_step_ = 0;
+  std::uint64_t first_step_ = 0, recorded_evaluations_ = 0, reported_evaluations_ = 0;
   Clock::time_point started_at_ = Clock::now(), recorded_at_ = started_at_,
                     reported_at_ = started_at_;
 };

@@ -100,6 +100,17 @@ TEST_F(CommandLine, RefusesABadManifestBeforeItWritesAnything) {
       "is out of range");
 }
 
+TEST_F(CommandLine, TakesTheStoreThatIsNamedElseThatOfTheEnvironment) {
+  name_store("from-environment");
+  const Outcome by_default = run({"status"});
+  EXPECT_EQ(by_default.code, 2);
+  EXPECT_TRUE(contains(by_default.err, "from-environment")) << by_default.err;
+  const Outcome named = run({"status", "--store", "named"});
+  EXPECT_EQ(named.code, 2);
+  EXPECT_TRUE(contains(named.err, "named")) << named.err;
+  EXPECT_FALSE(contains(named.err, "from-environment")) << named.err;
+}
+
 TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {
   ASSERT_EQ(run({"run", write("m.yaml", tiny_manifest()), "--cycles", "0"}).code, 0);
   expect_usage_error({"figures", "S99"}, "there is no figure S99");

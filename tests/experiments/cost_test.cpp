@@ -28,21 +28,30 @@ double bytes_of(const Store& store, const std::string& run) {
 
 TEST(Cost, CountsParticleSteps) {
   const PlannedRun run = only_run(tiny_manifest());
-  EXPECT_EQ(stage_cost(run, run.shear, 0).particle_steps, 2.0 * kGrains * kStepsPerCycle);
-  EXPECT_EQ(stage_cost(run, run.shear, 0.5).particle_steps, 1.5 * kGrains * kStepsPerCycle);
-  EXPECT_EQ(stage_cost(run, run.shear, 7).particle_steps, 0);
-  EXPECT_EQ(stage_cost(run, run.shear, 7).bytes, 0);
+  EXPECT_EQ(stage_cost(run, run.last, 0).particle_steps, 2.0 * kGrains * kStepsPerCycle);
+  EXPECT_EQ(stage_cost(run, run.last, 0.5).particle_steps, 1.5 * kGrains * kStepsPerCycle);
+  EXPECT_EQ(stage_cost(run, run.last, 7).particle_steps, 0);
+  EXPECT_EQ(stage_cost(run, run.last, 7).bytes, 0);
   EXPECT_GT(stage_cost(run, run.prepare, 0).particle_steps, 0);
 }
 
 TEST(Cost, CountsCheckpoints) {
   const PlannedRun run = only_run(tiny_manifest());
-  const double both = stage_cost(run, run.shear, 0).bytes;  // cycles 0, 1, 2
-  const double file = both - stage_cost(run, run.shear, 1).bytes * 2;
+  const double both = stage_cost(run, run.last, 0).bytes;  // cycles 0, 1, 2
+  const double file = both - stage_cost(run, run.last, 1).bytes * 2;
   EXPECT_GT(file, 0);
-  EXPECT_NEAR(stage_cost(run, run.shear, 1).bytes, file, 1e-6 * file);
+  EXPECT_NEAR(stage_cost(run, run.last, 1).bytes, file, 1e-6 * file);
   const PlannedRun rare = only_run(tiny_manifest("", "checkpoints: {every_cycles: 2}\n"));
-  EXPECT_NEAR(stage_cost(rare, rare.shear, 0).bytes, 2 * file, 1e-6 * file);
+  EXPECT_NEAR(stage_cost(rare, rare.last, 0).bytes, 2 * file, 1e-6 * file);
+}
+
+TEST(Cost, OfStiffeningIsThatOfTheSpringConstantsLeft) {
+  const PlannedRun run = only_run(tiny_manifest("  protocol: stiffen\n"));
+  const StageCost all = stage_cost(run, run.last, 0);
+  EXPECT_GT(all.particle_steps, 0);
+  EXPECT_NEAR(stage_cost(run, run.last, 6).particle_steps, all.particle_steps / 3, 1);
+  EXPECT_NEAR(stage_cost(run, run.last, 6).bytes, all.bytes * 3 / 10, 1) << "cycles 0 to 9";
+  EXPECT_EQ(stage_cost(run, run.last, 9).particle_steps, 0);
 }
 
 TEST(Cost, OfDiskAndSettlingAreNearWhatTheyTurnOutToBe) {
@@ -53,7 +62,7 @@ TEST(Cost, OfDiskAndSettlingAreNearWhatTheyTurnOutToBe) {
         tiny_manifest("  grains: 600\n  walls: " + std::string(texture) + "\n");
     compute(store, text);
     const PlannedRun run = only_run(text);
-    for (const StageSpec* stage : {&run.prepare, &run.shear}) {
+    for (const StageSpec* stage : {&run.prepare, &run.last}) {
       const StageCost expected = stage_cost(run, *stage, 0);
       const double bytes = bytes_of(store, stage->key);
       const double steps = store.run(stage->key).particle_steps;

@@ -87,8 +87,8 @@ TEST(Drag, ComparesTheFluidsOnTheSamePackings) {
   EXPECT_NE(runs[0].prepare.key, runs[1].prepare.key);
   std::set<std::string> shear;
   for (const PlannedRun& run : runs) {
-    EXPECT_EQ(run.shear.parent, run.prepare.key);
-    shear.insert(run.shear.key);
+    EXPECT_EQ(run.last.parent, run.prepare.key);
+    shear.insert(run.last.key);
   }
   EXPECT_EQ(shear.size(), 4U);
 }

@@ -23,7 +23,7 @@ PlannedRun first_run(const std::string& text) {
 
 void expect_same_keys(const PlannedRun& a, const PlannedRun& b) {
   EXPECT_EQ(a.prepare.key, b.prepare.key);
-  EXPECT_EQ(a.shear.key, b.shear.key);
+  EXPECT_EQ(a.last.key, b.last.key);
 }
 
 // Some other value that the field may take.
@@ -53,7 +53,8 @@ TEST(Identity, DependsOnEachFieldAsTheSchemaSays) {
     const StageSpec other_prepare = prepare_stage(parameters, 1);
     const StageSpec other_shear = shear_stage(parameters, 1, other_prepare);
     EXPECT_EQ(other_prepare.key != prepare.key, field.identity == Identity::prepare);
-    EXPECT_EQ(other_shear.key != shear.key, field.identity != Identity::none);
+    EXPECT_EQ(other_shear.key != shear.key,
+              field.identity == Identity::prepare || field.identity == Identity::shear);
   }
   EXPECT_GE(changed, 26);
 }
@@ -164,6 +165,63 @@ TEST(Identity, KeysStayWhatTheyWere) {
   EXPECT_EQ(prepare.key, "11372fd7ee85ce5f268a00dfc54425ee42a83b439525ed42a3226df21f52c84a");
   EXPECT_EQ(shear_stage({}, 1, prepare).key,
             "af0e1ba04e22e5c47270333c327e914b406392687715750da472a7d802d3dfc5");
+}
+
+TEST(Identity, AStiffeningIsNamedByWhatItFeels) {
+  Parameters parameters;
+  parameters.protocol = "stiffen";
+  const StageSpec prepare = prepare_stage(parameters, 1);
+  EXPECT_EQ(prepare.key, prepare_stage({}, 1).key) << "it starts from the packing of a shear";
+  const StageSpec stiffen = last_stage(parameters, 1, prepare);
+  EXPECT_EQ(stiffen.stage, Stage::stiffen);
+  EXPECT_EQ(stiffen.key, "6e510f667806a5df08b990f7e0450abc4f7d1e616d178fc5444b0fd1984f4dd5");
+  EXPECT_EQ(last_stage({}, 1, prepare).key, shear_stage({}, 1, prepare).key);
+
+  const StageRecord record = read_stage(json::parse(stiffen.resolved.dump()));
+  EXPECT_EQ(record.stage, Stage::stiffen);
+  EXPECT_EQ(record.parent, prepare.key);
+  EXPECT_EQ(record.parameters, parameters);
+
+  for (const Field& field : schema()) {
+    SCOPED_TRACE(field.name);
+    Parameters other = parameters;
+    set_value(field, another_value(field), other);
+    const StageSpec key = stiffen_stage(other, 1, prepare_stage(other, 1));
+    EXPECT_EQ(key.key != stiffen.key,
+              field.identity == Identity::prepare || field.identity == Identity::stiffen);
+    EXPECT_EQ(stiffen.resolved.at("parameters").contains(field.name),
+              field.identity == Identity::prepare || field.identity == Identity::stiffen);
+  }
+  // A shear that says it stiffens is no record of ours.
+  json forged = shear_stage({}, 1, prepare).resolved;
+  forged["parameters"]["protocol"] = "stiffen";
+  EXPECT_THROW(read_stage(forged), std::runtime_error);
+}
+
+TEST(Identity, APauseEntersOnlyWhereTheProtocolIsPaused) {
+  Parameters longer;
+  longer.pause_s = 3;
+  const StageSpec prepare = prepare_stage({}, 1);
+  EXPECT_EQ(prepare_stage(longer, 1).key, prepare.key);
+  const StageSpec continuous = shear_stage(longer, 1, prepare);
+  EXPECT_EQ(continuous.key, shear_stage({}, 1, prepare).key);
+  EXPECT_FALSE(continuous.resolved.at("parameters").contains("pause_s"));
+
+  Parameters paused;
+  paused.protocol = longer.protocol = "paused";
+  EXPECT_EQ(prepare_stage(paused, 1).key, prepare.key);
+  const StageSpec shear = shear_stage(paused, 1, prepare);
+  EXPECT_EQ(shear.key, "e6e8e2b64efd95186ef23bc827b867e5441eefd1ef729840f8675abf5937903b");
+  EXPECT_NE(shear_stage(longer, 1, prepare).key, shear.key);
+  EXPECT_EQ(read_stage(shear_stage(longer, 1, prepare).resolved).parameters, longer);
+
+  // Neither kind of record reads as the other.
+  json swapped = shear.resolved;
+  swapped["parameters"]["protocol"] = "continuous";
+  EXPECT_THROW(read_stage(swapped), std::runtime_error);
+  swapped = continuous.resolved;
+  swapped["parameters"]["protocol"] = "paused";
+  EXPECT_THROW(read_stage(swapped), std::runtime_error);
 }
 
 TEST(CanonicalJson, WritesOneTextForOneValue) {

@@ -75,6 +75,7 @@ TEST(Suggest, FindsWhatWasMeant) {
   EXPECT_EQ(suggest_name("mass", names).name, "mass_kg");
   EXPECT_TRUE(suggest_name("mass", names).missing_unit);
   EXPECT_EQ(suggest_name("stiffness", names).name, "stiffness_N_per_m");
+  EXPECT_EQ(suggest_name("settle", names).name, "") << "two of them lack their unit";
   EXPECT_EQ(suggest_name("colour", names).name, "");
   EXPECT_EQ(suggest_name("", names).name, "");
   EXPECT_EQ(suggest_name(std::string(100'000, 'm'), names).name, "");
@@ -95,6 +96,20 @@ TEST(Conversion, GivesTheNumbersOfTableOne) {
   EXPECT_EQ(drive({}).amplitude, 0.0833);
   EXPECT_EQ(drive({}).steps_per_cycle, 45600U);
   EXPECT_EQ(drive({}).pause_steps, 0U);
+}
+
+TEST(Conversion, APauseHasWholeTimeSteps) {
+  Parameters parameters;
+  parameters.protocol = "paused";
+  EXPECT_EQ(drive(parameters).pause_steps, 45600U) << "2 s, as long as a cycle";
+  parameters.pause_s = 1.00003;  // 22800.7 steps
+  EXPECT_EQ(drive(parameters).pause_steps, 22801U);
+  parameters.pause_s = 1e-9;
+  EXPECT_EQ(drive(parameters).pause_steps, 1U);
+  // From a record of a store, which no manifest's check has seen.
+  parameters.pause_s = 1e6;
+  parameters.period_s = 1e-300;
+  EXPECT_EQ(drive(parameters).pause_steps, 1'000'000'000U);
 }
 
 TEST(Conversion, SettlesInAFluidAtRestWithItsOwnTimeStep) {

@@ -37,6 +37,8 @@ ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::s
   for (char** variable = environ; *variable != nullptr; ++variable) {
     if (std::strncmp(*variable, "SHEARCELL_STORE=", 16) != 0) environment.push_back(*variable);
   }
+  std::string named = "SHEARCELL_STORE=" + named_store_;
+  if (!named_store_.empty()) environment.push_back(named.data());
   environment.push_back(nullptr);
   pid_t child = 0;
   const int error =

@@ -50,6 +50,9 @@ class ProgramTest : public testing::Test {
     return name;
   }
 
+  /// The store that the program's environment names from here on; "" for none.
+  void name_store(const std::string& store) { named_store_ = store; }
+
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
 
   /// Everything below the folder, and so whether something was written.
@@ -68,6 +71,7 @@ class ProgramTest : public testing::Test {
   Running start(const Arguments& arguments, const std::string& name = "");
 
   TemporaryFolder folder_;
+  std::string named_store_;
   TemporaryFolder outputs_;  // apart, so that they do not show in the listing
 };
 

@@ -142,6 +142,27 @@ TEST(CyclicShear, KeepsTheWallsUprightDuringAPause) {
   EXPECT_TRUE(same_bits(whole.state(), parts.state()));
 }
 
+TEST(CyclicShear, GoesOnFromTheMidstOfAPause) {
+  Drive paused = kDrive;
+  paused.pause_steps = 1000;
+  const CyclicShear protocol(paused, 2, 1);
+  const State whole = after(protocol);
+  EXPECT_EQ(whole.step, 8000U);
+  for (const std::uint64_t cut : {1500U, 3000U, 3400U, 3999U, 7001U}) {
+    Simulation before(dense().cell, table_1(), dense().state);
+    while (before.step() < cut) protocol.advance(before, cut - before.step());
+    EXPECT_EQ(before.step(), cut);
+    Simulation restarted(dense().cell, table_1(), before.state());
+    shear(restarted, protocol, 700);
+    EXPECT_TRUE(same_bits(restarted.state(), whole)) << cut;
+  }
+  // What is promised is the end of a pause.
+  Simulation simulation(dense().cell, table_1(), dense().state);
+  for (const Stop& stop : shear(simulation, protocol, 900)) {
+    EXPECT_EQ(stop.progress.checkpoint_due, stop.step % 4000 == 0) << stop.step;
+  }
+}
+
 // Packing fraction of the whole cell after one cycle of Table I. Mass and drag of the moving wall
 // are ours, not the experiment's.
 double density_after_a_cycle(double wall_factor, std::uint64_t seed) {

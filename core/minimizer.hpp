@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mechanical equilibrium of a packing under gravity and pressure: a local minimum of the enthalpy
+//   H = sum of contacts (k/2) overlap^2 + m g sum y + P A h
+// over the positions of the grains and the height h between bottom and top, walls upright.
+#pragma once
+
+#include <cstdint>
+
+#include "core/simulation.hpp"
+
+namespace shearcell {
+
+struct MinimizeSettings {
+  /// Largest net force on any grain over P d^2, and |net force on the moving wall| over P A.
+  double force_tolerance = 1e-4;
+  std::uint64_t most_evaluations = 1'000'000;  ///< of the forces, before it counts as a failure
+};
+
+struct Minimum {
+  std::uint64_t evaluations = 0;
+  double residual = 0;  ///< of the forces, as force_tolerance counts them
+};
+
+/// Brings the simulation to a minimum by FIRE (Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006),
+/// with the changes of Guenole et al., Comput. Mater. Sci. 175, 109584 (2020)) and to rest, one
+/// step further than it was. It uses the stiffness, gravity and pressure of the simulation's scene,
+/// from positions alone, so its end depends on nothing else; global sums run in the order of
+/// permanent ids. Throws NumericalFailure when the tolerance is not met, or the watchdog's limits
+/// are not.
+Minimum minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings = {});
+
+/// H [m d^2/s^2] of a state between upright walls, contact by contact. Gravity counts from y = 0.
+double enthalpy(const Cell& cell, const Scene& scene, const State& state);
+
+/// The residual of a state between upright walls by the most direct route: its forces summed
+/// contact by contact.
+double force_residual(const Cell& cell, const Scene& scene, const State& state);
+
+}  // namespace shearcell

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "protocols/stiffen.hpp"
+
+#include <algorithm>
+
+namespace shearcell {
+namespace {
+
+double power(double base, std::uint64_t exponent) {
+  double product = 1;
+  for (std::uint64_t n = 0; n < exponent; ++n) product *= base;
+  return product;
+}
+
+// 10^(1/m) by Newton's iteration, since std::pow differs between libraries. It starts above the
+// root and falls until rounding ends it.
+double root_of_ten(std::uint64_t m) {
+  const auto degree = static_cast<double>(m);
+  double root = 1 + 9 / degree;
+  for (;;) {
+    const double next = root - (power(root, m) - 10) / (degree * power(root, m - 1));
+    if (!(next < root)) return root;
+    root = next;
+  }
+}
+
+}  // namespace
+
+double raised_stiffness(double first, std::uint64_t step, std::uint64_t steps_per_decade) {
+  return first * power(10, step / steps_per_decade) *
+         power(root_of_ten(steps_per_decade), step % steps_per_decade);
+}
+
+Stiffen::Stiffen(const StiffenParameters& parameters, const Scene& scene)
+    : parameters_(parameters), scene_(scene) {
+  parameters_.steps_per_decade = std::max<std::uint64_t>(1, parameters.steps_per_decade);
+}
+
+StageProgress Stiffen::advance(Simulation& simulation, std::uint64_t most_steps) const {
+  if (most_steps > 0 && simulation.step() < parameters_.steps) {
+    Scene scene = scene_;
+    scene.stiffness =
+        raised_stiffness(scene_.stiffness, simulation.step(), parameters_.steps_per_decade);
+    simulation.set_scene(scene);
+    minimize_enthalpy(simulation, parameters_.minimize);
+  }
+  StageProgress progress;
+  progress.cycle = static_cast<double>(simulation.step());
+  progress.finished = simulation.step() >= parameters_.steps;
+  progress.checkpoint_due = true;
+  return progress;
+}
+
+}  // namespace shearcell

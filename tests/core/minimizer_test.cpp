@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Minima of the enthalpy: known ones, that of a packing, and the same bits however it is computed.
+#include "core/minimizer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "core/random.hpp"
+#include "tests/core/scenes.hpp"
+
+namespace shearcell {
+namespace {
+
+using test::at_rest;
+using test::same_bits;
+using test::table_1;
+
+constexpr double kTolerance = 1e-8;
+
+// Smooth, 4 d wide and deep, the top wall pressing from `top`.
+Cell column(double top) {
+  Cell cell;
+  cell.width = cell.depth = 4;
+  cell.top = top;
+  cell.moving = MovingWall::top;
+  return cell;
+}
+
+State minimized(const Cell& cell, const Scene& scene, const State& state,
+                const EngineSettings& settings = {}, double tolerance = kTolerance) {
+  Simulation simulation(cell, scene, state, settings);
+  MinimizeSettings minimize;
+  minimize.force_tolerance = tolerance;
+  const Minimum minimum = minimize_enthalpy(simulation, minimize);
+  EXPECT_LE(minimum.residual, tolerance);
+  return simulation.state();
+}
+
+TEST(Minimizer, AGrainRestsOnThePlaneThatCarriesIt) {
+  Scene scene = table_1();
+  scene.pressure = 0;
+  const Cell cell = column(40);
+  const State end = minimized(cell, scene, at_rest({{2, 0.6, 2}}, cell));
+  const double overlap = 0.5 - end.position(1, 0);
+  std::printf("overlap %.12g, m g / k = %.12g\n", overlap, scene.gravity / scene.stiffness);
+  EXPECT_NEAR(overlap / (scene.gravity / scene.stiffness), 1, 2 * kTolerance);
+  EXPECT_EQ(end.position(0, 0), 2);
+  EXPECT_EQ(end.wall_height, 40) << "nothing acts on the wall";
+  EXPECT_EQ(end.velocity.norm(), 0);
+  EXPECT_EQ(end.step, 1U);
+}
+
+TEST(Minimizer, TwoGrainsCarryAPressedWall) {
+  for (const MovingWall moving : {MovingWall::top, MovingWall::bottom}) {
+    const Scene scene = table_1();
+    Cell cell = column(2.05);
+    cell.moving = moving;
+    const State end = minimized(cell, scene, at_rest({{2, 0.5, 2}, {2, 1.5, 2}}, cell));
+    // Overlaps at the bottom, between the grains and at the top carry what lies above, or, where
+    // the bottom moves, what hangs below.
+    const double load = scene.pressure * 16;
+    const double weight = scene.gravity;
+    const bool lifts = moving == MovingWall::bottom;
+    const double bottom = lifts ? end.wall_height : 0, top = lifts ? 2.05 : end.wall_height;
+    const double k = scene.stiffness;
+    const double tolerance = kTolerance * scene.pressure * 16;
+    EXPECT_NEAR(k * (0.5 - (end.position(1, 0) - bottom)), load + (lifts ? 0 : 2 * weight),
+                2 * tolerance);
+    EXPECT_NEAR(k * (1 - (end.position(1, 1) - end.position(1, 0))),
+                load + (lifts ? -weight : weight), 2 * tolerance);
+    EXPECT_NEAR(k * (0.5 - (top - end.position(1, 1))), load - (lifts ? 2 * weight : 0),
+                2 * tolerance);
+  }
+}
+
+struct Pressed {
+  Cell cell;
+  Scene scene = table_1();
+  State state;
+};
+
+const Pressed& packing() {
+  static const Pressed pressed = [] {
+    test::Sheared scene = test::pressed(203, 20000);
+    return Pressed{scene.cell, table_1(), scene.state};
+  }();
+  return pressed;
+}
+
+// Every coordinate and the wall displaced at random by up to `size`.
+State shaken(State state, double size, std::uint32_t trial) {
+  const auto random = [trial](std::uint32_t n) {
+    return 2 * uniform_pair({n, trial, 0, 0}, 5)[0] - 1;
+  };
+  for (Eigen::Index n = 0; n < state.position.size(); ++n) {
+    state.position.data()[n] += size * random(static_cast<std::uint32_t>(n) + 1);
+  }
+  state.wall_height += size * random(0);
+  return state;
+}
+
+TEST(Minimizer, APackingEndsAtALocalMinimumOfTheEnthalpy) {
+  const auto& [cell, scene, start] = packing();
+  const State end = minimized(cell, scene, start);
+  const double residual = force_residual(cell, scene, end);
+  const double before = enthalpy(cell, scene, start), after = enthalpy(cell, scene, end);
+  std::printf("residual %.3g, then %.3g; enthalpy %.8g, then %.12g\n",
+              force_residual(cell, scene, start), residual, before, after);
+  EXPECT_LE(residual, 1.01 * kTolerance) << "the kernel's contact law is rounded differently";
+  EXPECT_LT(after, before);
+  // Small random displacements only raise it.
+  double least = 1e9;
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    least = std::min(least, enthalpy(cell, scene, shaken(end, 1e-5, trial)) - after);
+  }
+  std::printf("least rise of 20 displacements: %.3g\n", least);
+  EXPECT_GT(least, 0);
+}
+
+TEST(Minimizer, EnthalpyIsNeverAboveItsStart) {
+  const auto& [cell, scene, start] = packing();
+  for (const double factor : {1.0, 1.8, 0.6}) {
+    Scene changed = scene;
+    changed.stiffness *= factor;
+    const State end = minimized(cell, changed, start, {}, 1e-4);
+    EXPECT_LT(enthalpy(cell, changed, end), enthalpy(cell, changed, start)) << factor;
+  }
+}
+
+TEST(Minimizer, GivesTheSameBitsOnEveryMachine) {
+  const auto& [cell, scene, start] = packing();
+  EngineSettings plain;
+  plain.kernels = &scalar_kernels();
+  const State expected = minimized(cell, scene, start, plain, 1e-5);
+  EXPECT_EQ(test::fingerprint(expected), 0xc450a98c9f1b8643U) << "on every compiler";
+  for (const Simd simd : {Simd::best, Simd::avx2, Simd::avx512}) {
+    if (find_kernels(simd) == nullptr) continue;
+    for (const std::size_t threads : {1U, 2U, 3U}) {
+      for (const bool every_step : {false, true}) {
+        EngineSettings settings;
+        settings.kernels = find_kernels(simd);
+        settings.threads = threads;
+        settings.lists.rebuild_every_step = every_step;
+        if (every_step && threads > 1) continue;
+        EXPECT_TRUE(same_bits(minimized(cell, scene, start, settings, 1e-5), expected))
+            << settings.kernels->name << ", threads " << threads << ", every step " << every_step;
+      }
+    }
+  }
+}
+
+TEST(Minimizer, FailsWhenTheToleranceIsOutOfReach) {
+  const auto& [cell, scene, start] = packing();
+  Simulation simulation(cell, scene, start);
+  MinimizeSettings settings;
+  settings.force_tolerance = 1e-30;
+  settings.most_evaluations = 500;
+  try {
+    minimize_enthalpy(simulation, settings);
+    FAIL() << "it did not end";
+  } catch (const NumericalFailure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("minimize_force_tolerance"), std::string::npos)
+        << failure.what();
+  }
+}
+
+TEST(Simulation, GoesOnFromAStateThatWasSet) {
+  const auto& [cell, scene, start] = packing();
+  Simulation straight(cell, scene, start);
+  straight.advance({}, 500);
+  Simulation other(cell, scene, straight.state());
+  other.advance({}, 300);
+  other.set_state(start);
+  EXPECT_TRUE(same_bits(other.state(), start));
+  other.advance({}, 500);
+  EXPECT_TRUE(same_bits(other.state(), straight.state()));
+  EXPECT_EQ(other.evaluations(), 800U);
+  State fewer = start;
+  fewer.position.conservativeResize(3, 5);
+  EXPECT_THROW(other.set_state(fewer), std::invalid_argument);
+}
+
+// With a drag of 2/dt a step keeps nothing of the velocity: v' = dt F / 2.
+TEST(Simulation, ForcesAreThoseThatAStepFeels) {
+  const auto& [cell, scene, rest] = packing();
+  const State start = shaken(rest, 1e-2, 0);
+  Scene thick = scene;
+  thick.drag_rate = 2 / scene.time_step;
+  Simulation simulation(cell, thick, start);
+  const Eigen::Matrix3Xd forces = simulation.forces().on_grain;
+  EXPECT_TRUE(same_bits(simulation.state(), start)) << "asking changes nothing";
+  simulation.advance({}, 1);
+  const double largest = forces.colwise().norm().maxCoeff();
+  EXPECT_GT(largest, scene.pressure);
+  const double error = (simulation.state().velocity * 2 / scene.time_step - forces).norm();
+  std::printf("largest force %.3g, difference of all %.3g\n", largest, error);
+  EXPECT_LT(error, 1e-9 * largest);
+}
+
+}  // namespace
+}  // namespace shearcell

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The manifests at the top of experiments/: each expands at every scale, and runs that coincide
+// between them have equal ids, so that they are computed once.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/expand.hpp"
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kFolder = fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments";
+const std::vector<std::string> kScales = {"smoke", "desk", "paper"};
+
+Plan plan(const std::string& experiment, const std::string& scale) {
+  ExpandOptions options;
+  options.scale = scale;
+  return expand(load_manifest(kFolder / (experiment + ".yaml")), options);
+}
+
+std::set<std::string> last_stages(const Plan& plan) {
+  std::set<std::string> keys;
+  for (const PlannedRun& run : plan.runs) keys.insert(run.last.key);
+  return keys;
+}
+
+std::map<std::string, std::size_t> runs_of_variants(const Plan& plan) {
+  std::map<std::string, std::size_t> count;
+  for (const PlannedRun& run : plan.runs) ++count[run.variant];
+  return count;
+}
+
+TEST(Manifests, EachExpandsAtEveryScale) {
+  std::set<std::string> experiments;
+  for (const auto& entry : fs::directory_iterator(kFolder)) {
+    if (entry.path().extension() != ".yaml") continue;
+    const std::string experiment = entry.path().stem();
+    SCOPED_TRACE(experiment);
+    const Manifest manifest = load_manifest(entry.path());
+    EXPECT_EQ(manifest.experiment, experiment);
+    EXPECT_FALSE(manifest.question.empty());
+    EXPECT_FALSE(manifest.figures.empty());
+    std::vector<std::string> scales;
+    for (const Scale& scale : manifest.scales) scales.push_back(scale.name);
+    EXPECT_EQ(scales, kScales);
+    for (const std::string& scale : kScales) {
+      const Plan expanded = plan(experiment, scale);
+      EXPECT_FALSE(expanded.runs.empty());
+      EXPECT_EQ(expanded.warnings, std::vector<std::string>{}) << scale;
+    }
+    experiments.insert(experiment);
+  }
+  EXPECT_EQ(experiments,
+            (std::set<std::string>{"critical_size", "drag", "gravity", "moving_wall",
+                                   "nucleation_sites", "onset_amplitude", "relaxation",
+                                   "spring_constant", "system_size", "timestep", "walls"}));
+}
+
+// Still fluid, bottom wall moving, continuous shear, A = 0.0833, time step of Table I, first seed.
+TEST(Manifests, ShareTheRunThatTheyHaveInCommon) {
+  for (const std::string& scale : kScales) {
+    const std::string base = plan("drag", scale).runs.front().last.key;
+    for (const char* experiment :
+         {"timestep", "relaxation", "moving_wall", "critical_size", "onset_amplitude"}) {
+      EXPECT_TRUE(last_stages(plan(experiment, scale)).contains(base)) << experiment << scale;
+    }
+    EXPECT_EQ(last_stages(plan("critical_size", scale)),
+              last_stages(plan("onset_amplitude", scale)));
+    // At desk the walls are compared in a larger cell.
+    EXPECT_EQ(last_stages(plan("walls", scale)).contains(base), scale != "desk");
+  }
+  // With gravity, S6 has two of the amplitudes of C.
+  const std::set<std::string> amplitudes = last_stages(plan("critical_size", "paper"));
+  std::size_t shared = 0;
+  for (const std::string& key : last_stages(plan("gravity", "paper"))) {
+    shared += amplitudes.contains(key) ? 1 : 0;
+  }
+  EXPECT_EQ(shared, 2 * 10U);
+}
+
+TEST(Manifests, HaveTheSizesAndNumbersOfTheSupplement) {
+  using Variants = std::map<std::string, std::size_t>;
+  EXPECT_EQ(runs_of_variants(plan("timestep", "paper")), (Variants{{"steps_per_cycle=76923", 10},
+                                                                   {"steps_per_cycle=57143", 10},
+                                                                   {"steps_per_cycle=45600", 10},
+                                                                   {"steps_per_cycle=28571", 10}}));
+  EXPECT_EQ(runs_of_variants(plan("moving_wall", "paper")),
+            (Variants{{"moving_wall=bottom", 10}, {"moving_wall=top", 10}}));
+  EXPECT_EQ(plan("critical_size", "paper").runs.size(), 5 * 10U);
+  EXPECT_EQ(
+      runs_of_variants(plan("system_size", "paper")),
+      (Variants{
+          {"grains=5200", 10}, {"grains=7900", 10}, {"grains=11400", 10}, {"grains=18200", 10}}));
+  for (const PlannedRun& run : plan("nucleation_sites", "paper").runs) {
+    EXPECT_EQ(run.grains, 18200U);
+  }
+}
+
+TEST(Manifests, TimeStepsOfFigureS3CloseTheirCycles) {
+  const double stated[] = {2.6e-5, 3.5e-5, 4.4e-5, 7.0e-5};
+  const Plan expanded = plan("timestep", "paper");
+  for (std::size_t n = 0; n < 4; ++n) {
+    const Parameters& p = expanded.runs[10 * n].parameters;
+    std::printf("time step %.4e s for the stated %.1e s\n", shear_time_step_s(p), stated[n]);
+    EXPECT_NEAR(shear_time_step_s(p) / stated[n], 1, n == 2 ? 4e-3 : 2e-5);
+  }
+}
+
+TEST(Manifests, PausedShearRestsAsLongAsACycle) {
+  for (const PlannedRun& run : plan("relaxation", "paper").runs) {
+    const Drive walls = drive(run.parameters);
+    EXPECT_EQ(walls.pause_steps, run.variant == "protocol=paused" ? 45600U : 0U) << run.variant;
+  }
+}
+
+}  // namespace
+}  // namespace shearcell
