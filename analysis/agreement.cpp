@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <utility>
 
 namespace shearcell {
 
@@ -29,6 +30,20 @@ double limit_of_agreement(std::size_t freedom, std::size_t tests) {
   const boost::math::students_t student(static_cast<double>(freedom));
   return boost::math::quantile(
       boost::math::complement(student, outside / (2 * static_cast<double>(tests))));
+}
+
+Verdict means_agree(bool enough, std::string claim, const RunStatistics& a, const RunStatistics& b,
+                    std::string note) {
+  Verdict verdict{std::move(claim),     "difference of the means in standard errors",
+                  std::nullopt,         std::nullopt,
+                  Ruling::too_few_runs, std::move(note)};
+  const ComparedPoint point{a, b};
+  const CurveDifference found = difference(std::span(&point, 1), 1e-6);
+  if (!found.rms) return verdict;
+  verdict.value = found.rms;
+  verdict.limit = limit_of_agreement(found.freedom);
+  if (enough) verdict.ruling = *verdict.value < *verdict.limit ? Ruling::pass : Ruling::fail;
+  return verdict;
 }
 
 }  // namespace shearcell

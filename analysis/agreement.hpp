@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "analysis/statistics.hpp"
+#include "analysis/verdict.hpp"
 
 namespace shearcell {
 
@@ -35,5 +37,10 @@ CurveDifference difference(std::span<const ComparedPoint> points, double resolut
 /// with `freedom` degrees of freedom, shared among `tests` comparisons (Bonferroni). `freedom` and
 /// `tests` at least 1.
 double limit_of_agreement(std::size_t freedom, std::size_t tests = 1);
+
+/// A verdict on two means over runs, passed when they differ by less than limit_of_agreement();
+/// `enough` as in below_if().
+Verdict means_agree(bool enough, std::string claim, const RunStatistics& a, const RunStatistics& b,
+                    std::string note);
 
 }  // namespace shearcell

@@ -105,7 +105,9 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs) {
     const auto n = static_cast<double>(rate.counted);
     rate.grow = static_cast<double>(count.grew) / n;
     rate.shrink = static_cast<double>(count.shrank) / n;
-    rate.grow_error = std::sqrt(rate.grow * rate.shrink / n);
+    const double grew = static_cast<double>(count.grew) + 1;
+    const double shrank = static_cast<double>(count.shrank) + 1;
+    rate.grow_error = std::sqrt(grew * shrank / (n + 3)) / (n + 2);
     rate.delta = rate.grow - rate.shrink;
     rate.delta_error = 2 * rate.grow_error;
     rates.push_back(rate);

@@ -36,9 +36,12 @@ struct GrowthRate {
   std::size_t counted = 0;  ///< grew + shrank; the others do not enter the probabilities
   double grow = 0;          ///< rho_g = grew / counted
   double shrink = 0;        ///< rho_s = shrank / counted
-  double grow_error = 0;    ///< binomial: sqrt(rho_g rho_s / counted), that of rho_s too
-  double delta = 0;         ///< delta_rho = rho_g - rho_s
-  double delta_error = 0;   ///< twice grow_error, since rho_g + rho_s = 1
+  /// Binomial, that of rho_s too: sqrt((grew + 1) (shrank + 1) / ((counted + 2)^2 (counted + 3))),
+  /// the standard deviation of rho_g given the counts, which is sqrt(rho_g rho_s / counted) for
+  /// many and not zero when all grew.
+  double grow_error = 0;
+  double delta = 0;        ///< delta_rho = rho_g - rho_s
+  double delta_error = 0;  ///< twice grow_error, since rho_g + rho_s = 1
 };
 
 /// Over all runs, by size; sizes of which none was counted are left out.

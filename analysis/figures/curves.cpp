@@ -130,6 +130,14 @@ std::string plot_curves(std::span<const Curve> curves, const CurveColumns& colum
   return text.empty() ? text : text + "\n";
 }
 
+std::string points_with_errors(const std::string& x, const std::string& y, int error_column,
+                               const std::string& colour, int point, const std::string& title) {
+  return fmt::format(
+      "data using {0}:{1}:{2} with yerrorbars lc rgb '{3}' lw 0.8 pt 0 notitle, \\\n"
+      "     data using {0}:{1} with points lc rgb '{3}' pt {4} ps 0.7 title {5}",
+      x, y, error_column, colour, point, literal(title));
+}
+
 std::string onset_lines() {
   std::string text;
   for (const char* phi : {"0.645", "0.647"}) {

@@ -61,6 +61,11 @@ struct CurveColumns {
 /// gnuplot commands: lines with points and, where there is an error, error bars, for each curve.
 std::string plot_curves(std::span<const Curve> curves, const CurveColumns& columns);
 
+/// One part of a plot command: points, and error bars where there is an error, which `yerrorbars`
+/// alone would leave out with their points. `x` and `y` are gnuplot's `using` expressions.
+std::string points_with_errors(const std::string& x, const std::string& y, int error_column,
+                               const std::string& colour, int point, const std::string& title);
+
 /// gnuplot's single-quoted text, in which only the quote itself means anything.
 std::string literal(const std::string& text);
 

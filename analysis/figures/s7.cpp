@@ -85,12 +85,16 @@ Verdict uniform_in_the_middle(std::span<const DensityBin> density, const Places&
   }
   std::optional<double> rms;
   if (errors) rms = std::sqrt(sum / static_cast<double>(middle.size()));
-  const std::size_t freedom = std::max<std::size_t>(2, places.runs.size()) - 1;
-  return below_if(enough(places),
-                  "E: crystallites are equally probable over the accessible central x",
-                  "P(x/w) less its mean there, root mean square in standard errors", rms,
-                  limit_of_agreement(freedom),
-                  fmt::format("{}, {} bins", enough_in_words(places), middle.size()));
+  Verdict verdict{"E: crystallites are equally probable over the accessible central x",
+                  "P(x/w) less its mean there, root mean square in standard errors",
+                  rms,
+                  std::nullopt,
+                  Ruling::too_few_runs,
+                  fmt::format("{}, {} bins", enough_in_words(places), middle.size())};
+  if (!rms) return verdict;
+  verdict.limit = limit_of_agreement(places.runs.size() - 1);
+  if (enough(places)) verdict.ruling = *rms < *verdict.limit ? Ruling::pass : Ruling::fail;
+  return verdict;
 }
 
 double upper_less_lower(const std::vector<double>& places) {
@@ -144,11 +148,13 @@ FigureResult figure_s7(std::span<const FigureRun> runs) {
       "set xlabel '{/:Italic x}/{/:Italic w},  {/:Italic y}/{/:Italic h}'\n"
       "set ylabel 'probability density  {/:Italic P}'\nset xrange [0:1]\nset yrange [0:*]\n";
   if (!table.rows.empty()) {
-    table.plot +=
-        "plot data using (($2+$3)/2):(strcol(1) eq 'x/w' ? column(4) : NaN):5 with yerrorbars "
-        "lc rgb '#000000' pt 4 title '{/:Italic P}({/:Italic x}/{/:Italic w})', \\\n"
-        "     data using (($2+$3)/2):(strcol(1) eq 'y/h' ? column(4) : NaN):5 with yerrorbars "
-        "lc rgb '#d62728' pt 6 title '{/:Italic P}({/:Italic y}/{/:Italic h})'\n";
+    table.plot += "plot " +
+                  points_with_errors("(($2+$3)/2)", "(strcol(1) eq 'x/w' ? column(4) : NaN)", 5,
+                                     "#000000", 4, "{/:Italic P}({/:Italic x}/{/:Italic w})") +
+                  ", \\\n     " +
+                  points_with_errors("(($2+$3)/2)", "(strcol(1) eq 'y/h' ? column(4) : NaN)", 5,
+                                     "#d62728", 6, "{/:Italic P}({/:Italic y}/{/:Italic h})") +
+                  "\n";
   }
   return {{std::move(table)},
           {uniform_in_the_middle(density_x, x, smallest_width(runs)), more_near_the_top(y)}};

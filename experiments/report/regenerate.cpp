@@ -73,6 +73,11 @@ std::vector<Input> inputs_of(const Store& store, std::string_view figure,
   inputs.erase(std::remove_if(inputs.begin(), inputs.end(),
                               [&](const Input& i) { return i.membership.scale != scale; }),
                inputs.end());
+  // A run that two experiments share is one run: counted twice, it would make errors too small.
+  std::set<std::string> seen;
+  inputs.erase(std::remove_if(inputs.begin(), inputs.end(),
+                              [&](const Input& i) { return !seen.insert(i.run.id).second; }),
+               inputs.end());
   for (Input& input : inputs) {
     for (const CheckpointRecord& record : store.checkpoints(input.run.id, true)) {
       if (record.state == CheckpointState::rejected) continue;

@@ -77,8 +77,10 @@ TEST(GrowthRates, HaveBinomialErrors) {
   EXPECT_EQ(rates[0].counted, 16U);
   EXPECT_DOUBLE_EQ(rates[0].grow, 3.0 / 16);
   EXPECT_DOUBLE_EQ(rates[0].delta, -10.0 / 16);
-  EXPECT_DOUBLE_EQ(rates[0].grow_error, std::sqrt(3.0 / 16 * 13 / 16 / 16));
+  EXPECT_DOUBLE_EQ(rates[0].grow_error, std::sqrt(4.0 * 14 / (18 * 18 * 19)));
   EXPECT_DOUBLE_EQ(rates[0].delta_error, 2 * rates[0].grow_error);
+  a[7] = {1, 0, 0, 0};
+  EXPECT_GT(growth_rates(std::vector{a}).back().grow_error, 0.2) << "one case is no certainty";
 }
 
 /// delta_rho = tanh((size - zero) / 6), with counts that fall as sizes do.
