@@ -117,7 +117,8 @@ void add_figures(CLI::App& app, Context& context) {
                     "Measure every checkpoint again and compare with what is kept");
   add_common_options(*command, context, true);
   command->footer(
-      "Writes CSV and SVG for each panel, NAME.verdict.json: whether what the supplement claims "
+      "Writes CSV, SVG and PDF for each panel, NAME.verdict.json: whether what the supplement "
+      "claims "
       "of\n"
       "the figure holds, and NAME.lineage.json: which checkpoints they came from.\n"
       "What is measured on a checkpoint is kept in the store's derived.sqlite, which may be\n"

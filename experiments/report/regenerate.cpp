@@ -220,7 +220,9 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
   for (const FigureTable& table : made.tables) {
     result.files.push_back(write_csv(table, options.folder));
     try {
-      result.files.push_back(draw_svg(table, options.folder));
+      const std::filesystem::path svg = draw_svg(table, options.folder);
+      result.files.push_back(svg);
+      if (auto pdf = convert_to_pdf(svg)) result.files.push_back(std::move(*pdf));
     } catch (const AnalysisError& error) {
       result.plot_error = error.what();
     }

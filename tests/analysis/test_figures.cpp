@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <thread>
 
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
@@ -133,6 +135,21 @@ TEST(Plot, SameTableSameSvg) {
     draw_svg(table, folder.path());
     EXPECT_EQ(bytes_of(svg), first);
   }
+}
+
+TEST(Plot, SameSvgSamePdf) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Folder folder;
+  const FigureTable table = s2(two_variants())[0];
+  write_csv(table, folder.path());
+  const fs::path svg = draw_svg(table, folder.path());
+  const auto pdf = convert_to_pdf(svg);
+  if (!pdf) GTEST_SKIP() << "rsvg-convert is not installed";
+  const std::string first = bytes_of(*pdf);
+  EXPECT_EQ(first.substr(0, 5), "%PDF-");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // a date in it would differ
+  convert_to_pdf(svg);
+  EXPECT_EQ(bytes_of(*pdf), first);
 }
 
 TEST(Plot, UnnamedVariantsAndNoRunsAreDrawnToo) {
