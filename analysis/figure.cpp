@@ -17,6 +17,7 @@ namespace {
 constexpr auto scalars = FigureNeeds::scalars;
 
 constexpr std::array figures = {
+    Figure{"S1", "Packing fraction in the limit of hard grains", scalars, figure_s1},
     Figure{"S2", "Still fluid and fluid that moves with the cell", scalars, figure_s2},
     Figure{"S3", "Four time steps", scalars, figure_s3},
     Figure{"S4", "Moving bottom wall and moving top wall", scalars, figure_s4},

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -25,6 +26,8 @@ struct CheckpointMeasures {
   std::string sha256;  ///< of the checkpoint file
   Measures measures;
   std::optional<CrystalliteMap> crystallites;  ///< where the figure needs them
+  /// Observable of that name, which a stiffening records; NaN where there is none.
+  double stiffness_N_per_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One run as a figure sees it.

@@ -8,6 +8,9 @@
 
 namespace shearcell {
 
+// phi and phi_u of a packing whose springs are made stiffer.
+FigureResult figure_s1(std::span<const FigureRun> runs);
+
 // The two panels of S2 to S4 are phi against cycle, and percentage crystalline against phi, with a
 // curve per variant. B5 and walls have the percentage against cycle between them.
 FigureResult figure_s2(std::span<const FigureRun> runs);

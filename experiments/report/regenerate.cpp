@@ -143,8 +143,14 @@ std::vector<FigureRun> figure_runs(const std::vector<Input>& inputs,
     for (const CheckpointRecord& record : input.checkpoints) {
       std::optional<Measured>& one = measured[next++];
       if (!one) continue;
-      run.checkpoints.push_back(
-          {record.cycle, record.step, record.sha256, one->measures, std::move(one->crystallites)});
+      CheckpointMeasures& checkpoint = run.checkpoints.emplace_back();
+      checkpoint.cycle = record.cycle;
+      checkpoint.step = record.step;
+      checkpoint.sha256 = record.sha256;
+      checkpoint.measures = one->measures;
+      checkpoint.crystallites = std::move(one->crystallites);
+      const auto stiffness = record.observables.find("stiffness_N_per_m");
+      if (stiffness != record.observables.end()) checkpoint.stiffness_N_per_m = stiffness->second;
     }
     runs.push_back(std::move(run));
   }

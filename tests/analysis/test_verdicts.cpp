@@ -138,6 +138,37 @@ TEST(FigureWalls, SmoothOnesCrystallizeAtOnce) {
   EXPECT_EQ(rulings("walls", std::vector{run("smooth", 40)}), (Rulings{pass, too_few}));
 }
 
+/// Cycle 0 is the packing as it settled, cycles 1 to 9 are minima at k/k0 = 1 .. 100.
+std::vector<FigureRun> stiffened(std::size_t systems, double fall, double drift) {
+  std::vector<FigureRun> runs;
+  for (std::size_t seed = 1; seed <= systems; ++seed) {
+    FigureRun run = made_up_run("protocol", "stiffen", seed, 9, [=](int n, Measures& m) {
+      m.phi = n == 0 ? 0.6 : 0.635 + drift * (n - 1) / 8;
+      m.phi_uncorrected = 0.655 - fall * (n - 1) / 8;
+      m.mean_overlap = 0.002 * std::pow(10, -0.25 * (n - 1));
+    });
+    for (CheckpointMeasures& c : run.checkpoints) {
+      c.stiffness_N_per_m = 654 * std::pow(10, 0.25 * std::max(0.0, c.cycle - 1));
+    }
+    runs.push_back(run);
+  }
+  return runs;
+}
+
+TEST(FigureS1, PhiStaysWherePhiUFalls) {
+  EXPECT_EQ(rulings("S1", stiffened(3, 0.02, 0.0015)), (Rulings{pass, pass}));
+  EXPECT_EQ(rulings("S1", stiffened(3, 0.035, 0.0025)), (Rulings{fail, fail}));
+  EXPECT_EQ(rulings("S1", stiffened(2, 0.02, 0)), (Rulings{too_few, too_few}));
+  std::vector<FigureRun> part = stiffened(3, 0.02, 0);
+  for (FigureRun& run : part) run.checkpoints.pop_back();
+  EXPECT_EQ(rulings("S1", part), (Rulings{too_few, too_few})) << "not the whole hundredfold";
+  const FigureTable table = find_figure("S1")->make(stiffened(3, 0.02, 0)).tables.at(0);
+  ASSERT_EQ(table.rows.size(), 9U);
+  EXPECT_EQ(std::get<double>(table.rows.front().at(5)), 0.635) << "the minimum at k0";
+  EXPECT_EQ(std::get<std::int64_t>(table.rows.front().at(7)), 3);
+  EXPECT_EQ(std::get<double>(table.rows.back().at(0)), 2.0);
+}
+
 /// ln(largest) steps at `onset` in phi.
 FigureRun nucleating(double amplitude, double gravity, std::uint64_t seed, double onset) {
   FigureRun run = made_up_run("amplitude_rad", amplitude, seed, 100, [=](int n, Measures& m) {
