@@ -25,18 +25,27 @@ json scalars(const Analysis& analysis) {
           {"largest_crystallite", m.largest_crystallite}};
 }
 
+json criteria() {
+  return {{"connecting_face", connecting_face},
+          {"crystalline_phi_local", crystalline_phi_local},
+          {"interior_distance_d", interior_distance},
+          {"q6_fcc", q6_fcc},
+          {"q6_hcp", q6_hcp},
+          {"q6_tolerance", q6_tolerance},
+          {"rough_wall_surface_d", rough_wall_surface}};
+}
+
 }  // namespace
 
 const DerivedMeasure& scalar_measures() {
-  static const DerivedMeasure measure{"scalars",
-                                      {{"connecting_face", connecting_face},
-                                       {"crystalline_phi_local", crystalline_phi_local},
-                                       {"interior_distance_d", interior_distance},
-                                       {"q6_fcc", q6_fcc},
-                                       {"q6_hcp", q6_hcp},
-                                       {"q6_tolerance", q6_tolerance},
-                                       {"rough_wall_surface_d", rough_wall_surface}},
-                                      scalars};
+  static const DerivedMeasure measure{"scalars", criteria(), scalars};
+  return measure;
+}
+
+const DerivedMeasure& crystallite_measure() {
+  static const DerivedMeasure measure{"crystallites", criteria(), [](const Analysis& analysis) {
+                                        return to_json(analysis.crystallites);
+                                      }};
   return measure;
 }
 

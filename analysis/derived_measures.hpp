@@ -35,6 +35,9 @@ const DerivedMeasure& scalar_measures();
 /// What scalar_measures() gave. Throws AnalysisError when it is not that.
 Measures read_measures(const nlohmann::json& result);
 
+/// The CrystalliteMap of a checkpoint; read_crystallite_map() reads it back.
+const DerivedMeasure& crystallite_measure();
+
 /// CBOR (RFC 8949): every double and integer exactly, equal results in equal bytes.
 std::vector<std::byte> encode_result(const nlohmann::json& result);
 /// Throws AnalysisError when the bytes are no CBOR.

@@ -14,8 +14,20 @@
 namespace shearcell {
 namespace {
 
+constexpr auto scalars = FigureNeeds::scalars;
+
 constexpr std::array figures = {
-    Figure{"S2", "Still fluid and fluid that moves with the cell", figure_s2},
+    Figure{"S1", "Packing fraction in the limit of hard grains", scalars, figure_s1},
+    Figure{"S2", "Still fluid and fluid that moves with the cell", scalars, figure_s2},
+    Figure{"S3", "Four time steps", scalars, figure_s3},
+    Figure{"S4", "Moving bottom wall and moving top wall", scalars, figure_s4},
+    Figure{"S5a", "Onset of crystallization against amplitude", scalars, figure_s5a},
+    Figure{"S5b", "Onset of crystallization against system size", scalars, figure_s5b},
+    Figure{"S6", "Shear with and without gravity", scalars, figure_s6},
+    Figure{"S7", "Where crystallites nucleate", FigureNeeds::crystallites, figure_s7},
+    Figure{"C", "Growth of crystallites by size", FigureNeeds::crystallites, figure_c},
+    Figure{"B5", "Continuous and periodically paused shear", scalars, figure_b5},
+    Figure{"walls", "Rough and smooth walls", scalars, figure_walls},
 };
 
 std::string quoted(const std::string& text) {
@@ -43,6 +55,18 @@ struct FieldText {
 TableValue table_value(const std::optional<double>& value) {
   if (value) return *value;
   return std::monostate{};
+}
+
+nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
+  for (const nlohmann::json* values : {&run.labels, &run.parameters}) {
+    if (values->is_object() && values->contains(key)) return values->at(key);
+  }
+  return nullptr;
+}
+
+double number_of(const FigureRun& run, const std::string& key) {
+  const nlohmann::json value = parameter_of(run, key);
+  return value.is_number() ? value.get<double>() : std::nan("");
 }
 
 std::string to_csv(const FigureTable& table) {

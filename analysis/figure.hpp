@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -13,7 +14,9 @@
 #include <variant>
 #include <vector>
 
+#include "analysis/crystallite_map.hpp"
 #include "analysis/measures.hpp"
+#include "analysis/verdict.hpp"
 
 namespace shearcell {
 
@@ -22,6 +25,9 @@ struct CheckpointMeasures {
   std::uint64_t step = 0;
   std::string sha256;  ///< of the checkpoint file
   Measures measures;
+  std::optional<CrystalliteMap> crystallites;  ///< where the figure needs them
+  /// Observable of that name, which a stiffening records; NaN where there is none.
+  double stiffness_N_per_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One run as a figure sees it.
@@ -29,6 +35,7 @@ struct FigureRun {
   std::string run_id;
   std::string variant;    ///< the curve that it belongs to, as the manifest names it: "fluid=cell"
   nlohmann::json labels;  ///< the swept parameters of the run
+  nlohmann::json parameters;  ///< all parameters, by their keys in a manifest
   std::uint64_t seed = 0;
   std::vector<CheckpointMeasures> checkpoints;  ///< by cycle
 };
@@ -56,12 +63,27 @@ std::string to_csv(const FigureTable& table);
 /// Writes FOLDER/NAME.csv and returns its path. Throws AnalysisError when it cannot.
 std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder);
 
-/// A figure of the supplement: its panels in order.
+/// The panels of a figure in order, and what the supplement's claims of it come to.
+struct FigureResult {
+  std::vector<FigureTable> tables;
+  std::vector<Verdict> verdicts;
+};
+
+/// Which measures of each checkpoint a figure takes.
+enum class FigureNeeds { scalars, crystallites };
+
+/// A figure of the supplement.
 struct Figure {
   std::string_view name;
   std::string_view title;
-  std::vector<FigureTable> (*make)(std::span<const FigureRun> runs);
+  FigureNeeds needs;
+  FigureResult (*make)(std::span<const FigureRun> runs);
 };
+
+/// The value of a parameter, swept or not; null when the run does not say.
+nlohmann::json parameter_of(const FigureRun& run, const std::string& key);
+/// The same as a number; NaN when it is none.
+double number_of(const FigureRun& run, const std::string& key);
 
 /// Every figure that can be made, in the order of the supplement.
 std::span<const Figure> all_figures();

@@ -85,6 +85,7 @@ Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd&
 
   find_structures(grains);
   find_crystallites(diagram, analysis);
+  analysis.crystallites = crystallite_map(grains.crystallites, cell, pose, positions);
   return analysis;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/crystal.hpp"
+#include "analysis/crystallite_map.hpp"
 #include "provenance/checkpoint.hpp"
 
 namespace shearcell {
@@ -41,6 +42,7 @@ struct GrainMeasures {
 struct Analysis {
   Measures measures;
   GrainMeasures grains;
+  CrystalliteMap crystallites;  ///< where they are
 };
 
 /// Measures of a packing and of each of its grains. Throws AnalysisError as voronoi() does.

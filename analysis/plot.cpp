@@ -11,6 +11,8 @@
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "analysis/error.hpp"
 
@@ -86,8 +88,26 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-/// Runs gnuplot in `folder` on a script there. -d keeps a user's own defaults out of the figure.
-Outcome run_gnuplot(const std::filesystem::path& folder, const std::string& script) {
+/// The environment with the date that programs write into their files fixed.
+std::vector<std::string> timeless_environment() {
+  std::vector<std::string> variables = {"SOURCE_DATE_EPOCH=0"};
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text(*variable);
+    if (!text.starts_with("SOURCE_DATE_EPOCH=")) variables.emplace_back(text);
+  }
+  return variables;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+/// Runs a program in `folder`; nothing when it is not installed.
+std::optional<Outcome> run_program(const std::filesystem::path& folder,
+                                   std::vector<std::string> words) {
   Pipe messages;
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -95,29 +115,27 @@ Outcome run_gnuplot(const std::filesystem::path& folder, const std::string& scri
   posix_spawn_file_actions_adddup2(&actions, messages.writer(), STDERR_FILENO);
   posix_spawn_file_actions_adddup2(&actions, messages.writer(), STDOUT_FILENO);
   posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  std::string program = "gnuplot";
-  std::string defaults = "-d";
-  std::string argument = script;
-  const std::array<char*, 4> arguments = {program.data(), defaults.data(), argument.data(),
-                                          nullptr};
+  std::vector<std::string> variables = timeless_environment();
   pid_t child = 0;
-  const int failure =
-      posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  const int failure = posix_spawnp(&child, words.front().c_str(), &actions, nullptr,
+                                   pointers_to(words).data(), pointers_to(variables).data());
   posix_spawn_file_actions_destroy(&actions);
-  if (failure == ENOENT) {
-    throw AnalysisError("gnuplot is not installed (Debian package gnuplot-nox); the data are in " +
-                        folder.string());
-  }
+  if (failure == ENOENT) return std::nullopt;
   if (failure != 0) {
-    throw AnalysisError(std::string("cannot start gnuplot: ") + std::strerror(failure));
+    throw AnalysisError("cannot start " + words.front() + ": " + std::strerror(failure));
   }
   messages.close_writer();
   Outcome outcome;
   outcome.messages = messages.read_all();
   while (waitpid(child, &outcome.status, 0) < 0) {
-    if (errno != EINTR) throw AnalysisError("gnuplot was lost while it ran");
+    if (errno != EINTR) throw AnalysisError(words.front() + " was lost while it ran");
   }
   return outcome;
+}
+
+bool made(const Outcome& outcome, const std::filesystem::path& file) {
+  return WIFEXITED(outcome.status) && WEXITSTATUS(outcome.status) == 0 &&
+         std::filesystem::exists(file) && std::filesystem::file_size(file) > 0;
 }
 
 }  // namespace
@@ -136,14 +154,32 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
   file.close();
   if (!file) throw AnalysisError("cannot write " + script.string());
 
-  const Outcome outcome = run_gnuplot(folder, script.filename().string());
-  const bool drawn = WIFEXITED(outcome.status) && WEXITSTATUS(outcome.status) == 0 &&
-                     std::filesystem::exists(svg) && std::filesystem::file_size(svg) > 0;
-  if (!drawn) {
+  // -d keeps a user's own defaults out of the figure.
+  const std::optional<Outcome> outcome =
+      run_program(folder, {"gnuplot", "-d", script.filename().string()});
+  if (!outcome) {
+    throw AnalysisError("gnuplot is not installed (Debian package gnuplot-nox); the data are in " +
+                        folder.string());
+  }
+  if (!made(*outcome, svg)) {
     std::filesystem::remove(svg);
-    throw AnalysisError("gnuplot could not draw " + table.name + ":\n" + outcome.messages);
+    throw AnalysisError("gnuplot could not draw " + table.name + ":\n" + outcome->messages);
   }
   return svg;
+}
+
+std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path& svg) {
+  std::filesystem::path pdf = svg;
+  pdf.replace_extension(".pdf");
+  const std::optional<Outcome> outcome =
+      run_program(svg.parent_path(), {"rsvg-convert", "--format=pdf", "--output",
+                                      pdf.filename().string(), svg.filename().string()});
+  if (!outcome) return std::nullopt;
+  if (!made(*outcome, pdf)) {
+    std::filesystem::remove(pdf);
+    throw AnalysisError("rsvg-convert could not read " + svg.string() + ":\n" + outcome->messages);
+  }
+  return pdf;
 }
 
 }  // namespace shearcell

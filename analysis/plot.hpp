@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws a figure's table with gnuplot.
+// Draws a figure's table with gnuplot; PDF with librsvg.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "analysis/figure.hpp"
 
@@ -15,5 +16,10 @@ namespace shearcell {
 /// Throws AnalysisError when gnuplot is missing, naming the package to install, or fails, with what
 /// it said; the CSV and the script stay.
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder);
+
+/// The same drawing as PDF beside the SVG, with no date in it: equal bytes from an equal SVG with
+/// the same librsvg. Nothing where rsvg-convert (Debian package librsvg2-bin) is not installed.
+/// gnuplot's own PDF would carry the time at which it was made. Throws AnalysisError when it fails.
+std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path& svg);
 
 }  // namespace shearcell

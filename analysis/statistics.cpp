@@ -2,6 +2,10 @@
 #include "analysis/statistics.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/random.hpp"
 
 namespace shearcell {
 
@@ -24,6 +28,27 @@ RunStatistics over_runs(std::span<const double> values) {
   }
   result.standard_error = std::sqrt(squares / (n * (n - 1)));
   return result;
+}
+
+std::optional<double> bootstrap_error(
+    std::size_t runs,
+    const std::function<std::optional<double>(std::span<const std::size_t>)>& statistic) {
+  constexpr std::uint32_t selections = 1000;
+  if (runs < 2) return std::nullopt;
+  std::vector<std::size_t> selection(runs);
+  std::vector<double> values;
+  for (std::uint32_t s = 0; s < selections; ++s) {
+    for (std::size_t k = 0; k < runs; ++k) {
+      const double u = uniform_pair({s, static_cast<std::uint32_t>(k), 0, 0}, 0)[0];
+      selection[k] = static_cast<std::size_t>(u * static_cast<double>(runs));
+    }
+    const std::optional<double> value = statistic(selection);
+    if (value && std::isfinite(*value)) values.push_back(*value);
+  }
+  if (values.size() < selections / 2) return std::nullopt;
+  const RunStatistics found = over_runs(values);
+  const auto n = static_cast<double>(runs);
+  return found.standard_error.value() * std::sqrt(static_cast<double>(found.runs) * n / (n - 1));
 }
 
 }  // namespace shearcell

@@ -4,23 +4,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
+#include "analysis/binning.hpp"
 #include "analysis/error.hpp"
 
 namespace shearcell {
 namespace {
 
-/// gnuplot's single-quoted text, in which only the quote itself means anything.
-std::string literal(const std::string& text) {
-  std::string inside;
-  for (const char c : text) {
-    if (c == '\'') inside += '\'';
-    if (c != '\n') inside += c;
+bool matches(const nlohmann::json& a, const nlohmann::json& b) {
+  if (a.is_number() && b.is_number()) {
+    const auto x = a.get<double>();
+    const auto y = b.get<double>();
+    return std::abs(x - y) <= 0.03 * std::abs(y);
   }
-  return fmt::format("'{}'", inside);
+  return a == b;
 }
 
 /// gnuplot reads _, ^, @, &, {, } and \ as markup in titles.
@@ -33,65 +35,200 @@ std::string plain_title(const std::string& text) {
   return result;
 }
 
-CurveStyle style_of(const std::string& variant, std::span<const CurveStyle> styles,
-                    std::size_t index) {
-  for (const CurveStyle& style : styles) {
-    if (style.variant == variant) return style;
-  }
-  static const std::vector<std::string> colours = {"#1f78b4", "#33a02c", "#ff7f00", "#6a3d9a"};
-  return {variant, plain_title(variant), colours[index % colours.size()],
+CurveStyle style_of_other(const std::string& variant, std::size_t index) {
+  static const std::array<const char*, 6> colours = {"#1f78b4", "#33a02c", "#ff7f00",
+                                                     "#6a3d9a", "#b15928", "#000000"};
+  return {nullptr, plain_title(variant), colours[index % colours.size()],
           6 + 2 * static_cast<int>(index % 4)};
+}
+
+std::vector<CurvePoint> points_of(std::span<const FigureRun* const> runs) {
+  std::map<std::int64_t, std::vector<const Measures*>> found;
+  for (const FigureRun* run : runs) {
+    std::set<std::int64_t> seen;
+    for (const CheckpointMeasures& checkpoint : run->checkpoints) {
+      if (std::floor(checkpoint.cycle) != checkpoint.cycle) continue;
+      const auto cycle = static_cast<std::int64_t>(checkpoint.cycle);
+      if (!seen.insert(cycle).second) {
+        throw AnalysisError("run " + run->run_id + " has two checkpoints of cycle " +
+                            std::to_string(cycle));
+      }
+      found[cycle].push_back(&checkpoint.measures);
+    }
+  }
+  std::vector<CurvePoint> points;
+  for (auto& [cycle, measures] : found) points.push_back({cycle, std::move(measures)});
+  return points;
 }
 
 }  // namespace
 
-std::vector<Curve> curves_by_cycle(std::span<const FigureRun> runs,
-                                   std::span<const std::string> known) {
-  std::map<std::string, std::map<std::int64_t, std::vector<const Measures*>>> found;
-  for (const FigureRun& run : runs) {
-    std::set<std::int64_t> seen;
-    for (const CheckpointMeasures& checkpoint : run.checkpoints) {
-      if (std::floor(checkpoint.cycle) != checkpoint.cycle) continue;
-      const auto cycle = static_cast<std::int64_t>(checkpoint.cycle);
-      if (!seen.insert(cycle).second) {
-        throw AnalysisError("run " + run.run_id + " has two checkpoints of cycle " +
-                            std::to_string(cycle));
-      }
-      found[run.variant][cycle].push_back(&checkpoint.measures);
-    }
+std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
+                             std::span<const CurveStyle> styles) {
+  std::map<std::string, std::vector<const FigureRun*>> variants;
+  for (const FigureRun& run : runs) variants[run.variant].push_back(&run);
+  std::vector<std::pair<std::size_t, Curve>> ranked;
+  for (auto& [variant, members] : variants) {
+    Curve curve;
+    curve.variant = variant;
+    curve.value = parameter_of(*members.front(), parameter);
+    curve.points = points_of(members);
+    curve.runs = std::move(members);
+    if (curve.points.empty()) continue;
+    const auto style = std::find_if(styles.begin(), styles.end(), [&](const CurveStyle& s) {
+      return matches(curve.value, s.value);
+    });
+    const auto rank = static_cast<std::size_t>(style - styles.begin());
+    curve.style =
+        style == styles.end() ? style_of_other(variant, styles.size() + ranked.size()) : *style;
+    ranked.emplace_back(rank, std::move(curve));
   }
-  std::vector<std::string> order(known.begin(), known.end());
-  for (const auto& [variant, points] : found) {
-    if (std::find(known.begin(), known.end(), variant) == known.end()) order.push_back(variant);
-  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Curve> curves;
-  for (const std::string& variant : order) {
-    const auto entry = found.find(variant);
-    if (entry == found.end()) continue;
-    Curve curve{variant, {}};
-    for (const auto& [cycle, measures] : entry->second) curve.points.push_back({cycle, measures});
-    curves.push_back(std::move(curve));
-  }
+  for (auto& [rank, curve] : ranked) curves.push_back(std::move(curve));
   return curves;
 }
 
-std::string plot_curves(std::span<const Curve> curves, std::span<const CurveStyle> styles,
-                        const CurveColumns& columns) {
+const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& value) {
+  for (const Curve& curve : curves) {
+    if (matches(curve.value, value)) return &curve;
+  }
+  return nullptr;
+}
+
+RunStatistics over(const CurvePoint& point, double Measures::*quantity) {
+  std::vector<double> values;
+  values.reserve(point.runs.size());
+  for (const Measures* measures : point.runs) values.push_back(measures->*quantity);
+  return over_runs(values);
+}
+
+std::string literal(const std::string& text) {
+  std::string inside;
+  for (const char c : text) {
+    if (c == '\'') inside += '\'';
+    if (c != '\n') inside += c;
+  }
+  return fmt::format("'{}'", inside);
+}
+
+std::string plot_curves(std::span<const Curve> curves, const CurveColumns& columns) {
   std::string text;
-  for (std::size_t k = 0; k < curves.size(); ++k) {
-    const CurveStyle style = style_of(curves[k].variant, styles, k);
+  for (const Curve& curve : curves) {
     const bool both = columns.x_error > 0;
     const std::string values = fmt::format("{}:(strcol(1) eq {} ? column({}) : NaN)", columns.x,
-                                           literal(curves[k].variant), columns.y);
+                                           literal(curve.variant), columns.y);
     const std::string errors = both ? fmt::format("{}:{}", columns.x_error, columns.y_error)
                                     : std::to_string(columns.y_error);
-    text += k == 0 ? "plot " : ", \\\n     ";
+    text += text.empty() ? "plot " : ", \\\n     ";
     text += fmt::format("data using {}:{} with {} lc rgb '{}' lw 0.8 pt 0 notitle, \\\n     ",
-                        values, errors, both ? "xyerrorbars" : "yerrorbars", style.colour);
+                        values, errors, both ? "xyerrorbars" : "yerrorbars", curve.style.colour);
     text += fmt::format("data using {} with linespoints lc rgb '{}' pt {} ps 0.6 title {}", values,
-                        style.colour, style.point, literal(style.title));
+                        curve.style.colour, curve.style.point, literal(curve.style.title));
   }
   return text.empty() ? text : text + "\n";
+}
+
+std::string points_with_errors(const std::string& x, const std::string& y, int error_column,
+                               const std::string& colour, int point, const std::string& title) {
+  return fmt::format(
+      "data using {0}:{1}:{2} with yerrorbars lc rgb '{3}' lw 0.8 pt 0 notitle, \\\n"
+      "     data using {0}:{1} with points lc rgb '{3}' pt {4} ps 0.7 title {5}",
+      x, y, error_column, colour, point, literal(title));
+}
+
+std::string onset_lines() {
+  std::string text;
+  for (const char* phi : {"0.645", "0.647"}) {
+    text += fmt::format(
+        "set arrow from graph 0, first {0} to graph 1, first {0} nohead dt 2 lc rgb '#888888'\n",
+        phi);
+  }
+  return text;
+}
+
+std::string cycle_axis(std::span<const Curve> curves) {
+  std::int64_t last = 0;
+  for (const Curve& curve : curves) last = std::max(last, curve.points.back().cycle);
+  return std::string("set xlabel 'shear cycle  {/:Italic n}'\n") +
+         (last <= 10 ? "set xtics 1\nunset mxtics\n" : "");
+}
+
+FigureTable phi_against_cycle(const std::string& name, std::span<const Curve> curves) {
+  FigureTable table;
+  table.name = name;
+  table.columns = {"variant",
+                   "cycle",
+                   "phi_mean",
+                   "phi_standard_error",
+                   "phi_u_mean",
+                   "phi_u_standard_error",
+                   "overlap_mean_d",
+                   "overlap_standard_error_d",
+                   "runs"};
+  for (const Curve& curve : curves) {
+    for (const CurvePoint& point : curve.points) {
+      const RunStatistics phi = over(point, &Measures::phi);
+      const RunStatistics phi_u = over(point, &Measures::phi_uncorrected);
+      const RunStatistics overlap = over(point, &Measures::mean_overlap);
+      table.rows.push_back(
+          {curve.variant, point.cycle, table_value(phi.mean), table_value(phi.standard_error),
+           table_value(phi_u.mean), table_value(phi_u.standard_error), table_value(overlap.mean),
+           table_value(overlap.standard_error), static_cast<std::int64_t>(phi.runs)});
+    }
+  }
+  table.plot = cycle_axis(curves) + "set ylabel 'volume fraction  {/:Italic ϕ}'\n" +
+               plot_curves(curves, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
+  return table;
+}
+
+FigureTable crystallinity_against_cycle(const std::string& name, std::span<const Curve> curves) {
+  FigureTable table;
+  table.name = name;
+  table.columns = {"variant", "cycle", "crystalline_mean_percent",
+                   "crystalline_standard_error_percent", "runs"};
+  for (const Curve& curve : curves) {
+    for (const CurvePoint& point : curve.points) {
+      const RunStatistics crystalline = over(point, &Measures::crystalline_percent);
+      table.rows.push_back({curve.variant, point.cycle, table_value(crystalline.mean),
+                            table_value(crystalline.standard_error),
+                            static_cast<std::int64_t>(crystalline.runs)});
+    }
+  }
+  table.plot = cycle_axis(curves) +
+               "set ylabel 'percentage crystalline  [%]'\n"
+               "set yrange [0:*]\n" +
+               plot_curves(curves, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
+  return table;
+}
+
+FigureTable crystallinity_against_phi(const std::string& name, std::span<const Curve> curves) {
+  FigureTable table;
+  table.name = name;
+  table.columns = {"variant",
+                   "phi_low",
+                   "phi_high",
+                   "phi_mean",
+                   "phi_standard_error",
+                   "crystalline_mean_percent",
+                   "crystalline_standard_error_percent",
+                   "runs"};
+  for (const Curve& curve : curves) {
+    for (const PhiBin& bin : binned_by_phi(curve.runs, &Measures::crystalline_percent)) {
+      table.rows.push_back({curve.variant, bin.low, bin.high, table_value(bin.phi.mean),
+                            table_value(bin.phi.standard_error), table_value(bin.value.mean),
+                            table_value(bin.value.standard_error),
+                            static_cast<std::int64_t>(bin.value.runs)});
+    }
+  }
+  table.plot =
+      "set xlabel 'volume fraction  {/:Italic ϕ}'\n"
+      "set ylabel 'percentage crystalline  [%]'\n"
+      "set yrange [0:*]\n"
+      "set offsets graph 0.03, graph 0.03, graph 0.05, 0\n" +
+      plot_curves(curves, {.x = 4, .x_error = 5, .y = 6, .y_error = 7});
+  return table;
 }
 
 }  // namespace shearcell

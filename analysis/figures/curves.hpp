@@ -4,13 +4,25 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/figure.hpp"
+#include "analysis/statistics.hpp"
 
 namespace shearcell {
+
+/// How a curve is drawn, following the supplement. It belongs to the runs in which the figure's
+/// parameter has this value; numbers match within 3 %, since a time step is a whole part of a
+/// cycle.
+struct CurveStyle {
+  nlohmann::json value;
+  std::string title;   ///< gnuplot enhanced text
+  std::string colour;  ///< "#rrggbb"
+  int point;           ///< gnuplot point type
+};
 
 /// All checkpoints of one variant at the end of one cycle, one per run.
 struct CurvePoint {
@@ -20,32 +32,54 @@ struct CurvePoint {
 
 struct Curve {
   std::string variant;
+  nlohmann::json value;  ///< of the figure's parameter; null when the runs do not say
+  CurveStyle style;
+  std::vector<const FigureRun*> runs;
   std::vector<CurvePoint> points;  ///< by cycle
 };
 
-/// Checkpoints inside a cycle are left out. Variants come in the order of `known`, then any others
-/// by name. Throws AnalysisError when one run has two checkpoints of one cycle. Points into `runs`.
-std::vector<Curve> curves_by_cycle(std::span<const FigureRun> runs,
-                                   std::span<const std::string> known);
+/// Checkpoints inside a cycle are left out. Curves come in the order of the `styles` of
+/// `parameter`, then any others by the variant's name. Throws AnalysisError when one run has two
+/// checkpoints of one cycle. Points into `runs`.
+std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
+                             std::span<const CurveStyle> styles);
 
-/// How a curve is drawn, following the supplement.
-struct CurveStyle {
-  std::string variant;
-  std::string title;   ///< gnuplot enhanced text
-  std::string colour;  ///< "#rrggbb"
-  int point;           ///< gnuplot point type
-};
+/// The curve in which the parameter has that value, or null.
+const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& value);
 
-/// gnuplot commands: lines with points and, where there is an error, error bars, for each curve
-/// that is present. Columns are counted from 1; column 1 holds the variant. 0 for `x_error` means
-/// that there is none.
+RunStatistics over(const CurvePoint& point, double Measures::*quantity);
+
+/// Columns of a table, counted from 1; column 1 holds the variant. 0 for `x_error` means that there
+/// is none.
 struct CurveColumns {
   int x;
   int x_error;
   int y;
   int y_error;
 };
-std::string plot_curves(std::span<const Curve> curves, std::span<const CurveStyle> styles,
-                        const CurveColumns& columns);
+
+/// gnuplot commands: lines with points and, where there is an error, error bars, for each curve.
+std::string plot_curves(std::span<const Curve> curves, const CurveColumns& columns);
+
+/// One part of a plot command: points, and error bars where there is an error, which `yerrorbars`
+/// alone would leave out with their points. `x` and `y` are gnuplot's `using` expressions.
+std::string points_with_errors(const std::string& x, const std::string& y, int error_column,
+                               const std::string& colour, int point, const std::string& title);
+
+/// gnuplot's single-quoted text, in which only the quote itself means anything.
+std::string literal(const std::string& text);
+
+/// gnuplot commands: dashed horizontal lines at phi = 0.646 +- 0.001, the supplement's onset.
+std::string onset_lines();
+
+/// gnuplot commands for an axis of cycles. Short runs get a tick for every cycle.
+std::string cycle_axis(std::span<const Curve> curves);
+
+/// A row for each variant and cycle: phi, phi_u and the mean overlap.
+FigureTable phi_against_cycle(const std::string& name, std::span<const Curve> curves);
+/// A row for each variant and cycle: the percentage of crystalline grains.
+FigureTable crystallinity_against_cycle(const std::string& name, std::span<const Curve> curves);
+/// A row for each variant and bin of phi: the percentage of crystalline grains.
+FigureTable crystallinity_against_phi(const std::string& name, std::span<const Curve> curves);
 
 }  // namespace shearcell

@@ -3,13 +3,27 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "analysis/figure.hpp"
 
 namespace shearcell {
 
-/// S2a: phi against cycle; S2b: percentage of crystalline grains against phi; a curve per variant.
-std::vector<FigureTable> figure_s2(std::span<const FigureRun> runs);
+// phi and phi_u of a packing whose springs are made stiffer.
+FigureResult figure_s1(std::span<const FigureRun> runs);
+
+// The two panels of S2 to S4 are phi against cycle, and percentage crystalline against phi, with a
+// curve per variant. B5 and walls have the percentage against cycle between them.
+FigureResult figure_s2(std::span<const FigureRun> runs);
+FigureResult figure_s3(std::span<const FigureRun> runs);
+FigureResult figure_s4(std::span<const FigureRun> runs);
+FigureResult figure_b5(std::span<const FigureRun> runs);
+FigureResult figure_walls(std::span<const FigureRun> runs);
+
+// Growth of crystallites; onset of crystallization; where they nucleate.
+FigureResult figure_c(std::span<const FigureRun> runs);
+FigureResult figure_s5a(std::span<const FigureRun> runs);
+FigureResult figure_s5b(std::span<const FigureRun> runs);
+FigureResult figure_s6(std::span<const FigureRun> runs);
+FigureResult figure_s7(std::span<const FigureRun> runs);
 
 }  // namespace shearcell

@@ -48,7 +48,19 @@ nlohmann::json facts(const RegeneratedFigure& result) {
           {"runs", result.runs},         {"checkpoints", result.checkpoints},
           {"measured", result.measured}, {"files", files},
           {"damage", result.damage},     {"pruned", result.pruned},
-          {"changed", result.changed}};
+          {"changed", result.changed},   {"verdict", to_json(result.verdicts)}};
+}
+
+void print_verdicts(const RegeneratedFigure& result) {
+  fmt::print("  verdict: {}\n", name_of(overall(result.verdicts)));
+  for (const Verdict& verdict : result.verdicts) {
+    const std::string value =
+        verdict.value ? fmt::format("{:.4g}", *verdict.value) : "not measured";
+    const std::string limit =
+        verdict.limit ? fmt::format(" (limit {:.4g})", *verdict.limit) : std::string();
+    fmt::print("    {}: {}\n      {}: {}{}{}{}\n", name_of(verdict.ruling), verdict.claim,
+               verdict.quantity, value, limit, verdict.note.empty() ? "" : "; ", verdict.note);
+  }
 }
 
 void figures(const FigureOptions& options, Context& context) {
@@ -85,6 +97,7 @@ void figures(const FigureOptions& options, Context& context) {
                result.scale.empty() ? "base" : result.scale, result.runs, result.checkpoints,
                result.measured);
     for (const auto& file : result.files) fmt::print("  {}\n", file.string());
+    print_verdicts(result);
   }
   if (context.json) print_json({{"figures", list}});
 }
@@ -104,8 +117,10 @@ void add_figures(CLI::App& app, Context& context) {
                     "Measure every checkpoint again and compare with what is kept");
   add_common_options(*command, context, true);
   command->footer(
-      "Writes CSV and SVG for each panel, and NAME.lineage.json: which checkpoints they came "
-      "from.\n"
+      "Writes CSV, SVG and PDF for each panel, NAME.verdict.json: whether what the supplement "
+      "claims "
+      "of\n"
+      "the figure holds, and NAME.lineage.json: which checkpoints they came from.\n"
       "What is measured on a checkpoint is kept in the store's derived.sqlite, which may be\n"
       "deleted at any time.\n"
       "Examples:\n  shearcell figures S2 --out figures\n  shearcell figures --all");

@@ -73,6 +73,11 @@ std::vector<Input> inputs_of(const Store& store, std::string_view figure,
   inputs.erase(std::remove_if(inputs.begin(), inputs.end(),
                               [&](const Input& i) { return i.membership.scale != scale; }),
                inputs.end());
+  // A run that two experiments share is one run: counted twice, it would make errors too small.
+  std::set<std::string> seen;
+  inputs.erase(std::remove_if(inputs.begin(), inputs.end(),
+                              [&](const Input& i) { return !seen.insert(i.run.id).second; }),
+               inputs.end());
   for (Input& input : inputs) {
     for (const CheckpointRecord& record : store.checkpoints(input.run.id, true)) {
       if (record.state == CheckpointState::rejected) continue;
@@ -82,20 +87,35 @@ std::vector<Input> inputs_of(const Store& store, std::string_view figure,
   return inputs;
 }
 
+struct Measured {
+  Measures measures;
+  std::optional<CrystalliteMap> crystallites;
+};
+
+std::vector<DerivedMeasure> needed(const Figure& figure) {
+  std::vector<DerivedMeasure> measures = {scalar_measures()};
+  if (figure.needs == FigureNeeds::crystallites) measures.push_back(crystallite_measure());
+  return measures;
+}
+
 // Measures of the checkpoints of all inputs, one after the other; empty where one cannot be read.
-std::vector<std::optional<Measures>> measure(const Store& store, const std::vector<Input>& inputs,
+std::vector<std::optional<Measured>> measure(const Store& store, const Figure& figure,
+                                             const std::vector<Input>& inputs,
                                              const RegenerateOptions& options,
                                              RegeneratedFigure& result) {
   std::vector<CheckpointRecord> records;
   for (const Input& input : inputs) {
     records.insert(records.end(), input.checkpoints.begin(), input.checkpoints.end());
   }
-  Derived derived = derive(store, records, std::span(&scalar_measures(), 1),
-                           {options.workers, options.fresh, options.report});
-  std::vector<std::optional<Measures>> measured;
+  Derived derived =
+      derive(store, records, needed(figure), {options.workers, options.fresh, options.report});
+  std::vector<std::optional<Measured>> measured;
   try {
     for (const auto& results : derived.results) {
-      measured.push_back(results ? std::optional(read_measures(results->front())) : std::nullopt);
+      std::optional<Measured>& one = measured.emplace_back();
+      if (!results) continue;
+      one = {read_measures(results->front()), std::nullopt};
+      if (results->size() > 1) one->crystallites = read_crystallite_map(results->at(1));
     }
   } catch (const AnalysisError& problem) {
     throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
@@ -110,20 +130,38 @@ std::vector<std::optional<Measures>> measure(const Store& store, const std::vect
 }
 
 std::vector<FigureRun> figure_runs(const std::vector<Input>& inputs,
-                                   const std::vector<std::optional<Measures>>& measured) {
+                                   std::vector<std::optional<Measured>> measured) {
   std::vector<FigureRun> runs;
   std::size_t next = 0;
   for (const Input& input : inputs) {
-    FigureRun run{
-        input.run.id, input.membership.variant, input.membership.labels, input.membership.seed, {}};
+    FigureRun run{input.run.id,
+                  input.membership.variant,
+                  input.membership.labels,
+                  input.run.resolved.value("parameters", nlohmann::json::object()),
+                  input.membership.seed,
+                  {}};
     for (const CheckpointRecord& record : input.checkpoints) {
-      const std::optional<Measures>& measures = measured[next++];
-      if (measures)
-        run.checkpoints.push_back({record.cycle, record.step, record.sha256, *measures});
+      std::optional<Measured>& one = measured[next++];
+      if (!one) continue;
+      CheckpointMeasures& checkpoint = run.checkpoints.emplace_back();
+      checkpoint.cycle = record.cycle;
+      checkpoint.step = record.step;
+      checkpoint.sha256 = record.sha256;
+      checkpoint.measures = one->measures;
+      checkpoint.crystallites = std::move(one->crystallites);
+      const auto stiffness = record.observables.find("stiffness_N_per_m");
+      if (stiffness != record.observables.end()) checkpoint.stiffness_N_per_m = stiffness->second;
     }
     runs.push_back(std::move(run));
   }
   return runs;
+}
+
+std::filesystem::path write_text(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << text;
+  if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+  return path;
 }
 
 // What the figure came from, in terms that do not change when it is made again.
@@ -178,26 +216,33 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
   RegeneratedFigure result;
   result.name = figure.name;
   const std::vector<Input> inputs = inputs_of(store, figure.name, options.scale, result.scale);
-  const auto measured = measure(store, inputs, options, result);
-  const std::vector<FigureRun> runs = figure_runs(inputs, measured);
+  const std::vector<FigureRun> runs =
+      figure_runs(inputs, measure(store, figure, inputs, options, result));
   result.runs = runs.size();
   for (const FigureRun& run : runs) result.checkpoints += run.checkpoints.size();
 
   std::filesystem::create_directories(options.folder);
-  for (const FigureTable& table : figure.make(runs)) {
+  FigureResult made = figure.make(runs);
+  for (const FigureTable& table : made.tables) {
     result.files.push_back(write_csv(table, options.folder));
     try {
-      result.files.push_back(draw_svg(table, options.folder));
+      const std::filesystem::path svg = draw_svg(table, options.folder);
+      result.files.push_back(svg);
+      if (auto pdf = convert_to_pdf(svg)) result.files.push_back(std::move(*pdf));
     } catch (const AnalysisError& error) {
       result.plot_error = error.what();
     }
   }
+  nlohmann::json verdict = to_json(made.verdicts);
+  verdict["figure"] = result.name;
+  verdict["scale"] = result.scale;
+  result.files.push_back(
+      write_text(options.folder / (result.name + ".verdict.json"), verdict.dump(1) + "\n"));
+  result.verdicts = std::move(made.verdicts);
+
   const nlohmann::json facts = lineage(result, inputs, runs);
-  const auto path = options.folder / (result.name + ".lineage.json");
-  std::ofstream file(path);
-  file << lineage_text(facts);
-  if (!file.flush()) throw std::runtime_error(path.string() + ": cannot write the lineage");
-  result.files.push_back(path);
+  result.files.push_back(
+      write_text(options.folder / (result.name + ".lineage.json"), lineage_text(facts)));
 
   record(store, result.name, facts);
   return result;

@@ -28,7 +28,8 @@ struct RegeneratedFigure {
   std::size_t runs = 0;
   std::size_t checkpoints = 0;
   std::size_t measured = 0;                  ///< checkpoints that were analysed for it now
-  std::vector<std::filesystem::path> files;  ///< CSV and SVG of each panel, then the lineage
+  std::vector<std::filesystem::path> files;  ///< CSV, SVG, PDF of each panel, verdict, lineage
+  std::vector<Verdict> verdicts;             ///< on what the supplement claims of it
   std::vector<std::string> damage;           ///< checkpoints that could not be read, one line each
   std::vector<std::string> pruned;           ///< checkpoints whose files were pruned, likewise
   std::vector<std::string> changed;          ///< checkpoints whose kept measures were others
@@ -39,11 +40,11 @@ struct RegeneratedFigure {
 /// Names of the figures that some registered manifest asks for.
 std::vector<std::string> figures_of_store(const Store& store);
 
-/// Writes FOLDER/PANEL.csv and .svg for each panel and FOLDER/NAME.lineage.json, and records a
-/// FigureGenerated event, with the host and build that made it, unless the newest one says the
-/// same. The same checkpoints give the same bytes. A checkpoint whose measures the store keeps is
-/// not read; one that would have to be, and cannot or was pruned, is left out and named. Throws
-/// NotFound when the store holds no run for the figure.
+/// Writes FOLDER/PANEL.csv, .svg and, with librsvg, .pdf for each panel, FOLDER/NAME.verdict.json
+/// and FOLDER/NAME.lineage.json, and records a FigureGenerated event, with the host and build that
+/// made it, unless the newest one says the same. The same checkpoints give the same bytes. A
+/// checkpoint whose measures the store keeps is not read; one that would have to be, and cannot or
+/// was pruned, is left out and named. Throws NotFound when the store holds no run for the figure.
 RegeneratedFigure regenerate(Store& store, const Figure& figure, const RegenerateOptions& options);
 
 }  // namespace shearcell

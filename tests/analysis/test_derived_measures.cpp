@@ -70,7 +70,61 @@ TEST(DerivedMeasures, EveryKindOfNumberComesBack) {
   EXPECT_TRUE(std::isnan(decode_result(encode_result(nlohmann::json(std::nan("")))).get<double>()));
 }
 
-// What crystallite tracking will keep: an entry per grain, beside the scalars, from one analysis.
+TEST(DerivedMeasures, CrystallitesComeBackBitByBit) {
+  const Analysis analysis = pinned_analysis();
+  const CrystalliteMap& map = analysis.crystallites;
+  ASSERT_FALSE(map.grain.empty());
+  const std::vector<std::byte> bytes = encode_result(crystallite_measure().from(analysis));
+  const CrystalliteMap back = read_crystallite_map(decode_result(bytes));
+  EXPECT_EQ(back.grain, map.grain);
+  EXPECT_EQ(back.label, map.label);
+  EXPECT_EQ(back.size, map.size);
+  EXPECT_EQ(back.centre, map.centre);
+  EXPECT_EQ(back.width, map.width);
+  for (std::size_t k = 0; k < map.grain.size(); ++k) {
+    const auto id = static_cast<std::size_t>(map.grain[k]);
+    EXPECT_EQ(analysis.grains.crystallites.label[id], map.label[k]);
+  }
+}
+
+TEST(DerivedMeasures, CrystallitesThatDoNotFitTogetherAreRefused) {
+  const nlohmann::json good = crystallite_measure().from(pinned_analysis());
+  for (const char* key : {"grain", "label", "size", "centre_d", "width_d"}) {
+    nlohmann::json bad = good;
+    bad.erase(key);
+    EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << key;
+    bad = good;
+    bad[key] = nlohmann::json::binary({1, 0, 0, 0});
+    EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << key;
+  }
+  nlohmann::json bad = good;
+  std::vector<std::uint8_t> labels = good.at("label").get_binary();
+  labels[3] = 0x80;
+  bad["label"] = nlohmann::json::binary(labels);
+  EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a negative label";
+}
+
+TEST(CrystalliteMap, CentresOfMassAcrossTheSeamOfATiltedCell) {
+  Cell cell;
+  cell.width = 10;
+  cell.depth = 8;
+  cell.top = 20;
+  const WallPose pose = wall_pose(cell, 0.1, 0);
+  Crystallites two{{0, 0, -1, 1}, {2, 1}, 2};
+  Eigen::Matrix3Xd r(3, 4);
+  r.col(0) = Eigen::Vector3d(4, 10, 0.5);
+  r.col(1) = Eigen::Vector3d(5, 12, 7.7);
+  r.col(2) = Eigen::Vector3d(1, 1, 1);
+  r.col(3) = Eigen::Vector3d(6, 20, 3);
+  const CrystalliteMap map = crystallite_map(two, cell, pose, r);
+  EXPECT_EQ(map.grain, (std::vector<std::int32_t>{0, 1, 3}));
+  EXPECT_NEAR(map.centre[0].x(), 4.5 + 9 * std::tan(0.1), 1e-12);
+  EXPECT_NEAR(map.centre[0].y(), 11, 1e-12);
+  EXPECT_NEAR(map.centre[0].z(), 0.1, 1e-12);
+  EXPECT_NEAR((map.centre[1] - r.col(3)).norm(), 0, 1e-12) << "at the top nothing is displaced";
+}
+
+// Any entry per grain can be kept beside the scalars, from one analysis.
 TEST(DerivedMeasures, ArraysOfGrainsCanBeKept) {
   const DerivedMeasure structures{
       "structures", nlohmann::json::object(), [](const Analysis& a) {

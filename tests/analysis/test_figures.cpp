@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -10,70 +11,74 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <thread>
 
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/plot.hpp"
+#include "tests/analysis/made_up_runs.hpp"
 
 namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
 
-FigureRun made_up_run(const std::string& variant, std::uint64_t seed, int cycles, double shift) {
-  FigureRun run;
-  run.run_id = variant + std::to_string(seed);
-  run.variant = variant;
-  run.seed = seed;
-  for (int n = 0; n <= cycles; ++n) {
-    CheckpointMeasures checkpoint;
-    checkpoint.cycle = n;
-    checkpoint.measures.phi = 0.6 + 0.01 * n + shift;
-    checkpoint.measures.phi_uncorrected = 0.61 + 0.01 * n + shift;
-    checkpoint.measures.crystalline_percent = n + 100 * shift;
-    run.checkpoints.push_back(checkpoint);
-  }
-  return run;
+using testing::made_up_run;
+
+FigureRun rising_run(const std::string& fluid, std::uint64_t seed, int cycles, double shift) {
+  return made_up_run("fluid", fluid, seed, cycles, [shift](int n, Measures& m) {
+    m.phi = 0.6005 + 0.01 * n + shift;
+    m.phi_uncorrected = 0.61 + 0.01 * n + shift;
+    m.mean_overlap = 0.002;
+    m.crystalline_percent = n + 100 * shift;
+  });
 }
 
 std::vector<FigureRun> two_variants() {
-  return {made_up_run("fluid=cell", 1, 2, 0), made_up_run("fluid=still", 1, 1, 0),
-          made_up_run("fluid=still", 2, 1, 0.02)};
+  return {rising_run("cell", 1, 2, 0), rising_run("still", 1, 1, 0),
+          rising_run("still", 2, 1, 0.02)};
 }
 
 std::vector<FigureTable> s2(std::span<const FigureRun> runs) {
   const Figure* figure = find_figure("S2");
-  return figure != nullptr ? figure->make(runs) : std::vector<FigureTable>{};
+  return figure != nullptr ? figure->make(runs).tables : std::vector<FigureTable>{};
 }
 
 TEST(FigureS2, ARowPerVariantAndCycle) {
   const std::vector<FigureTable> tables = s2(two_variants());
   ASSERT_EQ(tables.size(), 2U);
   EXPECT_EQ(to_csv(tables[0]),
-            "variant,cycle,phi_mean,phi_standard_error,phi_u_mean,phi_u_standard_error,runs\n"
-            "fluid=still,0,0.61,0.01,0.62,0.01,2\n"
-            "fluid=still,1,0.62,0.01,0.63,0.01,2\n"
-            "fluid=cell,0,0.6,,0.61,,1\n"
-            "fluid=cell,1,0.61,,0.62,,1\n"
-            "fluid=cell,2,0.62,,0.63,,1\n");
-  EXPECT_EQ(to_csv(tables[1]),
-            "variant,cycle,phi_mean,phi_standard_error,crystalline_mean_percent,"
+            "variant,cycle,phi_mean,phi_standard_error,phi_u_mean,phi_u_standard_error,"
+            "overlap_mean_d,overlap_standard_error_d,runs\n"
+            "fluid=still,0,0.6105,0.01,0.62,0.01,0.002,0,2\n"
+            "fluid=still,1,0.6205,0.01,0.63,0.01,0.002,0,2\n"
+            "fluid=cell,0,0.6005,,0.61,,0.002,,1\n"
+            "fluid=cell,1,0.6105,,0.62,,0.002,,1\n"
+            "fluid=cell,2,0.6205,,0.63,,0.002,,1\n");
+}
+
+TEST(FigureS2, ARowPerVariantAndBinOfPhi) {
+  std::vector<FigureRun> runs = {rising_run("still", 1, 2, 0), rising_run("still", 2, 2, 0.01)};
+  for (Measures* m : {&runs[0].checkpoints[1].measures, &runs[0].checkpoints[2].measures}) {
+    m->phi = 0.6105;  // a run that stays in a bin counts once there
+  }
+  runs[0].checkpoints[0].measures.phi = std::nan("");
+  EXPECT_EQ(to_csv(s2(runs)[1]),
+            "variant,phi_low,phi_high,phi_mean,phi_standard_error,crystalline_mean_percent,"
             "crystalline_standard_error_percent,runs\n"
-            "fluid=still,0,0.61,0.01,1,1,2\n"
-            "fluid=still,1,0.62,0.01,2,1,2\n"
-            "fluid=cell,0,0.6,,0,,1\n"
-            "fluid=cell,1,0.61,,1,,1\n"
-            "fluid=cell,2,0.62,,2,,1\n");
+            "fluid=still,0.61,0.612,0.6105,0,1.25,0.25,2\n"
+            "fluid=still,0.62,0.622,0.6205,,2,,1\n"
+            "fluid=still,0.63,0.632,0.6305,,3,,1\n");
 }
 
 TEST(FigureS2, CheckpointsInsideACycleAreLeftOut) {
-  std::vector<FigureRun> runs = {made_up_run("fluid=still", 1, 1, 0)};
+  std::vector<FigureRun> runs = {rising_run("still", 1, 1, 0)};
   runs[0].checkpoints[1].cycle = 0.5;
   EXPECT_EQ(s2(runs)[0].rows.size(), 1U);
 }
 
 TEST(FigureS2, OneRunWithTwoCheckpointsOfACycleIsRefused) {
-  std::vector<FigureRun> runs = {made_up_run("fluid=still", 1, 1, 0)};
+  std::vector<FigureRun> runs = {rising_run("still", 1, 1, 0)};
   runs[0].checkpoints[1].cycle = 0;
   EXPECT_THROW(s2(runs), AnalysisError);
 }
@@ -132,14 +137,44 @@ TEST(Plot, SameTableSameSvg) {
   }
 }
 
+TEST(Plot, SameSvgSamePdf) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Folder folder;
+  const FigureTable table = s2(two_variants())[0];
+  write_csv(table, folder.path());
+  const fs::path svg = draw_svg(table, folder.path());
+  const auto pdf = convert_to_pdf(svg);
+  if (!pdf) GTEST_SKIP() << "rsvg-convert is not installed";
+  const std::string first = bytes_of(*pdf);
+  EXPECT_EQ(first.substr(0, 5), "%PDF-");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // a date in it would differ
+  convert_to_pdf(svg);
+  EXPECT_EQ(bytes_of(*pdf), first);
+}
+
 TEST(Plot, UnnamedVariantsAndNoRunsAreDrawnToo) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const Folder folder;
-  const std::vector<FigureRun> odd = {made_up_run("it's_{odd}^`echo`", 1, 3, 0)};
+  const std::vector<FigureRun> odd = {rising_run("it's_{odd}^`echo`", 1, 3, 0)};
   for (const std::vector<FigureRun>& runs : {odd, std::vector<FigureRun>{}}) {
     for (const FigureTable& table : s2(runs)) {
       write_csv(table, folder.path());
       EXPECT_GT(fs::file_size(draw_svg(table, folder.path())), 1000U);
+    }
+  }
+}
+
+TEST(Plot, EveryFigureIsDrawnWithFewRunsAndWithNone) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Folder folder;
+  for (const Figure& figure : all_figures()) {
+    for (const std::vector<FigureRun>& runs : {two_variants(), std::vector<FigureRun>{}}) {
+      const FigureResult made = figure.make(runs);
+      EXPECT_EQ(overall(made.verdicts), Ruling::too_few_runs) << figure.name;
+      for (const FigureTable& table : made.tables) {
+        write_csv(table, folder.path());
+        EXPECT_GT(fs::file_size(draw_svg(table, folder.path())), 1000U) << table.name;
+      }
     }
   }
 }

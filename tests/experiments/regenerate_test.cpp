@@ -46,6 +46,25 @@ class Regenerate : public testing::Test {
   Store store_{folder_.path() / "store", Access::create};
 };
 
+TEST_F(Regenerate, ARunOfTwoExperimentsCountsOnce) {
+  const std::string text = tiny_manifest("", kBothFluids);
+  compute(store_, text);
+  compute(store_, "experiment: other" + text.substr(text.find('\n')));
+  EXPECT_EQ(make("one").runs, 2U);
+}
+
+TEST_F(Regenerate, VerdictsAreWrittenAndRecorded) {
+  compute(store_, tiny_manifest("", kBothFluids));
+  const RegeneratedFigure figure = make("one");
+  ASSERT_EQ(figure.verdicts.size(), 2U);
+  const nlohmann::json written =
+      nlohmann::json::parse(read_bytes(folder_.path() / "one" / "S2.verdict.json"));
+  EXPECT_EQ(written.at("figure"), "S2");
+  EXPECT_EQ(written.at("verdict"), "too few runs to tell");
+  EXPECT_EQ(written.at("claims").size(), 2U);
+  EXPECT_TRUE(store_.figures().at(0).provenance.at("outputs").contains("S2.verdict.json"));
+}
+
 TEST_F(Regenerate, TwiceGivesTheSameBytesAndSimulatesNothing) {
   compute(store_, tiny_manifest("", kBothFluids + "seeds: 2\n"));
   const double steps = particle_steps();

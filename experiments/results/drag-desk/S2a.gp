@@ -15,7 +15,7 @@ data = 'S2a.csv'
 set xlabel 'shear cycle  {/:Italic n}'
 set ylabel 'volume fraction  {/:Italic ϕ}'
 plot data using 2:(strcol(1) eq 'fluid=still' ? column(3) : NaN):4 with yerrorbars lc rgb '#d62728' lw 0.8 pt 0 notitle, \
-     data using 2:(strcol(1) eq 'fluid=still' ? column(3) : NaN) with linespoints lc rgb '#d62728' pt 9 ps 0.6 title '{/:Italic v}_{fluid }= 0', \
+     data using 2:(strcol(1) eq 'fluid=still' ? column(3) : NaN) with linespoints lc rgb '#d62728' pt 9 ps 0.6 title '{/:Italic v}_{fluid }= 0', \
      data using 2:(strcol(1) eq 'fluid=cell' ? column(3) : NaN):4 with yerrorbars lc rgb '#000000' lw 0.8 pt 0 notitle, \
-     data using 2:(strcol(1) eq 'fluid=cell' ? column(3) : NaN) with linespoints lc rgb '#000000' pt 5 ps 0.6 title '{/:Italic v}_{fluid }= {/:Italic v}_{cell}'
+     data using 2:(strcol(1) eq 'fluid=cell' ? column(3) : NaN) with linespoints lc rgb '#000000' pt 5 ps 0.6 title '{/:Italic v}_{fluid }= {/:Italic v}_{cell}'
 set output

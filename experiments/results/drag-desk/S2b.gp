@@ -16,8 +16,8 @@ set xlabel 'volume fraction  {/:Italic ϕ}'
 set ylabel 'percentage crystalline  [%]'
 set yrange [0:*]
 set offsets graph 0.03, graph 0.03, graph 0.05, 0
-plot data using 3:(strcol(1) eq 'fluid=still' ? column(5) : NaN):4:6 with xyerrorbars lc rgb '#d62728' lw 0.8 pt 0 notitle, \
-     data using 3:(strcol(1) eq 'fluid=still' ? column(5) : NaN) with linespoints lc rgb '#d62728' pt 9 ps 0.6 title '{/:Italic v}_{fluid }= 0', \
-     data using 3:(strcol(1) eq 'fluid=cell' ? column(5) : NaN):4:6 with xyerrorbars lc rgb '#000000' lw 0.8 pt 0 notitle, \
-     data using 3:(strcol(1) eq 'fluid=cell' ? column(5) : NaN) with linespoints lc rgb '#000000' pt 5 ps 0.6 title '{/:Italic v}_{fluid }= {/:Italic v}_{cell}'
+plot data using 4:(strcol(1) eq 'fluid=still' ? column(6) : NaN):5:7 with xyerrorbars lc rgb '#d62728' lw 0.8 pt 0 notitle, \
+     data using 4:(strcol(1) eq 'fluid=still' ? column(6) : NaN) with linespoints lc rgb '#d62728' pt 9 ps 0.6 title '{/:Italic v}_{fluid }= 0', \
+     data using 4:(strcol(1) eq 'fluid=cell' ? column(6) : NaN):5:7 with xyerrorbars lc rgb '#000000' lw 0.8 pt 0 notitle, \
+     data using 4:(strcol(1) eq 'fluid=cell' ? column(6) : NaN) with linespoints lc rgb '#000000' pt 5 ps 0.6 title '{/:Italic v}_{fluid }= {/:Italic v}_{cell}'
 set output

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/binning.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+
+namespace shearcell {
+
+std::vector<PhiBin> binned_by_phi(std::span<const FigureRun* const> runs,
+                                  double Measures::*quantity, double width) {
+  struct OverRuns {
+    std::vector<double> phi;
+    std::vector<double> value;
+  };
+  std::map<std::int64_t, OverRuns> bins;
+  for (const FigureRun* run : runs) {
+    std::map<std::int64_t, OverRuns> own;
+    for (const CheckpointMeasures& checkpoint : run->checkpoints) {
+      const double phi = checkpoint.measures.phi;
+      if (!std::isfinite(phi)) continue;
+      OverRuns& bin = own[static_cast<std::int64_t>(std::floor(phi / width))];
+      bin.phi.push_back(phi);
+      bin.value.push_back(checkpoint.measures.*quantity);
+    }
+    for (const auto& [bin, checkpoints] : own) {
+      const RunStatistics value = over_runs(checkpoints.value);
+      if (!value.mean) continue;
+      bins[bin].phi.push_back(over_runs(checkpoints.phi).mean.value());
+      bins[bin].value.push_back(*value.mean);
+    }
+  }
+  std::vector<PhiBin> result;
+  for (const auto& [bin, found] : bins) {
+    const auto low = static_cast<double>(bin);
+    result.push_back(
+        {low * width, (low + 1) * width, over_runs(found.phi), over_runs(found.value)});
+  }
+  return result;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A measure against packing fraction: runs that reach the same phi at different cycles are averaged
+// where they have the same phi.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "analysis/figure.hpp"
+#include "analysis/statistics.hpp"
+
+namespace shearcell {
+
+/// Width of the bins in phi. [choice]
+inline constexpr double phi_bin = 0.002;
+
+/// All checkpoints with low <= phi < high. Each run counts once, with the mean of its checkpoints
+/// there, so that errors are over independent runs.
+struct PhiBin {
+  double low = 0;
+  double high = 0;
+  RunStatistics phi;
+  RunStatistics value;
+};
+
+/// Bins at whole multiples of `width`, ascending, those that some run visits. Checkpoints without a
+/// finite phi are left out.
+std::vector<PhiBin> binned_by_phi(std::span<const FigureRun* const> runs,
+                                  double Measures::*quantity, double width = phi_bin);
+
+}  // namespace shearcell

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs grouped by a number: amplitude, or size of the system.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/figure.hpp"
+#include "analysis/onset.hpp"
+
+namespace shearcell {
+
+/// Ascending. Runs that do not say the number are left out.
+std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRun> runs,
+                                                        const std::string& parameter);
+
+/// The onset is that of the supplement: within 0.646 +- 0.001, plus two standard errors of ours
+/// (Student's t for few runs).
+Verdict onset_is_published(const Onset& onset, std::string claim);
+
+/// "6 runs, 2 never reach the size, 0 begin beyond it".
+std::string runs_in_words(const Onset& onset);
+
+}  // namespace shearcell

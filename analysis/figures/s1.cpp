@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figure S1: phi_u falls as the springs of a packing are made stiffer, phi stays where it is.
+// Supplement B.2.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "analysis/agreement.hpp"
+#include "analysis/figures/curves.hpp"
+#include "analysis/figures/figures.hpp"
+#include "analysis/statistics.hpp"
+
+namespace shearcell {
+namespace {
+
+/// The packings of all runs at one stiffness.
+struct Stiffness {
+  std::vector<double> phi;
+  std::vector<double> phi_u;
+  std::vector<double> overlap;
+};
+
+/// By log10(k/k0) in hundredths, so that rounding does not part equal steps; k0 is the smallest
+/// stiffness of the run. Of two checkpoints at one stiffness the later counts: the packing as it
+/// settled, then the minimum.
+std::map<int, Stiffness> by_stiffness(std::span<const FigureRun> runs) {
+  std::map<int, Stiffness> found;
+  for (const FigureRun& run : runs) {
+    double least = std::nan("");
+    for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+      least = std::fmin(least, checkpoint.stiffness_N_per_m);
+    }
+    std::map<int, const Measures*> own;
+    for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+      const double ratio = std::log10(checkpoint.stiffness_N_per_m / least);
+      if (!std::isfinite(ratio)) continue;
+      own[static_cast<int>(std::lround(100 * ratio))] = &checkpoint.measures;
+    }
+    for (const auto& [hundredths, measures] : own) {
+      Stiffness& at = found[hundredths];
+      at.phi.push_back(measures->phi);
+      at.phi_u.push_back(measures->phi_uncorrected);
+      at.overlap.push_back(measures->mean_overlap);
+    }
+  }
+  return found;
+}
+
+FigureTable table_of(const std::map<int, Stiffness>& found) {
+  FigureTable table;
+  table.name = "S1";
+  table.columns = {
+      "log10_k_over_k0",      "overlap_mean_d", "overlap_standard_error_d", "phi_u_mean",
+      "phi_u_standard_error", "phi_mean",       "phi_standard_error",       "runs"};
+  for (const auto& [hundredths, at] : found) {
+    const RunStatistics phi = over_runs(at.phi);
+    const RunStatistics phi_u = over_runs(at.phi_u);
+    const RunStatistics overlap = over_runs(at.overlap);
+    table.rows.push_back({hundredths / 100.0, table_value(overlap.mean),
+                          table_value(overlap.standard_error), table_value(phi_u.mean),
+                          table_value(phi_u.standard_error), table_value(phi.mean),
+                          table_value(phi.standard_error), static_cast<std::int64_t>(phi.runs)});
+  }
+  table.plot =
+      "set xlabel 'mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]'\n"
+      "set ylabel 'volume fraction  {/:Italic ϕ}'\n";
+  if (table.rows.empty()) return table;
+  table.plot +=
+      "plot " + points_with_errors("2", "4", 5, "#000000", 6, "{/:Italic ϕ}_u, uncorrected") +
+      ", \\\n     " + points_with_errors("2", "6", 7, "#000000", 7, "{/:Italic ϕ}") + "\n";
+  return table;
+}
+
+/// Largest change over the stiffnesses of one run; none unless they span the hundredfold.
+struct Change {
+  double fall_of_phi_u;  ///< from the softest to the hardest
+  double spread_of_phi;  ///< largest distance from the softest
+};
+std::vector<Change> changes(std::span<const FigureRun> runs) {
+  std::vector<Change> all;
+  for (const FigureRun& run : runs) {
+    const std::map<int, Stiffness> own = by_stiffness(std::span(&run, 1));
+    constexpr int hundredfold = 200;
+    if (own.empty() || own.rbegin()->first < hundredfold) continue;
+    const Stiffness& soft = own.begin()->second;
+    Change change{soft.phi_u.front() - own.rbegin()->second.phi_u.front(), 0};
+    for (const auto& [hundredths, at] : own) {
+      change.spread_of_phi =
+          std::max(change.spread_of_phi, std::abs(at.phi.front() - soft.phi.front()));
+    }
+    all.push_back(change);
+  }
+  return all;
+}
+
+std::vector<Verdict> verdicts_on(std::span<const Change> all) {
+  std::vector<double> fall;
+  std::optional<double> spread;
+  for (const Change& change : all) {
+    fall.push_back(change.fall_of_phi_u);
+    spread = std::max(spread.value_or(0), change.spread_of_phi);
+  }
+  const RunStatistics mean = over_runs(fall);
+  std::optional<double> distance;
+  std::string note = fmt::format("{} systems over a hundredfold k", all.size());
+  if (mean.mean) {
+    distance = std::abs(*mean.mean - 0.02);
+    note += fmt::format("; it falls by {:.4f}", *mean.mean);
+  }
+  const bool enough = all.size() >= runs_to_tell;
+  return {below_if(enough, "B.2: phi_u falls by about 2 %, here 0.01 to 0.03, over a hundredfold k",
+                   "distance of its mean fall from 0.02", distance, 0.01, note),
+          below_if(enough, "B.2: phi (Eq. S4) stays where it is over a hundredfold k",
+                   "largest change of phi in any system", spread, 0.002,
+                   fmt::format("{} systems", all.size()))};
+}
+
+}  // namespace
+
+FigureResult figure_s1(std::span<const FigureRun> runs) {
+  return {{table_of(by_stiffness(runs))}, verdicts_on(changes(runs))};
+}
+
+}  // namespace shearcell

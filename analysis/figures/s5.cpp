@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figures S5a and S5b: packing fraction at the onset of crystallization against amplitude, by both
+// methods, and against the size of the system. Supplement C.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/agreement.hpp"
+#include "analysis/figures/curves.hpp"
+#include "analysis/figures/figures.hpp"
+#include "analysis/figures/groups.hpp"
+#include "analysis/onset.hpp"
+#include "analysis/published.hpp"
+
+namespace shearcell {
+namespace {
+
+struct AmplitudeOnset {
+  double amplitude;
+  double critical_size;
+  Onset by_size;
+  Onset by_slope;
+};
+
+std::vector<TableValue> onset_values(const Onset& onset) {
+  return {table_value(onset.phi.mean), table_value(onset.phi_error),
+          static_cast<std::int64_t>(onset.phi.runs), static_cast<std::int64_t>(onset.never),
+          static_cast<std::int64_t>(onset.before_start)};
+}
+
+std::vector<TableValue> joined(std::vector<TableValue> row, const Onset& onset) {
+  const std::vector<TableValue> values = onset_values(onset);
+  row.insert(row.end(), values.begin(), values.end());
+  return row;
+}
+
+FigureTable amplitude_table(std::span<const AmplitudeOnset> onsets) {
+  FigureTable table;
+  table.name = "S5a";
+  table.columns = {"method",
+                   "amplitude_rad",
+                   "critical_size_grains",
+                   "onset_phi_mean",
+                   "onset_phi_standard_error",
+                   "runs",
+                   "runs_ended_before",
+                   "runs_began_after"};
+  for (const AmplitudeOnset& o : onsets) {
+    table.rows.push_back(joined({std::int64_t{1}, o.amplitude, o.critical_size}, o.by_size));
+  }
+  for (const AmplitudeOnset& o : onsets) {
+    table.rows.push_back(joined({std::int64_t{2}, o.amplitude, o.critical_size}, o.by_slope));
+  }
+  table.plot =
+      "set xlabel 'amplitude  {/:Italic A}  [rad]'\n"
+      "set ylabel 'onset  {/:Italic ϕ}'\nset xrange [0:0.12]\n" +
+      onset_lines();
+  if (onsets.empty()) return table;
+  table.plot +=
+      "$experiment << EOD\n0.01,0.645\nEOD\n"
+      "plot $experiment using 1:2 with points lc rgb '#ff7f0e' pt 7 ps 0.8 title 'experiment', \\\n"
+      "     " +
+      points_with_errors("2", "(column(1) == 1 ? column(4) : NaN)", 5, "#1f4fd8", 9,
+                         "largest crystallite is critical") +
+      ", \\\n     " +
+      points_with_errors("($2 + 0.001)", "(column(1) == 2 ? column(4) : NaN)", 5, "#2ca02c", 13,
+                         "steepest growth") +
+      "\n";
+  return table;
+}
+
+Verdict methods_agree(const AmplitudeOnset& o) {
+  return means_agree(o.by_size.tells() && o.by_slope.tells(),
+                     fmt::format("C: both methods give similar onsets at A = {} rad", o.amplitude),
+                     o.by_size.phi, o.by_slope.phi,
+                     "largest crystallite: " + runs_in_words(o.by_size) +
+                         "; steepest: " + runs_in_words(o.by_slope));
+}
+
+double interior_grains(std::span<const FigureRun* const> runs) {
+  std::vector<double> counts;
+  for (const FigureRun* run : runs) {
+    if (run->checkpoints.empty()) continue;
+    counts.push_back(static_cast<double>(run->checkpoints.front().measures.interior_grains));
+  }
+  return over_runs(counts).mean.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+/// What the supplement counts for a packing of that size; none when it has no such size.
+std::optional<double> published_interior(double grains) {
+  for (const PublishedSize& size : published_sizes) {
+    if (static_cast<double>(size.grains) == grains)
+      return static_cast<double>(size.interior_grains);
+  }
+  return std::nullopt;
+}
+
+std::optional<Verdict> interior_is_published(double grains, double interior) {
+  const std::optional<double> published = published_interior(grains);
+  if (!published) return std::nullopt;
+  return below(
+      fmt::format("C: N = {} has {} grains at least 1.5 d from the walls", grains, *published),
+      "relative difference", std::abs(interior / *published - 1), 0.03,
+      fmt::format("N_inves = {:.1f} at the first checkpoint, mean over runs", interior));
+}
+
+}  // namespace
+
+FigureResult figure_s5a(std::span<const FigureRun> runs) {
+  std::vector<AmplitudeOnset> onsets;
+  for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
+    const double size = published_nearest(amplitude).critical_size;
+    onsets.push_back({amplitude, size, onset(members, onset_by_size, size),
+                      onset(members, onset_by_slope, size)});
+  }
+  FigureResult result{{amplitude_table(onsets)}, {}};
+  for (const AmplitudeOnset& o : onsets) {
+    if (o.amplitude <= small_amplitude_rad) {
+      result.verdicts.push_back(onset_is_published(
+          o.by_size,
+          fmt::format("C: the onset at A = {} rad is phi = 0.646 +- 0.001", o.amplitude)));
+    }
+    result.verdicts.push_back(methods_agree(o));
+  }
+  return result;
+}
+
+FigureResult figure_s5b(std::span<const FigureRun> runs) {
+  FigureTable table;
+  table.name = "S5b";
+  table.columns = {"grains",
+                   "interior_grains",
+                   "supplement_interior_grains",
+                   "onset_phi_mean",
+                   "onset_phi_standard_error",
+                   "runs",
+                   "runs_ended_before",
+                   "runs_began_after"};
+  FigureResult result;
+  bool converged = false;
+  for (const auto& [grains, members] : runs_by(runs, "grains")) {
+    const double amplitude = number_of(*members.front(), "amplitude_rad");
+    const Onset found = onset(members, onset_by_size, published_nearest(amplitude).critical_size);
+    const double interior = interior_grains(members);
+    table.rows.push_back(
+        joined({grains, interior, table_value(published_interior(grains))}, found));
+    if (auto verdict = interior_is_published(grains, interior)) {
+      result.verdicts.push_back(std::move(*verdict));
+    }
+    if (interior >= converged_interior_grains) {
+      converged = true;
+      result.verdicts.push_back(onset_is_published(
+          found, fmt::format("C: the onset at N = {} is phi = 0.646 +- 0.001", grains)));
+    }
+  }
+  if (!converged) {
+    result.verdicts.push_back(
+        onset_is_published({}, "C: the onset for N_inves >= 6000 is phi = 0.646 +- 0.001"));
+    result.verdicts.back().note = "no run is that large";
+  }
+  table.plot =
+      "set xlabel 'grains  {/:Italic N}'\n"
+      "set ylabel 'onset  {/:Italic ϕ}'\nset xrange [0:20000]\nset xtics 5000\n" +
+      onset_lines();
+  if (!table.rows.empty()) {
+    table.plot +=
+        "plot " + points_with_errors("1", "4", 5, "#000000", 5, "simulated") +
+        ", \\\n"
+        "     0.645 with lines lc rgb '#ff7f0e' title 'experiment, {/:Italic A} = 0.01'\n";
+  }
+  result.tables.push_back(std::move(table));
+  return result;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figure S6: grains crystallize at the same packing fraction with and without gravity. Supplement
+// D.
+#include <fmt/format.h>
+
+#include "analysis/agreement.hpp"
+#include "analysis/figures/curves.hpp"
+#include "analysis/figures/figures.hpp"
+#include "analysis/figures/groups.hpp"
+#include "analysis/onset.hpp"
+#include "analysis/published.hpp"
+
+namespace shearcell {
+namespace {
+
+struct CurveOnset {
+  const Curve* curve;
+  double amplitude;
+  bool gravity;
+  Onset onset;
+};
+
+std::vector<CurveOnset> onsets_of(std::span<const Curve> curves) {
+  std::vector<CurveOnset> onsets;
+  for (const Curve& curve : curves) {
+    const double amplitude = number_of(*curve.runs.front(), "amplitude_rad");
+    const double gravity = number_of(*curve.runs.front(), "gravity_m_per_s2");
+    onsets.push_back(
+        {&curve, amplitude, gravity != 0,
+         onset(curve.runs, onset_by_size, published_nearest(amplitude).critical_size)});
+  }
+  return onsets;
+}
+
+/// A black point on each curve, as in the supplement.
+std::string onset_points(std::span<const CurveOnset> onsets) {
+  std::string text;
+  for (const CurveOnset& o : onsets) {
+    if (!o.onset.phi.mean) continue;
+    text += fmt::format("set label '' at {:.9g},{:.9g} point pt 7 ps 1 lc rgb '#000000' front\n",
+                        *o.onset.cycle.mean, *o.onset.phi.mean);
+  }
+  return text;
+}
+
+FigureTable onset_table(std::span<const CurveOnset> onsets) {
+  FigureTable table;
+  table.name = "S6_onset";
+  table.columns = {"variant",
+                   "amplitude_rad",
+                   "gravity",
+                   "onset_cycle_mean",
+                   "onset_phi_mean",
+                   "onset_phi_standard_error",
+                   "runs",
+                   "runs_ended_before",
+                   "runs_began_after"};
+  for (const CurveOnset& o : onsets) {
+    table.rows.push_back({o.curve->variant, o.amplitude, std::string(o.gravity ? "on" : "off"),
+                          table_value(o.onset.cycle.mean), table_value(o.onset.phi.mean),
+                          table_value(o.onset.phi_error),
+                          static_cast<std::int64_t>(o.onset.phi.runs),
+                          static_cast<std::int64_t>(o.onset.never),
+                          static_cast<std::int64_t>(o.onset.before_start)});
+  }
+  table.plot =
+      "set xlabel 'amplitude  {/:Italic A}  [rad]'\nset ylabel 'onset  {/:Italic ϕ}'\n"
+      "set xrange [0:0.12]\n" +
+      onset_lines();
+  if (!onsets.empty()) {
+    table.plot +=
+        "plot 0.646 with lines dt 3 lc rgb '#888888' notitle, \\\n"
+        "     " +
+        points_with_errors("2", "(strcol(3) eq 'on' ? column(5) : NaN)", 6, "#000000", 5,
+                           "gravity") +
+        ", \\\n     " +
+        points_with_errors("2", "(strcol(3) eq 'off' ? column(5) : NaN)", 6, "#d62728", 7,
+                           "no gravity") +
+        "\n";
+  }
+  return table;
+}
+
+Verdict gravity_does_not_matter(const CurveOnset& with, const CurveOnset& without) {
+  return means_agree(
+      with.onset.tells() && without.onset.tells(),
+      fmt::format("D: the onset at A = {} rad is similar with and without gravity", with.amplitude),
+      with.onset.phi, without.onset.phi,
+      "with: " + runs_in_words(with.onset) + "; without: " + runs_in_words(without.onset));
+}
+
+}  // namespace
+
+FigureResult figure_s6(std::span<const FigureRun> runs) {
+  const std::vector<Curve> curves = curves_of(runs, "gravity_m_per_s2", {});
+  const std::vector<CurveOnset> onsets = onsets_of(curves);
+  FigureTable phi = phi_against_cycle("S6", curves);
+  phi.plot = onset_lines() + onset_points(onsets) + phi.plot;
+  FigureResult result{{std::move(phi), onset_table(onsets)}, {}};
+  for (const CurveOnset& o : onsets) {
+    if (o.gravity) continue;
+    result.verdicts.push_back(onset_is_published(
+        o.onset, fmt::format("D: without gravity the onset at A = {} rad is phi = 0.646 +- 0.001",
+                             o.amplitude)));
+    for (const CurveOnset& partner : onsets) {
+      if (partner.gravity && partner.amplitude == o.amplitude) {
+        result.verdicts.push_back(gravity_does_not_matter(partner, o));
+      }
+    }
+  }
+  if (result.verdicts.empty()) {
+    result.verdicts.push_back({"D: the onset without gravity is phi = 0.646 +- 0.001",
+                               "distance of the mean onset from phi = 0.646", std::nullopt,
+                               published_onset_error, Ruling::too_few_runs,
+                               "no run is without gravity"});
+  }
+  return result;
+}
+
+}  // namespace shearcell

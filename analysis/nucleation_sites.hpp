@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where in the cell crystallites near the critical size appear. Supplement E.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "analysis/figure.hpp"
+
+namespace shearcell {
+
+enum class CellAxis { x, y };
+
+/// Places of the centres of mass of all crystallites of 15 to 25 grains in a run. x is counted from
+/// d outside the left plane in units of w = width + 2 d, y from the bottom plane in units of the
+/// height h that the cell has at that moment, so that both lie in [0, 1]. [choice]
+std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis);
+
+struct DensityBin {
+  double low = 0;
+  double high = 0;
+  double density = 0;           ///< P; its integral over [0, 1] is 1
+  std::optional<double> error;  ///< bootstrap over runs, since one crystallite is seen many times
+};
+
+/// Of the places of all runs together; empty when there are none.
+std::vector<DensityBin> density(std::span<const std::vector<double>> runs, std::size_t bins);
+
+}  // namespace shearcell

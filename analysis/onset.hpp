@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The packing fraction at which crystallization begins, by the two methods of supplement C.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "analysis/figure.hpp"
+#include "analysis/statistics.hpp"
+
+namespace shearcell {
+
+/// A run is censored when its onset lies outside of what was observed.
+enum class Observed { yes, never, before_start };
+
+struct RunOnset {
+  Observed observed = Observed::never;
+  double phi = 0;    ///< only when observed
+  double cycle = 0;  ///< likewise; between checkpoints
+};
+
+/// Method 1: the first time that the largest crystallite has `critical_size` grains or more. phi
+/// and cycle are interpolated linearly in the size between that checkpoint and the one before,
+/// which bound them. A run that begins with such a crystallite is censored at its start.
+RunOnset onset_by_size(const FigureRun& run, double critical_size);
+
+/// Method 2: where ln(largest crystallite) against phi is steepest. The slope at phi is that of the
+/// straight line, by least squares, through the checkpoints within `slope_window / 2`; at least
+/// four checkpoints that span half of the window, and no crystallite counts as one grain. A run
+/// whose largest crystallite never reaches `critical_size` has not crystallized and is censored.
+/// [choice]
+inline constexpr double slope_window = 0.008;
+RunOnset onset_by_slope(const FigureRun& run, double critical_size);
+
+using OnsetMethod = RunOnset (*)(const FigureRun& run, double critical_size);
+
+/// Over independent runs. Censored runs do not enter the mean, which is biased towards early onsets
+/// as long as there are any: they are counted for that reason.
+struct Onset {
+  RunStatistics phi;                ///< over observed runs
+  std::optional<double> phi_error;  ///< of the mean, bootstrap over runs
+  RunStatistics cycle;              ///< over observed runs
+  std::size_t never = 0;            ///< runs that end before
+  std::size_t before_start = 0;     ///< runs that begin after
+
+  /// Enough runs, and no more than a quarter of them censored. [choice]
+  bool tells() const;
+};
+Onset onset(std::span<const FigureRun* const> runs, OnsetMethod method, double critical_size);
+
+}  // namespace shearcell

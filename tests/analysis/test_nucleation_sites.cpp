@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Places of crystallites near the critical size, and their density.
+#include "analysis/nucleation_sites.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "tests/analysis/made_up_runs.hpp"
+
+namespace shearcell::testing {
+namespace {
+
+CrystalliteMap one_crystallite(std::int32_t size, double x, double y) {
+  std::vector<std::int32_t> grains(static_cast<std::size_t>(size));
+  std::iota(grains.begin(), grains.end(), 0);
+  CrystalliteMap map = map_of({grains});
+  map.centre[0] = {x, y, 0};
+  map.width = 18;
+  map.bottom = 5;
+  map.top = 25;
+  return map;
+}
+
+FigureRun run_with(std::span<const CrystalliteMap> maps) {
+  FigureRun run =
+      made_up_run("fluid", "still", 1, static_cast<int>(maps.size()) - 1, [](int, Measures&) {});
+  for (std::size_t k = 0; k < maps.size(); ++k) run.checkpoints[k].crystallites = maps[k];
+  return run;
+}
+
+TEST(NucleusPlaces, AreSharesOfTheCell) {
+  const FigureRun run =
+      run_with(std::vector{one_crystallite(15, 9, 10), one_crystallite(14, 1, 6),
+                           one_crystallite(25, 0, 25), one_crystallite(26, 3, 6)});
+  EXPECT_EQ(nucleus_places(run, CellAxis::x), (std::vector<double>{0.5, 0.05}));
+  EXPECT_EQ(nucleus_places(run, CellAxis::y), (std::vector<double>{0.25, 1}));
+}
+
+TEST(Density, IntegratesToOneAndHasErrorsOverRuns) {
+  const std::vector<std::vector<double>> runs = {{0.1, 0.2, 0.9}, {0.6, 1.0}, {0.3}};
+  const std::vector<DensityBin> bins = density(runs, 4);
+  ASSERT_EQ(bins.size(), 4U);
+  const std::vector<double> expected = {2.0 / 6 * 4, 1.0 / 6 * 4, 1.0 / 6 * 4, 2.0 / 6 * 4};
+  double integral = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_DOUBLE_EQ(bins[k].density, expected[k]);
+    EXPECT_TRUE(bins[k].error.has_value());
+    integral += bins[k].density * (bins[k].high - bins[k].low);
+  }
+  EXPECT_NEAR(integral, 1, 1e-15);
+  EXPECT_FALSE(density(std::span(runs).first(1), 4)[0].error.has_value());
+  EXPECT_TRUE(density({}, 4).empty());
+}
+
+}  // namespace
+}  // namespace shearcell::testing

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Onsets of analytic curves, and runs that do not show theirs.
+#include "analysis/onset.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/analysis/made_up_runs.hpp"
+
+namespace shearcell::testing {
+namespace {
+
+/// phi rises by 0.0005 a cycle from 0.63; ln(largest) is a step of width 0.002 around `onset`, from
+/// 2 to 2000 grains.
+FigureRun logistic(double onset, int cycles = 100) {
+  return made_up_run("fluid", "still", 1, cycles, [onset](int n, Measures& m) {
+    m.phi = 0.63 + 0.0005 * n;
+    const double rise = 1 / (1 + std::exp(-(m.phi - onset) / 0.002));
+    m.largest_crystallite =
+        static_cast<std::size_t>(std::lround(2 * std::exp(std::log(1000.0) * rise)));
+  });
+}
+
+TEST(OnsetBySize, IsInterpolatedBetweenCycles) {
+  const FigureRun run = made_up_run("fluid", "still", 1, 4, [](int n, Measures& m) {
+    m.phi = 0.64 + 0.001 * n;
+    m.largest_crystallite = static_cast<std::size_t>(4 * n);
+  });
+  const RunOnset found = onset_by_size(run, 10);
+  ASSERT_EQ(found.observed, Observed::yes);
+  EXPECT_DOUBLE_EQ(found.phi, 0.6425);
+  EXPECT_DOUBLE_EQ(found.cycle, 2.5);
+}
+
+TEST(OnsetBySize, IsTheFirstPassage) {
+  const std::vector<std::size_t> sizes = {2, 16, 3, 40};
+  const FigureRun run = made_up_run("fluid", "still", 1, 3, [&](int n, Measures& m) {
+    m.phi = 0.64 + 0.001 * n;
+    m.largest_crystallite = sizes[static_cast<std::size_t>(n)];
+  });
+  EXPECT_DOUBLE_EQ(onset_by_size(run, 16).phi, 0.641);
+}
+
+TEST(OnsetBySize, CensoredAtEitherEnd) {
+  const FigureRun run = logistic(0.66, 20);
+  EXPECT_EQ(onset_by_size(run, 16).observed, Observed::never);
+  EXPECT_EQ(onset_by_size(run, 2).observed, Observed::before_start);
+}
+
+TEST(OnsetBySlope, IsTheSteepestPoint) {
+  for (const double onset : {0.644, 0.646, 0.655}) {
+    const RunOnset found = onset_by_slope(logistic(onset), 16);
+    ASSERT_EQ(found.observed, Observed::yes);
+    EXPECT_NEAR(found.phi, onset, 0.0006);
+    EXPECT_NEAR(found.cycle, (onset - 0.63) / 0.0005, 1.5);
+  }
+}
+
+TEST(OnsetBySlope, NeverWithoutCrystallization) {
+  EXPECT_EQ(onset_by_slope(logistic(0.66, 20), 16).observed, Observed::never);
+}
+
+TEST(Onset, CountsCensoredRuns) {
+  std::vector<FigureRun> runs = {logistic(0.645), logistic(0.647), logistic(0.646),
+                                 logistic(0.66, 10)};
+  std::vector<const FigureRun*> all;
+  for (const FigureRun& run : runs) all.push_back(&run);
+  const Onset found = onset(all, onset_by_slope, 16);
+  EXPECT_EQ(found.phi.runs, 3U);
+  EXPECT_EQ(found.never, 1U);
+  EXPECT_NEAR(found.phi.mean.value(), 0.646, 0.0006);
+  ASSERT_TRUE(found.phi_error.has_value());
+  EXPECT_NEAR(*found.phi_error, found.phi.standard_error.value(), 0.1 * *found.phi_error);
+  EXPECT_TRUE(found.tells());
+  runs.push_back(logistic(0.66, 10));
+  all.clear();
+  for (const FigureRun& run : runs) all.push_back(&run);
+  EXPECT_FALSE(onset(all, onset_by_slope, 16).tells()) << "two of five are censored";
+  EXPECT_FALSE(onset(std::span(all).first(2), onset_by_slope, 16).tells()) << "two runs";
+}
+
+}  // namespace
+}  // namespace shearcell::testing
