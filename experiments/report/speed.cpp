@@ -100,26 +100,49 @@ struct Prepared {
   Drive drive;
 };
 
+// The pressure of Table I can lift no higher column than this many grains make.
+constexpr std::size_t kHighest = 18200;
+
+// Into how many equal parts along the depth a larger packing is cut: the fewest that divide it.
+std::size_t parts_of(std::size_t grains) {
+  std::size_t parts = (grains + kHighest - 1) / kHighest;
+  while (grains % parts != 0) ++parts;
+  return parts;
+}
+
+// The same packing behind itself, `copies` times along the periodic depth.
+Prepared repeated(const Prepared& one, std::size_t copies) {
+  Prepared made = one;
+  made.cell.depth *= static_cast<double>(copies);
+  const Eigen::Index grains = one.state.position.cols();
+  made.state.position = one.state.position.replicate(1, static_cast<Eigen::Index>(copies));
+  made.state.velocity = one.state.velocity.replicate(1, static_cast<Eigen::Index>(copies));
+  for (std::size_t c = 1; c < copies; ++c) {
+    const double shift = static_cast<double>(c) * one.cell.depth;
+    made.state.position.block(2, static_cast<Eigen::Index>(c) * grains, 1, grains).array() += shift;
+    for (WallGrain grain : one.cell.wall_grains) {
+      grain.position.z() += shift;
+      made.cell.wall_grains.push_back(grain);
+    }
+  }
+  return made;
+}
+
 Prepared prepare(std::size_t grains) {
+  const std::size_t parts = parts_of(grains);
   Parameters parameters;
-  parameters.grains = grains;
-  // The pressure of Table I can lift no higher column than this size has: more grains go beside it.
-  constexpr double kHighest = 18200;
-  const double beside = static_cast<double>(grains) / kHighest;
-  if (beside > 1) parameters.height_over_width /= std::sqrt(beside);
+  parameters.grains = grains / parts;
   Prepared made;
   made.cell = make_cell(geometry(parameters), 1);
   made.state = fill_cell(made.cell, geometry(parameters), 1);
   made.scene = shear_scene(parameters);
   made.drive = drive(parameters);
-  EngineSettings settings;
-  settings.threads = grains > 20000 ? std::max(1U, std::thread::hardware_concurrency()) : 1;
-  made.state = pressed(made.cell, made.state, settle_scene(parameters), settings);
-  Simulation simulation(made.cell, made.scene, made.state, settings);
+  made.state = pressed(made.cell, made.state, settle_scene(parameters), {});
+  Simulation simulation(made.cell, made.scene, made.state);
   simulation.advance(Drive{}, 2000);  // the weight
   made.state = simulation.state();
   made.state.step = 0;
-  return made;
+  return parts == 1 ? made : repeated(made, parts);
 }
 
 std::string hash_after(const Prepared& made, const EngineSettings& settings, std::uint64_t steps) {

@@ -34,10 +34,11 @@ struct SpeedResult {
   std::string state_hash;  ///< after 200 steps; the same for all results of one size
 };
 
-/// Table I in a rough cell sheared at A = 0.0833; beyond N = 18200 the cell grows in width and
-/// depth alone, since the pressure can lift no higher column. The packing is pressed together
-/// first; each kernel must then give the same state after 200 steps as the first one, or else
-/// std::runtime_error is thrown and nothing is timed. Shares are measured with one thread.
+/// Table I in a rough cell sheared at A = 0.0833; beyond N = 18200 the packing of a part of the
+/// grains is repeated along the depth, since the pressure can lift no higher column and a wide one
+/// takes hours to press. The packing is pressed together first; each kernel must then give the same
+/// state after 200 steps as the first one, or else std::runtime_error is thrown and nothing is
+/// timed. Shares are measured with one thread.
 std::vector<SpeedResult> measure_speed(const SpeedOptions& options);
 
 }  // namespace shearcell
