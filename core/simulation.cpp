@@ -47,9 +47,6 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state, Engine
 void Simulation::load(const State& state) {
   const auto grains = static_cast<std::size_t>(state.position.cols());
   const std::size_t room = padded(grains);
-  step_ = state.step;
-  wall_height_ = state.wall_height;
-  wall_velocity_ = state.wall_velocity;
   id_.resize(grains);
   std::iota(id_.begin(), id_.end(), 0);
   for (auto& axis : velocity_) axis.assign(room, 0.0);
@@ -61,11 +58,18 @@ void Simulation::load(const State& state) {
     for (std::size_t g = grains; g < room; ++g) rows[4 * g] = 1e30;
     rows[4 * room] = -1e30;
   }
-  for (std::size_t g = 0; g < grains; ++g) {
+  copy_in(state);
+}
+
+void Simulation::copy_in(const State& state) {
+  step_ = state.step;
+  wall_height_ = state.wall_height;
+  wall_velocity_ = state.wall_velocity;
+  for (std::size_t g = 0; g < id_.size(); ++g) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
-      rows_[0][4 * g + axis] = state.position(a, static_cast<Eigen::Index>(g));
-      velocity_[axis][g] = state.velocity(a, static_cast<Eigen::Index>(g));
+      rows_[0][4 * g + axis] = state.position(a, id_[g]);
+      velocity_[axis][g] = state.velocity(a, id_[g]);
     }
   }
 }
@@ -112,16 +116,7 @@ void Simulation::set_state(const State& state) {
   if (state.position.cols() != grains || state.velocity.cols() != grains) {
     throw std::invalid_argument("a state of other grains than those of the simulation");
   }
-  step_ = state.step;
-  wall_height_ = state.wall_height;
-  wall_velocity_ = state.wall_velocity;
-  for (std::size_t g = 0; g < id_.size(); ++g) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<Eigen::Index>(axis);
-      rows_[0][4 * g + axis] = state.position(a, id_[g]);
-      velocity_[axis][g] = state.velocity(a, id_[g]);
-    }
-  }
+  copy_in(state);
   pose_ = pose_at(Drive{}, step_);
   if (counts_.builds > 0) walls_.place(pose_, rows_[0].data() + wall_offset(id_.size()));
   was_set_ = true;

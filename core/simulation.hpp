@@ -84,6 +84,7 @@ class Simulation {
 
  private:
   void load(const State& state);
+  void copy_in(const State& state);
   void set_constants();
   void rebuild_lists(const Drive& drive);
   void refresh_lists(const Drive& drive);

@@ -42,4 +42,18 @@ Verdict onset_is_published(const Onset& onset, std::string claim) {
                   distance, limit, note);
 }
 
+std::vector<std::string> onset_columns(std::vector<std::string> columns) {
+  columns.insert(columns.end(), {"onset_phi_mean", "onset_phi_standard_error", "runs",
+                                 "runs_ended_before", "runs_began_after"});
+  return columns;
+}
+
+std::vector<TableValue> onset_row(std::vector<TableValue> row, const Onset& onset) {
+  row.insert(row.end(),
+             {table_value(onset.phi.mean), table_value(onset.phi_error),
+              static_cast<std::int64_t>(onset.phi.runs), static_cast<std::int64_t>(onset.never),
+              static_cast<std::int64_t>(onset.before_start)});
+  return row;
+}
+
 }  // namespace shearcell

@@ -23,4 +23,9 @@ Verdict onset_is_published(const Onset& onset, std::string claim);
 /// "6 runs, 2 never reach the size, 0 begin beyond it".
 std::string runs_in_words(const Onset& onset);
 
+/// The columns that tell an onset, behind others.
+std::vector<std::string> onset_columns(std::vector<std::string> columns);
+/// Their values, behind those of the others.
+std::vector<TableValue> onset_row(std::vector<TableValue> row, const Onset& onset);
+
 }  // namespace shearcell

@@ -24,34 +24,15 @@ struct AmplitudeOnset {
   Onset by_slope;
 };
 
-std::vector<TableValue> onset_values(const Onset& onset) {
-  return {table_value(onset.phi.mean), table_value(onset.phi_error),
-          static_cast<std::int64_t>(onset.phi.runs), static_cast<std::int64_t>(onset.never),
-          static_cast<std::int64_t>(onset.before_start)};
-}
-
-std::vector<TableValue> joined(std::vector<TableValue> row, const Onset& onset) {
-  const std::vector<TableValue> values = onset_values(onset);
-  row.insert(row.end(), values.begin(), values.end());
-  return row;
-}
-
 FigureTable amplitude_table(std::span<const AmplitudeOnset> onsets) {
   FigureTable table;
   table.name = "S5a";
-  table.columns = {"method",
-                   "amplitude_rad",
-                   "critical_size_grains",
-                   "onset_phi_mean",
-                   "onset_phi_standard_error",
-                   "runs",
-                   "runs_ended_before",
-                   "runs_began_after"};
+  table.columns = onset_columns({"method", "amplitude_rad", "critical_size_grains"});
   for (const AmplitudeOnset& o : onsets) {
-    table.rows.push_back(joined({std::int64_t{1}, o.amplitude, o.critical_size}, o.by_size));
+    table.rows.push_back(onset_row({std::int64_t{1}, o.amplitude, o.critical_size}, o.by_size));
   }
   for (const AmplitudeOnset& o : onsets) {
-    table.rows.push_back(joined({std::int64_t{2}, o.amplitude, o.critical_size}, o.by_slope));
+    table.rows.push_back(onset_row({std::int64_t{2}, o.amplitude, o.critical_size}, o.by_slope));
   }
   table.plot =
       "set xlabel 'amplitude  {/:Italic A}  [rad]'\n"
@@ -130,14 +111,7 @@ FigureResult figure_s5a(std::span<const FigureRun> runs) {
 FigureResult figure_s5b(std::span<const FigureRun> runs) {
   FigureTable table;
   table.name = "S5b";
-  table.columns = {"grains",
-                   "interior_grains",
-                   "supplement_interior_grains",
-                   "onset_phi_mean",
-                   "onset_phi_standard_error",
-                   "runs",
-                   "runs_ended_before",
-                   "runs_began_after"};
+  table.columns = onset_columns({"grains", "interior_grains", "supplement_interior_grains"});
   FigureResult result;
   bool converged = false;
   for (const auto& [grains, members] : runs_by(runs, "grains")) {
@@ -145,7 +119,7 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
     const Onset found = onset(members, onset_by_size, published_nearest(amplitude).critical_size);
     const double interior = interior_grains(members);
     table.rows.push_back(
-        joined({grains, interior, table_value(published_interior(grains))}, found));
+        onset_row({grains, interior, table_value(published_interior(grains))}, found));
     if (auto verdict = interior_is_published(grains, interior)) {
       result.verdicts.push_back(std::move(*verdict));
     }

@@ -46,22 +46,12 @@ std::string onset_points(std::span<const CurveOnset> onsets) {
 FigureTable onset_table(std::span<const CurveOnset> onsets) {
   FigureTable table;
   table.name = "S6_onset";
-  table.columns = {"variant",
-                   "amplitude_rad",
-                   "gravity",
-                   "onset_cycle_mean",
-                   "onset_phi_mean",
-                   "onset_phi_standard_error",
-                   "runs",
-                   "runs_ended_before",
-                   "runs_began_after"};
+  table.columns = onset_columns({"variant", "amplitude_rad", "gravity", "onset_cycle_mean"});
   for (const CurveOnset& o : onsets) {
-    table.rows.push_back({o.curve->variant, o.amplitude, std::string(o.gravity ? "on" : "off"),
-                          table_value(o.onset.cycle.mean), table_value(o.onset.phi.mean),
-                          table_value(o.onset.phi_error),
-                          static_cast<std::int64_t>(o.onset.phi.runs),
-                          static_cast<std::int64_t>(o.onset.never),
-                          static_cast<std::int64_t>(o.onset.before_start)});
+    table.rows.push_back(
+        onset_row({o.curve->variant, o.amplitude, std::string(o.gravity ? "on" : "off"),
+                   table_value(o.onset.cycle.mean)},
+                  o.onset));
   }
   table.plot =
       "set xlabel 'amplitude  {/:Italic A}  [rad]'\nset ylabel 'onset  {/:Italic ϕ}'\n"
