@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/watchdog.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include "core/contact.hpp"
@@ -25,26 +27,119 @@ std::string message(const std::string& quantity, double value, double limit, std
          std::to_string(step) + ". " + remedy;
 }
 
-double smallest_distance(const Cell& cell, const WallPose& pose, const double* row) {
+// Distances of a centre from the left, right, bottom and top plane [d].
+std::array<double, 4> plane_distances(const Cell& cell, const WallPose& pose, const double* row) {
   const double across = pose.cos_theta * row[0] - pose.sin_theta * (row[1] - pose.top);
-  const double side = std::min(across, pose.cos_theta * cell.width - across);
-  return std::min({side, row[1] - pose.bottom, pose.top - row[1]});
+  return {across, pose.cos_theta * cell.width - across, row[1] - pose.bottom, pose.top - row[1]};
 }
 
-double largest_overlap(const WatchTask& task, std::size_t g, double depth) {
+// What the contacts of a grain weigh in the bound of the vibrations.
+constexpr double kOfGrain = 2, kOfStandingWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
+
+std::size_t moving_plane(const Cell& cell) {
+  return cell.moving == MovingWall::bottom ? 2 : 3;
+}
+
+// The neighbours in a grain's list that it touches, with the weight of each.
+template <class Visit>
+void for_each_touch(const WatchTask& task, std::size_t g, double depth, Visit&& visit) {
   const double* own = task.rows + 4 * g;
   const std::size_t block = g / task.lanes;
   const std::int32_t* list = task.neighbours.list + task.neighbours.begin[block] + g % task.lanes;
-  double nearest = 1;
-  const std::size_t slots = task.neighbours.head[block] + task.neighbours.slots[block];
+  const std::size_t head = task.neighbours.head[block];
+  const std::size_t slots = head + task.neighbours.slots[block];
+  const std::int32_t first_wall = wall_offset(task.id->size());
   for (std::size_t k = 0; k < slots; ++k) {
-    const double* other = task.rows + list[k * task.lanes];
-    const double dx = own[0] - other[0];
-    const double dy = own[1] - other[1];
+    const std::int32_t offset = list[k * task.lanes];
+    const double* other = task.rows + offset;
     const double dz = nearest_image(own[2] - other[2], depth, 1 / depth);
-    nearest = std::min(nearest, dx * dx + dy * dy + dz * dz);
+    const Eigen::Vector3d dr(own[0] - other[0], own[1] - other[1], dz);
+    const double square = dr.squaredNorm();
+    if (!(square < 1)) continue;
+    const double wall = k < head ? kOfMovingWall : kOfStandingWall;
+    visit(dr, square, offset < first_wall ? kOfGrain : wall);
   }
-  return 1 - std::sqrt(nearest);
+}
+
+struct Touches {
+  double nearest_square = 1;  // [d^2], of a sphere
+  double weight = 0;          // of all
+  double on_moving_wall = 0;  // sum of n_y^2
+};
+
+Touches touches_of(const WatchTask& task, std::size_t g, const Cell& cell,
+                   const std::array<double, 4>& distance) {
+  Touches touches;
+  for_each_touch(task, g, cell.depth, [&](const Eigen::Vector3d& dr, double square, double weight) {
+    touches.nearest_square = std::min(touches.nearest_square, square);
+    touches.weight += weight;
+    if (weight == kOfMovingWall) {
+      touches.on_moving_wall += dr.y() * dr.y() / square;
+    }
+  });
+  for (std::size_t side = 0; side < 4; ++side) {
+    if (!(distance[side] < 0.5)) continue;
+    const bool moving = side == moving_plane(cell);
+    touches.weight += moving ? kOfMovingWall : kOfStandingWall;
+    touches.on_moving_wall += moving ? 1 : 0;
+  }
+  return touches;
+}
+
+// The largest eigenvalue of the sum of w n n^T.
+double largest_stiffness(const WatchTask& task, std::size_t g, const Cell& cell,
+                         const WallPose& pose, const std::array<double, 4>& distance) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for_each_touch(task, g, cell.depth, [&](const Eigen::Vector3d& dr, double square, double weight) {
+    sum += weight / square * dr * dr.transpose();
+  });
+  const Eigen::Vector3d across(pose.cos_theta, -pose.sin_theta, 0), up(0, 1, 0);
+  for (std::size_t side = 0; side < 4; ++side) {
+    if (!(distance[side] < 0.5)) continue;
+    const Eigen::Vector3d& normal = side < 2 ? across : up;
+    sum += (side == moving_plane(cell) ? kOfMovingWall : kOfStandingWall) * normal *
+           normal.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()(2);
+}
+
+// Of omega^2 in units of k/m, and whose it is.
+struct Fastest {
+  double bound = 0;
+  std::int64_t grain = -1;
+};
+
+void check_time_step(const WatchTask& task, const Fastest& fastest, const Scene& scene,
+                     const WatchdogLimits& limits) {
+  const double limit = limits.time_step * 2 / std::sqrt(fastest.bound * scene.stiffness);
+  if (!(task.time_step > limit)) return;
+  throw NumericalFailure(
+      "the time step [s]", task.time_step, limit, fastest.grain, task.step,
+      "The contacts may vibrate faster than it can follow: use a smaller time step (more "
+      "steps_per_cycle; while settling, a smaller settle_time_step_s)" +
+          std::string(fastest.grain < 0 ? ", or a heavier wall (wall_mass_grains_per_d2)" : ""));
+}
+
+void check_place(const WatchTask& task, const WatchdogLimits& limits, std::size_t g,
+                 const std::array<double, 4>& distance) {
+  const std::int64_t id = (*task.id)[g];
+  // NaN in x or y reaches the first distance, and nothing is smaller than that.
+  double smallest = distance[0];
+  for (const double d : distance) smallest = d < smallest ? d : smallest;
+  if (!(smallest >= -limits.escape && std::isfinite(task.rows[4 * g + 2]))) {
+    throw NumericalFailure("the depth [d] of a grain's centre behind a wall", -smallest,
+                           limits.escape, id, task.step,
+                           "A grain was pushed out of the cell: lower the pressure or raise the "
+                           "stiffness");
+  }
+  if (!(0.5 - smallest <= limits.overlap)) {
+    throw NumericalFailure("the overlap [d] of a grain and a wall plane", 0.5 - smallest,
+                           limits.overlap, id, task.step,
+                           "The grains are too soft for this load, or were placed too near a "
+                           "wall: raise the stiffness, lower the pressure, or use a smaller time "
+                           "step");
+  }
 }
 
 }  // namespace
@@ -62,10 +157,17 @@ NumericalFailure::NumericalFailure(std::string what_quantity, double what_value,
 
 void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, const WallPose& pose,
                   const WatchdogLimits& limits) {
+  if (!std::isfinite(task.wall_height) || !std::isfinite(task.wall_velocity)) {
+    throw NumericalFailure("the height [d] of the moving wall", task.wall_height,
+                           std::numeric_limits<double>::max(), -1, task.step,
+                           "Use a smaller time step, or check the pressure and the wall's mass "
+                           "and drag");
+  }
   const double fastest_square = 12 * scene.stiffness * limits.overlap * limits.overlap;
+  Fastest fastest;
+  double on_moving_wall = 0;
   for (std::size_t g = 0; g < task.id->size(); ++g) {
     const std::int64_t id = (*task.id)[g];
-    const double* row = task.rows + 4 * g;
     const double v2 = task.velocity[0][g] * task.velocity[0][g] +
                       task.velocity[1][g] * task.velocity[1][g] +
                       task.velocity[2][g] * task.velocity[2][g];
@@ -76,14 +178,10 @@ void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, c
           "The integration is unstable: use a smaller time step (more steps_per_cycle; "
           "while settling, a smaller settle_time_step_s)");
     }
-    const double distance = smallest_distance(cell, pose, row);
-    if (!(distance >= -limits.escape && std::isfinite(row[2]))) {
-      throw NumericalFailure("the depth [d] of a grain's centre behind a wall", -distance,
-                             limits.escape, id, task.step,
-                             "A grain was pushed out of the cell: lower the pressure or raise the "
-                             "stiffness");
-    }
-    const double overlap = largest_overlap(task, g, cell.depth);
+    const std::array<double, 4> distance = plane_distances(cell, pose, task.rows + 4 * g);
+    check_place(task, limits, g, distance);
+    const Touches touches = touches_of(task, g, cell, distance);
+    const double overlap = 1 - std::sqrt(touches.nearest_square);
     if (!(overlap <= limits.overlap)) {
       throw NumericalFailure("the overlap [d] of two grains", overlap, limits.overlap, id,
                              task.step,
@@ -91,7 +189,16 @@ void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, c
                              "large: raise the stiffness, lower the pressure, or use a smaller "
                              "time step");
     }
+    on_moving_wall += touches.on_moving_wall;
+    // An eigenvalue is at most the trace, which is all that most runs need.
+    if (task.time_step * std::sqrt(touches.weight * scene.stiffness) > 2 * limits.time_step) {
+      const double bound = largest_stiffness(task, g, cell, pose, distance);
+      if (bound > fastest.bound) fastest = {bound, id};
+    }
   }
+  const double wall = kOnMovingWall * on_moving_wall / (scene.wall_mass * cell.width * cell.depth);
+  if (wall > fastest.bound) fastest = {wall, -1};
+  if (fastest.bound > 0) check_time_step(task, fastest, scene, limits);
 }
 
 }  // namespace shearcell
