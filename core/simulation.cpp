@@ -37,7 +37,9 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state, Engine
   // A grain must not meet a neighbour through both seams.
   if (!(cell_.depth > 2 + 4 * settings.lists.widest_margin())) {
     throw std::invalid_argument("the depth of the cell, " + std::to_string(cell_.depth) +
-                                " d, is less than twice the cutoff of the neighbour list");
+                                " d, is less than twice the cutoff of the neighbour list: a "
+                                "grain could meet a neighbour, or itself, through both ends of the "
+                                "period. Use a deeper cell");
   }
   excess_of_thread_.resize(team_->size());
   load(state);
