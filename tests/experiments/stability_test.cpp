@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ostream>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -14,6 +15,15 @@
 #include "experiments/report/stability/stability.hpp"
 
 namespace shearcell {
+
+namespace stability {
+
+void PrintTo(const HardCase& hard, std::ostream* out) {
+  *out << hard.name;
+}
+
+}  // namespace stability
+
 namespace {
 
 using stability::HardCase;
@@ -86,6 +96,9 @@ TEST(HardCases, RefuseAnUnknownName) {
   StabilityOptions options;
   options.only = {"no-such-case"};
   EXPECT_THROW(map_stability(options), std::invalid_argument);
+  EXPECT_EQ(unknown_case("vacancy"), "");
+  EXPECT_EQ(unknown_case("limit"), "") << "four begin so";
+  EXPECT_EQ(unknown_case("vacanzy"), "no hard case is named 'vacanzy'; did you mean 'vacancy'?");
 }
 
 }  // namespace

@@ -14,7 +14,11 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <stdexcept>
+#include <string_view>
 #include <system_error>
+
+#include "experiments/manifest/suggest.hpp"
 
 namespace shearcell {
 namespace {
@@ -130,18 +134,29 @@ StabilityResult map_case(const HardCase& hard, bool quick, double seconds) {
           outcome.text, outcome.as_expected, seconds_since(start)};
 }
 
-std::vector<StabilityResult> map_stability(const StabilityOptions& options) {
-  const stability::Cases& cases = stability::hard_cases();
-  for (const std::string& name : options.only) {
-    if (std::any_of(cases.begin(), cases.end(), [&](const auto& c) { return c.name == name; })) {
-      continue;
-    }
-    throw std::invalid_argument("no hard case is named '" + name + "'");
+std::string unknown_case(const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const HardCase& hard : stability::hard_cases()) {
+    if (hard.name.starts_with(name)) return "";
+    names.push_back(hard.name);
   }
+  const std::string near = suggest_name(name, names).name;
+  return fmt::format("no hard case is named '{}'{}", name,
+                     near.empty() ? "" : fmt::format("; did you mean '{}'?", near));
+}
+
+std::vector<StabilityResult> map_stability(const StabilityOptions& options) {
+  for (const std::string& name : options.only) {
+    if (const std::string why = unknown_case(name); !why.empty()) throw std::invalid_argument(why);
+  }
+  const auto wanted = [&](const HardCase& hard) {
+    return options.only.empty() ||
+           std::any_of(options.only.begin(), options.only.end(),
+                       [&](const std::string& name) { return hard.name.starts_with(name); });
+  };
   std::vector<StabilityResult> results;
-  for (const HardCase& hard : cases) {
-    const auto& only = options.only;
-    if (!only.empty() && std::find(only.begin(), only.end(), hard.name) == only.end()) continue;
+  for (const HardCase& hard : stability::hard_cases()) {
+    if (!wanted(hard)) continue;
     if (options.report) options.report(hard.name + ": " + hard.done);
     results.push_back(map_case(hard, options.quick, options.seconds_per_case));
   }

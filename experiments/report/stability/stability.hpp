@@ -13,7 +13,7 @@ namespace shearcell {
 
 struct StabilityOptions {
   bool quick = false;             ///< fewer steps where there are very many
-  std::vector<std::string> only;  ///< names of cases; all where it is empty
+  std::vector<std::string> only;  ///< names of cases or their beginnings; all where it is empty
   double seconds_per_case = 300;  ///< a case that takes longer is taken for one that hangs
   std::function<void(const std::string&)> report;  ///< what is being done now; may be empty
 };
@@ -25,8 +25,11 @@ struct StabilityResult {
   double seconds = 0;
 };
 
-/// Computes the cases one after the other. Throws std::invalid_argument for a name that no case
-/// has, and std::system_error when no process can be started.
+/// Why no case is named so or begins so, with the nearest name; empty where one does.
+std::string unknown_case(const std::string& name);
+
+/// Computes the cases one after the other. Throws std::invalid_argument for an unknown name, and
+/// std::system_error when no process can be started.
 std::vector<StabilityResult> map_stability(const StabilityOptions& options);
 
 /// One case in a process of its own, killed after `seconds`.
