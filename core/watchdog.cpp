@@ -33,16 +33,29 @@ std::array<double, 4> plane_distances(const Cell& cell, const WallPose& pose, co
   return {across, pose.cos_theta * cell.width - across, row[1] - pose.bottom, pose.top - row[1]};
 }
 
-// What the contacts of a grain weigh in the bound of the vibrations.
-constexpr double kOfGrain = 2, kOfStandingWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
-
-std::size_t moving_plane(const Cell& cell) {
-  return cell.moving == MovingWall::bottom ? 2 : 3;
+double largest_overlap(const WatchTask& task, std::size_t g, double depth) {
+  const double* own = task.rows + 4 * g;
+  const std::size_t block = g / task.lanes;
+  const std::int32_t* list = task.neighbours.list + task.neighbours.begin[block] + g % task.lanes;
+  double nearest = 1;
+  const std::size_t slots = task.neighbours.head[block] + task.neighbours.slots[block];
+  for (std::size_t k = 0; k < slots; ++k) {
+    const double* other = task.rows + list[k * task.lanes];
+    const double dx = own[0] - other[0];
+    const double dy = own[1] - other[1];
+    const double dz = nearest_image(own[2] - other[2], depth, 1 / depth);
+    nearest = std::min(nearest, dx * dx + dy * dy + dz * dz);
+  }
+  return 1 - std::sqrt(nearest);
 }
 
-// The neighbours in a grain's list that it touches, with the weight of each.
+// What a contact weighs in the bound of the vibrations: of a grain, and of the moving wall itself.
+constexpr double kOfGrain = 2, kOfStandingWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
+
+// Visits every contact of a grain: its unit normal, its weight, whether it is with the moving wall.
 template <class Visit>
-void for_each_touch(const WatchTask& task, std::size_t g, double depth, Visit&& visit) {
+void for_each_touch(const WatchTask& task, std::size_t g, const Cell& cell, const WallPose& pose,
+                    Visit&& visit) {
   const double* own = task.rows + 4 * g;
   const std::size_t block = g / task.lanes;
   const std::int32_t* list = task.neighbours.list + task.neighbours.begin[block] + g % task.lanes;
@@ -52,56 +65,20 @@ void for_each_touch(const WatchTask& task, std::size_t g, double depth, Visit&& 
   for (std::size_t k = 0; k < slots; ++k) {
     const std::int32_t offset = list[k * task.lanes];
     const double* other = task.rows + offset;
-    const double dz = nearest_image(own[2] - other[2], depth, 1 / depth);
+    const double dz = nearest_image(own[2] - other[2], cell.depth, 1 / cell.depth);
     const Eigen::Vector3d dr(own[0] - other[0], own[1] - other[1], dz);
     const double square = dr.squaredNorm();
     if (!(square < 1)) continue;
     const double wall = k < head ? kOfMovingWall : kOfStandingWall;
-    visit(dr, square, offset < first_wall ? kOfGrain : wall);
+    visit(dr / std::sqrt(square), offset < first_wall ? kOfGrain : wall, k < head);
   }
-}
-
-struct Touches {
-  double nearest_square = 1;  // [d^2], of a sphere
-  double weight = 0;          // of all
-  double on_moving_wall = 0;  // sum of n_y^2
-};
-
-Touches touches_of(const WatchTask& task, std::size_t g, const Cell& cell,
-                   const std::array<double, 4>& distance) {
-  Touches touches;
-  for_each_touch(task, g, cell.depth, [&](const Eigen::Vector3d& dr, double square, double weight) {
-    touches.nearest_square = std::min(touches.nearest_square, square);
-    touches.weight += weight;
-    if (weight == kOfMovingWall) {
-      touches.on_moving_wall += dr.y() * dr.y() / square;
-    }
-  });
-  for (std::size_t side = 0; side < 4; ++side) {
-    if (!(distance[side] < 0.5)) continue;
-    const bool moving = side == moving_plane(cell);
-    touches.weight += moving ? kOfMovingWall : kOfStandingWall;
-    touches.on_moving_wall += moving ? 1 : 0;
-  }
-  return touches;
-}
-
-// The largest eigenvalue of the sum of w n n^T.
-double largest_stiffness(const WatchTask& task, std::size_t g, const Cell& cell,
-                         const WallPose& pose, const std::array<double, 4>& distance) {
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for_each_touch(task, g, cell.depth, [&](const Eigen::Vector3d& dr, double square, double weight) {
-    sum += weight / square * dr * dr.transpose();
-  });
   const Eigen::Vector3d across(pose.cos_theta, -pose.sin_theta, 0), up(0, 1, 0);
+  const std::array<double, 4> distance = plane_distances(cell, pose, own);
+  const std::size_t moving = cell.moving == MovingWall::bottom ? 2 : 3;
   for (std::size_t side = 0; side < 4; ++side) {
     if (!(distance[side] < 0.5)) continue;
-    const Eigen::Vector3d& normal = side < 2 ? across : up;
-    sum += (side == moving_plane(cell) ? kOfMovingWall : kOfStandingWall) * normal *
-           normal.transpose();
+    visit(side < 2 ? across : up, side == moving ? kOfMovingWall : kOfStandingWall, side == moving);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()(2);
 }
 
 // Of omega^2 in units of k/m, and whose it is.
@@ -110,12 +87,60 @@ struct Fastest {
   std::int64_t grain = -1;
 };
 
-void check_time_step(const WatchTask& task, const Fastest& fastest, const Scene& scene,
-                     const WatchdogLimits& limits) {
-  const double limit = limits.time_step * 2 / std::sqrt(fastest.bound * scene.stiffness);
-  if (!(task.time_step > limit)) return;
+// Raises `fastest` by what a grain adds, as far as that exceeds `least`. Almost always its list is
+// too short for that, or else the trace of the sum too small.
+void bound_grain(const WatchTask& task, std::size_t g, const Cell& cell, const WallPose& pose,
+                 double least, Fastest& fastest) {
+  const std::size_t block = g / task.lanes;
+  const auto slots =
+      static_cast<double>(task.neighbours.head[block] + task.neighbours.slots[block]);
+  if (kOfGrain * slots + 4 * kOfMovingWall <= least) return;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for_each_touch(task, g, cell, pose, [&](const Eigen::Vector3d& normal, double weight, bool) {
+    sum += weight * normal * normal.transpose();
+  });
+  if (sum.trace() <= std::max(least, fastest.bound)) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum, Eigen::EigenvaluesOnly);
+  const double bound = solver.eigenvalues()(2);
+  if (bound > fastest.bound) fastest = {bound, (*task.id)[g]};
+}
+
+// The same for the moving wall.
+void bound_wall(const WatchTask& task, const Cell& cell, const Scene& scene, const WallPose& pose,
+                double least, Fastest& fastest) {
+  const double each = kOnMovingWall / (scene.wall_mass * cell.width * cell.depth);
+  const auto near = [&](std::size_t g) {
+    return (task.neighbours.near[g / task.lanes] & kNearMovingWall) != 0;
+  };
+  double most = 0;
+  for (std::size_t g = 0; g < task.id->size(); ++g) {
+    if (near(g)) most += each * (1.0 + task.neighbours.head[g / task.lanes]);
+  }
+  if (most <= least) return;
+  double bound = 0;
+  for (std::size_t g = 0; g < task.id->size(); ++g) {
+    if (!near(g)) continue;
+    for_each_touch(task, g, cell, pose, [&](const Eigen::Vector3d& normal, double, bool moving) {
+      if (moving) bound += each * normal.y() * normal.y();
+    });
+  }
+  if (bound > fastest.bound) fastest = {bound, -1};
+}
+
+void check_time_step(const WatchTask& task, const Cell& cell, const Scene& scene,
+                     const WallPose& pose, const WatchdogLimits& limits) {
+  if (!(task.time_step > 0)) return;
+  const double allowed = 2 * limits.time_step / task.time_step;
+  const double least = allowed * allowed / scene.stiffness;
+  Fastest fastest;
+  for (std::size_t g = 0; g < task.id->size(); ++g) {
+    bound_grain(task, g, cell, pose, least, fastest);
+  }
+  bound_wall(task, cell, scene, pose, least, fastest);
+  if (!(fastest.bound > least)) return;
   throw NumericalFailure(
-      "the time step [s]", task.time_step, limit, fastest.grain, task.step,
+      "the time step [s]", task.time_step,
+      2 * limits.time_step / std::sqrt(fastest.bound * scene.stiffness), fastest.grain, task.step,
       "The contacts may vibrate faster than it can follow: use a smaller time step (more "
       "steps_per_cycle; while settling, a smaller settle_time_step_s)" +
           std::string(fastest.grain < 0 ? ", or a heavier wall (wall_mass_grains_per_d2)" : ""));
@@ -164,8 +189,6 @@ void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, c
                            "and drag");
   }
   const double fastest_square = 12 * scene.stiffness * limits.overlap * limits.overlap;
-  Fastest fastest;
-  double on_moving_wall = 0;
   for (std::size_t g = 0; g < task.id->size(); ++g) {
     const std::int64_t id = (*task.id)[g];
     const double v2 = task.velocity[0][g] * task.velocity[0][g] +
@@ -180,8 +203,7 @@ void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, c
     }
     const std::array<double, 4> distance = plane_distances(cell, pose, task.rows + 4 * g);
     check_place(task, limits, g, distance);
-    const Touches touches = touches_of(task, g, cell, distance);
-    const double overlap = 1 - std::sqrt(touches.nearest_square);
+    const double overlap = largest_overlap(task, g, cell.depth);
     if (!(overlap <= limits.overlap)) {
       throw NumericalFailure("the overlap [d] of two grains", overlap, limits.overlap, id,
                              task.step,
@@ -189,16 +211,8 @@ void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, c
                              "large: raise the stiffness, lower the pressure, or use a smaller "
                              "time step");
     }
-    on_moving_wall += touches.on_moving_wall;
-    // An eigenvalue is at most the trace, which is all that most runs need.
-    if (task.time_step * std::sqrt(touches.weight * scene.stiffness) > 2 * limits.time_step) {
-      const double bound = largest_stiffness(task, g, cell, pose, distance);
-      if (bound > fastest.bound) fastest = {bound, id};
-    }
   }
-  const double wall = kOnMovingWall * on_moving_wall / (scene.wall_mass * cell.width * cell.depth);
-  if (wall > fastest.bound) fastest = {wall, -1};
-  if (fastest.bound > 0) check_time_step(task, fastest, scene, limits);
+  check_time_step(task, cell, scene, pose, limits);
 }
 
 }  // namespace shearcell
