@@ -20,7 +20,6 @@ namespace shearcell {
 namespace {
 
 constexpr const char* style =
-    "set terminal svg size 600,430 enhanced font 'Helvetica,14' background '#ffffff'\n"
     "set encoding utf8\n"
     "set datafile separator ','\n"
     "set border 15 lw 1.2\n"
@@ -148,7 +147,9 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
     throw AnalysisError("there is no " + table.name + ".csv in " + folder.string() + " to draw");
   }
   std::ofstream file(script, std::ios::binary | std::ios::trunc);
-  file << style << "set output '" << table.name << ".svg'\n"
+  file << "set terminal svg size " << table.width << ',' << table.height
+       << " enhanced font 'Helvetica,14' background '#ffffff'\n"
+       << style << "set output '" << table.name << ".svg'\n"
        << "data = '" << table.name << ".csv'\n"
        << table.plot << (table.rows.empty() ? empty_plot : "") << "set output\n";
   file.close();

@@ -65,13 +65,20 @@ std::vector<CurvePoint> points_of(std::span<const FigureRun* const> runs) {
 
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
                              std::span<const CurveStyle> styles) {
+  return curves_by(
+      runs, [&](const FigureRun& run) { return parameter_of(run, parameter); }, styles);
+}
+
+std::vector<Curve> curves_by(std::span<const FigureRun> runs,
+                             const std::function<nlohmann::json(const FigureRun&)>& value_of,
+                             std::span<const CurveStyle> styles) {
   std::map<std::string, std::vector<const FigureRun*>> variants;
   for (const FigureRun& run : runs) variants[run.variant].push_back(&run);
   std::vector<std::pair<std::size_t, Curve>> ranked;
   for (auto& [variant, members] : variants) {
     Curve curve;
     curve.variant = variant;
-    curve.value = parameter_of(*members.front(), parameter);
+    curve.value = value_of(*members.front());
     curve.points = points_of(members);
     curve.runs = std::move(members);
     if (curve.points.empty()) continue;

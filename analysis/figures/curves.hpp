@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -42,6 +43,11 @@ struct Curve {
 /// `parameter`, then any others by the variant's name. Throws AnalysisError when one run has two
 /// checkpoints of one cycle. Points into `runs`.
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
+                             std::span<const CurveStyle> styles);
+
+/// The same where `value_of` a run, and not one parameter, decides the style.
+std::vector<Curve> curves_by(std::span<const FigureRun> runs,
+                             const std::function<nlohmann::json(const FigureRun&)>& value_of,
                              std::span<const CurveStyle> styles);
 
 /// The curve in which the parameter has that value, or null.
