@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,7 @@ constexpr const char* style =
     "set border 15 lw 1.2\n"
     "set xtics in mirror scale 0.9,0.5\n"
     "set ytics in mirror scale 0.9,0.5\n"
+    "set format '%h'\n"
     "set mxtics 2\n"
     "set mytics 2\n"
     // Ranges end a little outside the data, not at the next tick, so that no point or bar is cut.
@@ -137,6 +139,22 @@ bool made(const Outcome& outcome, const std::filesystem::path& file) {
          std::filesystem::exists(file) && std::filesystem::file_size(file) > 0;
 }
 
+/// librsvg drops the space at either end of a stretch of text, where gnuplot's markup begins or
+/// ends, unless it is told not to; gnuplot tells it only of two spaces together.
+void keep_spaces(const std::filesystem::path& svg) {
+  std::ifstream in(svg, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  constexpr std::string_view plain = "<text>";
+  constexpr std::string_view keeping = "<text xml:space=\"preserve\">";
+  for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at)) {
+    text.replace(at, plain.size(), keeping);
+  }
+  std::ofstream out(svg, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  if (!in || !out) throw AnalysisError("cannot write " + svg.string());
+}
+
 }  // namespace
 
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder) {
@@ -166,6 +184,7 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
     std::filesystem::remove(svg);
     throw AnalysisError("gnuplot could not draw " + table.name + ":\n" + outcome->messages);
   }
+  keep_spaces(svg);
   return svg;
 }
 

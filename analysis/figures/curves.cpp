@@ -35,6 +35,12 @@ std::string plain_title(const std::string& text) {
   return result;
 }
 
+/// gnuplot's strcol() ends a field at a comma, quoted or not.
+std::string without_commas(std::string variant) {
+  std::replace(variant.begin(), variant.end(), ',', ';');
+  return variant;
+}
+
 CurveStyle style_of_other(const std::string& variant, std::size_t index) {
   static const std::array<const char*, 6> colours = {"#1f78b4", "#33a02c", "#ff7f00",
                                                      "#6a3d9a", "#b15928", "#000000"};
@@ -77,7 +83,7 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs,
   std::vector<std::pair<std::size_t, Curve>> ranked;
   for (auto& [variant, members] : variants) {
     Curve curve;
-    curve.variant = variant;
+    curve.variant = without_commas(variant);
     curve.value = value_of(*members.front());
     curve.points = points_of(members);
     curve.runs = std::move(members);

@@ -32,7 +32,7 @@ struct CurvePoint {
 };
 
 struct Curve {
-  std::string variant;
+  std::string variant;   ///< as the manifest names it, with ';' for ','
   nlohmann::json value;  ///< of the figure's parameter; null when the runs do not say
   CurveStyle style;
   std::vector<const FigureRun*> runs;
