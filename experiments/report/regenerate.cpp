@@ -125,12 +125,13 @@ std::vector<std::optional<Measured>> measure(const Store& store, const Figure& f
       derive(store, records, needed(figure), {options.workers, options.fresh, options.report});
   std::vector<std::optional<Measured>> measured;
   try {
-    for (const auto& results : derived.results) {
+    for (auto& results : derived.results) {
       std::optional<Measured>& one = measured.emplace_back();
       if (!results) continue;
       one.emplace();
       if (!results->empty()) one->measures = read_measures(results->front());
       if (results->size() > 1) one->crystallites = read_crystallite_map(results->at(1));
+      results.reset();  // as JSON it takes more memory than all that is kept of it
     }
   } catch (const AnalysisError& problem) {
     throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
