@@ -67,6 +67,18 @@ std::vector<CurvePoint> points_of(std::span<const FigureRun* const> runs) {
   return points;
 }
 
+/// So that the marks of a long curve stay apart.
+std::size_t cycles_between_marks(std::span<const Curve> curves) {
+  constexpr std::size_t most_marks = 60;
+  std::size_t points = 1;
+  for (const Curve& curve : curves) points = std::max(points, curve.points.size());
+  std::size_t spacing = 1;
+  for (const std::size_t step : {2, 5, 10, 20, 50, 100, 200, 500, 1000}) {
+    if (points / spacing > most_marks) spacing = step;
+  }
+  return spacing;
+}
+
 }  // namespace
 
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
@@ -127,18 +139,30 @@ std::string literal(const std::string& text) {
 }
 
 std::string plot_curves(std::span<const Curve> curves, const CurveColumns& columns) {
+  const bool both = columns.x_error > 0;
+  const std::size_t spacing = both ? 1 : cycles_between_marks(curves);
   std::string text;
   for (const Curve& curve : curves) {
-    const bool both = columns.x_error > 0;
-    const std::string values = fmt::format("{}:(strcol(1) eq {} ? column({}) : NaN)", columns.x,
-                                           literal(curve.variant), columns.y);
+    const std::string own = fmt::format("strcol(1) eq {}", literal(curve.variant));
+    const std::string values = fmt::format("{}:({} ? column({}) : NaN)", columns.x, own, columns.y);
+    const std::string marked =
+        spacing == 1 ? values
+                     : fmt::format("{0}:({1} && int(column({0})) % {2} == 0 ? column({3}) : NaN)",
+                                   columns.x, own, spacing, columns.y);
     const std::string errors = both ? fmt::format("{}:{}", columns.x_error, columns.y_error)
                                     : std::to_string(columns.y_error);
     text += text.empty() ? "plot " : ", \\\n     ";
     text += fmt::format("data using {}:{} with {} lc rgb '{}' lw 0.8 pt 0 notitle, \\\n     ",
-                        values, errors, both ? "xyerrorbars" : "yerrorbars", curve.style.colour);
-    text += fmt::format("data using {} with linespoints lc rgb '{}' pt {} ps 0.6 title {}", values,
-                        curve.style.colour, curve.style.point, literal(curve.style.title));
+                        marked, errors, both ? "xyerrorbars" : "yerrorbars", curve.style.colour);
+    const std::string look = fmt::format("lc rgb '{}' pt {} ps 0.6 title {}", curve.style.colour,
+                                         curve.style.point, literal(curve.style.title));
+    if (spacing == 1) {
+      text += fmt::format("data using {} with linespoints {}", values, look);
+    } else {
+      text += fmt::format(
+          "data using {} with lines lc rgb '{}' notitle, \\\n     data using {} with points {}",
+          values, curve.style.colour, marked, look);
+    }
   }
   return text.empty() ? text : text + "\n";
 }
@@ -152,7 +176,7 @@ std::string points_with_errors(const std::string& x, const std::string& y, int e
 }
 
 std::string onset_lines() {
-  std::string text;
+  std::string text = "set yrange [*<0.6445:0.6475<*]\n";  // both, wherever the data are
   for (const char* phi : {"0.645", "0.647"}) {
     text += fmt::format(
         "set arrow from graph 0, first {0} to graph 1, first {0} nohead dt 2 lc rgb '#888888'\n",

@@ -65,6 +65,7 @@ struct CurveColumns {
 };
 
 /// gnuplot commands: lines with points and, where there is an error, error bars, for each curve.
+/// Many cycles are marked every 2, 5, 10, ... cycles; the line has them all.
 std::string plot_curves(std::span<const Curve> curves, const CurveColumns& columns);
 
 /// One part of a plot command: points, and error bars where there is an error, which `yerrorbars`
@@ -75,7 +76,8 @@ std::string points_with_errors(const std::string& x, const std::string& y, int e
 /// gnuplot's single-quoted text, in which only the quote itself means anything.
 std::string literal(const std::string& text);
 
-/// gnuplot commands: dashed horizontal lines at phi = 0.646 +- 0.001, the supplement's onset.
+/// gnuplot commands: dashed horizontal lines at phi = 0.646 +- 0.001, the supplement's onset, and a
+/// range of y that holds them.
 std::string onset_lines();
 
 /// gnuplot commands for an axis of cycles. Short runs get a tick for every cycle.
