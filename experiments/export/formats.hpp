@@ -17,7 +17,8 @@ namespace shearcell {
 using FrameWriter = std::function<void(const Frame&)>;
 
 /// H5MD 1.1 in one file: particles/all with box, position, velocity, id, species (as Frame::type),
-/// mass, radius and the measures, and observables. `frames` is how many there will be.
+/// mass, radius and the measures, and observables. Lengths in nm, the nearest that MDAnalysis
+/// knows. `frames` is how many there will be.
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 
 /// Extended XYZ in one file. Species H stands for a grain and He for a wall grain, since readers

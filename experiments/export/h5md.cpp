@@ -18,6 +18,18 @@ using hdf5::put_dataset;
 using hdf5::require;
 using hdf5::Shape;
 
+// MDAnalysis knows no metres and takes units as text of variable length alone. Velocities have the
+// same numbers in nm/ns as in m/s.
+constexpr double nm_per_m = 1e9;
+
+void put_unit(const Handle& object, const std::string& unit) {
+  if (unit.empty()) return;
+  const Handle type(require(H5Tcopy(H5T_C_S1), "a text type"), H5Tclose);
+  require(H5Tset_size(type.get(), H5T_VARIABLE), "a text type");
+  const char* text = unit.c_str();
+  put_attribute(object, "unit", type.get(), &text);
+}
+
 /// A trajectory that is filled frame by frame.
 class Trajectory {
  public:
@@ -32,9 +44,12 @@ class Trajectory {
     }
     put("step", H5T_STD_U64LE, &frame.step);
     put("time", H5T_IEEE_F64LE, &frame.time_s);
-    put("edges", H5T_IEEE_F64LE, Eigen::Matrix3d(frame.edges.transpose()).data());  // a row an edge
-    put("origin", H5T_IEEE_F64LE, frame.origin.data());
-    put("position", H5T_IEEE_F64LE, frame.position.data());
+    const Eigen::Matrix3d edges = frame.edges * nm_per_m;  // columns here are rows there
+    put("edges", H5T_IEEE_F64LE, edges.data());
+    const Eigen::Vector3d origin = frame.origin * nm_per_m;
+    put("origin", H5T_IEEE_F64LE, origin.data());
+    const Eigen::Matrix3Xd position = frame.position * nm_per_m;
+    put("position", H5T_IEEE_F64LE, position.data());
     put("velocity", H5T_IEEE_F64LE, frame.velocity.data());
     put("image", H5T_STD_I32LE, frame.image.data());
     for (const FrameColumn& column : frame_columns()) {
@@ -64,7 +79,8 @@ class Trajectory {
 
   Handle& dataset(const Handle& parent, const std::string& link, const std::string& name,
                   hid_t type, const Shape& shape, const std::string& unit) {
-    const Handle made = put_dataset(parent, link, type, nullptr, shape, unit);
+    const Handle made = put_dataset(parent, link, type, nullptr, shape);
+    put_unit(made, unit);
     H5Iinc_ref(made.get());
     return sets_.emplace(name, Handle(made.get(), H5Dclose)).first->second;
   }
@@ -91,8 +107,8 @@ class Trajectory {
     dataset(all, "step", "step", H5T_STD_U64LE, {frames_}, "");
     dataset(all, "time", "time", H5T_IEEE_F64LE, {frames_}, "s");
     put_box(all);
-    element(all, "position", H5T_IEEE_F64LE, {particles_, 3}, "m");
-    element(all, "velocity", H5T_IEEE_F64LE, {particles_, 3}, "m s-1");
+    element(all, "position", H5T_IEEE_F64LE, {particles_, 3}, "nm");
+    element(all, "velocity", H5T_IEEE_F64LE, {particles_, 3}, "nm ns-1");
     element(all, "image", H5T_STD_I32LE, {particles_}, "");
     for (const FrameColumn& column : frame_columns()) {
       if (column.name != std::string("type")) {
@@ -105,9 +121,9 @@ class Trajectory {
     put_dataset(all, "id", H5T_STD_U64LE, id.data(), {particles_});
     put_dataset(all, "species", H5T_STD_I32LE, frame.type.data(), {particles_});
     const std::vector<double> mass(particles_, frame.mass);
-    put_dataset(all, "mass", H5T_IEEE_F64LE, mass.data(), {particles_}, "kg");
-    const std::vector<double> radius(particles_, frame.radius);
-    put_dataset(all, "radius", H5T_IEEE_F64LE, radius.data(), {particles_}, "m");
+    put_unit(put_dataset(all, "mass", H5T_IEEE_F64LE, mass.data(), {particles_}), "kg");
+    const std::vector<double> radius(particles_, frame.radius * nm_per_m);
+    put_unit(put_dataset(all, "radius", H5T_IEEE_F64LE, radius.data(), {particles_}), "nm");
     const Handle observables = make_group(file_, "observables");
     element(observables, "cycle", H5T_IEEE_F64LE, {}, "");
     element(observables, "theta", H5T_IEEE_F64LE, {}, "rad");
@@ -136,8 +152,8 @@ class Trajectory {
     put_attribute(box, "dimension", H5T_STD_I32LE, &dimension);
     const std::string boundary("none\0\0\0\0none\0\0\0\0periodic", 24);
     hdf5::put_strings(box, "boundary", boundary, 8, {3});
-    element(box, "edges", H5T_IEEE_F64LE, {3, 3}, "m");
-    element(box, "origin", H5T_IEEE_F64LE, {3}, "m");  // beside what H5MD asks for
+    element(box, "edges", H5T_IEEE_F64LE, {3, 3}, "nm");
+    element(box, "origin", H5T_IEEE_F64LE, {3}, "nm");  // beside what H5MD asks for
   }
 
   /// The next row of a dataset.
