@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A program of its own on the installed libraries: settle a small packing, shear it for a twentieth of
-// a cycle, and measure it.
+// A program of its own on the installed libraries: settle a small packing, shear it for a twentieth
+// of a cycle, and measure it.
 #include <analysis/measures.hpp>
 #include <cstdio>
 #include <experiments/manifest/conversion.hpp>
@@ -16,6 +16,7 @@ int main() {
   const WallPose pose = wall_pose(cell, 0, packing.wall_height);
   Eigen::Matrix3Xd grains = packing.position;
   const Measures measures = analyse(cell, pose, grains).measures;
-  std::printf("%zu grains, %.2f contacts per grain\n", measures.grains, measures.contacts_per_grain);
+  std::printf("%zu grains, %.2f contacts per grain\n", measures.grains,
+              measures.contacts_per_grain);
   return measures.grains == 300 && measures.contacts_per_grain > 4 ? 0 : 1;
 }
