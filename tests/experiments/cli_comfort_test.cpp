@@ -178,7 +178,8 @@ TEST_F(Comfort, TablesFitTheTerminalAndHaveColoursThereAlone) {
 TEST_F(Comfort, ExportsTheCyclesThatAreAskedFor) {
   ASSERT_EQ(run({"run", write("tiny.yaml", tiny_manifest()), "--quiet"}).code, 0);
   std::string id;
-  for (const auto& one : json({"status", "--json"}).at("runs")) {
+  const nlohmann::json runs = json({"status", "--json"}).at("runs");
+  for (const nlohmann::json& one : runs) {
     if (one.at("kind") == "shear") id = one.at("id");
   }
   const auto files = [&](const std::string& format, const std::string& out,
