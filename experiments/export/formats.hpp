@@ -31,8 +31,9 @@ FrameWriter vtk_writer(const std::filesystem::path& folder);
 
 /// A folder with frame_CYCLE.data for each frame: LAMMPS data, atom_style sphere, units si, a
 /// triclinic box. Type 1 is a grain, 2 to 5 are the wall grains of the left, right, bottom and top
-/// wall. The box is a radius wider on both sides in x and y, since LAMMPS drops atoms outside, and
-/// wall grains are centred behind their planes. Measures do not fit this format.
+/// wall. LAMMPS drops atoms outside the box, so it holds the wall grains too, which are centred
+/// behind their planes and, on the side walls, reach below the moving one. Measures do not fit this
+/// format.
 FrameWriter lammps_writer(const std::filesystem::path& folder);
 
 }  // namespace shearcell

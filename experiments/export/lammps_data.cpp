@@ -12,17 +12,18 @@ namespace {
 
 std::string header(const Frame& f) {
   const double tilt = f.edges(0, 1) / f.edges(1, 1);
-  const double low_y = f.origin.y() - f.radius;
-  const double high_y = f.origin.y() + f.edges(1, 1) + f.radius;
-  // The corner moves along the tilted side as the bottom moves down.
-  const double low_x = f.origin.x() - tilt * f.radius - f.radius;
+  const double low_y = f.position.row(1).minCoeff() - f.radius;
+  const double high_y = f.position.row(1).maxCoeff() + f.radius;
+  const Eigen::RowVectorXd along = f.position.row(0) - tilt * f.position.row(1);
+  const double low_x = along.minCoeff() + tilt * low_y - f.radius;
+  const double high_x = along.maxCoeff() + tilt * low_y + f.radius;
   return fmt::format(
       "LAMMPS data file by shearcell, units si, atom_style sphere, step {}, cycle {:.17g}\n\n"
       "{} atoms\n5 atom types\n\n"
       "{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n0 {:.17g} zlo zhi\n{:.17g} 0 0 xy xz "
       "yz\n\n",
-      f.step, f.cycle, f.particles(), low_x, low_x + f.edges(0, 0) + 2 * f.radius, low_y, high_y,
-      f.edges(2, 2), tilt * (high_y - low_y));
+      f.step, f.cycle, f.particles(), low_x, high_x, low_y, high_y, f.edges(2, 2),
+      tilt * (high_y - low_y));
 }
 
 }  // namespace

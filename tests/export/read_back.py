@@ -114,8 +114,8 @@ def check_lammps():
         style = "id type diameter density x y z ix iy iz"
         universe = MDAnalysis.Universe(str(path), format="DATA", atom_style=style)
         equal("lammps position", universe.atoms.positions, f["position"], 1e-6)
-        # It takes velocities for angstrom/fs, and makes angstrom/ps of them.
-        equal("lammps velocity", universe.atoms.velocities, f["velocity"] * 1e3, 1e-6)
+        # It takes them for units real and converts.
+        equal("lammps velocity", universe.atoms.velocities, f["velocity"] * 1e-3, 1e-6)
         equal("lammps type", universe.atoms.types.astype(int), f["type"] + 1)
         # Every digit, by plain reading.
         lines = path.read_text().splitlines()
