@@ -62,6 +62,7 @@ void add_bench(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand("bench", "Measure the program on this machine");
   command->require_subcommand(1);
   command->footer("Examples:\n  shearcell bench speed");
+  add_bench_accuracy(*command, context);
   auto options = std::make_shared<SpeedOptions>();
   CLI::App* rate = command->add_subcommand(
       "speed", "Particle-steps per second in the sheared rough cell, and where the time goes");

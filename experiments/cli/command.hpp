@@ -41,6 +41,7 @@ void add_merge(CLI::App& app, Context& context);
 void add_figures(CLI::App& app, Context& context);
 void add_export(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);
+void add_bench_accuracy(CLI::App& bench, Context& context);
 
 /// --store DIR, and --json where the subcommand prints facts.
 void add_common_options(CLI::App& command, Context& context, bool with_json);
