@@ -44,7 +44,7 @@ std::optional<std::string> time_step_advice(const TimeStep& step, const std::str
   return fmt::format(
       "{}: the time step of {:.3g} s is {:.3g} of the stability limit, {} {:g}: {}", key,
       step.seconds, step.over_stability_limit, large ? "above" : "below", wanted,
-      large ? "the fastest vibrations are wrong by more than 7 %"
+      large ? "the fastest vibrations are wrong by more than 10 %"
             : "it costs time and changes no measure by as much as another seed does");
 }
 

@@ -30,7 +30,7 @@ TimeStep settle_time_step(const Parameters& parameters);
 double expected_overlap(const Parameters& parameters);
 
 /// Below this part of the stability limit a smaller time step changes nothing that seeds would
-/// show, and above the other the fastest vibrations are off by more than 7 % (core/ACCURACY.md).
+/// show, and above the other the fastest vibrations are off by more than 10 % (core/ACCURACY.md).
 inline constexpr double kNeedlesslySmallStep = 0.15;
 inline constexpr double kTooLargeStep = 0.7;
 
