@@ -28,13 +28,12 @@ TimeStep settle_time_step(const Parameters& parameters) {
 }
 
 double expected_overlap(const Parameters& p) {
-  constexpr double grains_per_d3 = 1.2, contacts_per_grain = 6.3;
+  constexpr double grains_per_d3 = 1.2, of_pressure = 0.75;
   const Scene scene = shear_scene(p);
   const double height = p.height_over_width * cell_width(geometry(p));
   const double half_weight = grains_per_d3 * height * scene.gravity / 2;
-  const double pressure = p.moving_wall == MovingWall::bottom ? scene.pressure - half_weight
-                                                              : scene.pressure + half_weight;
-  return 6 * std::max(pressure, 0.0) / (grains_per_d3 * contacts_per_grain * scene.stiffness);
+  const double sign = p.moving_wall == MovingWall::bottom ? -1 : 1;
+  return of_pressure * std::max(scene.pressure + sign * half_weight, 0.0) / scene.stiffness;
 }
 
 std::optional<std::string> time_step_advice(const TimeStep& step, const std::string& key) {

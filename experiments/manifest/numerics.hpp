@@ -20,13 +20,12 @@ struct TimeStep {
 TimeStep shear_time_step(const Parameters& parameters);
 TimeStep settle_time_step(const Parameters& parameters);
 
-/// Mean overlap of touching grains at rest [d], to leading order in it. The mean pressure p of a
-/// packing with n grains and n z/2 contacts per volume is p = n z k <overlap> d/6 (virial), so
-///   <overlap>/d = 6 p d/(n d^3 z k),   n d^3 = 1.2, z = 6.3,
-/// with p the pressure at half the height: P less half the grains' weight per area above a moving
-/// bottom wall, and P plus as much under a moving top wall. z lies between 6, of hard grains, and
-/// 6.4, found at Table I's stiffness; settled packings of 600 and 2000 grains have the overlap
-/// within 3 % (core/ACCURACY.md).
+/// Mean overlap of touching grains at rest [d], to leading order in it: 0.75 p d/k. By the virial
+/// the mean pressure of a packing with n grains per volume and z contacts of each is p = n z k
+/// <overlap> d/6, so <overlap>/d = 6/(n d^3 z) p d/k, which is 0.78 for n d^3 = 1.22 and z = 6.36
+/// (found at N = 2000); 0.75 fits five settled packings within 7 % (core/ACCURACY.md). The pressure
+/// p is that at half the height: P less half the grains' weight per area above a moving bottom
+/// wall, and P plus as much under a moving top wall.
 double expected_overlap(const Parameters& parameters);
 
 /// Below this part of the stability limit a smaller time step changes nothing that seeds would

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <set>
 
+#include "analysis/measures.hpp"
 #include "analysis/plot.hpp"
+#include "experiments/manifest/numerics.hpp"
 #include "experiments/report/accuracy/accuracy.hpp"
 #include "experiments/report/accuracy/sheared.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -35,6 +37,33 @@ TEST(AccuracyReport, HasEverySectionWithItsTableAndFigure) {
                 "accuracy-crystal-closed", "accuracy-crystal-frequency", "accuracy-crystal-opening",
                 "accuracy-dispersion", "accuracy-drift", "accuracy-order", "accuracy-seeds",
                 "accuracy-separation", "accuracy-stiffness", "accuracy-wall"}));
+}
+
+TEST(Overlap, IsWhatAPlanExpects) {
+  struct Case {
+    std::uint64_t grains;
+    double pressure, stiffness;
+    MovingWall moving;
+  };
+  for (const Case& c : {Case{600, 1, 1, MovingWall::bottom}, Case{600, 1, 1, MovingWall::top},
+                        Case{600, 2, 1, MovingWall::bottom}, Case{600, 1, 4, MovingWall::bottom},
+                        Case{2000, 1, 1, MovingWall::bottom}}) {
+    Parameters p;
+    p.grains = c.grains;
+    p.pressure_Pa *= c.pressure;
+    p.stiffness_N_per_m *= c.stiffness;
+    p.settle_time_step_s /= std::sqrt(c.stiffness);
+    p.moving_wall = c.moving;
+    const Packing packing = settled(p, 1);
+    const double found =
+        analyse(packing.cell, wall_pose(packing.cell, 0, packing.state.wall_height),
+                packing.state.position)
+            .measures.mean_overlap;
+    std::printf("N = %d, P x %g, k x %g, %s wall: %.3e d, expected %.3e d\n",
+                static_cast<int>(c.grains), c.pressure, c.stiffness,
+                c.moving == MovingWall::top ? "top" : "bottom", found, expected_overlap(p));
+    EXPECT_NEAR(found / expected_overlap(p), 1, 0.1);
+  }
 }
 
 TEST(Sheared, RunsPartAsTheSquareOfTheTimeStepAndThenExponentially) {

@@ -169,7 +169,7 @@ TEST(Precision, SingleForcesLoseMomentumAndEnergy) {
   const Crystal crystal = fcc(kScene, 4, kOverlap, true);
   const Motion start = shaken(crystal, 0.5, 1);
   const DriftResult twofold = energy_drift(crystal, start, method("leapfrog"), kStep, 20'000);
-  for (const char* name : {"leapfrog, single", "leapfrog, mixed"}) {
+  for (const char* name : {"leapfrog single", "leapfrog mixed"}) {
     const DriftResult r = energy_drift(crystal, start, method(name), kStep, 20'000);
     std::printf("%s: drift %.2g, momentum %.2g; in double %.2g, %.2g\n", name, r.drift, r.momentum,
                 twofold.drift, twofold.momentum);

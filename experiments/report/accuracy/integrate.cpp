@@ -217,16 +217,16 @@ std::vector<Method> make_methods() {
   plain.exact_drag = false;
   plain.staggered = true;
   Method exponential = plain;
-  exponential.name = "leapfrog, exact drag";
+  exponential.name = "leapfrog exact drag";
   exponential.exact_drag = true;
   Method fourth{.name = "PEFRL", .substeps = pefrl, .first_drift = xi};
   fourth.evaluations = fourth.order = 4;
   Method classical{.name = "Runge-Kutta", .kind = Method::Kind::runge_kutta};
   classical.evaluations = classical.order = 4;
   Method single = plain, mixed = plain;
-  single.name = "leapfrog, single";
+  single.name = "leapfrog single";
   single.precision = Precision::single;
-  mixed.name = "leapfrog, mixed";
+  mixed.name = "leapfrog mixed";
   mixed.precision = Precision::mixed;
   return {product, plain, exponential, fourth, classical, single, mixed};
 }

@@ -76,7 +76,7 @@ Section seeds_section(const Options& options, double engine_rate) {
     add_step(p, steps[s], std::span(means).subspan(s * seeds, seeds), engine_rate, section);
   }
   section.table.plot = fmt::format(
-      "set xlabel 'time step over 2/{{/Symbol w}}_{{max}}'\n"
+      "set xlabel 'time step over 2/ω_{{max}}'\n"
       "set ylabel 'volume fraction  {{/:Italic ϕ}}'\n"
       "plot data using 3:5:6 with yerrorbars pt 7 lc rgb '#000000' title '{} seeds'\n",
       seeds);
