@@ -26,8 +26,8 @@ std::vector<double> time_steps(bool quick) {
 }
 
 // Rows: time steps; columns: methods.
-void summarize(const std::vector<WorkPoint>& points, const std::vector<double>& steps,
-               Section& section) {
+void summarize(const SmallScene& small, const std::vector<WorkPoint>& points,
+               const std::vector<double>& steps, Section& section) {
   section.header = {"dt [s]", "dt/limit"};
   for (const Method& method : methods()) section.header.push_back(method.name);
   for (std::size_t s = 0; s < steps.size(); ++s) {
@@ -42,7 +42,7 @@ void summarize(const std::vector<WorkPoint>& points, const std::vector<double>& 
   constexpr double largest = 4.4e-5;
   std::vector<std::string> row = {"order", ""};
   for (const Method& method : methods()) {
-    row.push_back(fmt::format("{:.2f}", order_of(points, method, largest)));
+    row.push_back(fmt::format("{:.2f}", order_of(small, points, method, largest)));
   }
   section.summary.push_back(std::move(row));
 }
@@ -62,7 +62,7 @@ std::vector<Section> small_scene_sections(const Options& options, double engine_
     if (options.report) options.report(small.title);
     const std::vector<WorkPoint> points = work_points(small, steps);
     Section section{small.title, work_table(small, points, cost), {}, {}, {}};
-    summarize(points, steps, section);
+    summarize(small, points, steps, section);
     sections.push_back(std::move(section));
   }
   return sections;

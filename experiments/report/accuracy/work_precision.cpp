@@ -40,11 +40,13 @@ std::vector<SmallScene> small_scenes(const Scene& scene, const SmallSceneSetting
       {"collision-speed", "Two grains collide: speed after it", "speed_error",
        [=](const Method& m, double dt) {
          return collision_error(scene, m, dt, settings.phases).speed;
-       }},
+       },
+       true},
       {"collision-end", "Two grains collide: when it ends, in contact times", "time_error",
        [=](const Method& m, double dt) {
          return collision_error(scene, m, dt, settings.phases).time;
-       }},
+       },
+       true},
       {"wall", "One grain swings on a wall: position, in amplitudes", "position_error",
        [=](const Method& m, double dt) { return wall_error(scene, m, dt, settings.periods); }},
       {"cage", "One grain swings in a cage: position, in amplitudes", "position_error",
@@ -76,11 +78,16 @@ std::vector<WorkPoint> work_points(const SmallScene& scene, const std::vector<do
   return points;
 }
 
-double order_of(const std::vector<WorkPoint>& points, const Method& method, double largest) {
+double order_of(const SmallScene& scene, const std::vector<WorkPoint>& points, const Method& method,
+                double largest) {
   std::vector<double> step, error;
+  for (int n = 0; scene.irregular && n < 17; ++n) {
+    step.push_back(largest * std::exp2(-n / 4.0));
+    error.push_back(scene.measure(method, step.back()));
+  }
   for (const WorkPoint& point : points) {
     const bool usable = point.method == &method && point.time_step <= largest && point.error > 0;
-    if (!usable) continue;
+    if (!usable || scene.irregular) continue;
     step.push_back(point.time_step);
     error.push_back(point.error);
   }
