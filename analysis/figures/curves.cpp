@@ -35,6 +35,12 @@ std::string plain_title(const std::string& text) {
   return result;
 }
 
+/// gnuplot's strcol() ends a field at a comma, quoted or not.
+std::string without_commas(std::string variant) {
+  std::replace(variant.begin(), variant.end(), ',', ';');
+  return variant;
+}
+
 CurveStyle style_of_other(const std::string& variant, std::size_t index) {
   static const std::array<const char*, 6> colours = {"#1f78b4", "#33a02c", "#ff7f00",
                                                      "#6a3d9a", "#b15928", "#000000"};
@@ -61,17 +67,36 @@ std::vector<CurvePoint> points_of(std::span<const FigureRun* const> runs) {
   return points;
 }
 
+/// So that the marks of a long curve stay apart.
+std::size_t cycles_between_marks(std::span<const Curve> curves) {
+  constexpr std::size_t most_marks = 60;
+  std::size_t points = 1;
+  for (const Curve& curve : curves) points = std::max(points, curve.points.size());
+  std::size_t spacing = 1;
+  for (const std::size_t step : {2, 5, 10, 20, 50, 100, 200, 500, 1000}) {
+    if (points / spacing > most_marks) spacing = step;
+  }
+  return spacing;
+}
+
 }  // namespace
 
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
+                             std::span<const CurveStyle> styles) {
+  return curves_by(
+      runs, [&](const FigureRun& run) { return parameter_of(run, parameter); }, styles);
+}
+
+std::vector<Curve> curves_by(std::span<const FigureRun> runs,
+                             const std::function<nlohmann::json(const FigureRun&)>& value_of,
                              std::span<const CurveStyle> styles) {
   std::map<std::string, std::vector<const FigureRun*>> variants;
   for (const FigureRun& run : runs) variants[run.variant].push_back(&run);
   std::vector<std::pair<std::size_t, Curve>> ranked;
   for (auto& [variant, members] : variants) {
     Curve curve;
-    curve.variant = variant;
-    curve.value = parameter_of(*members.front(), parameter);
+    curve.variant = without_commas(variant);
+    curve.value = value_of(*members.front());
     curve.points = points_of(members);
     curve.runs = std::move(members);
     if (curve.points.empty()) continue;
@@ -114,18 +139,30 @@ std::string literal(const std::string& text) {
 }
 
 std::string plot_curves(std::span<const Curve> curves, const CurveColumns& columns) {
+  const bool both = columns.x_error > 0;
+  const std::size_t spacing = both ? 1 : cycles_between_marks(curves);
   std::string text;
   for (const Curve& curve : curves) {
-    const bool both = columns.x_error > 0;
-    const std::string values = fmt::format("{}:(strcol(1) eq {} ? column({}) : NaN)", columns.x,
-                                           literal(curve.variant), columns.y);
+    const std::string own = fmt::format("strcol(1) eq {}", literal(curve.variant));
+    const std::string values = fmt::format("{}:({} ? column({}) : NaN)", columns.x, own, columns.y);
+    const std::string marked =
+        spacing == 1 ? values
+                     : fmt::format("{0}:({1} && int(column({0})) % {2} == 0 ? column({3}) : NaN)",
+                                   columns.x, own, spacing, columns.y);
     const std::string errors = both ? fmt::format("{}:{}", columns.x_error, columns.y_error)
                                     : std::to_string(columns.y_error);
     text += text.empty() ? "plot " : ", \\\n     ";
     text += fmt::format("data using {}:{} with {} lc rgb '{}' lw 0.8 pt 0 notitle, \\\n     ",
-                        values, errors, both ? "xyerrorbars" : "yerrorbars", curve.style.colour);
-    text += fmt::format("data using {} with linespoints lc rgb '{}' pt {} ps 0.6 title {}", values,
-                        curve.style.colour, curve.style.point, literal(curve.style.title));
+                        marked, errors, both ? "xyerrorbars" : "yerrorbars", curve.style.colour);
+    const std::string look = fmt::format("lc rgb '{}' pt {} ps 0.6 title {}", curve.style.colour,
+                                         curve.style.point, literal(curve.style.title));
+    if (spacing == 1) {
+      text += fmt::format("data using {} with linespoints {}", values, look);
+    } else {
+      text += fmt::format(
+          "data using {} with lines lc rgb '{}' notitle, \\\n     data using {} with points {}",
+          values, curve.style.colour, marked, look);
+    }
   }
   return text.empty() ? text : text + "\n";
 }
@@ -139,7 +176,7 @@ std::string points_with_errors(const std::string& x, const std::string& y, int e
 }
 
 std::string onset_lines() {
-  std::string text;
+  std::string text = "set yrange [*<0.6445:0.6475<*]\n";  // both, wherever the data are
   for (const char* phi : {"0.645", "0.647"}) {
     text += fmt::format(
         "set arrow from graph 0, first {0} to graph 1, first {0} nohead dt 2 lc rgb '#888888'\n",

@@ -67,6 +67,8 @@ FigureTable table_of(const std::map<int, Stiffness>& found) {
       "set xlabel 'mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]'\n"
       "set ylabel 'volume fraction  {/:Italic ϕ}'\n";
   if (table.rows.empty()) return table;
+  // Equal factors of k are equal steps.
+  table.plot += "set logscale x\nset format x '10^{%L}'\nset mxtics 10\n";
   table.plot +=
       "plot " + points_with_errors("2", "4", 5, "#000000", 6, "{/:Italic ϕ}_u, uncorrected") +
       ", \\\n     " + points_with_errors("2", "6", 7, "#000000", 7, "{/:Italic ϕ}") + "\n";

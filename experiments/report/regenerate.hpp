@@ -37,8 +37,12 @@ struct RegeneratedFigure {
   std::string plot_error;                    ///< why there is no SVG; empty when there is
 };
 
-/// Names of the figures that some registered manifest asks for.
+/// Names of the figures that some registered manifest asks for, and of those of every experiment.
 std::vector<std::string> figures_of_store(const Store& store);
+
+/// Those that need more of a checkpoint come first: its one analysis then gives what the others
+/// need as well. Otherwise in the order given.
+std::vector<const Figure*> in_order_of_needs(std::vector<const Figure*> figures);
 
 /// Writes FOLDER/PANEL.csv, .svg and, with librsvg, .pdf for each panel, FOLDER/NAME.verdict.json
 /// and FOLDER/NAME.lineage.json, and records a FigureGenerated event, with the host and build that
