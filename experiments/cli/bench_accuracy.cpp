@@ -38,30 +38,35 @@ nlohmann::json facts(const accuracy::Section& section) {
           {"findings", section.findings}};
 }
 
-void write(const accuracy::Section& section, const std::filesystem::path& folder) {
-  write_csv(section.table, folder);
-  if (!section.table.plot.empty()) draw_svg(section.table, folder);
+// All data before the first drawing, which needs gnuplot.
+void write(const std::vector<accuracy::Section>& sections, const std::filesystem::path& folder) {
+  for (const accuracy::Section& section : sections) write_csv(section.table, folder);
+  for (const accuracy::Section& section : sections) {
+    if (!section.table.plot.empty()) draw_svg(section.table, folder);
+  }
 }
 
-void measure(const AccuracyOptions& options, Context& context) {
-  // Before minutes of measuring.
-  if (!options.out.empty()) std::filesystem::create_directories(options.out);
-  const std::vector<accuracy::Section> sections = accuracy::measure_accuracy(options.measure);
-  if (!options.out.empty()) {
-    for (const accuracy::Section& section : sections) write(section, options.out);
-  }
-  if (context.json) {
-    nlohmann::json all = nlohmann::json::array();
-    for (const accuracy::Section& section : sections) all.push_back(facts(section));
-    print_json({{"quick", options.measure.quick}, {"sections", all}});
-    return;
-  }
+void print(const std::vector<accuracy::Section>& sections) {
   for (const accuracy::Section& section : sections) {
     fmt::print("{}\n", section.title);
     print_table(section.header, section.summary);
     for (const std::string& finding : section.findings) fmt::print("{}\n", finding);
     fmt::print("\n");
   }
+}
+
+void measure(const AccuracyOptions& options, Context& context) {
+  // A folder that cannot be made is told before minutes of measuring.
+  if (!options.out.empty()) std::filesystem::create_directories(options.out);
+  const std::vector<accuracy::Section> sections = accuracy::measure_accuracy(options.measure);
+  if (context.json) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const accuracy::Section& section : sections) all.push_back(facts(section));
+    print_json({{"quick", options.measure.quick}, {"sections", all}});
+  } else {
+    print(sections);
+  }
+  if (!options.out.empty()) write(sections, options.out);
 }
 
 }  // namespace
