@@ -41,6 +41,7 @@ void add_merge(CLI::App& app, Context& context);
 void add_figures(CLI::App& app, Context& context);
 void add_export(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);
+void add_bench_accuracy(CLI::App& bench, Context& context);
 void add_new(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);
 void add_completion(CLI::App& app, Context& context);
