@@ -210,7 +210,7 @@ TEST_F(CommandLine, PlansTheDragExperimentAtEveryScale) {
     double particle_steps;  // of the shear
   };
   for (const Expected& expected : {Expected{"smoke", 4, 6, 4.0 * 600 * 5 * 45600},
-                                   Expected{"desk", 6, 9, 6.0 * 5200 * 120 * 45600},
+                                   Expected{"desk", 12, 18, 12.0 * 5200 * 120 * 45600},
                                    Expected{"paper", 12, 18, 12.0 * 7900 * 200 * 45600}}) {
     const nlohmann::json plan = json({"plan", kDrag, "--scale", expected.scale, "--json"});
     EXPECT_EQ(plan.at("runs"), expected.runs);

@@ -53,7 +53,7 @@ TEST(Drag, ExpandsAtEveryScale) {
     std::size_t runs, grains;
     std::uint64_t cycles;
   };
-  for (const Expected& expected : {Expected{"smoke", 4, 600, 5}, Expected{"desk", 6, 5200, 120},
+  for (const Expected& expected : {Expected{"smoke", 4, 600, 5}, Expected{"desk", 12, 5200, 120},
                                    Expected{"paper", 12, 7900, 200}}) {
     const Plan plan = at(manifest, expected.scale);
     EXPECT_EQ(plan.scale, expected.scale);
