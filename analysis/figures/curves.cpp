@@ -117,19 +117,29 @@ std::string literal(const std::string& text) {
   return fmt::format("'{}'", inside);
 }
 
-std::string plot_curves(std::span<const Curve> curves, const CurveColumns& columns) {
+std::string plot_curves(std::span<const Curve> curves, const TableRows& rows,
+                        const CurveColumns& columns) {
   std::string text;
   for (const Curve& curve : curves) {
+    // By row and not by name: gnuplot's strcol() ends a quoted name at its first comma.
+    const auto mine = [&](const std::vector<TableValue>& row) {
+      return row.front() == TableValue(curve.variant);
+    };
+    const auto first = std::find_if(rows.begin(), rows.end(), mine);
+    if (first == rows.end()) continue;
+    const auto end = std::find_if_not(first, rows.end(), mine);
+    const std::string data =
+        fmt::format("data skip 1 every ::{}::{}", first - rows.begin(), end - rows.begin() - 1);
     const bool both = columns.x_error > 0;
-    const std::string values = fmt::format("{}:(strcol(1) eq {} ? column({}) : NaN)", columns.x,
-                                           literal(curve.variant), columns.y);
     const std::string errors = both ? fmt::format("{}:{}", columns.x_error, columns.y_error)
                                     : std::to_string(columns.y_error);
     text += text.empty() ? "plot " : ", \\\n     ";
-    text += fmt::format("data using {}:{} with {} lc rgb '{}' lw 0.8 pt 0 notitle, \\\n     ",
-                        values, errors, both ? "xyerrorbars" : "yerrorbars", curve.style.colour);
-    text += fmt::format("data using {} with linespoints lc rgb '{}' pt {} ps 0.6 title {}", values,
-                        curve.style.colour, curve.style.point, literal(curve.style.title));
+    text += fmt::format("{} using {}:{}:{} with {} lc rgb '{}' lw 0.8 pt 0 notitle, \\\n     ",
+                        data, columns.x, columns.y, errors, both ? "xyerrorbars" : "yerrorbars",
+                        curve.style.colour);
+    text += fmt::format("{} using {}:{} with linespoints lc rgb '{}' pt {} ps 0.6 title {}", data,
+                        columns.x, columns.y, curve.style.colour, curve.style.point,
+                        literal(curve.style.title));
   }
   return text.empty() ? text : text + "\n";
 }
@@ -197,7 +207,7 @@ FigureTable phi_against_cycle(const std::string& name, std::span<const Curve> cu
     }
   }
   table.plot = cycle_axis(curves) + fmt::format("set ylabel '{}'\n", phi_label) +
-               plot_curves(curves, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
+               plot_curves(curves, table.rows, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
   table.chart = {{.label = cycle_label},
                  {.label = phi_label},
                  chart_curves(curves, table.rows, {.x = 2, .x_error = 0, .y = 3, .y_error = 4}),
@@ -220,7 +230,7 @@ FigureTable crystallinity_against_cycle(const std::string& name, std::span<const
   }
   table.plot = cycle_axis(curves) +
                fmt::format("set ylabel '{}'\nset yrange [0:*]\n", crystalline_label) +
-               plot_curves(curves, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
+               plot_curves(curves, table.rows, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
   table.chart = {{.label = cycle_label},
                  {.label = crystalline_label, .low = 0},
                  chart_curves(curves, table.rows, {.x = 2, .x_error = 0, .y = 3, .y_error = 4}),
@@ -250,7 +260,7 @@ FigureTable crystallinity_against_phi(const std::string& name, std::span<const C
   table.plot = fmt::format("set xlabel '{}'\nset ylabel '{}'\n", phi_label, crystalline_label) +
                "set yrange [0:*]\n"
                "set offsets graph 0.03, graph 0.03, graph 0.05, 0\n" +
-               plot_curves(curves, {.x = 4, .x_error = 5, .y = 6, .y_error = 7});
+               plot_curves(curves, table.rows, {.x = 4, .x_error = 5, .y = 6, .y_error = 7});
   table.chart = {{.label = phi_label},
                  {.label = crystalline_label, .low = 0},
                  chart_curves(curves, table.rows, {.x = 4, .x_error = 5, .y = 6, .y_error = 7}),

@@ -50,8 +50,9 @@ const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& val
 RunStatistics over(const CurvePoint& point, double Measures::*quantity);
 
 /// gnuplot commands: lines with points and, where there is an error, error bars, for each curve.
-/// Column 1 of the table holds the variant.
-std::string plot_curves(std::span<const Curve> curves, const CurveColumns& columns);
+/// Column 1 of the table holds the variant; the rows of one curve follow each other.
+std::string plot_curves(std::span<const Curve> curves, const TableRows& rows,
+                        const CurveColumns& columns);
 
 /// The same curves for a chart.
 std::vector<ChartSeries> chart_curves(std::span<const Curve> curves, const TableRows& rows,
