@@ -137,6 +137,7 @@ export class Plot {
       entry.type = "button";
       entry.setAttribute("aria-pressed", "true");
       entry.title = "Show or hide this curve";
+      entry.classList.toggle("without-data", one.points.length === 0);
       const key = svg("svg", {class: "key", width: 26, height: 14, "aria-hidden": "true"});
       dress(key, one.colour);
       if (one.line) svg("path", {class: "line", d: "M0 7H26"}, key);

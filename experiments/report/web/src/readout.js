@@ -76,8 +76,8 @@ export function addReadout(plot) {
     }
     const at = Math.max(0, series.indexOf(current.one));
     const one = series[(at + across + series.length) % series.length];
-    const index = Math.min(one.points.length - 1, Math.max(0, current.index + along));
-    show({one, index});
+    const index = Math.min(one.points.length - 1, current.index + along);
+    show({one, index: Math.max(0, index)});
   }
 
   plot.canvas.addEventListener("pointermove", (event) => show(nearest(...positionIn(plot, event))));

@@ -6,11 +6,12 @@ import {scaleLinear, scaleLog} from "d3-scale";
 export function extentOf(chart, series, axis) {
   const {log, low, high} = chart[axis];
   const [value, error] = axis === "x" ? [0, 2] : [1, 3];
+  const framed = low != null && high != null;  // bars may then leave the frame
   let least = Infinity;
   let most = -Infinity;
   for (const one of series) {
     for (const point of one.points) {
-      const spread = point[error] ?? 0;
+      const spread = framed ? 0 : point[error] ?? 0;
       for (const end of [point[value] - spread, point[value], point[value] + spread]) {
         if (log && end <= 0) continue;
         least = Math.min(least, end);
@@ -23,8 +24,8 @@ export function extentOf(chart, series, axis) {
 }
 
 function padded(least, most, low, high) {
-  if (low !== null && low !== undefined) least = Math.min(least, low);
-  if (high !== null && high !== undefined) most = Math.max(most, high);
+  least = Math.min(least, low ?? least);
+  most = Math.max(most, high ?? most);
   let room = 0.04 * (most - least);
   if (room === 0) room = Math.abs(most) * 0.05 || 1;
   return [least === low ? least : least - room, most === high ? most : most + room];

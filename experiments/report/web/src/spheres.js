@@ -80,6 +80,7 @@ export class Spheres {
     geometry.setAttribute("corner", new BufferAttribute(corners, 2));
     geometry.setAttribute("centre", new InstancedBufferAttribute(position, 3));
     geometry.instanceCount = position.length / 3;
+    geometry.setDrawRange(0, 6);  // else three looks for an attribute "position" to count
     this.mesh.geometry.dispose();
     this.mesh.geometry = geometry;
   }
