@@ -2,8 +2,8 @@
 // The picture of one packing: spheres, the tilted cell, a camera without perspective. Drawn when
 // something changes and not otherwise.
 import {
-  BufferGeometry, Float32BufferAttribute, LineBasicMaterial, LineSegments, OrthographicCamera, Scene,
-  Vector3, WebGLRenderer
+  BufferGeometry, Color, Float32BufferAttribute, LineBasicMaterial, LineSegments, OrthographicCamera,
+  Scene, SRGBColorSpace, Vector3, WebGLRenderer
 } from "three";
 import {OrbitControls} from "three/examples/jsm/controls/OrbitControls.js";
 import {Spheres} from "./spheres.js";
@@ -29,7 +29,7 @@ export class PackingScene {
   // Throws when the browser has no WebGL 2.
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
+    this.renderer = new WebGLRenderer({canvas, antialias: true, alpha: false});
     this.scene = new Scene();
     this.spheres = new Spheres();
     this.frameLines = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
@@ -37,6 +37,11 @@ export class PackingScene {
     this.camera = new OrthographicCamera(-1, 1, 1, -1, -500, 500);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
+    // Without the focus the wheel scrolls the page, and so does a finger that moves up or down.
+    this.controls.enableZoom = false;
+    canvas.addEventListener("focus", () => (this.controls.enableZoom = true));
+    canvas.addEventListener("blur", () => (this.controls.enableZoom = false));
+    canvas.style.touchAction = "pan-y";
     this.controls.addEventListener("change", () => this.draw());
     this.span = 10;
     this.pending = false;
@@ -104,7 +109,8 @@ export class PackingScene {
 
   setColours({background, line}) {
     this.spheres.material.uniforms.background.value.set(...background.map((c) => c / 255));
-    this.frameLines.material.color.setRGB(...line.map((c) => c / 255));
+    this.frameLines.material.color.setRGB(...line.map((c) => c / 255), SRGBColorSpace);
+    this.renderer.setClearColor(new Color().setRGB(...background.map((c) => c / 255), SRGBColorSpace));
     this.draw();
   }
 

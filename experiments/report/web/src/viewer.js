@@ -121,8 +121,13 @@ export class Viewer {
     const {grains} = this.packing;
     const disordered = {full: 0.5, small: 0.17, hidden: 0}[this.part("disordered").value];
     const wall = this.part("walls").checked ? 0.5 : 0;
-    const total = this.frame.position.length / 3;
-    this.radii = new Float32Array(total).fill(wall, grains);
+    const {position} = this.frame;
+    this.radii = new Float32Array(position.length / 3);
+    for (let i = grains; i < this.radii.length; ++i) {
+      // Side walls go on where the moving wall has left them behind; that part is not shown.
+      const y = position[3 * i + 1];
+      this.radii[i] = y > this.stored.cell.bottom - 1 && y < this.stored.cell.top + 1 ? wall : 0;
+    }
     for (let i = 0; i < grains; ++i) {
       this.radii[i] = this.frame.structure[i] === 0 ? disordered : 0.5;
     }
