@@ -82,6 +82,22 @@ const checks = {
     expect(size < limits.bytes, `size: ${size} bytes`);
   },
 
+  // browser.sh puts an experiment into the store whose texts are markup.
+  async hostile() {
+    const page = await open("hostile");
+    const found = await page.evaluate(() => ({
+      images: document.querySelectorAll("img").length,
+      scripts: document.querySelectorAll("script").length,
+      headings: [...document.querySelectorAll("h2")].map((one) => one.textContent),
+      spoiled: window.spoiled === true
+    }));
+    expect(!found.spoiled && found.images === 0 && found.scripts === 2,
+      `hostile: ${found.images} images, ${found.scripts} scripts`);
+    expect(found.headings.some((text) => text.includes("</script><img src=x")),
+      `hostile: its question is not shown as it stands: ${found.headings}`);
+    await page.context().close();
+  },
+
   // The best of three, since other programs may keep the machine busy.
   async quick() {
     const times = [];

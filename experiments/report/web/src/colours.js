@@ -64,7 +64,7 @@ export function keyOf(grains, mode) {
   if (mode === "crystallite") {
     const {size, rank} = crystalliteSizes(grains.crystallite);
     const entries = [...rank].slice(0, 4).map(([label, place]) => ({
-      colour: crystalliteColours[place], text: `${size.get(label)} grains`
+      colour: crystalliteColours[place], text: size.get(label) === 1 ? "1 grain" : `${size.get(label)} grains`
     }));
     entries.push({colour: plain, text: entries.length > 0 ? "in none" : "no crystallite"});
     return {entries};

@@ -202,6 +202,7 @@ export class Viewer {
     key.replaceChildren();
     if (bar) {
       const label = document.createElement("span");
+      label.className = "of";
       writeHtmlText(label, `{/:Italic ${bar.label[0]}}${bar.label.slice(1)}`);
       const strip = document.createElement("span");
       strip.className = "strip";
@@ -212,6 +213,7 @@ export class Viewer {
     }
     for (const {colour, text} of entries) {
       const entry = document.createElement("span");
+      entry.className = "entry";
       const dot = document.createElement("i");
       dot.style.background = colour;
       entry.append(dot, text);
