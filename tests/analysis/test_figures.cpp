@@ -155,7 +155,9 @@ TEST(Plot, SameSvgSamePdf) {
 TEST(Plot, UnnamedVariantsAndNoRunsAreDrawnToo) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const Folder folder;
-  const std::vector<FigureRun> odd = {rising_run("it's_{odd}^`echo`", 1, 3, 0)};
+  // gnuplot's strcol() would end the last one at its comma.
+  const std::vector<FigureRun> odd = {rising_run("it's_{odd}^`echo`", 1, 3, 0),
+                                      rising_run("still,amplitude_rad=0.05", 1, 3, 0)};
   for (const std::vector<FigureRun>& runs : {odd, std::vector<FigureRun>{}}) {
     for (const FigureTable& table : s2(runs)) {
       write_csv(table, folder.path());
