@@ -17,6 +17,8 @@ namespace {
 constexpr auto scalars = FigureNeeds::scalars;
 
 constexpr std::array figures = {
+    Figure{"table1", "Table I beside the parameters of every experiment", FigureNeeds::none,
+           figure_table1, FigureScope::every},
     Figure{"S1", "Packing fraction in the limit of hard grains", scalars, figure_s1},
     Figure{"S2", "Still fluid and fluid that moves with the cell", scalars, figure_s2},
     Figure{"S3", "Four time steps", scalars, figure_s3},
@@ -28,6 +30,8 @@ constexpr std::array figures = {
     Figure{"C", "Growth of crystallites by size", FigureNeeds::crystallites, figure_c},
     Figure{"B5", "Continuous and periodically paused shear", scalars, figure_b5},
     Figure{"walls", "Rough and smooth walls", scalars, figure_walls},
+    Figure{"choices", "Mass and drag of the moving wall, and other wall grains", scalars,
+           figure_choices},
 };
 
 std::string quoted(const std::string& text) {

@@ -33,6 +33,7 @@ struct CheckpointMeasures {
 /// One run as a figure sees it.
 struct FigureRun {
   std::string run_id;
+  std::string experiment;
   std::string variant;    ///< the curve that it belongs to, as the manifest names it: "fluid=cell"
   nlohmann::json labels;  ///< the swept parameters of the run
   nlohmann::json parameters;  ///< all parameters, by their keys in a manifest
@@ -50,7 +51,9 @@ struct FigureTable {
   /// gnuplot commands that read the variable `data`, the table's CSV file; draw_svg() sets it, the
   /// terminal and the output.
   std::string plot;
-  Chart chart;  ///< the same drawing for a reader who wants to zoom
+  Chart chart;      ///< the same drawing for a reader who wants to zoom
+  int width = 600;  ///< of the drawing [px]
+  int height = 430;
 };
 
 /// RFC 4180 with a header row and "\n" line ends. Numbers carry nine significant digits, which is
@@ -67,8 +70,13 @@ struct FigureResult {
   std::vector<Verdict> verdicts;
 };
 
-/// Which measures of each checkpoint a figure takes.
-enum class FigureNeeds { scalars, crystallites };
+/// Which measures of each checkpoint a figure takes. One that takes none has, of each run, the last
+/// checkpoint alone, and nothing measured on it. Each has what those before it have.
+enum class FigureNeeds { none, scalars, crystallites };
+
+/// The runs of a figure: those of the experiments whose manifests ask for it, each run once; or of
+/// every experiment, each run once in each.
+enum class FigureScope { asking, every };
 
 /// A figure of the supplement.
 struct Figure {
@@ -76,6 +84,7 @@ struct Figure {
   std::string_view title;
   FigureNeeds needs;
   FigureResult (*make)(std::span<const FigureRun> runs);
+  FigureScope scope = FigureScope::asking;
 };
 
 /// The value of a parameter, swept or not; null when the run does not say.

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,12 +21,12 @@ namespace shearcell {
 namespace {
 
 constexpr const char* style =
-    "set terminal svg size 600,430 enhanced font 'Helvetica,14' background '#ffffff'\n"
     "set encoding utf8\n"
     "set datafile separator ','\n"
     "set border 15 lw 1.2\n"
     "set xtics in mirror scale 0.9,0.5\n"
     "set ytics in mirror scale 0.9,0.5\n"
+    "set format '%h'\n"
     "set mxtics 2\n"
     "set mytics 2\n"
     // Ranges end a little outside the data, not at the next tick, so that no point or bar is cut.
@@ -138,6 +139,22 @@ bool made(const Outcome& outcome, const std::filesystem::path& file) {
          std::filesystem::exists(file) && std::filesystem::file_size(file) > 0;
 }
 
+/// librsvg drops the space at either end of a stretch of text, where gnuplot's markup begins or
+/// ends, unless it is told not to; gnuplot tells it only of two spaces together.
+void keep_spaces(const std::filesystem::path& svg) {
+  std::ifstream in(svg, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  constexpr std::string_view plain = "<text>";
+  constexpr std::string_view keeping = "<text xml:space=\"preserve\">";
+  for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at)) {
+    text.replace(at, plain.size(), keeping);
+  }
+  std::ofstream out(svg, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  if (!in || !out) throw AnalysisError("cannot write " + svg.string());
+}
+
 }  // namespace
 
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder) {
@@ -148,7 +165,9 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
     throw AnalysisError("there is no " + table.name + ".csv in " + folder.string() + " to draw");
   }
   std::ofstream file(script, std::ios::binary | std::ios::trunc);
-  file << style << "set output '" << table.name << ".svg'\n"
+  file << "set terminal svg size " << table.width << ',' << table.height
+       << " enhanced font 'Helvetica,14' background '#ffffff'\n"
+       << style << "set output '" << table.name << ".svg'\n"
        << "data = '" << table.name << ".csv'\n"
        << table.plot << (table.rows.empty() ? empty_plot : "") << "set output\n";
   file.close();
@@ -165,6 +184,7 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
     std::filesystem::remove(svg);
     throw AnalysisError("gnuplot could not draw " + table.name + ":\n" + outcome->messages);
   }
+  keep_spaces(svg);
   return svg;
 }
 

@@ -18,6 +18,11 @@ constexpr double kGrainArea = std::numbers::pi / 4;
 constexpr double kRoughLayer = 0.175;
 constexpr std::uint32_t kFillStream = 4;  // after the four wall sides
 
+// Draws after the first have four streams each behind that of the filling, one left out between.
+std::uint32_t wall_stream(WallSide side, std::uint32_t draw) {
+  return static_cast<std::uint32_t>(side) + (kFillStream + 1) * draw;
+}
+
 double wrapped_difference(double dz, double depth) {
   return dz - depth * std::nearbyint(dz / depth);
 }
@@ -44,10 +49,11 @@ void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side
       static_cast<std::size_t>(geometry.wall_grain_area_fraction * area / kGrainArea);
   // Close to jamming (0.547) the waiting time diverges; a wall that falls short is still rough.
   const auto attempts = static_cast<std::uint64_t>(4000.0 * area);
+  const std::uint32_t stream = wall_stream(side, geometry.wall_grain_draw);
   LinkedCells near(length, 0.0, 1.0, depth, 1.0, target);
   std::vector<Eigen::Vector2d> placed;
   for (std::uint64_t attempt = 0; attempt < attempts && placed.size() < target; ++attempt) {
-    const auto u = draw(seed, geometry.grains, static_cast<std::uint32_t>(side), attempt);
+    const auto u = draw(seed, geometry.grains, stream, attempt);
     const Eigen::Vector2d p(u[0] * length, u[1] * depth);
     bool free = true;
     near.for_each_near(p.x(), 0.5, p.y(), [&](std::int32_t j) {

@@ -24,6 +24,7 @@ struct Geometry {
   WallTexture walls = WallTexture::rough;
   double wall_grain_area_fraction = 0.52;  ///< aimed at by the sequential addition
   double wall_grain_recess = 0.25;         ///< largest depth of a centre behind its plane [d]
+  std::uint32_t wall_grain_draw = 0;       ///< another one has other wall grains, from equal seeds
   MovingWall moving = MovingWall::bottom;
 };
 

@@ -18,6 +18,7 @@ namespace {
 /// `compare` gives nothing for two curves that do not reach what the claim is about.
 Verdict worst_pair(
     std::span<const Curve> curves, std::string claim, const std::string& missing,
+    std::size_t together,
     const std::function<std::optional<CurveDifference>(const Curve&, const Curve&)>& compare) {
   Verdict verdict{std::move(claim),
                   "difference of the worst pair of curves, root mean square in standard errors",
@@ -35,7 +36,7 @@ Verdict worst_pair(
         all = false;
         continue;
       }
-      const double limit = limit_of_agreement(found->freedom, pairs);
+      const double limit = limit_of_agreement(found->freedom, pairs * together);
       if (*found->rms / limit <= worst) continue;
       worst = *found->rms / limit;
       verdict.value = found->rms;
@@ -103,11 +104,12 @@ std::optional<CurveDifference> compare_crystallinity(const Curve& a, const Curve
 
 }  // namespace
 
-Verdict phi_agrees_until(std::span<const Curve> curves, std::int64_t until, std::string claim) {
+Verdict phi_agrees_until(std::span<const Curve> curves, std::int64_t until, std::string claim,
+                         std::size_t together) {
   return worst_pair(
       curves, std::move(claim),
       fmt::format("needs two curves of {} runs or more that reach cycle {}", runs_to_tell, until),
-      [until](const Curve& a, const Curve& b) { return compare_phi(a, b, until); });
+      together, [until](const Curve& a, const Curve& b) { return compare_phi(a, b, until); });
 }
 
 Verdict crystallinity_agrees(std::span<const Curve> curves, std::string claim) {
@@ -115,7 +117,7 @@ Verdict crystallinity_agrees(std::span<const Curve> curves, std::string claim) {
                     fmt::format("needs every two curves to share 3 bins of phi with over 1 % "
                                 "crystalline grains and {} runs each",
                                 runs_to_tell),
-                    compare_crystallinity);
+                    1, compare_crystallinity);
 }
 
 FigureResult two_panels(std::span<const Curve> curves, const Comparison& comparison) {

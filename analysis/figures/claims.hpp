@@ -12,8 +12,10 @@
 namespace shearcell {
 
 /// Every two curves of phi against cycle agree (analysis/agreement.hpp) over cycles 1 .. until. The
-/// pair that agrees worst is the one that is reported.
-Verdict phi_agrees_until(std::span<const Curve> curves, std::int64_t until, std::string claim);
+/// pair that agrees worst is the one that is reported. `together` is how many such claims the
+/// figure makes, among which the chance to fail is shared as it is among the pairs of one.
+Verdict phi_agrees_until(std::span<const Curve> curves, std::int64_t until, std::string claim,
+                         std::size_t together = 1);
 
 /// Every two curves of percentage against phi agree, over the bins in which one of them has more
 /// than 1 % of crystalline grains; fewer than three such bins tell nothing.

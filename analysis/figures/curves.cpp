@@ -39,6 +39,12 @@ std::string plain_title(const std::string& text) {
   return result;
 }
 
+/// gnuplot's strcol() ends a field at a comma, quoted or not.
+std::string without_commas(std::string variant) {
+  std::replace(variant.begin(), variant.end(), ',', ';');
+  return variant;
+}
+
 CurveStyle style_of_other(const std::string& variant, std::size_t index) {
   static const std::array<const char*, 6> colours = {"#1f78b4", "#33a02c", "#ff7f00",
                                                      "#6a3d9a", "#b15928", "#000000"};
@@ -65,17 +71,36 @@ std::vector<CurvePoint> points_of(std::span<const FigureRun* const> runs) {
   return points;
 }
 
+/// So that the marks of a long curve stay apart.
+std::size_t cycles_between_marks(std::span<const Curve> curves) {
+  constexpr std::size_t most_marks = 60;
+  std::size_t points = 1;
+  for (const Curve& curve : curves) points = std::max(points, curve.points.size());
+  std::size_t spacing = 1;
+  for (const std::size_t step : {2, 5, 10, 20, 50, 100, 200, 500, 1000}) {
+    if (points / spacing > most_marks) spacing = step;
+  }
+  return spacing;
+}
+
 }  // namespace
 
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
+                             std::span<const CurveStyle> styles) {
+  return curves_by(
+      runs, [&](const FigureRun& run) { return parameter_of(run, parameter); }, styles);
+}
+
+std::vector<Curve> curves_by(std::span<const FigureRun> runs,
+                             const std::function<nlohmann::json(const FigureRun&)>& value_of,
                              std::span<const CurveStyle> styles) {
   std::map<std::string, std::vector<const FigureRun*>> variants;
   for (const FigureRun& run : runs) variants[run.variant].push_back(&run);
   std::vector<std::pair<std::size_t, Curve>> ranked;
   for (auto& [variant, members] : variants) {
     Curve curve;
-    curve.variant = variant;
-    curve.value = parameter_of(*members.front(), parameter);
+    curve.variant = without_commas(variant);
+    curve.value = value_of(*members.front());
     curve.points = points_of(members);
     curve.runs = std::move(members);
     if (curve.points.empty()) continue;
@@ -117,29 +142,31 @@ std::string literal(const std::string& text) {
   return fmt::format("'{}'", inside);
 }
 
-std::string plot_curves(std::span<const Curve> curves, const TableRows& rows,
-                        const CurveColumns& columns) {
+std::string plot_curves(std::span<const Curve> curves, const CurveColumns& columns) {
+  const bool both = columns.x_error > 0;
+  const std::size_t spacing = both ? 1 : cycles_between_marks(curves);
   std::string text;
   for (const Curve& curve : curves) {
-    // By row and not by name: gnuplot's strcol() ends a quoted name at its first comma.
-    const auto mine = [&](const std::vector<TableValue>& row) {
-      return row.front() == TableValue(curve.variant);
-    };
-    const auto first = std::find_if(rows.begin(), rows.end(), mine);
-    if (first == rows.end()) continue;
-    const auto end = std::find_if_not(first, rows.end(), mine);
-    const std::string data =
-        fmt::format("data skip 1 every ::{}::{}", first - rows.begin(), end - rows.begin() - 1);
-    const bool both = columns.x_error > 0;
+    const std::string own = fmt::format("strcol(1) eq {}", literal(curve.variant));
+    const std::string values = fmt::format("{}:({} ? column({}) : NaN)", columns.x, own, columns.y);
+    const std::string marked =
+        spacing == 1 ? values
+                     : fmt::format("{0}:({1} && int(column({0})) % {2} == 0 ? column({3}) : NaN)",
+                                   columns.x, own, spacing, columns.y);
     const std::string errors = both ? fmt::format("{}:{}", columns.x_error, columns.y_error)
                                     : std::to_string(columns.y_error);
     text += text.empty() ? "plot " : ", \\\n     ";
-    text += fmt::format("{} using {}:{}:{} with {} lc rgb '{}' lw 0.8 pt 0 notitle, \\\n     ",
-                        data, columns.x, columns.y, errors, both ? "xyerrorbars" : "yerrorbars",
-                        curve.style.colour);
-    text += fmt::format("{} using {}:{} with linespoints lc rgb '{}' pt {} ps 0.6 title {}", data,
-                        columns.x, columns.y, curve.style.colour, curve.style.point,
-                        literal(curve.style.title));
+    text += fmt::format("data using {}:{} with {} lc rgb '{}' lw 0.8 pt 0 notitle, \\\n     ",
+                        marked, errors, both ? "xyerrorbars" : "yerrorbars", curve.style.colour);
+    const std::string look = fmt::format("lc rgb '{}' pt {} ps 0.6 title {}", curve.style.colour,
+                                         curve.style.point, literal(curve.style.title));
+    if (spacing == 1) {
+      text += fmt::format("data using {} with linespoints {}", values, look);
+    } else {
+      text += fmt::format(
+          "data using {} with lines lc rgb '{}' notitle, \\\n     data using {} with points {}",
+          values, curve.style.colour, marked, look);
+    }
   }
   return text.empty() ? text : text + "\n";
 }
@@ -167,7 +194,7 @@ std::vector<double> onset_levels() {
 }
 
 std::string onset_lines() {
-  std::string text;
+  std::string text = "set yrange [*<0.6445:0.6475<*]\n";  // both, wherever the data are
   for (const double phi : onset_levels()) {
     text += fmt::format(
         "set arrow from graph 0, first {0} to graph 1, first {0} nohead dt 2 lc rgb '#888888'\n",
@@ -207,7 +234,7 @@ FigureTable phi_against_cycle(const std::string& name, std::span<const Curve> cu
     }
   }
   table.plot = cycle_axis(curves) + fmt::format("set ylabel '{}'\n", phi_label) +
-               plot_curves(curves, table.rows, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
+               plot_curves(curves, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
   table.chart = {{.label = cycle_label},
                  {.label = phi_label},
                  chart_curves(curves, table.rows, {.x = 2, .x_error = 0, .y = 3, .y_error = 4}),
@@ -230,7 +257,7 @@ FigureTable crystallinity_against_cycle(const std::string& name, std::span<const
   }
   table.plot = cycle_axis(curves) +
                fmt::format("set ylabel '{}'\nset yrange [0:*]\n", crystalline_label) +
-               plot_curves(curves, table.rows, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
+               plot_curves(curves, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
   table.chart = {{.label = cycle_label},
                  {.label = crystalline_label, .low = 0},
                  chart_curves(curves, table.rows, {.x = 2, .x_error = 0, .y = 3, .y_error = 4}),
@@ -260,7 +287,7 @@ FigureTable crystallinity_against_phi(const std::string& name, std::span<const C
   table.plot = fmt::format("set xlabel '{}'\nset ylabel '{}'\n", phi_label, crystalline_label) +
                "set yrange [0:*]\n"
                "set offsets graph 0.03, graph 0.03, graph 0.05, 0\n" +
-               plot_curves(curves, table.rows, {.x = 4, .x_error = 5, .y = 6, .y_error = 7});
+               plot_curves(curves, {.x = 4, .x_error = 5, .y = 6, .y_error = 7});
   table.chart = {{.label = phi_label},
                  {.label = crystalline_label, .low = 0},
                  chart_curves(curves, table.rows, {.x = 4, .x_error = 5, .y = 6, .y_error = 7}),

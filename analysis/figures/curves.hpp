@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -31,7 +32,7 @@ struct CurvePoint {
 };
 
 struct Curve {
-  std::string variant;
+  std::string variant;   ///< as the manifest names it, with ';' for ','
   nlohmann::json value;  ///< of the figure's parameter; null when the runs do not say
   CurveStyle style;
   std::vector<const FigureRun*> runs;
@@ -44,17 +45,21 @@ struct Curve {
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
                              std::span<const CurveStyle> styles);
 
+/// The same where `value_of` a run, and not one parameter, decides the style.
+std::vector<Curve> curves_by(std::span<const FigureRun> runs,
+                             const std::function<nlohmann::json(const FigureRun&)>& value_of,
+                             std::span<const CurveStyle> styles);
+
 /// The curve in which the parameter has that value, or null.
 const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& value);
 
 RunStatistics over(const CurvePoint& point, double Measures::*quantity);
 
 /// gnuplot commands: lines with points and, where there is an error, error bars, for each curve.
-/// Column 1 of the table holds the variant; the rows of one curve follow each other.
-std::string plot_curves(std::span<const Curve> curves, const TableRows& rows,
-                        const CurveColumns& columns);
+/// Many cycles are marked every 2, 5, 10, ... cycles; the line has them all.
+std::string plot_curves(std::span<const Curve> curves, const CurveColumns& columns);
 
-/// The same curves for a chart.
+/// The same curves for a chart. Column 1 of the table holds the variant.
 std::vector<ChartSeries> chart_curves(std::span<const Curve> curves, const TableRows& rows,
                                       const CurveColumns& columns);
 
@@ -66,7 +71,8 @@ std::string points_with_errors(const std::string& x, const std::string& y, int e
 /// gnuplot's single-quoted text, in which only the quote itself means anything.
 std::string literal(const std::string& text);
 
-/// gnuplot commands: dashed horizontal lines at phi = 0.646 +- 0.001, the supplement's onset.
+/// gnuplot commands: dashed horizontal lines at phi = 0.646 +- 0.001, the supplement's onset, and a
+/// range of y that holds them.
 std::string onset_lines();
 /// Where they lie.
 std::vector<double> onset_levels();

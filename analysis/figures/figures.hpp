@@ -8,6 +8,9 @@
 
 namespace shearcell {
 
+// Table I beside what the runs had.
+FigureResult figure_table1(std::span<const FigureRun> runs);
+
 // phi and phi_u of a packing whose springs are made stiffer.
 FigureResult figure_s1(std::span<const FigureRun> runs);
 
@@ -18,6 +21,8 @@ FigureResult figure_s3(std::span<const FigureRun> runs);
 FigureResult figure_s4(std::span<const FigureRun> runs);
 FigureResult figure_b5(std::span<const FigureRun> runs);
 FigureResult figure_walls(std::span<const FigureRun> runs);
+// phi against cycle alone.
+FigureResult figure_choices(std::span<const FigureRun> runs);
 
 // Growth of crystallites; onset of crystallization; where they nucleate.
 FigureResult figure_c(std::span<const FigureRun> runs);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "analysis/agreement.hpp"
@@ -19,6 +20,34 @@ std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRu
     if (std::isfinite(value)) groups[value].push_back(&run);
   }
   return groups;
+}
+
+double interior_grains(std::span<const FigureRun* const> runs) {
+  std::vector<double> counts;
+  for (const FigureRun* run : runs) {
+    if (run->checkpoints.empty()) continue;
+    counts.push_back(static_cast<double>(run->checkpoints.front().measures.interior_grains));
+  }
+  return over_runs(counts).mean.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+std::optional<double> published_interior(double grains) {
+  for (const PublishedSize& size : published_sizes) {
+    if (static_cast<double>(size.grains) == grains)
+      return static_cast<double>(size.interior_grains);
+  }
+  return std::nullopt;
+}
+
+Verdict interior_is_published(double grains, std::span<const FigureRun* const> runs) {
+  const double published = published_interior(grains).value();
+  const double interior = interior_grains(runs);
+  const bool measured = std::isfinite(interior);
+  return below(
+      fmt::format("C: N = {} has {} grains at least 1.5 d from the walls", grains, published),
+      "relative difference", std::abs(interior / published - 1), 0.03,
+      measured ? fmt::format("N_inves = {:.1f} at the first checkpoint, mean over runs", interior)
+               : fmt::format("no run of {} grains", grains));
 }
 
 std::string runs_in_words(const Onset& onset) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,13 @@ namespace shearcell {
 /// Ascending. Runs that do not say the number are left out.
 std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRun> runs,
                                                         const std::string& parameter);
+
+/// N_inves at the first checkpoint, mean over runs; NaN when there is none.
+double interior_grains(std::span<const FigureRun* const> runs);
+/// What the supplement counts for a packing of that size; none when it has no such size.
+std::optional<double> published_interior(double grains);
+/// Rough runs of `grains` grains, a size of the supplement, have its N_inves within 3 %.
+Verdict interior_is_published(double grains, std::span<const FigureRun* const> runs);
 
 /// The onset is that of the supplement: within 0.646 +- 0.001, plus two standard errors of ours
 /// (Student's t for few runs).

@@ -63,7 +63,7 @@ FigureTable table_of(const std::map<int, Stiffness>& found) {
                           table_value(phi_u.standard_error), table_value(phi.mean),
                           table_value(phi.standard_error), static_cast<std::int64_t>(phi.runs)});
   }
-  table.chart = {{.label = "mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]"},
+  table.chart = {{.label = "mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]", .log = true},
                  {.label = "volume fraction  {/:Italic ϕ}"},
                  {{"{/:Italic ϕ}_u, uncorrected", "#000000", 6, false,
                    chart_points(table.rows, {.x = 2, .x_error = 3, .y = 4, .y_error = 5})},
@@ -74,6 +74,8 @@ FigureTable table_of(const std::map<int, Stiffness>& found) {
       "set xlabel 'mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]'\n"
       "set ylabel 'volume fraction  {/:Italic ϕ}'\n";
   if (table.rows.empty()) return table;
+  // Equal factors of k are equal steps.
+  table.plot += "set logscale x\nset format x '10^{%L}'\nset mxtics 10\n";
   table.plot +=
       "plot " + points_with_errors("2", "4", 5, "#000000", 6, "{/:Italic ϕ}_u, uncorrected") +
       ", \\\n     " + points_with_errors("2", "6", 7, "#000000", 7, "{/:Italic ϕ}") + "\n";

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "analysis/agreement.hpp"
 #include "analysis/figures/curves.hpp"
@@ -16,6 +15,8 @@
 
 namespace shearcell {
 namespace {
+
+constexpr double smallest_size = 5200;  // of the supplement; always claimed
 
 struct AmplitudeOnset {
   double amplitude;
@@ -73,33 +74,6 @@ Verdict methods_agree(const AmplitudeOnset& o) {
                          "; steepest: " + runs_in_words(o.by_slope));
 }
 
-double interior_grains(std::span<const FigureRun* const> runs) {
-  std::vector<double> counts;
-  for (const FigureRun* run : runs) {
-    if (run->checkpoints.empty()) continue;
-    counts.push_back(static_cast<double>(run->checkpoints.front().measures.interior_grains));
-  }
-  return over_runs(counts).mean.value_or(std::numeric_limits<double>::quiet_NaN());
-}
-
-/// What the supplement counts for a packing of that size; none when it has no such size.
-std::optional<double> published_interior(double grains) {
-  for (const PublishedSize& size : published_sizes) {
-    if (static_cast<double>(size.grains) == grains)
-      return static_cast<double>(size.interior_grains);
-  }
-  return std::nullopt;
-}
-
-std::optional<Verdict> interior_is_published(double grains, double interior) {
-  const std::optional<double> published = published_interior(grains);
-  if (!published) return std::nullopt;
-  return below(
-      fmt::format("C: N = {} has {} grains at least 1.5 d from the walls", grains, *published),
-      "relative difference", std::abs(interior / *published - 1), 0.03,
-      fmt::format("N_inves = {:.1f} at the first checkpoint, mean over runs", interior));
-}
-
 }  // namespace
 
 FigureResult figure_s5a(std::span<const FigureRun> runs) {
@@ -127,14 +101,15 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
   table.columns = onset_columns({"grains", "interior_grains", "supplement_interior_grains"});
   FigureResult result;
   bool converged = false;
-  for (const auto& [grains, members] : runs_by(runs, "grains")) {
+  const auto groups = runs_by(runs, "grains");
+  for (const auto& [grains, members] : groups) {
     const double amplitude = number_of(*members.front(), "amplitude_rad");
     const Onset found = onset(members, onset_by_size, published_nearest(amplitude).critical_size);
     const double interior = interior_grains(members);
     table.rows.push_back(
         onset_row({grains, interior, table_value(published_interior(grains))}, found));
-    if (auto verdict = interior_is_published(grains, interior)) {
-      result.verdicts.push_back(std::move(*verdict));
+    if (published_interior(grains)) {
+      result.verdicts.push_back(interior_is_published(grains, members));
     }
     if (interior >= converged_interior_grains) {
       converged = true;
@@ -146,6 +121,9 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
     result.verdicts.push_back(
         onset_is_published({}, "C: the onset for N_inves >= 6000 is phi = 0.646 +- 0.001"));
     result.verdicts.back().note = "no run is that large";
+  }
+  if (!groups.contains(smallest_size)) {
+    result.verdicts.push_back(interior_is_published(smallest_size, {}));
   }
   table.chart = {{.label = "grains  {/:Italic N}", .low = 0, .high = 20000},
                  {.label = "onset  {/:Italic ϕ}"},

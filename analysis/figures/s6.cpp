@@ -3,6 +3,8 @@
 // D.
 #include <fmt/format.h>
 
+#include <array>
+
 #include "analysis/agreement.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
@@ -12,6 +14,31 @@
 
 namespace shearcell {
 namespace {
+
+std::string title_of(double amplitude, bool gravity) {
+  return fmt::format("{{/:Italic A}} = {}, {}", amplitude, gravity ? "gravity" : "no gravity");
+}
+
+bool has_gravity(const FigureRun& run) {
+  return number_of(run, "gravity_m_per_s2") != 0;
+}
+
+/// A colour for each amplitude; open symbols without gravity.
+std::vector<CurveStyle> styles_for(std::span<const FigureRun> runs) {
+  static const std::array<const char*, 4> colours = {"#1f4fd8", "#d62728", "#2ca02c", "#000000"};
+  std::vector<CurveStyle> styles;
+  std::size_t k = 0;
+  for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
+    const char* colour = colours[k % colours.size()];
+    const int open = 4 + 2 * static_cast<int>(k % 4);
+    for (const bool gravity : {true, false}) {
+      const std::string title = title_of(amplitude, gravity);
+      styles.push_back({title, title, colour, gravity ? open + 1 : open});
+    }
+    ++k;
+  }
+  return styles;
+}
 
 struct CurveOnset {
   const Curve* curve;
@@ -24,9 +51,8 @@ std::vector<CurveOnset> onsets_of(std::span<const Curve> curves) {
   std::vector<CurveOnset> onsets;
   for (const Curve& curve : curves) {
     const double amplitude = number_of(*curve.runs.front(), "amplitude_rad");
-    const double gravity = number_of(*curve.runs.front(), "gravity_m_per_s2");
     onsets.push_back(
-        {&curve, amplitude, gravity != 0,
+        {&curve, amplitude, has_gravity(*curve.runs.front()),
          onset(curve.runs, onset_by_size, published_nearest(amplitude).critical_size)});
   }
   return onsets;
@@ -98,7 +124,12 @@ Verdict gravity_does_not_matter(const CurveOnset& with, const CurveOnset& withou
 }  // namespace
 
 FigureResult figure_s6(std::span<const FigureRun> runs) {
-  const std::vector<Curve> curves = curves_of(runs, "gravity_m_per_s2", {});
+  const std::vector<Curve> curves = curves_by(
+      runs,
+      [](const FigureRun& run) {
+        return title_of(number_of(run, "amplitude_rad"), has_gravity(run));
+      },
+      styles_for(runs));
   const std::vector<CurveOnset> onsets = onsets_of(curves);
   FigureTable phi = phi_against_cycle("S6", curves);
   phi.plot = onset_lines() + onset_points(onsets) + phi.plot;

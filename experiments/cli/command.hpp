@@ -42,6 +42,10 @@ void add_figures(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
 void add_export(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);
+void add_new(CLI::App& app, Context& context);
+void add_doctor(CLI::App& app, Context& context);
+void add_completion(CLI::App& app, Context& context);
+void add_manual(CLI::App& app, Context& context);
 
 /// --store DIR, and --json where the subcommand prints facts.
 void add_common_options(CLI::App& command, Context& context, bool with_json);
@@ -49,7 +53,8 @@ void add_common_options(CLI::App& command, Context& context, bool with_json);
 /// Prints facts for programs: one JSON value, indented by two.
 void print_json(const nlohmann::json& facts);
 
-/// Prints rows under a header, each column as wide as its longest cell; numbers to the right.
+/// Prints rows under a header, each column as wide as its longest cell; numbers to the right. On a
+/// terminal words are cut, with ~ at the end, until the table fits, and states have colours.
 void print_table(const std::vector<std::string>& header,
                  const std::vector<std::vector<std::string>>& rows);
 

@@ -68,8 +68,10 @@ void figures(const FigureOptions& options, Context& context) {
   const std::vector<std::string> names =
       options.all || options.names.empty() ? figures_of_store(store) : options.names;
   if (names.empty()) fmt::print(stderr, "No manifest of this store asks for a figure.\n");
+  std::vector<const Figure*> wanted;
   for (const std::string& name : names) {
-    if (find_figure(name) == nullptr) {
+    wanted.push_back(find_figure(name));
+    if (wanted.back() == nullptr) {
       throw NotFound("there is no figure " + name + "; known are" + known_figures());
     }
   }
@@ -85,8 +87,8 @@ void figures(const FigureOptions& options, Context& context) {
     };
   }
   nlohmann::json list = nlohmann::json::array();
-  for (const std::string& name : names) {
-    const RegeneratedFigure result = regenerate(store, *find_figure(name), how);
+  for (const Figure* figure : in_order_of_needs(std::move(wanted))) {
+    const RegeneratedFigure result = regenerate(store, *figure, how);
     complain(result);
     if (!result.damage.empty()) context.exit_code = kStoreDamaged;
     const bool incomplete = !result.plot_error.empty() || !result.pruned.empty();

@@ -34,9 +34,15 @@ constexpr const char* kFooter =
 std::string version_text() {
   const nlohmann::json facts = host_facts();
   const nlohmann::json& build = facts["build"];
-  return fmt::format("shearcell {} ({})\n{} {}, {}", build["version"].get<std::string>(),
-                     build["commit"].get<std::string>(), build["compiler"].get<std::string>(),
-                     build["type"].get<std::string>(), facts["simd"].get<std::string>());
+  const auto word = [&](const char* key) { return build[key].get<std::string>(); };
+  std::string libraries;
+  for (const auto& [name, version] : facts["libraries"].items()) {
+    libraries +=
+        fmt::format("{}{} {}", libraries.empty() ? "" : ", ", name, version.get<std::string>());
+  }
+  return fmt::format("shearcell {} ({})\n{}, {} build, {}\nflags: {}\nlibraries: {}",
+                     word("version"), word("commit"), word("compiler"), word("type"),
+                     facts["simd"].get<std::string>(), word("flags"), libraries);
 }
 
 int complain(int code, const char* what) {
@@ -54,9 +60,9 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());
   app.require_subcommand(0, 1);  // so that a word that is none is named
-  for (const auto add :
-       {add_plan, add_run, add_status, add_log, add_show, add_verify, add_rebuild, add_prune,
-        add_regenerate, add_merge, add_figures, add_report, add_export, add_bench}) {
+  for (const auto add : {add_plan, add_run, add_status, add_log, add_show, add_verify, add_rebuild,
+                         add_prune, add_regenerate, add_merge, add_figures, add_report, add_export,
+                         add_bench, add_new, add_doctor, add_completion, add_manual}) {
     add(app, context);
   }
   try {

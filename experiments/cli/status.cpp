@@ -2,10 +2,16 @@
 // `status`: every run with its state, how far it is and how fast it went.
 #include <fmt/format.h>
 
+#include <chrono>
+#include <cstdio>
 #include <map>
+#include <memory>
+#include <thread>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/progress.hpp"
+#include "experiments/runner/stop.hpp"
+#include "experiments/runner/terminal.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -50,44 +56,83 @@ nlohmann::json facts(const RunRecord& run) {
           {"updated_at", run.updated_at}};
 }
 
-std::vector<std::string> row(const RunRecord& run, const std::string& holder) {
+std::vector<std::string> row(const RunRecord& run, bool held) {
   const Membership first = run.memberships.empty() ? Membership{} : run.memberships.front();
   return {run.id.substr(0, 8),
-          first.experiment,
           first.variant,
           std::to_string(first.seed),
           std::to_string(run.grains),
-          name_of(run.state),
+          fmt::format("{}{}", name_of(run.state), held ? " *" : ""),
           run.kind == "prepare" ? "" : fmt::format("{:.4g}/{}", run.cycle, run.target_cycles),
           fmt::format("{:.1f}", rate(run) * 1e-6),
-          format_duration(run.wall_seconds),
-          holder};
+          format_duration(run.wall_seconds)};
+}
+
+/// A table for each experiment, each run under the first that declared it, and what is to be said
+/// of single runs below them.
+void print(const std::vector<RunRecord>& runs, const std::map<std::string, Lease>& by_run) {
+  std::vector<std::string> experiments;
+  std::map<std::string, std::vector<std::vector<std::string>>> tables;
+  std::map<RunState, std::size_t> count;
+  for (const RunRecord& run : runs) {
+    const Membership first = run.memberships.empty() ? Membership{} : run.memberships.front();
+    const std::string name = first.experiment + " at scale " + first.scale;
+    if (!tables.contains(name)) experiments.push_back(name);
+    tables[name].push_back(row(run, by_run.contains(run.id)));
+    ++count[run.state];
+  }
+  for (const std::string& name : experiments) {
+    fmt::print("{}\n", name);
+    print_table({"run", "variant", "seed", "N", "state", "cycle", "M/s", "time"}, tables[name]);
+    fmt::print("\n");
+  }
+  std::string all;
+  for (const auto& [state, runs_in_it] : count) {
+    all += fmt::format("{}{} {}", all.empty() ? "" : ", ", runs_in_it, name_of(state));
+  }
+  fmt::print("{} stages{}{}\n", runs.size(), all.empty() ? "" : ": ", all);
+  for (const auto& [run, lease] : by_run) {
+    fmt::print("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
+  }
+  for (const RunRecord& run : runs) {
+    if (!run.error.empty()) fmt::print("{}: {}\n", run.id.substr(0, 8), run.error);
+  }
+}
+
+void print_facts(const std::vector<RunRecord>& runs, const std::map<std::string, Lease>& by_run) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const RunRecord& run : runs) {
+    list.push_back(facts(run));
+    const auto held = by_run.find(run.id);
+    list.back()["holder"] = held == by_run.end() ? nlohmann::json() : facts(held->second);
+  }
+  print_json({{"runs", list}});
 }
 
 void status(Context& context) {
   const Store store(context.store, Access::read);
-  const std::vector<RunRecord> runs = store.runs();
-  const std::map<std::string, Lease> by_run = holders(store);
   if (context.json) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const RunRecord& run : runs) {
-      list.push_back(facts(run));
-      const auto held = by_run.find(run.id);
-      list.back()["holder"] = held == by_run.end() ? nlohmann::json() : facts(held->second);
+    print_facts(store.runs(), holders(store));
+  } else {
+    print(store.runs(), holders(store));
+  }
+}
+
+/// Prints again and again until nobody holds a run or a signal comes.
+void watch(Context& context, double interval) {
+  catch_stop_signals();
+  const bool terminal = terminal_columns(stdout).has_value();
+  while (true) {
+    const Store store(context.store, Access::read);
+    const std::map<std::string, Lease> by_run = holders(store);
+    if (terminal) fmt::print("\x1b[H\x1b[2J");
+    print(store.runs(), by_run);
+    std::fflush(stdout);
+    if (by_run.empty()) return;
+    for (double waited = 0; waited < interval; waited += 0.05) {
+      if (stop_requested()) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    print_json({{"runs", list}});
-    return;
-  }
-  std::vector<std::vector<std::string>> rows;
-  for (const RunRecord& run : runs) {
-    const auto held = by_run.find(run.id);
-    rows.push_back(row(run, held == by_run.end() ? "" : describe(held->second.holder)));
-  }
-  print_table(
-      {"run", "experiment", "variant", "seed", "N", "state", "cycle", "M/s", "time", "held by"},
-      rows);
-  for (const RunRecord& run : runs) {
-    if (!run.error.empty()) fmt::print("{}: {}\n", run.id.substr(0, 8), run.error);
   }
 }
 
@@ -96,11 +141,19 @@ void status(Context& context) {
 void add_status(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand("status", "List the runs of the store");
   add_common_options(*command, context, true);
+  auto interval = std::make_shared<double>(2.0);
+  CLI::Option* watched = command->add_option("--watch", *interval, "Show again, every so often")
+                             ->type_name("SECONDS=2")
+                             ->expected(0, 1)
+                             ->check(CLI::Range(0.1, 86400.0))
+                             ->excludes("--json");
   command->footer(
       "M/s is million particle-steps per second over all recorded work. A run that is running and\n"
-      "held by nobody was killed; `resume` goes on with it.\n"
-      "Examples:\n  shearcell status\n  shearcell status --json");
-  command->callback([&context] { status(context); });
+      "held by nobody was killed; `resume` goes on with it. --watch ends when nobody holds a run.\n"
+      "Examples:\n  shearcell status\n  shearcell status --watch\n  shearcell status --json");
+  command->callback([watched, interval, &context] {
+    watched->count() > 0 ? watch(context, *interval) : status(context);
+  });
 }
 
 }  // namespace shearcell::cli

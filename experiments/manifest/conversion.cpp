@@ -55,6 +55,7 @@ Geometry geometry(const Parameters& p) {
           .walls = p.walls,
           .wall_grain_area_fraction = p.wall_grain_area_fraction,
           .wall_grain_recess = p.wall_grain_recess_diameters,
+          .wall_grain_draw = static_cast<std::uint32_t>(p.wall_grain_draw),
           .moving = p.moving_wall};
 }
 

@@ -20,12 +20,18 @@ using nlohmann::json;
 // Changes with the meaning of a key, so that keys of different meanings never meet.
 constexpr std::string_view kDomain = "shearcell stage 1\n";
 
-// Whether the record of a stage holds the parameter. A sheared cell feels what it settled under as
-// well.
-bool enters(const Field& field, Stage stage, std::string_view protocol) {
+bool is_default(const Field& field, const json& value) {
+  return value == get_value(field, Parameters{});
+}
+
+// Whether the record of a stage holds the parameter with that value. A sheared cell feels what it
+// settled under as well.
+bool enters(const Field& field, Stage stage, std::string_view protocol, const json& value) {
   switch (field.identity) {
     case Identity::prepare:
       return true;
+    case Identity::prepare_if_set:
+      return !is_default(field, value);
     case Identity::shear:
       return stage == Stage::shear;
     case Identity::paused_shear:
@@ -41,8 +47,9 @@ bool enters(const Field& field, Stage stage, std::string_view protocol) {
 json resolve(Stage stage, const Parameters& parameters, std::uint64_t seed) {
   json values = json::object();
   for (const Field& field : schema()) {
-    if (enters(field, stage, parameters.protocol))
-      values[std::string(field.name)] = get_value(field, parameters);
+    json value = get_value(field, parameters);
+    if (enters(field, stage, parameters.protocol, value))
+      values[std::string(field.name)] = std::move(value);
   }
   return {{"stage", stage_name(stage)}, {"seed", seed}, {"parameters", std::move(values)}};
 }
@@ -100,11 +107,19 @@ StageSpec following(Stage stage, const Parameters& parameters, std::uint64_t see
   return {stage, std::move(key), parent.key, std::move(resolved)};
 }
 
-// Decides which parameters the record must hold; read_parameters refuses what is not a protocol.
-std::string protocol_of(const json& values) {
-  if (!values.is_object()) return "";
-  const auto found = values.find("protocol");
-  return found != values.end() && found->is_string() ? found->get<std::string>() : "";
+// Values decide which parameters the record must hold; read_parameters refuses what is no value.
+json value_in(const json& values, std::string_view key, json otherwise) {
+  if (!values.is_object()) return otherwise;
+  const auto found = values.find(key);
+  return found != values.end() ? *found : std::move(otherwise);
+}
+
+Parameters read_parameters_of(Stage stage, const json& values) {
+  const json protocol = value_in(values, "protocol", "");
+  const std::string name = protocol.is_string() ? protocol.get<std::string>() : "";
+  return read_parameters(values, [&](const Field& field) {
+    return enters(field, stage, name, value_in(values, field.name, get_value(field, Parameters{})));
+  });
 }
 
 }  // namespace
@@ -161,10 +176,7 @@ StageRecord read_stage(const json& resolved) {
   if (!seed.is_number_unsigned()) throw damaged("seed", "is not a whole number >= 0");
   record.seed = seed.get<std::uint64_t>();
   const bool prepares = record.stage == Stage::prepare;
-  const json& values = member(resolved, "parameters");
-  const std::string protocol = protocol_of(values);
-  record.parameters = read_parameters(
-      values, [&](const Field& field) { return enters(field, record.stage, protocol); });
+  record.parameters = read_parameters_of(record.stage, member(resolved, "parameters"));
   if (record.stage == Stage::stiffen) record.parameters.protocol = name;
   // A record of a shear that says it stiffens is one that this program never wrote.
   if (record.stage == Stage::shear && record.parameters.protocol == stage_name(Stage::stiffen)) {

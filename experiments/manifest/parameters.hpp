@@ -30,6 +30,7 @@ struct Parameters {
   double nominal_packing_fraction = 0.64;
   double wall_grain_area_fraction = 0.52;
   double wall_grain_recess_diameters = 0.25;
+  std::uint64_t wall_grain_draw = 0;
   double wall_mass_grains_per_d2 = 10;
   double wall_drag_grains_per_d2_s = 1000;
 

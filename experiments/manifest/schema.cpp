@@ -99,6 +99,8 @@ std::vector<Field> cell_fields() {
                 "jams at 0.547"),
       from_zero("wall_grain_recess_diameters", "", "d", &P::wall_grain_recess_diameters, 0.5,
                 prepare, "wall grain centres lie up to this depth behind the wall plane"),
+      integer("wall_grain_draw", "", &P::wall_grain_draw, 0, 1e6, Identity::prepare_if_set,
+              "another number draws other wall grains, from the same seed"),
       above_zero("wall_mass_grains_per_d2", "", "m/d^2", &P::wall_mass_grains_per_d2, 1e6, prepare,
                  "mass of the moving wall per area"),
       from_zero("wall_drag_grains_per_d2_s", "", "m/(d^2 s)", &P::wall_drag_grains_per_d2_s, 1e9,
@@ -182,6 +184,8 @@ string_view identity_markdown(Identity identity) {
   switch (identity) {
     case Identity::prepare:
       return "prepare";
+    case Identity::prepare_if_set:
+      return "prepare, if not 0";
     case Identity::shear:
       return "shear";
     case Identity::paused_shear:

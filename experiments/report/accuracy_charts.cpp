@@ -220,7 +220,7 @@ ReportPanel read_panel(const std::filesystem::path& file) {
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in) throw NotFound(file.string() + ": cannot be read");
   Chart chart = chart_of(CsvReader(text, file.string()).read());
-  return {file.stem().string(), std::move(chart), std::move(text), ""};
+  return {file.stem().string(), std::move(chart), std::move(text), {}, ""};
 }
 
 }  // namespace

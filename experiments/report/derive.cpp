@@ -50,7 +50,10 @@ class Deriving {
     std::sort(outcome_.damage.begin(), outcome_.damage.end());
     std::sort(outcome_.pruned.begin(), outcome_.pruned.end());
     std::sort(outcome_.changed.begin(), outcome_.changed.end());
-    for (const std::size_t i : place_) outcome_.results.push_back(results_[i]);
+    const bool distinct = place_.size() == distinct_.size();
+    for (const std::size_t i : place_) {
+      outcome_.results.push_back(distinct ? std::move(results_[i]) : results_[i]);
+    }
     outcome_.trouble = cache_.trouble();
     return std::move(outcome_);
   }

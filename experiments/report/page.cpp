@@ -140,6 +140,16 @@ std::string packings_html(const ReportData& data) {
       count(data.packings.runs.size(), "run"), data.packings.largest_step);
 }
 
+/// Figures that no experiment asks for.
+std::string across_html(const ReportData& data) {
+  std::string html;
+  for (const ReportFigure& figure : data.figures) {
+    if (figure.experiment.empty()) html += figure_html(data, figure);
+  }
+  if (html.empty()) return html;
+  return "<section id=\"across\">\n<h2>All experiments together</h2>\n" + html + "</section>\n";
+}
+
 std::string accuracy_html(const ReportData& data) {
   if (data.accuracy.empty()) return "";
   std::string html =
@@ -189,7 +199,8 @@ std::string report_page(const ReportData& data) {
   for (const ReportExperiment& experiment : data.experiments) {
     html += experiment_html(data, experiment);
   }
-  html += packings_html(data) + accuracy_html(data) + runs_html(data) + about_html(data);
+  html += across_html(data) + packings_html(data) + accuracy_html(data) + runs_html(data) +
+          about_html(data);
   return html + "</main>\n" + data_html(data) + "</body>\n</html>\n";
 }
 

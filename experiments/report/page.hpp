@@ -16,6 +16,9 @@ std::string report_page(const ReportData& data);
 /// The experiment's question, verdict, figures and runs.
 std::string experiment_html(const ReportData& data, const ReportExperiment& experiment);
 
+/// A figure: its panels, claims and lineage.
+std::string figure_html(const ReportData& data, const ReportFigure& figure);
+
 /// A plot (a place for one, when the page is interactive) and its numbers.
 std::string panel_html(const ReportData& data, const ReportPanel& panel);
 

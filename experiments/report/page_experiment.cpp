@@ -24,21 +24,19 @@ std::string claim_html(const Verdict& verdict) {
                      verdict.note.empty() ? "" : ". " + escape_html(verdict.note));
 }
 
-std::string figure_html(const ReportData& data, const ReportFigure& figure) {
+std::string table_html(const ReportPanel& panel) {
   std::string html = fmt::format(
-      "<section class=\"figure\" id=\"figure-{0}\">\n<h3>Figure {0}. "
-      "{1}</h3>\n<div class=\"panels\">\n",
-      escape_html(figure.name), escape_html(figure.title));
-  for (const ReportPanel& panel : figure.panels) html += panel_html(data, panel);
-  html += "</div>\n<ul class=\"claims\">\n";
-  for (const Verdict& verdict : figure.about.verdicts) html += claim_html(verdict);
-  html += "</ul>\n";
-  for (const auto* list : {&figure.about.damage, &figure.about.pruned}) {
-    for (const std::string& line : *list) {
-      html += fmt::format("<p class=\"warning\">Left out: {}</p>\n", escape_html(line));
+      "<div class=\"scroll tall\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table>",
+      escape_html(panel.name));
+  for (const std::vector<std::string>& row : panel.table) {
+    const char* tag = &row == &panel.table.front() ? "th" : "td";
+    html += "<tr>";
+    for (const std::string& cell : row) {
+      html += fmt::format("<{0}>{1}</{0}>", tag, escape_html(cell));
     }
+    html += "</tr>\n";
   }
-  return html + lineage_html(data, figure) + "</section>\n";
+  return html + "</table></div>";
 }
 
 std::string progress_of(const RunRecord& run) {
@@ -104,6 +102,23 @@ Ruling ruling_of(const ReportData& data, const ReportExperiment& experiment) {
     all.insert(all.end(), own.begin(), own.end());
   }
   return overall(all);
+}
+
+std::string figure_html(const ReportData& data, const ReportFigure& figure) {
+  std::string html = fmt::format(
+      "<section class=\"figure\" id=\"figure-{0}\">\n<h3>Figure {0}. "
+      "{1}</h3>\n<div class=\"panels\">\n",
+      escape_html(figure.name), escape_html(figure.title));
+  for (const ReportPanel& panel : figure.panels) html += panel_html(data, panel);
+  html += "</div>\n<ul class=\"claims\">\n";
+  for (const Verdict& verdict : figure.about.verdicts) html += claim_html(verdict);
+  html += "</ul>\n";
+  for (const auto* list : {&figure.about.damage, &figure.about.pruned}) {
+    for (const std::string& line : *list) {
+      html += fmt::format("<p class=\"warning\">Left out: {}</p>\n", escape_html(line));
+    }
+  }
+  return html + lineage_html(data, figure) + "</section>\n";
 }
 
 std::string panel_html(const ReportData& data, const ReportPanel& panel) {

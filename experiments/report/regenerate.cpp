@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <set>
 #include <span>
+#include <utility>
 
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
@@ -48,11 +50,25 @@ struct Input {
   std::vector<CheckpointRecord> checkpoints;  // at whole cycles
 };
 
-std::vector<Input> inputs_of(const Store& store, std::string_view figure,
+// At whole cycles; of a figure that measures nothing the last one.
+std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
+                                             const std::string& run) {
+  std::vector<CheckpointRecord> found;
+  for (const CheckpointRecord& record : store.checkpoints(run, true)) {
+    if (record.state == CheckpointState::rejected) continue;
+    if (record.cycle != std::floor(record.cycle)) continue;
+    if (figure.needs == FigureNeeds::none) found.clear();
+    found.push_back(record);
+  }
+  return found;
+}
+
+std::vector<Input> inputs_of(const Store& store, const Figure& figure,
                              const std::optional<std::string>& asked_scale, std::string& scale) {
+  const bool every = figure.scope == FigureScope::every;
   std::set<std::string> experiments;
   for (const ManifestFacts& manifest : manifests(store)) {
-    if (asks_for(manifest, figure)) experiments.insert(manifest.experiment);
+    if (every || asks_for(manifest, figure.name)) experiments.insert(manifest.experiment);
   }
   std::vector<Input> inputs;
   for (const RunRecord& run : store.runs()) {
@@ -64,7 +80,7 @@ std::vector<Input> inputs_of(const Store& store, std::string_view figure,
     }
   }
   if (inputs.empty()) {
-    throw NotFound("no run of the store belongs to figure " + std::string(figure) +
+    throw NotFound("no run of the store belongs to figure " + std::string(figure.name) +
                    (asked_scale ? " at scale " + *asked_scale : "") +
                    "; run a manifest that lists it under `figures` first");
   }
@@ -73,17 +89,14 @@ std::vector<Input> inputs_of(const Store& store, std::string_view figure,
   inputs.erase(std::remove_if(inputs.begin(), inputs.end(),
                               [&](const Input& i) { return i.membership.scale != scale; }),
                inputs.end());
-  // A run that two experiments share is one run: counted twice, it would make errors too small.
-  std::set<std::string> seen;
-  inputs.erase(std::remove_if(inputs.begin(), inputs.end(),
-                              [&](const Input& i) { return !seen.insert(i.run.id).second; }),
-               inputs.end());
-  for (Input& input : inputs) {
-    for (const CheckpointRecord& record : store.checkpoints(input.run.id, true)) {
-      if (record.state == CheckpointState::rejected) continue;
-      if (record.cycle == std::floor(record.cycle)) input.checkpoints.push_back(record);
-    }
-  }
+  // A run that two experiments share is one run: counted twice, it would make errors too small. A
+  // figure of every experiment tells of each by itself.
+  std::set<std::pair<std::string, std::string>> seen;
+  const auto again = [&](const Input& i) {
+    return !seen.emplace(i.run.id, every ? i.membership.experiment : "").second;
+  };
+  inputs.erase(std::remove_if(inputs.begin(), inputs.end(), again), inputs.end());
+  for (Input& input : inputs) input.checkpoints = checkpoints_of(store, figure, input.run.id);
   return inputs;
 }
 
@@ -93,6 +106,7 @@ struct Measured {
 };
 
 std::vector<DerivedMeasure> needed(const Figure& figure) {
+  if (figure.needs == FigureNeeds::none) return {};
   std::vector<DerivedMeasure> measures = {scalar_measures()};
   if (figure.needs == FigureNeeds::crystallites) measures.push_back(crystallite_measure());
   return measures;
@@ -111,11 +125,13 @@ std::vector<std::optional<Measured>> measure(const Store& store, const Figure& f
       derive(store, records, needed(figure), {options.workers, options.fresh, options.report});
   std::vector<std::optional<Measured>> measured;
   try {
-    for (const auto& results : derived.results) {
+    for (auto& results : derived.results) {
       std::optional<Measured>& one = measured.emplace_back();
       if (!results) continue;
-      one = {read_measures(results->front()), std::nullopt};
+      one.emplace();
+      if (!results->empty()) one->measures = read_measures(results->front());
       if (results->size() > 1) one->crystallites = read_crystallite_map(results->at(1));
+      results.reset();  // as JSON it takes more memory than all that is kept of it
     }
   } catch (const AnalysisError& problem) {
     throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
@@ -135,6 +151,7 @@ std::vector<FigureRun> figure_runs(const std::vector<Input>& inputs,
   std::size_t next = 0;
   for (const Input& input : inputs) {
     FigureRun run{input.run.id,
+                  input.membership.experiment,
                   input.membership.variant,
                   input.membership.labels,
                   input.run.resolved.value("parameters", nlohmann::json::object()),
@@ -202,11 +219,17 @@ std::vector<std::string> figures_of_store(const Store& store) {
   std::vector<std::string> names;
   for (const Figure& figure : all_figures()) {
     const bool asked =
-        std::any_of(registered.begin(), registered.end(),
-                    [&](const ManifestFacts& manifest) { return asks_for(manifest, figure.name); });
+        std::any_of(registered.begin(), registered.end(), [&](const ManifestFacts& manifest) {
+          return figure.scope == FigureScope::every || asks_for(manifest, figure.name);
+        });
     if (asked) names.emplace_back(figure.name);
   }
   return names;
+}
+
+std::vector<const Figure*> in_order_of_needs(std::vector<const Figure*> figures) {
+  std::ranges::stable_sort(figures, std::greater{}, &Figure::needs);
+  return figures;
 }
 
 ComputedFigure compute_figure(const Store& store, const Figure& figure,
@@ -214,7 +237,7 @@ ComputedFigure compute_figure(const Store& store, const Figure& figure,
   ComputedFigure computed;
   RegeneratedFigure& about = computed.about;
   about.name = figure.name;
-  const std::vector<Input> inputs = inputs_of(store, figure.name, options.scale, about.scale);
+  const std::vector<Input> inputs = inputs_of(store, figure, options.scale, about.scale);
   const std::vector<FigureRun> runs =
       figure_runs(inputs, measure(store, figure, inputs, options, about));
   about.runs = runs.size();

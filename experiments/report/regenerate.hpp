@@ -44,8 +44,12 @@ struct ComputedFigure {
   nlohmann::json lineage;  ///< as the record of the figure has it; `outputs` is empty
 };
 
-/// Names of the figures that some registered manifest asks for.
+/// Names of the figures that some registered manifest asks for, and of those of every experiment.
 std::vector<std::string> figures_of_store(const Store& store);
+
+/// Those that need more of a checkpoint come first: its one analysis then gives what the others
+/// need as well. Otherwise in the order given.
+std::vector<const Figure*> in_order_of_needs(std::vector<const Figure*> figures);
 
 /// The tables and verdicts of a figure, and what they come from. Reads the store, and writes
 /// nothing but measures into derived.sqlite. `folder` is not used. Throws as regenerate() does.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/report/report_data.hpp"
 
+#include <fmt/format.h>
 #include <stdlib.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -95,6 +97,23 @@ std::optional<FigureRecord> record_of(const std::vector<FigureRecord>& records,
   return std::nullopt;
 }
 
+std::vector<std::vector<std::string>> texts_of(const FigureTable& table) {
+  std::vector<std::vector<std::string>> texts = {table.columns};
+  for (const std::vector<TableValue>& row : table.rows) {
+    std::vector<std::string>& line = texts.emplace_back();
+    for (const TableValue& value : row) {
+      const auto* text = std::get_if<std::string>(&value);
+      const auto* whole = std::get_if<std::int64_t>(&value);
+      const auto* real = std::get_if<double>(&value);
+      line.push_back(text != nullptr                           ? *text
+                     : whole != nullptr                        ? std::to_string(*whole)
+                     : real != nullptr && std::isfinite(*real) ? fmt::format("{:.9g}", *real)
+                                                               : "");
+    }
+  }
+  return texts;
+}
+
 ReportFigure make_figure(const Store& store, const Figure& figure, const ReportOptions& options,
                          const std::vector<FigureRecord>& records, ReportData& data) {
   RegenerateOptions how;
@@ -110,7 +129,8 @@ ReportFigure make_figure(const Store& store, const Figure& figure, const ReportO
   made.lineage = figure_lineage(store, {made.name, 0, "", computed.lineage});
   const DrawingFolder folder;
   for (const FigureTable& table : computed.result.tables) {
-    ReportPanel panel{table.name, table.chart, to_csv(table), ""};
+    ReportPanel panel{table.name, table.chart, to_csv(table), {}, ""};
+    if (table.chart.series.empty()) panel.table = texts_of(table);
     try {
       if (!data.interactive) panel.drawing = draw(table, folder);
     } catch (const AnalysisError& error) {
@@ -121,31 +141,50 @@ ReportFigure make_figure(const Store& store, const Figure& figure, const ReportO
   return made;
 }
 
+/// Each figure once, under the first experiment that asks for it; then those about all of them.
+std::vector<std::pair<const Figure*, std::string>> figures_to_make(const ReportData& data,
+                                                                   Report& report) {
+  std::vector<std::pair<const Figure*, std::string>> wanted;
+  std::set<std::string> seen;
+  for (const ReportExperiment& experiment : data.experiments) {
+    for (const std::string& name : experiment.figures) {
+      if (!seen.insert(name).second) continue;
+      if (const Figure* figure = find_figure(name)) {
+        wanted.emplace_back(figure, experiment.name);
+      } else {
+        report.notes.push_back("figure " + name + ": this program cannot make it");
+      }
+    }
+  }
+  for (const Figure& figure : all_figures()) {
+    const bool about_all = figure.scope == FigureScope::every;
+    if (about_all && seen.insert(std::string(figure.name)).second) wanted.emplace_back(&figure, "");
+  }
+  return wanted;
+}
+
 void add_figures(const Store& store, const ReportOptions& options, ReportData& data,
                  Report& report) {
   const std::vector<FigureRecord> records = figure_records(store);
-  std::set<std::string> tried;
+  const auto wanted = figures_to_make(data, report);
+  std::map<const Figure*, std::string> experiments(wanted.begin(), wanted.end());
+  std::vector<const Figure*> figures;
+  for (const auto& [figure, experiment] : wanted) figures.push_back(figure);
   std::set<std::string> made;
-  for (ReportExperiment& experiment : data.experiments) {
-    for (const std::string& name : experiment.figures) {
-      const Figure* figure = find_figure(name);
-      if (!tried.insert(name).second) continue;
-      if (figure == nullptr) {
-        report.notes.push_back("figure " + name + ": this program cannot make it");
-        continue;
-      }
-      try {
-        ReportFigure one = make_figure(store, *figure, options, records, data);
-        one.experiment = experiment.name;
-        const RegeneratedFigure& about = one.about;
-        report.damage.insert(report.damage.end(), about.damage.begin(), about.damage.end());
-        report.notes.insert(report.notes.end(), about.pruned.begin(), about.pruned.end());
-        data.figures.push_back(std::move(one));
-        made.insert(name);
-      } catch (const NotFound& missing) {
-        report.notes.push_back("figure " + name + ": " + missing.what());
-      }
+  for (const Figure* figure : in_order_of_needs(std::move(figures))) {
+    try {
+      ReportFigure one = make_figure(store, *figure, options, records, data);
+      one.experiment = experiments.at(figure);
+      const RegeneratedFigure& about = one.about;
+      report.damage.insert(report.damage.end(), about.damage.begin(), about.damage.end());
+      report.notes.insert(report.notes.end(), about.pruned.begin(), about.pruned.end());
+      made.insert(one.name);
+      data.figures.push_back(std::move(one));
+    } catch (const NotFound& missing) {
+      report.notes.push_back("figure " + std::string(figure->name) + ": " + missing.what());
     }
+  }
+  for (ReportExperiment& experiment : data.experiments) {
     std::erase_if(experiment.figures,
                   [&](const std::string& name) { return !made.contains(name); });
   }

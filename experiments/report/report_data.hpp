@@ -20,13 +20,14 @@ struct ReportPanel {
   std::string name;
   Chart chart;
   std::string csv;
+  std::vector<std::vector<std::string>> table;  ///< header and rows, where there is no chart
   std::string drawing;  ///< SVG, when the page is not interactive and gnuplot is there
 };
 
 struct ReportFigure {
   std::string name;
   std::string title;
-  std::string experiment;  ///< under which it is shown
+  std::string experiment;  ///< under which it is shown; "" when it is about all
   RegeneratedFigure about;
   std::vector<ReportPanel> panels;
   FigureLineage lineage;
@@ -45,7 +46,7 @@ struct ReportData {
   Head head;
   nlohmann::json program;  ///< build of the program that makes the report
   std::vector<ReportExperiment> experiments;
-  std::vector<ReportFigure> figures;
+  std::vector<ReportFigure> figures;       ///< those of `experiments`, and those about all of them
   std::map<std::string, RunLineage> runs;  ///< by id
   std::map<std::string, ManifestText> manifests;
   std::vector<ReportPanel> accuracy;

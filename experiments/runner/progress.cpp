@@ -2,23 +2,16 @@
 #include "experiments/runner/progress.hpp"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
+
+#include "experiments/runner/terminal.hpp"
 
 namespace shearcell {
 namespace {
 
 constexpr std::chrono::seconds kPlainInterval{10};
-
-// A longer line would wrap, and drawing over it would leave its beginning behind.
-std::size_t terminal_width() {
-  winsize size{};
-  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 20) return 79;
-  return std::size_t{size.ws_col} - 1;
-}
 
 std::string describe(const StageStatus& status) {
   const double rate = status.steps_per_second * static_cast<double>(status.grains) * 1e-6;
@@ -42,7 +35,7 @@ std::string format_duration(double seconds) {
 }
 
 Progress::Progress(std::size_t stages, bool quiet)
-    : stages_(stages), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+    : stages_(stages), quiet_(quiet), terminal_(terminal_columns(stderr).has_value()) {}
 
 Progress::~Progress() {
   erase();
@@ -101,8 +94,10 @@ void Progress::erase() {
 
 void Progress::draw() {
   erase();
+  // A longer line would wrap, and drawing over it would leave its beginning behind.
+  const std::size_t longest = terminal_columns(stderr).value_or(80) - 1;
   for (const auto& [name, text] : running_) {
-    fmt::print(stderr, "{:.{}}\n", fmt::format("{:<28} {}", name, text), terminal_width());
+    fmt::print(stderr, "{:.{}}\n", fmt::format("{:<28} {}", name, text), longest);
     ++drawn_;
   }
   std::fflush(stderr);

@@ -3,13 +3,18 @@
 //
 // The packing is jammed, with rough walls. Cells are compared with voro++ before anything is timed.
 // Each time is the best of several runs on one thread, in turn, so that a busy moment of the
-// machine hurts both. voro++ gets the best of three block sizes. Usage: bench_analysis [grains]
+// machine hurts both. voro++ gets the best of three block sizes. Memory is the rise of the
+// process's peak, for one analysis and then for several at once. Usage: bench_analysis [grains [at
+// once]]
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <latch>
+#include <thread>
+#include <vector>
 
 #include "analysis/measures.hpp"
 #include "analysis/voronoi.hpp"
@@ -31,13 +36,25 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
+void analyse_at_once(const shearcell::testing::Packing& p, int count) {
+  std::latch start(count);
+  std::vector<std::jthread> threads;
+  for (int k = 0; k < count; ++k) {
+    threads.emplace_back([&] {
+      start.arrive_and_wait();
+      shearcell::analyse(p.cell, p.pose, p.grains);
+    });
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace shearcell;
   const int grains = argc > 1 ? std::atoi(argv[1]) : 18200;
-  if (grains < 1) {
-    std::fprintf(stderr, "usage: bench_analysis [grains]\n");
+  const int at_once = argc > 2 ? std::atoi(argv[2]) : 4;
+  if (grains < 1 || at_once < 1) {
+    std::fprintf(stderr, "usage: bench_analysis [grains [at once]]\n");
     return 2;
   }
   const testing::Packing p = testing::jammed(grains, true, 0, 1);
@@ -47,6 +64,8 @@ int main(int argc, char** argv) {
   const double before = peak_memory_mb();
   whole = seconds([&] { analyse(p.cell, p.pose, p.grains); });
   const double memory = peak_memory_mb();
+  analyse_at_once(p, at_once);
+  const double memory_at_once = peak_memory_mb();
 
   double worst = 0;
   const VoronoiDiagram diagram = voronoi(p.cell, p.pose, p.grains);
@@ -70,5 +89,7 @@ int main(int argc, char** argv) {
   std::printf("voronoi %.4f s, voro++ %.4f s, ratio %.2f\n", own, peer, own / peer);
   std::printf("whole analysis %.4f s; memory %.0f MB, of which %.0f MB before it\n", whole, memory,
               before);
+  std::printf("%d at once: memory %.0f MB, %.0f MB for each\n", at_once, memory_at_once,
+              (memory_at_once - before) / at_once);
   return 0;
 }

@@ -131,11 +131,104 @@ TEST(FigureWalls, SmoothOnesCrystallizeAtOnce) {
       m.crystalline_percent = percent * n / 20;
     });
   };
+  // Then what becomes of the rough runs, too short here, and N_inves.
   EXPECT_EQ(rulings("walls", std::vector{run("smooth", 40), run("rough", 1)}),
-            (Rulings{pass, pass}));
+            (Rulings{pass, pass, too_few, pass}));
   EXPECT_EQ(rulings("walls", std::vector{run("smooth", 10), run("rough", 30)}),
-            (Rulings{fail, fail}));
-  EXPECT_EQ(rulings("walls", std::vector{run("smooth", 40)}), (Rulings{pass, too_few}));
+            (Rulings{fail, fail, too_few, pass}));
+  EXPECT_EQ(rulings("walls", std::vector{run("smooth", 40)}), (Rulings{pass, too_few, too_few}));
+}
+
+TEST(FigureWalls, RoughOnesCrystallizeInTheBulkLater) {
+  // A crystallite of 16 grains, the first, at `cycle`.
+  const auto rough = [](std::uint64_t seed, int cycle, double phi, int last) {
+    return made_up_run("walls", "rough", seed, last, [=](int n, Measures& m) {
+      m.phi = n < cycle ? 0.63 : phi;
+      m.crystalline_percent = 0;
+      m.largest_crystallite = n < cycle ? 15 : 16;
+      m.interior_grains = 3436;
+    });
+  };
+  const auto ruling = [](std::vector<FigureRun> runs) { return rulings("walls", runs).at(2); };
+  EXPECT_EQ(ruling({rough(1, 30, 0.641, 120), rough(2, 119, 0.651, 119)}), pass);
+  EXPECT_EQ(ruling({rough(1, 30, 0.641, 120), rough(2, 130, 0.651, 119)}), pass) << "censored";
+  EXPECT_EQ(ruling({rough(2, 130, 0.651, 119)}), too_few);
+  EXPECT_EQ(ruling({rough(1, 30, 0.641, 120), rough(2, 130, 0.651, 120)}), fail) << "never";
+  EXPECT_EQ(ruling({rough(1, 120, 0.645, 130)}), fail) << "too late";
+  EXPECT_EQ(ruling({rough(1, 30, 0.653, 120)}), fail);
+  EXPECT_EQ(ruling({rough(1, 30, 0.639, 120)}), fail);
+  EXPECT_EQ(ruling({rough(1, 0, 0.645, 120)}), fail) << "from the start";
+  EXPECT_EQ(rulings("walls", std::vector{rough(1, 30, 0.641, 120)}).at(3), fail)
+      << "N_inves 3.03 % too large";
+}
+
+TEST(FigureChoices, OneThatShowsIsFound) {
+  std::vector<FigureRun> runs;
+  const auto add = [&](double mass, double drag, int draw, double speed) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      FigureRun run = crystallizing("choice", runs.size() / 6, seed + 10 * runs.size(), speed, 0);
+      run.labels = {{"wall_mass_grains_per_d2", mass}, {"wall_drag_grains_per_d2_s", drag}};
+      run.parameters = run.labels;
+      if (draw != 0) run.parameters["wall_grain_draw"] = draw;
+      runs.push_back(std::move(run));
+    }
+  };
+  add(10, 1000, 0, 0.0005);
+  add(10, 1000, 1, 0.0005);
+  EXPECT_EQ(rulings("choices", runs), (Rulings{too_few, too_few, too_few, too_few, pass}));
+  add(30, 1000, 0, 0.0005);
+  add(10.0 / 3, 1000, 0, 0.0006);
+  add(10, 3000, 0, 0.0005);
+  add(10, 333.3333, 0, 0.0005);
+  EXPECT_EQ(rulings("choices", runs), (Rulings{pass, fail, pass, pass, pass}));
+  runs.erase(runs.begin(), runs.begin() + 6);
+  EXPECT_EQ(rulings("choices", runs), (Rulings{too_few, too_few, too_few, too_few, too_few}))
+      << "nothing to compare with";
+}
+
+FigureRun of_table_1(const char* experiment, const std::string& key, const nlohmann::json& value) {
+  FigureRun run = made_up_run(key, value, 1, 0, [](int, Measures&) {});
+  run.experiment = experiment;
+  run.parameters = {
+      {"mass_kg", 2e-5},          {"diameter_m", 3e-3},      {"stiffness_N_per_m", 654.0},
+      {"drag_kg_per_s", 1.28e-3}, {"pressure_Pa", 954.0},    {"period_s", 2.0},
+      {"steps_per_cycle", 45600}, {"gravity_m_per_s2", 9.81}};
+  run.parameters[key] = value;
+  return run;
+}
+
+TEST(FigureTable1, WhatIsSweptMayDifferAndNothingElse) {
+  EXPECT_EQ(rulings("table1", std::vector{of_table_1("drag", "fluid", "still")}), Rulings{pass});
+  std::vector<FigureRun> runs = {of_table_1("gravity", "gravity_m_per_s2", 9.81),
+                                 of_table_1("gravity", "gravity_m_per_s2", 0.0),
+                                 of_table_1("other", "pressure_Pa", 955.0),
+                                 of_table_1("timestep", "steps_per_cycle", 57143)};
+  runs[2].labels = {{"fluid", "still"}};
+  EXPECT_EQ(rulings("table1", runs), (Rulings{pass, fail, pass}));
+  const FigureTable table = find_figure("table1")->make(runs).tables.at(0);
+  const std::string csv = to_csv(table);
+  for (const char* row :
+       {"gravity,gravity_m_per_s2,9.81,0,9.81,2,varied\n",
+        "other,pressure_Pa,954,955,955,1,differs\n",
+        "other,omega_rad_per_s,3.14159265,3.14159265,3.14159265,1,equal\n",
+        "timestep,time_step_s,4.38596491e-05,3.49999125e-05,3.49999125e-05,1,varied\n"}) {
+    EXPECT_NE(csv.find(row), std::string::npos) << row << csv;
+  }
+}
+
+TEST(FigureTable1, AStiffeningVariesTheSpringsAndHasNoTime) {
+  FigureRun run = of_table_1("spring_constant", "protocol", "stiffen");
+  for (const char* key : {"period_s", "steps_per_cycle"}) run.parameters.erase(key);
+  run.checkpoints.back().stiffness_N_per_m = 65400;
+  EXPECT_EQ(rulings("table1", std::vector{run}), Rulings{pass});
+  const std::string csv = to_csv(find_figure("table1")->make(std::vector{run}).tables.at(0));
+  for (const char* row :
+       {",stiffness_N_per_m,654,654,65400,1,varied\n", ",steps_per_cycle,45600,,,0,none\n",
+        ",mass_kg,2e-05,2e-05,2e-05,1,equal\n"}) {
+    EXPECT_NE(csv.find(row), std::string::npos) << row << csv;
+  }
+  run.checkpoints.clear();
+  EXPECT_EQ(rulings("table1", std::vector{run}), Rulings{}) << "declared, not computed";
 }
 
 /// Cycle 0 is the packing as it settled, cycles 1 to 9 are minima at k/k0 = 1 .. 100.
@@ -199,8 +292,9 @@ TEST(FigureS6, GravityDoesNotMatter) {
 }
 
 TEST(FigureS5, OnsetAndInteriorGrainsAreThoseOfTheSupplement) {
-  EXPECT_EQ(rulings("S5b", nucleating_runs(0.6475, 0.6475)), (Rulings{pass, pass}));
-  EXPECT_EQ(rulings("S5b", nucleating_runs(0.656, 0.656)), (Rulings{pass, fail}));
+  // The last one is N_inves of N = 5200, which these runs do not have.
+  EXPECT_EQ(rulings("S5b", nucleating_runs(0.6475, 0.6475)), (Rulings{pass, pass, too_few}));
+  EXPECT_EQ(rulings("S5b", nucleating_runs(0.656, 0.656)), (Rulings{pass, fail, too_few}));
   EXPECT_EQ(rulings("S5a", nucleating_runs(0.656, 0.656))[0], fail);
   EXPECT_EQ(rulings("S5a", nucleating_runs(0.6475, 0.6475))[0], pass);
 }

@@ -81,6 +81,27 @@ TEST(Filling, DependsOnSeedNumberAndGeometryAlone) {
   EXPECT_EQ(fill(top, 5), fill(of(200), 5));
 }
 
+TEST(Filling, AnotherDrawHasOtherWallGrainsInTheSameCell) {
+  Geometry geometry = of(300);
+  const Cell first = make_cell(geometry, 5);
+  for (const std::uint32_t draw : {1U, 2U, 1'000'000U}) {
+    geometry.wall_grain_draw = draw;
+    const Cell other = make_cell(geometry, 5);
+    EXPECT_EQ(other.width, first.width);
+    EXPECT_EQ(other.top, first.top);
+    for (const WallGrain& a : first.wall_grains) {
+      for (const WallGrain& b : other.wall_grains) {
+        ASSERT_FALSE(a.side == b.side && a.position == b.position) << draw;
+      }
+    }
+    const Cell again = make_cell(geometry, 5);
+    ASSERT_EQ(again.wall_grains.size(), other.wall_grains.size());
+    for (std::size_t k = 0; k < again.wall_grains.size(); ++k) {
+      EXPECT_EQ(again.wall_grains[k].position, other.wall_grains[k].position);
+    }
+  }
+}
+
 TEST(Filling, WidthHoldsTheGrainsAtTheNominalFraction) {
   // Smooth walls: L^3 * 1.675 * 0.64 = N pi/6.
   Geometry geometry = of(5200);

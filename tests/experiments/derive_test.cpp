@@ -71,6 +71,38 @@ TEST_F(Derive, OnlyNewCheckpointsAreMeasured) {
   EXPECT_EQ(csv("again"), csv("long"));
 }
 
+TEST_F(Derive, OneAnalysisGivesAllThatFiguresMadeTogetherNeed) {
+  std::string text = tiny_manifest("", kBothFluids);
+  text.replace(text.find("[S2]"), 4, "[S7, walls]");
+  compute(store_, text);
+  RegenerateOptions options;
+  options.folder = folder_.path() / "together";
+  std::vector<std::string> order;
+  std::size_t measured = 0;
+  for (const Figure* figure :
+       in_order_of_needs({find_figure("table1"), find_figure("walls"), find_figure("S7")})) {
+    order.emplace_back(figure->name);
+    measured += regenerate(store_, *figure, options).measured;
+  }
+  EXPECT_EQ(order, (std::vector<std::string>{"S7", "walls", "table1"}));
+  EXPECT_EQ(measured, 6U) << "checkpoints, each once";
+}
+
+// A run that two experiments have counts in each.
+TEST_F(Derive, AFigureOfEveryExperimentMeasuresNothing) {
+  const std::string text = tiny_manifest("", kBothFluids);
+  compute(store_, "experiment: other" + text.substr(text.find('\n')));
+  RegenerateOptions options;
+  options.folder = folder_.path() / "table";
+  const RegeneratedFigure table = regenerate(store_, *find_figure("table1"), options);
+  EXPECT_EQ(table.measured, 0U);
+  EXPECT_EQ(table.runs, 2U * 2U);
+  EXPECT_EQ(table.checkpoints, 2U * 2U) << "the last one of each";
+  ASSERT_EQ(table.verdicts.size(), 2U);
+  std::printf("%s: %s\n", table.verdicts[0].claim.c_str(), table.verdicts[0].note.c_str());
+  EXPECT_NE(table.verdicts[0].claim.find("other"), std::string::npos);
+}
+
 TEST_F(Derive, AChangedValueIsFoundAndReplaced) {
   make("first");
   sql("UPDATE derived SET (content, sha256) = (SELECT content, sha256 FROM derived LIMIT 1)");

@@ -26,6 +26,10 @@ void expect_same_keys(const PlannedRun& a, const PlannedRun& b) {
   EXPECT_EQ(a.last.key, b.last.key);
 }
 
+bool settling_feels(const Field& field) {
+  return field.identity == Identity::prepare || field.identity == Identity::prepare_if_set;
+}
+
 // Some other value that the field may take.
 json another_value(const Field& field) {
   const json value = get_value(field, Parameters{});
@@ -52,9 +56,9 @@ TEST(Identity, DependsOnEachFieldAsTheSchemaSays) {
     set_value(field, value, parameters);
     const StageSpec other_prepare = prepare_stage(parameters, 1);
     const StageSpec other_shear = shear_stage(parameters, 1, other_prepare);
-    EXPECT_EQ(other_prepare.key != prepare.key, field.identity == Identity::prepare);
+    EXPECT_EQ(other_prepare.key != prepare.key, settling_feels(field));
     EXPECT_EQ(other_shear.key != shear.key,
-              field.identity == Identity::prepare || field.identity == Identity::shear);
+              settling_feels(field) || field.identity == Identity::shear);
   }
   EXPECT_GE(changed, 26);
 }
@@ -187,8 +191,7 @@ TEST(Identity, AStiffeningIsNamedByWhatItFeels) {
     Parameters other = parameters;
     set_value(field, another_value(field), other);
     const StageSpec key = stiffen_stage(other, 1, prepare_stage(other, 1));
-    EXPECT_EQ(key.key != stiffen.key,
-              field.identity == Identity::prepare || field.identity == Identity::stiffen);
+    EXPECT_EQ(key.key != stiffen.key, settling_feels(field) || field.identity == Identity::stiffen);
     EXPECT_EQ(stiffen.resolved.at("parameters").contains(field.name),
               field.identity == Identity::prepare || field.identity == Identity::stiffen);
   }
@@ -222,6 +225,26 @@ TEST(Identity, APauseEntersOnlyWhereTheProtocolIsPaused) {
   swapped = continuous.resolved;
   swapped["parameters"]["protocol"] = "paused";
   EXPECT_THROW(read_stage(swapped), std::runtime_error);
+}
+
+// A parameter younger than the stores: runs that do not use it keep the keys that they have.
+TEST(Identity, ADrawOfWallGrainsEntersOnlyWhereItIsNotTheFirst) {
+  const StageSpec first = prepare_stage({}, 1);
+  EXPECT_FALSE(first.resolved.at("parameters").contains("wall_grain_draw"));
+  Parameters redrawn;
+  redrawn.wall_grain_draw = 2;
+  const StageSpec other = prepare_stage(redrawn, 1);
+  EXPECT_NE(other.key, first.key);
+  EXPECT_EQ(read_stage(other.resolved).parameters, redrawn);
+  EXPECT_EQ(read_stage(shear_stage(redrawn, 1, other).resolved).parameters, redrawn);
+  EXPECT_EQ(read_stage(first.resolved).parameters, Parameters{});
+
+  // The first draw, written out, would be a second name for one computation.
+  for (const json& value : {json(0), json(-1), json("one"), json(), json(1e300)}) {
+    json record = other.resolved;
+    record["parameters"]["wall_grain_draw"] = value;
+    EXPECT_THROW(read_stage(record), std::runtime_error) << value;
+  }
 }
 
 TEST(CanonicalJson, WritesOneTextForOneValue) {

@@ -135,6 +135,9 @@ TEST(Conversion, CarriesTheGeometry) {
   EXPECT_EQ(shape.walls, WallTexture::smooth);
   EXPECT_EQ(shape.wall_grain_area_fraction, 0.52);
   EXPECT_EQ(shape.wall_grain_recess, 0.25);
+  EXPECT_EQ(shape.wall_grain_draw, 0U);
+  parameters.wall_grain_draw = 1'000'000;
+  EXPECT_EQ(geometry(parameters).wall_grain_draw, 1'000'000U);
   EXPECT_EQ(shape.moving, MovingWall::top);
 }
 

@@ -60,7 +60,7 @@ TEST(Manifests, EachExpandsAtEveryScale) {
     experiments.insert(experiment);
   }
   EXPECT_EQ(experiments,
-            (std::set<std::string>{"critical_size", "drag", "gravity", "moving_wall",
+            (std::set<std::string>{"choices", "critical_size", "drag", "gravity", "moving_wall",
                                    "nucleation_sites", "onset_amplitude", "relaxation",
                                    "spring_constant", "system_size", "timestep", "walls"}));
 }
@@ -75,6 +75,10 @@ TEST(Manifests, ShareTheRunThatTheyHaveInCommon) {
     }
     EXPECT_EQ(last_stages(plan("critical_size", scale)),
               last_stages(plan("onset_amplitude", scale)));
+  }
+  // At its own desk scale, N = 2000, the choices share no run.
+  for (const char* scale : {"smoke", "paper"}) {
+    EXPECT_TRUE(last_stages(plan("choices", scale)).contains(plan("drag", scale).runs[0].last.key));
   }
   // With gravity, S6 has two of the amplitudes of C.
   const std::set<std::string> amplitudes = last_stages(plan("critical_size", "paper"));
@@ -100,6 +104,29 @@ TEST(Manifests, HaveTheSizesAndNumbersOfTheSupplement) {
           {"grains=5200", 10}, {"grains=7900", 10}, {"grains=11400", 10}, {"grains=18200", 10}}));
   for (const PlannedRun& run : plan("nucleation_sites", "paper").runs) {
     EXPECT_EQ(run.grains, 18200U);
+  }
+}
+
+// analysis/figures/choices.cpp knows the defaults of the wall by these numbers.
+TEST(Manifests, ChoicesDepartFromTheDefaultsOneAtATimeByThree) {
+  const Plan expanded = plan("choices", "desk");
+  ASSERT_EQ(expanded.runs.size(), 6 * 6U);
+  const Parameters none;
+  EXPECT_EQ(none.wall_mass_grains_per_d2, 10);
+  EXPECT_EQ(none.wall_drag_grains_per_d2_s, 1000);
+  EXPECT_EQ(none.wall_grain_draw, 0U);
+  std::vector<std::vector<double>> found;
+  for (std::size_t n = 0; n < 6; ++n) {
+    const Parameters& p = expanded.runs[6 * n].parameters;
+    EXPECT_EQ(p.grains, 2000U);
+    found.push_back({p.wall_mass_grains_per_d2 / none.wall_mass_grains_per_d2,
+                     p.wall_drag_grains_per_d2_s / none.wall_drag_grains_per_d2_s,
+                     static_cast<double>(p.wall_grain_draw)});
+  }
+  const std::vector<std::vector<double>> wanted = {{1, 1, 0}, {3, 1, 0},       {1.0 / 3, 1, 0},
+                                                   {1, 3, 0}, {1, 1.0 / 3, 0}, {1, 1, 1}};
+  for (std::size_t n = 0; n < 6; ++n) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(found[n][k], wanted[n][k], 1e-12) << n << k;
   }
 }
 

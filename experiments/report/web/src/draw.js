@@ -111,21 +111,28 @@ function errorBars(points, scales) {
   return path;
 }
 
-// Symbols would merge into a band where there are very many points.
-const symbolsUpTo = 400;
+// So that the symbols and bars of a long curve stay apart; the line has all points.
+const apart = 7;  // pixels
+
+function marked(points, scales, joined) {
+  if (!joined || points.length < 2) return points;
+  const wide = Math.abs(scales.x(points.at(-1)[0]) - scales.x(points[0][0]));
+  const fit = Math.max(2, wide / apart);
+  const every = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].find((n) => points.length / n <= fit) ?? 1000;
+  return points.filter((_, index) => index % every === 0);
+}
 
 export function drawSeries(root, one, scales) {
   const group = svg("g", {}, root);
   dress(group, one.colour);
   const drawn = one.points.filter(([x, y]) => Number.isFinite(scales.x(x) + scales.y(y)));
-  const bars = errorBars(drawn, scales);
+  const marks = marked(drawn, scales, one.line);
+  const bars = errorBars(marks, scales);
   if (bars) svg("path", {class: "bars", d: bars}, group);
   if (one.line && drawn.length > 1) {
     const path = line((p) => scales.x(p[0]), (p) => scales.y(p[1]));
     svg("path", {class: "line", d: path(drawn)}, group);
   }
-  if (drawn.length <= symbolsUpTo || !one.line) {
-    for (const [x, y] of drawn) drawSymbol(group, one.point, scales.x(x), scales.y(y));
-  }
+  for (const [x, y] of marks) drawSymbol(group, one.point, scales.x(x), scales.y(y));
   return group;
 }

@@ -19,6 +19,12 @@ export function extentOf(chart, series, axis) {
       }
     }
   }
+  if (axis === "y") {
+    for (const level of chart.levels) {
+      least = Math.min(least, level);
+      most = Math.max(most, level);
+    }
+  }
   if (!(least <= most)) [least, most] = log ? [0.1, 1] : [low ?? 0, high ?? 1];
   return log ? paddedLog(least, most) : padded(least, most, low, high);
 }

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `doctor`: what this machine has of what the program can use, and what speed to expect.
+#include <fmt/format.h>
+#include <sched.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/report/speed.hpp"
+#include "experiments/runner/host.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Finding {
+  std::string what;
+  std::string found;
+  std::string state;  ///< "ok", "slow", "missing"
+  std::string advice;
+};
+
+/// The folder that the store is in or would be made in.
+fs::path place_of(const std::string& store) {
+  fs::path place = fs::absolute(store);
+  while (!fs::is_directory(place) && place.has_relative_path()) place = place.parent_path();
+  return place;
+}
+
+Finding cores() {
+  cpu_set_t set;
+  const int usable = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+  return {"cores", fmt::format("{} usable", usable), "ok",
+          fmt::format("`run` computes {} runs at a time", usable)};
+}
+
+Finding vectors(const std::string& simd) {
+  if (simd == "AVX-512" || simd == "AVX2") return {"vectors", simd, "ok", ""};
+  return {"vectors", simd, "slow", "the plain kernel has a twentieth of the speed of AVX-512"};
+}
+
+Finding memory() {
+  std::ifstream file("/proc/meminfo");
+  std::string key, unit;
+  double kib = 0;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    words >> key >> kib >> unit;
+    if (key != "MemAvailable:") continue;
+    // 405 to 460 bytes a grain while it runs (`bench speed`).
+    return {"memory", format_bytes(kib * 1024) + " free", "ok",
+            fmt::format("enough for {:.1e} grains at once", kib * 1024 / 460)};
+  }
+  return {"memory", "not told", "ok", ""};
+}
+
+Finding disk(const fs::path& place) {
+  const double free = static_cast<double>(fs::space(place).available);
+  // A checkpoint takes about 98 bytes a grain.
+  return {"disk", fmt::format("{} free in {}", format_bytes(free), place.string()),
+          free > 1e9 ? "ok" : "low",
+          fmt::format("room for {:.1e} checkpoints of 5200 grains", free / (5200 * 98 + 3e4))};
+}
+
+Finding filesystem(const fs::path& place) {
+  struct statfs facts {};
+  if (statfs(place.c_str(), &facts) != 0) return {"file system", "not told", "ok", ""};
+  constexpr unsigned long network[] = {0x6969, 0xFF534D42, 0x0BD00BD0,
+                                       0x517B, 0x47504653, 0xFE534D42};
+  const auto type = static_cast<unsigned long>(facts.f_type);
+  if (std::find(std::begin(network), std::end(network), type) == std::end(network)) {
+    return {"file system", fmt::format("local (type {:#x})", type), "ok", ""};
+  }
+  return {
+      "file system", fmt::format("network (type {:#x})", type), "slow",
+      "keep the store on a local disk: SQLite's locks are not safe over a network; `merge` later"};
+}
+
+Finding sync_time(const fs::path& place) {
+  std::string name = (place / "shearcell-doctor-XXXXXX").string();
+  const int file = mkstemp(name.data());
+  if (file < 0) {
+    return {"writing", "not allowed in " + place.string(), "missing", "name another --store"};
+  }
+  constexpr int count = 10;
+  const auto begin = std::chrono::steady_clock::now();
+  bool written = true;
+  for (int k = 0; k < count; ++k) written = write(file, "x", 1) == 1 && fsync(file) == 0 && written;
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+  close(file);
+  fs::remove(name);
+  const double ms = 1e3 * spent.count() / count;
+  if (!written) return {"writing", "failed in " + place.string(), "missing", "is the disk full?"};
+  return {"writing", fmt::format("{:.1f} ms to sync", ms), ms < 100 ? "ok" : "slow",
+          "each checkpoint waits for about six of these"};
+}
+
+Finding program(const std::string& name, const std::string& use, const std::string& package) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path file = fs::path(folder) / name;
+    if (access(file.c_str(), X_OK) == 0) return {name, file.string(), "ok", use};
+  }
+  return {name, "not found", "missing", use + ": apt install " + package};
+}
+
+Finding speed() {
+  SpeedOptions options;
+  options.sizes = {2000};
+  options.repeats = 3;
+  options.seconds_per_repeat = 0.3;
+  const std::vector<SpeedResult> results = measure_speed(options);
+  const auto best =
+      std::max_element(results.begin(), results.end(),
+                       [](const auto& a, const auto& b) { return a.median_rate < b.median_rate; });
+  const double cycle = 5200 * 45600 / (best->median_rate * 1e6);
+  return {"speed", fmt::format("{:.0f} M particle-steps/s", best->median_rate),
+          best->median_rate > 20 ? "ok" : "slow",
+          fmt::format("one core; a cycle of 5200 grains takes about {:.1f} s", cycle)};
+}
+
+std::vector<Finding> examine(const std::string& store, bool with_speed) {
+  const nlohmann::json facts = host_facts();
+  const nlohmann::json& libraries = facts.at("libraries");
+  const auto version = [&](const char* name) { return libraries.at(name).get<std::string>(); };
+  const fs::path place = place_of(store);
+  std::vector<Finding> found = {{"processor", facts.at("cpu").get<std::string>(), "ok", ""},
+                                cores(),
+                                vectors(facts.at("simd").get<std::string>()),
+                                memory(),
+                                disk(place),
+                                filesystem(place),
+                                sync_time(place),
+                                {"SQLite", version("sqlite"), "ok", "the log"},
+                                {"HDF5", version("hdf5"), "ok", "checkpoints"},
+                                program("gnuplot", "draws figures", "gnuplot-nox"),
+                                program("rsvg-convert", "figures as PDF", "librsvg2-bin")};
+  if (with_speed) found.push_back(speed());
+  return found;
+}
+
+void doctor(const Context& context, bool with_speed) {
+  const std::vector<Finding> findings = examine(context.store, with_speed);
+  if (context.json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Finding& f : findings) {
+      list.push_back(
+          {{"what", f.what}, {"found", f.found}, {"state", f.state}, {"advice", f.advice}});
+    }
+    print_json({{"findings", list}});
+    return;
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const Finding& f : findings) rows.push_back({f.what, f.state, f.found});
+  print_table({"what", "", "found"}, rows);
+  fmt::print("\n");
+  for (const Finding& f : findings) {
+    if (!f.advice.empty()) fmt::print("{}: {}\n", f.what, f.advice);
+  }
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, Context& context) {
+  CLI::App* command = app.add_subcommand("doctor", "Say what this machine has, and how fast it is");
+  add_common_options(*command, context, true);
+  auto no_speed = std::make_shared<bool>(false);
+  command->add_flag("--no-speed", *no_speed, "Do not measure (about five seconds)");
+  command->footer("Examples:\n  shearcell doctor\n  shearcell doctor --store /data/store --json");
+  command->callback([no_speed, &context] { doctor(context, !*no_speed); });
+}
+
+}  // namespace shearcell::cli

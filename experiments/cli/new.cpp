@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `new`: writes a manifest to begin with, from the schema, so that it cannot name a key that is
+// not.
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/manifest/manifest.hpp"
+#include "experiments/manifest/schema.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+/// The stem of the file names the experiment.
+std::string experiment_of(const std::filesystem::path& file) {
+  return file.stem().string();
+}
+
+std::string wrapped(const std::string& text, std::size_t width, const std::string& before) {
+  std::string lines;
+  std::string line;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    if (!line.empty() && before.size() + line.size() + 1 + (end - at) > width) {
+      lines += before + line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + text.substr(at, end - at);
+    at = end + 1;
+  }
+  return line.empty() ? lines : lines + before + line + "\n";
+}
+
+/// One key with its meaning above it, commented out: what it says is the default.
+std::string entry(const Field& field, const nlohmann::json& defaults) {
+  std::string about(field.doc);
+  if (!field.symbol.empty()) about += fmt::format(" [{}]", field.symbol);
+  about += fmt::format("; {}", expected_values(field));
+  const nlohmann::json& value = defaults.at(field.name);
+  return wrapped(about, 90, "  # ") +
+         fmt::format("  # {}: {}\n", field.name,
+                     value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+std::string text_of(const std::string& experiment) {
+  const nlohmann::json defaults = to_json(Parameters{});
+  std::string text = fmt::format(
+      "# Every key that is commented out has the value that it would have if it were not stated.\n"
+      "# `shearcell plan FILE --scale smoke` checks this file and says what it expands to.\n"
+      "experiment: {}\n"
+      "question: What is to be found out?\n"
+      "figures: [S2]                  # `shearcell figures --help` lists them\n"
+      "\n"
+      "base:\n"
+      "  grains: {}\n"
+      "  amplitude_rad: {}\n\n",
+      experiment, defaults.at("grains").dump(), defaults.at("amplitude_rad").dump());
+  for (const Field& field : schema()) {
+    if (field.name != "grains" && field.name != "amplitude_rad") text += entry(field, defaults);
+  }
+  return text +
+         "\n"
+         "# What varies: every combination under `grid`; keys under `zip` advance together.\n"
+         "sweep:\n"
+         "  grid:\n"
+         "    fluid: [still, cell]\n"
+         "\n"
+         "seeds: 6                       # 1 to 6, or a list\n"
+         "\n"
+         "checkpoints:\n"
+         "  every_cycles: 1\n"
+         "\n"
+         "# Named sizes; each overrides what is above it in this file.\n"
+         "scales:\n"
+         "  smoke: {grains: 600, seeds: 2, cycles: 5}\n"
+         "  desk: {grains: 5200, seeds: 3, cycles: 120}\n"
+         "  paper: {cycles: 200}\n";
+}
+
+void write_new(const std::filesystem::path& file, const std::string& text) {
+  // "x": never over a file that is there, not even one that comes to be in between.
+  std::FILE* stream = std::fopen(file.c_str(), "wx");
+  if (stream == nullptr && errno == EEXIST) {
+    throw ManifestError({{file.string(),
+                          {},
+                          "",
+                          "the file exists already",
+                          "",
+                          "Choose another name, or remove it."}});
+  }
+  const bool written =
+      stream != nullptr && std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+  const int error = errno;
+  if ((stream != nullptr && std::fclose(stream) != 0) || !written) {
+    throw std::runtime_error(
+        fmt::format("{}: cannot be written: {}", file.string(), std::strerror(error)));
+  }
+}
+
+void make(std::filesystem::path file) {
+  if (file.extension() != ".yaml") file += ".yaml";
+  const std::string text = text_of(experiment_of(file));
+  parse_manifest(text, file.string());  // a name that no experiment may have is refused here
+  write_new(file, text);
+  fmt::print("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(), file.string());
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, Context&) {
+  CLI::App* command = app.add_subcommand("new", "Write a manifest to begin with");
+  auto name = std::make_shared<std::string>();
+  command->add_option("name", *name, "Name of the experiment, or path of the file")->required();
+  command->footer(
+      "It has every key with its meaning and default, the sweep of `drag`, and three scales. A "
+      "file\n"
+      "that exists is left alone.\n"
+      "Examples:\n  shearcell new softer\n  shearcell new studies/softer.yaml");
+  command->callback([name] { make(*name); });
+}
+
+}  // namespace shearcell::cli

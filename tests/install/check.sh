@@ -1,0 +1,33 @@
+#!/bin/sh
+# Installs the build, builds a consumer on it, and unpacks the Debian package.
+#   sh check.sh BUILD_FOLDER SOURCE_FOLDER
+set -eu
+build=$1
+source=$2
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+cmake --install "$build" --prefix "$folder/prefix" > "$folder/log" || { cat "$folder/log"; exit 1; }
+for file in bin/shearcell share/man/man1/shearcell.1 share/shearcell/experiments/drag.yaml \
+            share/bash-completion/completions/shearcell include/shearcell/core/simulation.hpp; do
+  [ -s "$folder/prefix/$file" ] || { echo "not installed: $file"; exit 1; }
+done
+"$folder/prefix/bin/shearcell" plan "$folder/prefix/share/shearcell/experiments/drag.yaml" \
+  --scale smoke --store "$folder/none" | grep -q "4 runs"
+
+# A consumer sees the installed headers alone.
+cp -r "$source/tests/install/consumer" "$folder/consumer"
+cmake -G Ninja -S "$folder/consumer" -B "$folder/consumer/build" -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_PREFIX_PATH="$folder/prefix" > "$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
+cmake --build "$folder/consumer/build" > "$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
+"$folder/consumer/build/consumer"
+
+if ! command -v dpkg-shlibdeps >/dev/null; then
+  echo "the Debian package was not made: dpkg-dev is not installed"
+  exit 0
+fi
+(cd "$build" && cpack -B "$folder/package") > "$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
+dpkg -x "$folder"/package/*.deb "$folder/unpacked"
+dpkg -I "$folder"/package/*.deb | grep -E "Package|Version|Depends|Recommends"
+"$folder/unpacked/usr/bin/shearcell" --version | head -1
+[ ! -e "$folder/unpacked/usr/include" ]

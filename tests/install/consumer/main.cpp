@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A program of its own on the installed libraries: settle a small packing, shear it for a twentieth
+// of a cycle, and measure it.
+#include <analysis/measures.hpp>
+#include <cstdio>
+#include <experiments/manifest/conversion.hpp>
+#include <protocols/settle.hpp>
+
+int main() {
+  using namespace shearcell;
+  Parameters parameters;
+  parameters.grains = 300;
+  Cell cell = make_cell(geometry(parameters), 1);
+  const State loose = fill_cell(cell, geometry(parameters), 1);
+  const State packing = pressed(cell, loose, settle_scene(parameters), {});
+  const WallPose pose = wall_pose(cell, 0, packing.wall_height);
+  Eigen::Matrix3Xd grains = packing.position;
+  const Measures measures = analyse(cell, pose, grains).measures;
+  std::printf("%zu grains, %.2f contacts per grain\n", measures.grains,
+              measures.contacts_per_grain);
+  return measures.grains == 300 && measures.contacts_per_grain > 4 ? 0 : 1;
+}
