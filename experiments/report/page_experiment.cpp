@@ -132,6 +132,8 @@ std::string panel_html(const ReportData& data, const ReportPanel& panel) {
         "<div class=\"plot\" data-chart=\"{}\"><noscript>Plots need JavaScript; "
         "the numbers are below.</noscript></div>",
         name);
+  } else if (!panel.table.empty()) {
+    plot = table_html(panel);
   } else if (!data.interactive) {
     plot =
         fmt::format("<p class=\"warning\">No drawing: {}</p>", escape_html(data.drawing_trouble));
