@@ -55,7 +55,8 @@ export function drawSymbol(parent, point, x, y) {
 export function drawFrame(root, chart, scales, box) {
   const frame = svg("g", {class: "axes"}, root);
   const {left, right, top, bottom} = box;
-  const x = ticksOf(scales.x, chart.x.log, Math.max(3, Math.round((right - left) / 85)));
+  const whole = chart.series.every((one) => one.points.every(([at]) => Number.isInteger(at)));
+  const x = ticksOf(scales.x, chart.x.log, Math.max(3, Math.round((right - left) / 85)), whole);
   const y = ticksOf(scales.y, chart.y.log, Math.max(3, Math.round((bottom - top) / 55)));
   const tick = (length) => (at) => {
     const p = scales.x(at);

@@ -47,12 +47,18 @@ export function makeScale(log, domain, range) {
 }
 
 // {at, text} of labelled ticks, and the places of the unlabelled ones between them.
-export function ticksOf(scale, log, wanted) {
-  return log ? logTicks(scale, wanted) : linearTicks(scale, wanted);
+// `whole`: there is nothing between whole numbers.
+export function ticksOf(scale, log, wanted, whole = false) {
+  return log ? logTicks(scale, wanted) : linearTicks(scale, wanted, whole);
 }
 
-function linearTicks(scale, wanted) {
+function linearTicks(scale, wanted, whole) {
   const major = scale.ticks(wanted);
+  const finerThanWhole = whole && major.length > 1 && major[1] - major[0] < 1 &&
+    major.some(Number.isInteger);
+  if (finerThanWhole) {
+    return {major: major.filter(Number.isInteger).map((at) => ({at, text: String(at)})), minor: []};
+  }
   const format = scale.tickFormat(wanted);
   const step = major.length > 1 ? major[1] - major[0] : 0;
   const [low, high] = scale.domain();
