@@ -63,6 +63,21 @@ void print_verdicts(const RegeneratedFigure& result) {
   }
 }
 
+/// Tells what came of one figure, in words or into the list.
+void take(const RegeneratedFigure& result, nlohmann::json& list, Context& context) {
+  complain(result);
+  if (!result.damage.empty()) context.exit_code = kStoreDamaged;
+  const bool incomplete = !result.plot_error.empty() || !result.pruned.empty();
+  if (incomplete && context.exit_code == kDone) context.exit_code = kOtherError;
+  list.push_back(facts(result));
+  if (context.json) return;
+  fmt::print("{} ({} scale): {} runs, {} checkpoints, {} of them measured now\n", result.name,
+             result.scale.empty() ? "base" : result.scale, result.runs, result.checkpoints,
+             result.measured);
+  for (const auto& file : result.files) fmt::print("  {}\n", file.string());
+  print_verdicts(result);
+}
+
 void figures(const FigureOptions& options, Context& context) {
   Store store(context.store, Access::write);
   const std::vector<std::string> names =
@@ -88,18 +103,13 @@ void figures(const FigureOptions& options, Context& context) {
   }
   nlohmann::json list = nlohmann::json::array();
   for (const Figure* figure : in_order_of_needs(std::move(wanted))) {
-    const RegeneratedFigure result = regenerate(store, *figure, how);
-    complain(result);
-    if (!result.damage.empty()) context.exit_code = kStoreDamaged;
-    const bool incomplete = !result.plot_error.empty() || !result.pruned.empty();
-    if (incomplete && context.exit_code == kDone) context.exit_code = kOtherError;
-    list.push_back(facts(result));
-    if (context.json) continue;
-    fmt::print("{} ({} scale): {} runs, {} checkpoints, {} of them measured now\n", result.name,
-               result.scale.empty() ? "base" : result.scale, result.runs, result.checkpoints,
-               result.measured);
-    for (const auto& file : result.files) fmt::print("  {}\n", file.string());
-    print_verdicts(result);
+    try {
+      const RegeneratedFigure result = regenerate(store, *figure, how);
+      take(result, list, context);
+    } catch (const NotFound& missing) {  // the other figures are made all the same
+      fmt::print(stderr, "shearcell: {}\n", missing.what());
+      context.exit_code = kUsageError;
+    }
   }
   if (context.json) print_json({{"figures", list}});
 }

@@ -175,6 +175,38 @@ TEST_F(Comfort, TablesFitTheTerminalAndHaveColoursThereAlone) {
   EXPECT_EQ(on_terminal(80, "TERM=dumb", "status").find('\x1b'), std::string::npos);
 }
 
+TEST_F(Comfort, ExportsTheCyclesThatAreAskedFor) {
+  ASSERT_EQ(run({"run", write("tiny.yaml", tiny_manifest()), "--quiet"}).code, 0);
+  std::string id;
+  const nlohmann::json runs = json({"status", "--json"}).at("runs");
+  for (const nlohmann::json& one : runs) {
+    if (one.at("kind") == "shear") id = one.at("id");
+  }
+  const auto files = [&](const std::string& format, const std::string& out,
+                         const std::string& cycles) {
+    return json({"export", id, "--to", format, "--out", out, "--cycles", cycles, "--json"})
+        .at("files")
+        .size();
+  };
+  EXPECT_EQ(files("h5md", "run.h5", "0"), 1U);
+  EXPECT_EQ(files("extxyz", "run.xyz", "0:1"), 1U);
+  EXPECT_EQ(files("vtk", "vtk", ":0"), 3U);  // grains, cell, and the list of frames
+  EXPECT_EQ(files("lammps", "lammps", "0:1:1"), 2U);
+
+  const auto before = listing();
+  for (const Arguments& words :
+       {Arguments{"--out", "run.xyz"}, Arguments{"--out", "other", "--cycles", "one"},
+        Arguments{"--out", "other", "--cycles", "99"},
+        Arguments{"--out", "other", "--cycles", "1:2:3:4"}}) {
+    Arguments all{"export", id, "--to", "extxyz"};
+    all.insert(all.end(), words.begin(), words.end());
+    const Outcome outcome = run(all);
+    EXPECT_EQ(outcome.code, 2) << words.back();
+    EXPECT_FALSE(outcome.err.empty());
+  }
+  EXPECT_EQ(listing(), before);
+}
+
 TEST_F(Comfort, WatchingEndsWhenNobodyIsAtWork) {
   ASSERT_EQ(run({"run", write("tiny.yaml", tiny_manifest()), "--quiet"}).code, 0);
   const Outcome watched = run({"status", "--watch", "0.1"});

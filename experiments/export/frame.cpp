@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/export/frame.hpp"
+
+#include <cmath>
+
+namespace shearcell {
+namespace {
+
+void place_cell(const Checkpoint& c, const WallPose& pose, Frame& frame) {
+  const double d = c.units.diameter_m;
+  const double height = (pose.top - pose.bottom) * d;
+  const double shift = height * pose.tan_theta;
+  frame.origin = Eigen::Vector3d(-shift, pose.bottom * d, 0);
+  frame.edges << c.cell.width * d, shift, 0,  //
+      0, height, 0,                           //
+      0, 0, c.cell.depth * d;
+}
+
+void add_grains(const Checkpoint& c, const GrainMeasures& measures, Frame& frame) {
+  const double d = c.units.diameter_m;
+  for (Eigen::Index i = 0; i < c.state.position.cols(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double periods = std::floor(c.state.position(2, i) / c.cell.depth);
+    Eigen::Vector3d r = c.state.position.col(i);
+    r.z() -= periods * c.cell.depth;
+    frame.position.col(i) = r * d;
+    frame.velocity.col(i) = c.state.velocity.col(i) * d;
+    frame.image.push_back(static_cast<std::int32_t>(periods));
+    frame.type.push_back(0);
+    frame.phi_local.push_back(measures.phi_local[k]);
+    frame.q6.push_back(measures.q6[k]);
+    frame.overlap.push_back(measures.largest_overlap[k]);
+    frame.structure.push_back(static_cast<std::int32_t>(measures.structure[k]));
+    frame.crystallite.push_back(measures.crystallites.label[k] + 1);
+  }
+}
+
+void add_wall_grains(const Checkpoint& c, const WallPose& pose, Frame& frame) {
+  const Eigen::Matrix3Xd positions = wall_grain_positions(c.cell, pose);
+  const auto grains = static_cast<Eigen::Index>(frame.grains);
+  for (Eigen::Index w = 0; w < positions.cols(); ++w) {
+    const WallSide side = c.cell.wall_grains[static_cast<std::size_t>(w)].side;
+    const bool moves =
+        side == (c.cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top);
+    frame.position.col(grains + w) = positions.col(w) * c.units.diameter_m;
+    frame.velocity.col(grains + w) =
+        Eigen::Vector3d(0, moves ? c.state.wall_velocity * c.units.diameter_m : 0.0, 0);
+    frame.image.push_back(0);
+    frame.type.push_back(1 + static_cast<std::int32_t>(side));
+    frame.phi_local.push_back(0);
+    frame.q6.push_back(0);
+    frame.overlap.push_back(0);
+    frame.structure.push_back(-1);
+    frame.crystallite.push_back(-1);
+  }
+}
+
+}  // namespace
+
+Frame frame_of(const Checkpoint& checkpoint) {
+  const Analysis analysis = analyse(checkpoint);
+  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  Frame frame;
+  frame.step = checkpoint.state.step;
+  frame.time_s = checkpoint.time_s;
+  frame.cycle = checkpoint.cycle;
+  frame.theta = checkpoint.theta;
+  frame.measures = analysis.measures;
+  frame.grains = static_cast<std::size_t>(checkpoint.state.position.cols());
+  frame.radius = checkpoint.units.diameter_m / 2;
+  frame.mass = checkpoint.units.mass_kg;
+  const auto total = checkpoint.state.position.cols() +
+                     static_cast<Eigen::Index>(checkpoint.cell.wall_grains.size());
+  frame.position.resize(3, total);
+  frame.velocity.resize(3, total);
+  place_cell(checkpoint, pose, frame);
+  add_grains(checkpoint, analysis.grains, frame);
+  add_wall_grains(checkpoint, pose, frame);
+  return frame;
+}
+
+const std::vector<FrameColumn>& frame_columns() {
+  static const std::vector<FrameColumn> columns = {
+      {"type", nullptr, &Frame::type},
+      {"phi_local", &Frame::phi_local, nullptr},
+      {"q6", &Frame::q6, nullptr},
+      {"overlap", &Frame::overlap, nullptr},
+      {"structure", nullptr, &Frame::structure},
+      {"crystallite", nullptr, &Frame::crystallite},
+  };
+  return columns;
+}
+
+}  // namespace shearcell

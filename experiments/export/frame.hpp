@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One checkpoint as other programs want it: every particle with its measures, in SI units.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "analysis/measures.hpp"
+#include "provenance/checkpoint.hpp"
+
+namespace shearcell {
+
+/// The grains by id, then the wall grains. Arrays have one entry, or one column, per particle. Wall
+/// grains have measures of zero, and structure and crystallite -1.
+struct Frame {
+  std::uint64_t step = 0;
+  double time_s = 0;
+  double cycle = 0;
+  double theta = 0;  ///< tilt [rad]
+  Measures measures;
+
+  /// The cell [m]: its lower left corner, and its edges as columns. Only the third is periodic.
+  Eigen::Vector3d origin;
+  Eigen::Matrix3d edges;
+
+  std::size_t grains = 0;           ///< the first of the particles
+  double radius = 0;                ///< of every particle [m]
+  double mass = 0;                  ///< of every grain [kg]
+  Eigen::Matrix3Xd position;        ///< [m], z within the cell
+  Eigen::Matrix3Xd velocity;        ///< [m/s]; of wall grains that of their wall
+  std::vector<std::int32_t> image;  ///< periods in z to add for the way of a grain as a whole
+  std::vector<std::int32_t> type;   ///< 0 grain; wall grain: 1 left, 2 right, 3 bottom, 4 top
+  std::vector<double> phi_local;
+  std::vector<double> q6;
+  std::vector<double> overlap;            ///< largest, over the diameter
+  std::vector<std::int32_t> structure;    ///< 0 disordered, 1 FCC, 2 HCP
+  std::vector<std::int32_t> crystallite;  ///< 0 none; 1, 2, ... by their lowest grain id
+
+  std::size_t particles() const { return type.size(); }
+};
+
+/// Throws AnalysisError as analyse() does.
+Frame frame_of(const Checkpoint& checkpoint);
+
+/// A column of per-particle numbers in a format that has columns.
+struct FrameColumn {
+  const char* name;
+  const std::vector<double> Frame::*real;
+  const std::vector<std::int32_t> Frame::*integer;  ///< when `real` is none
+};
+
+/// Everything beside id, position and velocity.
+const std::vector<FrameColumn>& frame_columns();
+
+}  // namespace shearcell

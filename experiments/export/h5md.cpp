@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// H5MD 1.1 (P. de Buyl, P. H. Colberg and F. Hofling, Comput. Phys. Commun. 185, 1546 (2014)).
+#include <map>
+#include <memory>
+#include <numeric>
+#include <stdexcept>
+
+#include "experiments/export/formats.hpp"
+#include "provenance/hdf5_write.hpp"
+
+namespace shearcell {
+namespace {
+
+using hdf5::Handle;
+using hdf5::make_group;
+using hdf5::put_attribute;
+using hdf5::put_dataset;
+using hdf5::require;
+using hdf5::Shape;
+
+// MDAnalysis knows no metres and takes units as text of variable length alone. Velocities have the
+// same numbers in nm/ns as in m/s.
+constexpr double nm_per_m = 1e9;
+
+void put_unit(const Handle& object, const std::string& unit) {
+  if (unit.empty()) return;
+  const Handle type(require(H5Tcopy(H5T_C_S1), "a text type"), H5Tclose);
+  require(H5Tset_size(type.get(), H5T_VARIABLE), "a text type");
+  const char* text = unit.c_str();
+  put_attribute(object, "unit", type.get(), &text);
+}
+
+/// A trajectory that is filled frame by frame.
+class Trajectory {
+ public:
+  Trajectory(const std::filesystem::path& path, std::size_t frames)
+      : frames_(frames), file_(create(path)) {}
+
+  void add(const Frame& frame) {
+    const std::lock_guard lock(hdf5::library_mutex());
+    if (next_ == 0) begin(frame);
+    if (frame.particles() != particles_) {
+      throw std::runtime_error("the number of particles changes between checkpoints of one run");
+    }
+    put("step", H5T_STD_U64LE, &frame.step);
+    put("time", H5T_IEEE_F64LE, &frame.time_s);
+    const Eigen::Matrix3d edges = frame.edges * nm_per_m;  // columns here are rows there
+    put("edges", H5T_IEEE_F64LE, edges.data());
+    const Eigen::Vector3d origin = frame.origin * nm_per_m;
+    put("origin", H5T_IEEE_F64LE, origin.data());
+    const Eigen::Matrix3Xd position = frame.position * nm_per_m;
+    put("position", H5T_IEEE_F64LE, position.data());
+    put("velocity", H5T_IEEE_F64LE, frame.velocity.data());
+    put("image", H5T_STD_I32LE, frame.image.data());
+    for (const FrameColumn& column : frame_columns()) {
+      if (column.real != nullptr) {
+        put(column.name, H5T_IEEE_F64LE, (frame.*column.real).data());
+      } else if (column.name != std::string("type")) {
+        put(column.name, H5T_STD_I32LE, (frame.*column.integer).data());
+      }
+    }
+    put("cycle", H5T_IEEE_F64LE, &frame.cycle);
+    put("theta", H5T_IEEE_F64LE, &frame.theta);
+    put("phi", H5T_IEEE_F64LE, &frame.measures.phi);
+    put("crystalline_percent", H5T_IEEE_F64LE, &frame.measures.crystalline_percent);
+    require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "the file");
+    ++next_;
+  }
+
+ private:
+  static Handle create(const std::filesystem::path& path) {
+    const std::lock_guard lock(hdf5::library_mutex());
+    const hdf5::Quiet quiet;
+    const Handle creation = hdf5::creation_list(H5P_FILE_CREATE);
+    return {
+        require(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), H5P_DEFAULT), path.string()),
+        H5Fclose};
+  }
+
+  Handle& dataset(const Handle& parent, const std::string& link, const std::string& name,
+                  hid_t type, const Shape& shape, const std::string& unit) {
+    const Handle made = put_dataset(parent, link, type, nullptr, shape);
+    put_unit(made, unit);
+    H5Iinc_ref(made.get());
+    return sets_.emplace(name, Handle(made.get(), H5Dclose)).first->second;
+  }
+
+  /// {step, time, value}, of which step and time are the same for all.
+  void element(const Handle& parent, const std::string& name, hid_t type, Shape shape,
+               const std::string& unit) {
+    const Handle group = make_group(parent, name);
+    shape.insert(shape.begin(), frames_);
+    dataset(group, "value", name, type, shape, unit);
+    for (const char* shared : {"step", "time"}) {
+      require(H5Lcreate_hard(
+                  file_.get(),
+                  shared == std::string("step") ? "/particles/all/step" : "/particles/all/time",
+                  group.get(), shared, H5P_DEFAULT, H5P_DEFAULT),
+              "a link");
+    }
+  }
+
+  void begin(const Frame& frame) {
+    particles_ = frame.particles();
+    put_metadata();
+    const Handle all = make_group(make_group(file_, "particles"), "all");
+    dataset(all, "step", "step", H5T_STD_U64LE, {frames_}, "");
+    dataset(all, "time", "time", H5T_IEEE_F64LE, {frames_}, "s");
+    put_box(all);
+    element(all, "position", H5T_IEEE_F64LE, {particles_, 3}, "nm");
+    element(all, "velocity", H5T_IEEE_F64LE, {particles_, 3}, "nm ns-1");
+    element(all, "image", H5T_STD_I32LE, {particles_}, "");
+    for (const FrameColumn& column : frame_columns()) {
+      if (column.name != std::string("type")) {
+        element(all, column.name, column.real != nullptr ? H5T_IEEE_F64LE : H5T_STD_I32LE,
+                {particles_}, "");
+      }
+    }
+    std::vector<std::uint64_t> id(particles_);
+    std::iota(id.begin(), id.end(), std::uint64_t{1});
+    put_dataset(all, "id", H5T_STD_U64LE, id.data(), {particles_});
+    put_dataset(all, "species", H5T_STD_I32LE, frame.type.data(), {particles_});
+    const std::vector<double> mass(particles_, frame.mass);
+    put_unit(put_dataset(all, "mass", H5T_IEEE_F64LE, mass.data(), {particles_}), "kg");
+    const std::vector<double> radius(particles_, frame.radius * nm_per_m);
+    put_unit(put_dataset(all, "radius", H5T_IEEE_F64LE, radius.data(), {particles_}), "nm");
+    const Handle observables = make_group(file_, "observables");
+    element(observables, "cycle", H5T_IEEE_F64LE, {}, "");
+    element(observables, "theta", H5T_IEEE_F64LE, {}, "rad");
+    element(observables, "phi", H5T_IEEE_F64LE, {}, "");
+    element(observables, "crystalline_percent", H5T_IEEE_F64LE, {}, "");
+  }
+
+  void put_metadata() {
+    const Handle h5md = make_group(file_, "h5md");
+    const int version[2] = {1, 1};
+    put_attribute(h5md, "version", H5T_STD_I32LE, version, {2});
+    for (const char* who : {"author", "creator"}) {
+      const Handle group = make_group(h5md, who);
+      put_attribute(group, "name", std::string("shearcell"));
+      if (who == std::string("creator")) put_attribute(group, "version", std::string("1"));
+    }
+    const Handle units = make_group(make_group(h5md, "modules"), "units");
+    const int units_version[2] = {1, 0};
+    put_attribute(units, "version", H5T_STD_I32LE, units_version, {2});
+    put_attribute(units, "system", std::string("SI"));
+  }
+
+  void put_box(const Handle& all) {
+    const Handle box = make_group(all, "box");
+    const int dimension = 3;
+    put_attribute(box, "dimension", H5T_STD_I32LE, &dimension);
+    const std::string boundary("none\0\0\0\0none\0\0\0\0periodic", 24);
+    hdf5::put_strings(box, "boundary", boundary, 8, {3});
+    element(box, "edges", H5T_IEEE_F64LE, {3, 3}, "nm");
+    element(box, "origin", H5T_IEEE_F64LE, {3}, "nm");  // beside what H5MD asks for
+  }
+
+  /// The next row of a dataset.
+  void put(const std::string& name, hid_t type, const void* data) {
+    const Handle& set = sets_.at(name);
+    const Handle space(require(H5Dget_space(set.get()), name), H5Sclose);
+    const int rank = H5Sget_simple_extent_ndims(space.get());
+    Shape count(static_cast<std::size_t>(rank)), start(count.size(), 0);
+    H5Sget_simple_extent_dims(space.get(), count.data(), nullptr);
+    if (next_ >= count.front()) throw std::runtime_error("more frames than were announced");
+    count.front() = 1;
+    start.front() = next_;
+    require(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+                                nullptr),
+            name);
+    const Handle memory = hdf5::make_space(count);
+    require(H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, data), name);
+  }
+
+  std::size_t frames_;
+  std::size_t particles_ = 0;
+  std::size_t next_ = 0;
+  Handle file_;
+  std::map<std::string, Handle> sets_;
+};
+
+}  // namespace
+
+FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames) {
+  return [out = std::make_shared<Trajectory>(file, frames)](const Frame& f) { out->add(f); };
+}
+
+}  // namespace shearcell

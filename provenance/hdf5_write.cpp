@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance/hdf5_write.hpp"
+
+#include <stdexcept>
+
+namespace shearcell::hdf5 {
+
+hid_t require(hid_t result, const std::string& what) {
+  if (result < 0) throw std::runtime_error("HDF5 cannot write " + what + "");
+  return result;
+}
+
+/// Neither files nor groups record the time of writing, and links are stored compactly.
+Handle creation_list(hid_t kind) {
+  Handle list(require(H5Pcreate(kind), "a property list"), H5Pclose);
+  H5Pset_obj_track_times(list.get(), false);
+  if (kind != H5P_DATASET_CREATE) H5Pset_link_creation_order(list.get(), H5P_CRT_ORDER_TRACKED);
+  return list;
+}
+
+Handle make_group(const Handle& parent, const std::string& name) {
+  const Handle list = creation_list(H5P_GROUP_CREATE);
+  return {require(H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
+                  "group " + name),
+          H5Gclose};
+}
+
+Handle make_space(const Shape& shape) {
+  if (shape.empty()) return {require(H5Screate(H5S_SCALAR), "a scalar"), H5Sclose};
+  return {require(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                  "a data space"),
+          H5Sclose};
+}
+
+void put_attribute(const Handle& object, const std::string& name, hid_t type, const void* data,
+                   const Shape& shape) {
+  const Handle space = make_space(shape);
+  const Handle attribute(
+      require(H5Acreate2(object.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+              "attribute " + name),
+      H5Aclose);
+  require(H5Awrite(attribute.get(), type, data), "attribute " + name);
+}
+
+void put_attribute(const Handle& object, const std::string& name, double value) {
+  put_attribute(object, name, H5T_IEEE_F64LE, &value);
+}
+
+void put_attribute(const Handle& object, const std::string& name, std::uint64_t value) {
+  put_attribute(object, name, H5T_STD_U64LE, &value);
+}
+
+/// Strings of one fixed length, cells.size() / length of them.
+void put_strings(const Handle& object, const std::string& name, const std::string& cells,
+                 std::size_t length, const Shape& shape) {
+  const Handle type(require(H5Tcopy(H5T_C_S1), "a text type"), H5Tclose);
+  require(H5Tset_size(type.get(), length), "a text type");
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  put_attribute(object, name, type.get(), cells.data(), shape);
+}
+
+void put_attribute(const Handle& object, const std::string& name, const std::string& text) {
+  const std::string cell = text.empty() ? std::string(1, '\0') : text;
+  put_strings(object, name, cell, cell.size(), {});
+}
+
+Handle put_dataset(const Handle& parent, const std::string& name, hid_t type, const void* data,
+                   const Shape& shape, const std::string& unit) {
+  const Handle space = make_space(shape);
+  const Handle list = creation_list(H5P_DATASET_CREATE);
+  H5Pset_layout(list.get(), H5D_CONTIGUOUS);
+  H5Pset_fill_time(list.get(), H5D_FILL_TIME_NEVER);
+  Handle dataset(require(H5Dcreate2(parent.get(), name.c_str(), type, space.get(), H5P_DEFAULT,
+                                    list.get(), H5P_DEFAULT),
+                         "dataset " + name),
+                 H5Dclose);
+  if (data != nullptr) {
+    require(H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "dataset " + name);
+  }
+  if (!unit.empty()) put_attribute(dataset, "unit", unit);
+  return dataset;
+}
+
+}  // namespace shearcell::hdf5

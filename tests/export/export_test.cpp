@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Exported frames, read back by other people's programs, and the frames themselves.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "experiments/export/formats.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "protocols/settle.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A small packing at the end of a cycle, and the same grains in a cell that tilts and whose wall
+/// moves.
+std::vector<Checkpoint> checkpoints() {
+  Parameters parameters;
+  parameters.grains = 250;
+  Checkpoint upright;
+  upright.run = std::string(64, 'a');
+  upright.cell = make_cell(geometry(parameters), 1);
+  const State loose = fill_cell(upright.cell, geometry(parameters), 1);
+  upright.state = pressed(upright.cell, loose, settle_scene(parameters), {});
+  upright.state.position.row(2).array() += 2 * upright.cell.depth;  // z is unwrapped
+  upright.cycle = 3;
+  upright.time_s = 6;
+  upright.state.step = 136800;
+  Checkpoint tilted = upright;
+  tilted.theta = 0.07;
+  tilted.cycle = 3.25;
+  tilted.time_s = 6.5;
+  tilted.state.step = 148200;
+  tilted.state.wall_velocity = 0.125;
+  const WallPose pose = wall_pose(tilted.cell, tilted.theta, tilted.state.wall_height);
+  for (Eigen::Index i = 0; i < tilted.state.position.cols(); ++i) {
+    tilted.state.position(0, i) += (tilted.state.position(1, i) - pose.top) * pose.tan_theta;
+    tilted.state.velocity.col(i) = Eigen::Vector3d(0.5, -0.25, 0.125) * static_cast<double>(i);
+  }
+  return {upright, tilted};
+}
+
+nlohmann::json rows(const Eigen::Matrix3Xd& columns) {
+  nlohmann::json all = nlohmann::json::array();
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+    all.push_back({columns(0, i), columns(1, i), columns(2, i)});
+  }
+  return all;
+}
+
+/// From the checkpoint and its analysis, not through Frame.
+nlohmann::json truth(const Checkpoint& c) {
+  const double d = c.units.diameter_m;
+  const WallPose pose = wall_pose(c.cell, c.theta, c.state.wall_height);
+  const Analysis measured = analyse(c);
+  const Eigen::Index grains = c.state.position.cols();
+  const auto walls = static_cast<Eigen::Index>(c.cell.wall_grains.size());
+  Eigen::Matrix3Xd position(3, grains + walls),
+      velocity = Eigen::Matrix3Xd::Zero(3, grains + walls);
+  position << c.state.position, wall_grain_positions(c.cell, pose);
+  for (Eigen::Index i = 0; i < grains; ++i) {
+    position(2, i) -= c.cell.depth * std::floor(position(2, i) / c.cell.depth);
+  }
+  velocity.leftCols(grains) = c.state.velocity * d;
+  std::vector<int> type(static_cast<std::size_t>(grains), 0);
+  for (Eigen::Index w = 0; w < walls; ++w) {
+    const WallSide side = c.cell.wall_grains[static_cast<std::size_t>(w)].side;
+    type.push_back(1 + static_cast<int>(side));
+    if (side == WallSide::bottom) velocity(1, grains + w) = c.state.wall_velocity * d;
+  }
+  std::vector<double> phi_local = measured.grains.phi_local, q6 = measured.grains.q6,
+                      overlap = measured.grains.largest_overlap;
+  std::vector<int> structure, crystallite, id;
+  for (std::size_t i = 0; i < phi_local.size(); ++i) {
+    structure.push_back(static_cast<int>(measured.grains.structure[i]));
+    crystallite.push_back(measured.grains.crystallites.label[i] + 1);
+  }
+  for (std::size_t i = 0; i < type.size(); ++i) id.push_back(static_cast<int>(i) + 1);
+  for (auto* numbers : {&phi_local, &q6, &overlap}) numbers->resize(type.size(), 0.0);
+  for (auto* numbers : {&structure, &crystallite}) numbers->resize(type.size(), -1);
+  const double height = (pose.top - pose.bottom) * d;
+  const double shift = height * pose.tan_theta;
+  return {
+      {"step", c.state.step},
+      {"time", c.time_s},
+      {"cycle", c.cycle},
+      {"theta", c.theta},
+      {"mass", c.units.mass_kg},
+      {"origin", {-shift, pose.bottom * d, 0.0}},
+      {"edges", {{c.cell.width * d, 0.0, 0.0}, {shift, height, 0.0}, {0.0, 0.0, c.cell.depth * d}}},
+      {"position", rows(position * d)},
+      {"velocity", rows(velocity)},
+      {"radius", std::vector<double>(type.size(), d / 2)},
+      {"id", id},
+      {"type", type},
+      {"phi_local", phi_local},
+      {"q6", q6},
+      {"overlap", overlap},
+      {"structure", structure},
+      {"crystallite", crystallite}};
+}
+
+TEST(Export, OtherProgramsReadEveryNumber) {
+  const test::TemporaryFolder folder;
+  const fs::path at = folder.path();
+  fs::create_directories(at / "vtk");
+  fs::create_directories(at / "lammps");
+  {
+    const std::vector<Checkpoint> all = checkpoints();
+    const FrameWriter writers[] = {h5md_writer(at / "run.h5", all.size()),
+                                   extxyz_writer(at / "run.xyz"), vtk_writer(at / "vtk"),
+                                   lammps_writer(at / "lammps")};
+    nlohmann::json frames = nlohmann::json::array();
+    for (const Checkpoint& checkpoint : all) {
+      frames.push_back(truth(checkpoint));
+      for (const FrameWriter& write : writers) write(frame_of(checkpoint));
+    }
+    std::ofstream(at / "truth.json") << frames;
+  }
+  const std::string python = "/usr/bin/python3 ";
+  if (std::system((python + "-c 'import ase, h5py, MDAnalysis, vtk' 2>/dev/null").c_str()) != 0) {
+    GTEST_SKIP() << "needs python3-ase, python3-h5py, python3-mdanalysis and python3-vtk9";
+  }
+  EXPECT_EQ(
+      std::system((python + SHEARCELL_TEST_DATA "/../export/read_back.py " + at.string()).c_str()),
+      0);
+}
+
+TEST(Export, WritesTheSameBytesTwice) {
+  const test::TemporaryFolder folder;
+  const Frame frame = frame_of(checkpoints().back());
+  std::string bytes[2];
+  for (int k = 0; k < 2; ++k) {
+    const fs::path file = folder.path() / ("run" + std::to_string(k) + ".h5");
+    h5md_writer(file, 1)(frame);
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    bytes[k] = text.str();
+  }
+  EXPECT_FALSE(bytes[0].empty());
+  EXPECT_EQ(bytes[0], bytes[1]);
+}
+
+TEST(Export, SaysWhatItCannotWrite) {
+  const Frame frame = frame_of(checkpoints().front());
+  EXPECT_THROW(extxyz_writer("/nowhere/run.xyz"), std::runtime_error);
+  EXPECT_THROW(h5md_writer("/nowhere/run.h5", 1), std::runtime_error);
+  EXPECT_THROW(vtk_writer("/nowhere")(frame), std::runtime_error);
+  EXPECT_THROW(lammps_writer("/nowhere")(frame), std::runtime_error);
+  const test::TemporaryFolder folder;
+  const FrameWriter one = h5md_writer(folder.path() / "run.h5", 1);
+  one(frame);
+  EXPECT_THROW(one(frame), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace shearcell

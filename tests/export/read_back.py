@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads exported frames with the field's own readers and compares every number with truth.json.
+
+    python3 read_back.py FOLDER
+
+FOLDER holds run.h5, run.xyz, vtk/, lammps/ and truth.json, a list of frames. Readers: h5py and
+MDAnalysis for H5MD, ASE for extended XYZ, VTK for VTK, MDAnalysis for LAMMPS data.
+"""
+import json
+import pathlib
+import sys
+import warnings
+
+warnings.simplefilter("ignore")
+
+import ase.io
+import h5py
+import MDAnalysis
+import numpy as np
+import vtk
+from MDAnalysis.coordinates.H5MD import H5MDReader
+from vtk.util.numpy_support import vtk_to_numpy
+
+folder = pathlib.Path(sys.argv[1])
+frames = json.loads((folder / "truth.json").read_text())
+for frame in frames:
+    for key, value in frame.items():
+        if isinstance(value, list):
+            frame[key] = np.array(value)
+REAL = ["phi_local", "q6", "overlap"]
+INTEGER = ["structure", "crystallite"]
+compared = 0
+
+
+def equal(what, got, expected, tolerance=0.0):
+    """Every number, to a relative tolerance of the largest."""
+    global compared
+    got, expected = np.asarray(got), np.asarray(expected)
+    assert got.shape == expected.shape, f"{what}: shape {got.shape}, not {expected.shape}"
+    scale = np.max(np.abs(expected)) if expected.size else 0
+    worst = np.max(np.abs(got - expected)) if expected.size else 0
+    assert worst <= tolerance * scale, f"{what}: differs by {worst:g} of {scale:g}"
+    compared += got.size
+
+
+def check_h5md():
+    with h5py.File(folder / "run.h5") as file:
+        group = file["particles/all"]
+        assert list(file["h5md"].attrs["version"]) == [1, 1]
+        assert [b.decode() for b in group["box"].attrs["boundary"]] == ["none", "none", "periodic"]
+        for k, f in enumerate(frames):
+            equal("h5 step", group["step"][k], f["step"])
+            equal("h5 time", group["position/time"][k], f["time"])
+            equal("h5 edges", group["box/edges/value"][k], f["edges"] * 1e9, 1e-15)
+            equal("h5 origin", group["box/origin/value"][k], f["origin"] * 1e9, 1e-15)
+            equal("h5 position", group["position/value"][k], f["position"] * 1e9, 1e-15)
+            equal("h5 velocity", group["velocity/value"][k], f["velocity"])
+            equal("h5 species", group["species"], f["type"])
+            equal("h5 id", group["id"], f["id"])
+            equal("h5 radius", group["radius"], f["radius"] * 1e9, 1e-15)
+            for name in REAL + INTEGER:
+                equal("h5 " + name, group[name + "/value"][k], f[name])
+    reader = H5MDReader(str(folder / "run.h5"))
+    assert reader.n_frames == len(frames)
+    for f, step in zip(frames, reader):  # angstrom, picoseconds and float32 by MDAnalysis's choice
+        equal("MDAnalysis position", step.positions, f["position"] * 1e10, 1e-6)
+        equal("MDAnalysis velocity", step.velocities, f["velocity"] * 1e-2, 1e-6)
+        lengths = np.linalg.norm(f["edges"], axis=1) * 1e10
+        equal("MDAnalysis box", step.dimensions[:3], lengths, 1e-6)
+
+
+def check_extxyz():
+    read = ase.io.read(folder / "run.xyz", ":")
+    assert len(read) == len(frames)
+    for f, atoms in zip(frames, read):
+        equal("xyz cell", atoms.cell.array, f["edges"])
+        equal("xyz origin", atoms.info["Origin"], f["origin"])
+        assert list(atoms.pbc) == [False, False, True]
+        equal("xyz position", atoms.positions, f["position"])
+        equal("xyz velocity", atoms.arrays["velo"], f["velocity"])
+        equal("xyz time", atoms.info["Time"], f["time"])
+        equal("xyz theta", atoms.info["theta"], f["theta"])
+        equal("xyz symbols", atoms.numbers, np.where(f["type"] == 0, 1, 2))
+        for name in REAL + INTEGER + ["type", "id", "radius"]:
+            equal("xyz " + name, atoms.arrays[name], f[name])
+
+
+def read_vtp(path):
+    reader = vtk.vtkXMLPolyDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    return reader.GetOutput()
+
+
+def check_vtk():
+    assert (folder / "vtk/frames.pvd").read_text().count("<DataSet ") == 2 * len(frames)
+    for f in frames:
+        data = read_vtp(folder / f"vtk/grains_{f['cycle']:g}.vtp")
+        equal("vtk position", vtk_to_numpy(data.GetPoints().GetData()), f["position"])
+        assert data.GetNumberOfVerts() == len(f["id"])
+        for name in REAL + INTEGER + ["type", "id", "radius", "velocity"]:
+            equal("vtk " + name, vtk_to_numpy(data.GetPointData().GetArray(name)), f[name])
+        cell = read_vtp(folder / f"vtk/cell_{f['cycle']:g}.vtp")
+        corners = vtk_to_numpy(cell.GetPoints().GetData())
+        assert cell.GetNumberOfPolys() == 6
+        equal("vtk corner", corners[0], f["origin"])
+        equal("vtk far corner", corners[7], f["origin"] + f["edges"].sum(axis=0), 1e-15)
+
+
+def check_lammps():
+    for f in frames:
+        path = folder / f"lammps/frame_{f['cycle']:g}.data"
+        style = "id type diameter density x y z ix iy iz"
+        universe = MDAnalysis.Universe(str(path), format="DATA", atom_style=style)
+        equal("lammps position", universe.atoms.positions, f["position"], 1e-6)
+        # It takes them for units real and converts.
+        equal("lammps velocity", universe.atoms.velocities, f["velocity"] * 1e-3, 1e-6)
+        equal("lammps type", universe.atoms.types.astype(int), f["type"] + 1)
+        # Every digit, by plain reading.
+        lines = path.read_text().splitlines()
+        start = lines.index("Atoms # sphere") + 2
+        rows = np.array([line.split() for line in lines[start : start + len(f["id"])]], dtype=float)
+        equal("lammps id", rows[:, 0], f["id"])
+        equal("lammps diameter", rows[:, 2], 2 * f["radius"])
+        equal("lammps xyz", rows[:, 4:7], f["position"])
+        mass = rows[:, 3] * np.pi / 6 * rows[:, 2] ** 3
+        equal("lammps mass", mass, np.full(len(mass), f["mass"]), 1e-14)
+        start = lines.index("Velocities") + 2
+        rows = np.array([line.split() for line in lines[start : start + len(f["id"])]], dtype=float)
+        equal("lammps velocities", rows[:, 1:4], f["velocity"])
+        box = {l.split()[-1]: [float(w) for w in l.split()[:-2]] for l in lines if l.endswith("hi")}
+        tilt = float(next(l for l in lines if l.endswith("xy xz yz")).split()[0])
+        low, high = box["yhi"]
+        share = (f["position"][:, 1] - low) / (high - low)
+        left = box["xhi"][0] + share * tilt
+        assert np.all((share >= 0) & (share <= 1)), "a particle is below or above the box"
+        inside = (f["position"][:, 0] >= left) & (f["position"][:, 0] <= left + np.diff(box["xhi"]))
+        assert np.all(inside), "a particle is beside the box"
+
+
+check_h5md()
+check_extxyz()
+check_vtk()
+check_lammps()
+print(f"{compared} numbers in {len(frames)} frames agree")
