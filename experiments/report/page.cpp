@@ -183,7 +183,9 @@ std::string data_html(const ReportData& data) {
   if (!data.interactive) return "";
   json charts = json::object();
   for (const ReportFigure& figure : data.figures) {
-    for (const ReportPanel& panel : figure.panels) charts[panel.name] = to_json(panel.chart);
+    for (const ReportPanel& panel : figure.panels) {
+      if (!panel.chart.series.empty()) charts[panel.name] = to_json(panel.chart);
+    }
   }
   for (const ReportPanel& panel : data.accuracy) charts[panel.name] = to_json(panel.chart);
   return fmt::format(
