@@ -53,10 +53,11 @@ class Simulation {
   /// shallow for the cutoffs, or the machine lacks the SIMD asked for.
   Simulation(Cell cell, const Scene& scene, const State& state, EngineSettings settings = {});
 
-  /// Advances by `steps` time steps. Throws NumericalFailure (watchdog.hpp).
+  /// Advances by `steps` time steps. The watchdog looks at a state that was given before the first
+  /// of them, and at every 1024th step. Throws NumericalFailure (watchdog.hpp).
   void advance(const Drive& drive, std::uint64_t steps);
 
-  /// Looks for what the watchdog looks for, now. Throws NumericalFailure.
+  /// Looks for what the watchdog looks for, now, but for the time step. Throws NumericalFailure.
   void check() const;
 
   /// Goes on from another state of the same grains, between upright walls. Throws
@@ -95,6 +96,8 @@ class Simulation {
   double push_of_moving_wall() const;
   double force_on_wall(double push) const;
   void move_wall(double push);
+  void stop_the_slowest();
+  void look(double time_step) const;
   WallPose pose_at(const Drive& drive, std::uint64_t step) const;
   double shear_rate(const Drive& drive) const;
   Snapshot snapshot(const Drive& drive);

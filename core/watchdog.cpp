@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/watchdog.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include "core/contact.hpp"
@@ -25,10 +27,10 @@ std::string message(const std::string& quantity, double value, double limit, std
          std::to_string(step) + ". " + remedy;
 }
 
-double smallest_distance(const Cell& cell, const WallPose& pose, const double* row) {
+// Distances of a centre from the left, right, bottom and top plane [d].
+std::array<double, 4> plane_distances(const Cell& cell, const WallPose& pose, const double* row) {
   const double across = pose.cos_theta * row[0] - pose.sin_theta * (row[1] - pose.top);
-  const double side = std::min(across, pose.cos_theta * cell.width - across);
-  return std::min({side, row[1] - pose.bottom, pose.top - row[1]});
+  return {across, pose.cos_theta * cell.width - across, row[1] - pose.bottom, pose.top - row[1]};
 }
 
 double largest_overlap(const WatchTask& task, std::size_t g, double depth) {
@@ -47,6 +49,124 @@ double largest_overlap(const WatchTask& task, std::size_t g, double depth) {
   return 1 - std::sqrt(nearest);
 }
 
+// What a contact weighs in the bound of the vibrations: of a grain, and of the moving wall itself.
+constexpr double kOfGrain = 2, kOfStandingWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
+
+// Visits every contact of a grain: its unit normal, its weight, whether it is with the moving wall.
+template <class Visit>
+void for_each_touch(const WatchTask& task, std::size_t g, const Cell& cell, const WallPose& pose,
+                    Visit&& visit) {
+  const double* own = task.rows + 4 * g;
+  const std::size_t block = g / task.lanes;
+  const std::int32_t* list = task.neighbours.list + task.neighbours.begin[block] + g % task.lanes;
+  const std::size_t head = task.neighbours.head[block];
+  const std::size_t slots = head + task.neighbours.slots[block];
+  const std::int32_t first_wall = wall_offset(task.id->size());
+  for (std::size_t k = 0; k < slots; ++k) {
+    const std::int32_t offset = list[k * task.lanes];
+    const double* other = task.rows + offset;
+    const double dz = nearest_image(own[2] - other[2], cell.depth, 1 / cell.depth);
+    const Eigen::Vector3d dr(own[0] - other[0], own[1] - other[1], dz);
+    const double square = dr.squaredNorm();
+    if (!(square < 1)) continue;
+    const double wall = k < head ? kOfMovingWall : kOfStandingWall;
+    visit(dr / std::sqrt(square), offset < first_wall ? kOfGrain : wall, k < head);
+  }
+  const Eigen::Vector3d across(pose.cos_theta, -pose.sin_theta, 0), up(0, 1, 0);
+  const std::array<double, 4> distance = plane_distances(cell, pose, own);
+  const std::size_t moving = cell.moving == MovingWall::bottom ? 2 : 3;
+  for (std::size_t side = 0; side < 4; ++side) {
+    if (!(distance[side] < 0.5)) continue;
+    visit(side < 2 ? across : up, side == moving ? kOfMovingWall : kOfStandingWall, side == moving);
+  }
+}
+
+// Of omega^2 in units of k/m, and whose it is.
+struct Fastest {
+  double bound = 0;
+  std::int64_t grain = -1;
+};
+
+// Raises `fastest` by what a grain adds, as far as that exceeds `least`. Almost always its list is
+// too short for that, or else the trace of the sum too small.
+void bound_grain(const WatchTask& task, std::size_t g, const Cell& cell, const WallPose& pose,
+                 double least, Fastest& fastest) {
+  const std::size_t block = g / task.lanes;
+  const auto slots =
+      static_cast<double>(task.neighbours.head[block] + task.neighbours.slots[block]);
+  if (kOfGrain * slots + 4 * kOfMovingWall <= least) return;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for_each_touch(task, g, cell, pose, [&](const Eigen::Vector3d& normal, double weight, bool) {
+    sum += weight * normal * normal.transpose();
+  });
+  if (sum.trace() <= std::max(least, fastest.bound)) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum, Eigen::EigenvaluesOnly);
+  const double bound = solver.eigenvalues()(2);
+  if (bound > fastest.bound) fastest = {bound, (*task.id)[g]};
+}
+
+// The same for the moving wall.
+void bound_wall(const WatchTask& task, const Cell& cell, const Scene& scene, const WallPose& pose,
+                double least, Fastest& fastest) {
+  const double each = kOnMovingWall / (scene.wall_mass * cell.width * cell.depth);
+  const auto near = [&](std::size_t g) {
+    return (task.neighbours.near[g / task.lanes] & kNearMovingWall) != 0;
+  };
+  double most = 0;
+  for (std::size_t g = 0; g < task.id->size(); ++g) {
+    if (near(g)) most += each * (1.0 + task.neighbours.head[g / task.lanes]);
+  }
+  if (most <= least) return;
+  double bound = 0;
+  for (std::size_t g = 0; g < task.id->size(); ++g) {
+    if (!near(g)) continue;
+    for_each_touch(task, g, cell, pose, [&](const Eigen::Vector3d& normal, double, bool moving) {
+      if (moving) bound += each * normal.y() * normal.y();
+    });
+  }
+  if (bound > fastest.bound) fastest = {bound, -1};
+}
+
+void check_time_step(const WatchTask& task, const Cell& cell, const Scene& scene,
+                     const WallPose& pose, const WatchdogLimits& limits) {
+  if (!(task.time_step > 0)) return;
+  const double allowed = 2 * limits.time_step / task.time_step;
+  const double least = allowed * allowed / scene.stiffness;
+  Fastest fastest;
+  for (std::size_t g = 0; g < task.id->size(); ++g) {
+    bound_grain(task, g, cell, pose, least, fastest);
+  }
+  bound_wall(task, cell, scene, pose, least, fastest);
+  if (!(fastest.bound > least)) return;
+  throw NumericalFailure(
+      "the time step [s]", task.time_step,
+      2 * limits.time_step / std::sqrt(fastest.bound * scene.stiffness), fastest.grain, task.step,
+      "The contacts may vibrate faster than it can follow: use a smaller time step (more "
+      "steps_per_cycle; while settling, a smaller settle_time_step_s)" +
+          std::string(fastest.grain < 0 ? ", or a heavier wall (wall_mass_grains_per_d2)" : ""));
+}
+
+void check_place(const WatchTask& task, const WatchdogLimits& limits, std::size_t g,
+                 const std::array<double, 4>& distance) {
+  const std::int64_t id = (*task.id)[g];
+  // NaN in x or y reaches the first distance, and nothing is smaller than that.
+  double smallest = distance[0];
+  for (const double d : distance) smallest = d < smallest ? d : smallest;
+  if (!(smallest >= -limits.escape && std::isfinite(task.rows[4 * g + 2]))) {
+    throw NumericalFailure("the depth [d] of a grain's centre behind a wall", -smallest,
+                           limits.escape, id, task.step,
+                           "A grain was pushed out of the cell: lower the pressure or raise the "
+                           "stiffness");
+  }
+  if (!(0.5 - smallest <= limits.overlap)) {
+    throw NumericalFailure("the overlap [d] of a grain and a wall plane", 0.5 - smallest,
+                           limits.overlap, id, task.step,
+                           "The grains are too soft for this load, or were placed too near a "
+                           "wall: raise the stiffness, lower the pressure, or use a smaller time "
+                           "step");
+  }
+}
+
 }  // namespace
 
 NumericalFailure::NumericalFailure(std::string what_quantity, double what_value, double what_limit,
@@ -62,10 +182,15 @@ NumericalFailure::NumericalFailure(std::string what_quantity, double what_value,
 
 void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, const WallPose& pose,
                   const WatchdogLimits& limits) {
+  if (!std::isfinite(task.wall_height) || !std::isfinite(task.wall_velocity)) {
+    throw NumericalFailure("the height [d] of the moving wall", task.wall_height,
+                           std::numeric_limits<double>::max(), -1, task.step,
+                           "Use a smaller time step, or check the pressure and the wall's mass "
+                           "and drag");
+  }
   const double fastest_square = 12 * scene.stiffness * limits.overlap * limits.overlap;
   for (std::size_t g = 0; g < task.id->size(); ++g) {
     const std::int64_t id = (*task.id)[g];
-    const double* row = task.rows + 4 * g;
     const double v2 = task.velocity[0][g] * task.velocity[0][g] +
                       task.velocity[1][g] * task.velocity[1][g] +
                       task.velocity[2][g] * task.velocity[2][g];
@@ -76,13 +201,8 @@ void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, c
           "The integration is unstable: use a smaller time step (more steps_per_cycle; "
           "while settling, a smaller settle_time_step_s)");
     }
-    const double distance = smallest_distance(cell, pose, row);
-    if (!(distance >= -limits.escape && std::isfinite(row[2]))) {
-      throw NumericalFailure("the depth [d] of a grain's centre behind a wall", -distance,
-                             limits.escape, id, task.step,
-                             "A grain was pushed out of the cell: lower the pressure or raise the "
-                             "stiffness");
-    }
+    const std::array<double, 4> distance = plane_distances(cell, pose, task.rows + 4 * g);
+    check_place(task, limits, g, distance);
     const double overlap = largest_overlap(task, g, cell.depth);
     if (!(overlap <= limits.overlap)) {
       throw NumericalFailure("the overlap [d] of two grains", overlap, limits.overlap, id,
@@ -92,6 +212,7 @@ void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, c
                              "time step");
     }
   }
+  check_time_step(task, cell, scene, pose, limits);
 }
 
 }  // namespace shearcell

@@ -46,6 +46,8 @@ void add_new(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);
 void add_completion(CLI::App& app, Context& context);
 void add_manual(CLI::App& app, Context& context);
+/// A subcommand of `bench`.
+void add_bench_stability(CLI::App& bench, Context& context);
 
 /// --store DIR, and --json where the subcommand prints facts.
 void add_common_options(CLI::App& command, Context& context, bool with_json);

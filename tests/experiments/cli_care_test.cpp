@@ -242,5 +242,24 @@ TEST_F(Sharing, TheOtherTakesOverWhatAKilledOneHeld) {
   EXPECT_EQ(run({"verify"}).code, 0);
 }
 
+TEST_F(Care, HardCasesAreToldAndOneThatFailsEndsWithCode3) {
+  const nlohmann::json cases =
+      json({"bench", "stability", "--quick", "--only", "touching", "equal", "--json"}).at("cases");
+  ASSERT_EQ(cases.size(), 4U);
+  for (const nlohmann::json& hard : cases) {
+    EXPECT_TRUE(hard.at("as_expected").get<bool>()) << hard;
+    EXPECT_FALSE(hard.at("name").get<std::string>().empty());
+    EXPECT_FALSE(hard.at("expected").get<std::string>().empty());
+    EXPECT_FALSE(hard.at("outcome").get<std::string>().empty());
+  }
+  const Outcome hangs =
+      run({"bench", "stability", "--only", "1e7-steps-undamped", "--seconds", "0.1"});
+  EXPECT_EQ(hangs.code, 3);
+  EXPECT_TRUE(contains(hangs.out, "0 of 1 cases ended as expected")) << hangs.out;
+  const Outcome unknown = run({"bench", "stability", "--only", "vacanzy"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_TRUE(contains(unknown.err, "did you mean 'vacancy'?")) << unknown.err;
+}
+
 }  // namespace
 }  // namespace shearcell::test
