@@ -61,7 +61,9 @@ void speed(const SpeedOptions& options, Context& context) {
 void add_bench(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand("bench", "Measure the program on this machine");
   command->require_subcommand(1);
-  command->footer("Examples:\n  shearcell bench speed\n  shearcell bench stability --quick");
+  command->footer(
+      "Examples:\n  shearcell bench speed\n  shearcell bench accuracy --quick\n"
+      "  shearcell bench stability --quick");
   auto options = std::make_shared<SpeedOptions>();
   CLI::App* rate = command->add_subcommand(
       "speed", "Particle-steps per second in the sheared rough cell, and where the time goes");
@@ -80,6 +82,7 @@ void add_bench(CLI::App& app, Context& context) {
     options->report = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
     speed(*options, context);
   });
+  add_bench_accuracy(*command, context);
   add_bench_stability(*command, context);
 }
 

@@ -11,6 +11,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/expand.hpp"
+#include "experiments/manifest/numerics.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/novelty.hpp"
 #include "experiments/runner/progress.hpp"
@@ -66,6 +67,46 @@ nlohmann::json facts(const std::optional<Novelty>& novelty) {
     fields.push_back({{"field", d.field}, {"value", d.planned}, {"store_has", d.known}});
   }
   return {{"nearest", novelty->nearest}, {"fields", fields}};
+}
+
+// The time step of a stage; none where no time passes.
+std::optional<TimeStep> time_step_of(const Line& line) {
+  const Parameters& p = line.run->parameters;
+  if (line.stage->stage == Stage::prepare) return settle_time_step(p);
+  if (line.stage->stage == Stage::stiffen) return std::nullopt;
+  return shear_time_step(p);
+}
+
+nlohmann::json facts(const std::optional<TimeStep>& step) {
+  if (!step) return nullptr;
+  return {{"seconds", step->seconds},
+          {"over_contact_time", step->over_contact_time},
+          {"over_stability_limit", step->over_stability_limit}};
+}
+
+// Time steps and overlap of every kind of stage, each once.
+void print_numerics(const std::vector<Line>& lines) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Line& line : lines) {
+    const std::optional<TimeStep> step = time_step_of(line);
+    const bool prepare = line.stage->stage == Stage::prepare;
+    std::vector<std::string> row = {std::string(stage_name(line.stage->stage)),
+                                    prepare ? "" : line.run->variant,
+                                    "",
+                                    "",
+                                    "",
+                                    fmt::format("{:.2g}", expected_overlap(line.run->parameters))};
+    if (step) {
+      row[2] = fmt::format("{:.4g}", step->seconds);
+      row[3] = fmt::format("{:.3f}", step->over_contact_time);
+      row[4] = fmt::format("{:.3f}", step->over_stability_limit);
+    }
+    if (std::find(rows.begin(), rows.end(), row) == rows.end()) rows.push_back(std::move(row));
+  }
+  fmt::print("\n");
+  print_table({"stage", "variant", "time step [s]", "/ contact time", "/ stability limit",
+               "expected overlap [d]"},
+              rows);
 }
 
 std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store) {
@@ -125,6 +166,8 @@ void plan(const PlanOptions& options, Context& context) {
                       {"cycles", line.run->cycles},
                       {"state", line.state},
                       {"shared_with", line.shared_with},
+                      {"time_step", facts(time_step_of(line))},
+                      {"expected_overlap_d", expected_overlap(line.run->parameters)},
                       {"new", facts(line.novelty)},
                       {"particle_steps_left", line.left.particle_steps},
                       {"bytes_left", line.left.bytes}});
@@ -153,6 +196,7 @@ void plan(const PlanOptions& options, Context& context) {
                     line.state, remark(line)});
   }
   print_table({"run", "stage", "variant", "seed", "N", "cycle", "state", ""}, rows);
+  print_numerics(lines);
   fmt::print(
       "\nleft: {:.3g} particle-steps, about {} on {} cores at {:.0f} M particle-steps/s each ({}),"
       "\n      about {} on disk\n",

@@ -9,6 +9,7 @@
 
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
+#include "experiments/manifest/numerics.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -70,7 +71,19 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
   return {stated.values.begin(), stated.values.begin() + static_cast<std::ptrdiff_t>(*wanted)};
 }
 
-void add_warnings(const Variant& variant, Plan& plan) {
+void warn_of_time_steps(const Variant& variant, Plan& plan) {
+  const Parameters& p = variant.parameters;
+  std::optional<std::string> of_shear;
+  if (p.protocol != "stiffen") of_shear = time_step_advice(shear_time_step(p), "steps_per_cycle");
+  for (const auto& advice :
+       {of_shear, time_step_advice(settle_time_step(p), "settle_time_step_s")}) {
+    if (!advice) continue;
+    plan.warnings.push_back(
+        fmt::format("{}: variant {}: {}", plan.experiment, variant.name(), *advice));
+  }
+}
+
+void warn_of_pressure(const Variant& variant, Plan& plan) {
   const Parameters& p = variant.parameters;
   if (pressure_lifts_column(p)) return;
   std::string warning = fmt::format(
@@ -103,7 +116,8 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   Plan plan{manifest.experiment, scale == nullptr ? "" : scale->name, {}, {}};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
   for_each_variant(resolved, [&](const Variant& variant) {
-    add_warnings(variant, plan);
+    warn_of_pressure(variant, plan);
+    warn_of_time_steps(variant, plan);
     if (options.cycles && variant.parameters.protocol == "stiffen") {
       plan.warnings.push_back(fmt::format(
           "{}: variant {}: a number of cycles has no effect on stiffening, whose length is "

@@ -107,7 +107,7 @@ TEST_F(Comfort, ShellsCompleteCommandsAndOptions) {
   if (has_program("zsh")) {  // which chooses among the words itself
     write("script", run({"completion", "zsh"}).out);
     EXPECT_NE(completed("zsh", {"shearcell", "ru"}).find(" run "), std::string::npos);
-    EXPECT_EQ(completed("zsh", {"shearcell", "bench", "sp"}).substr(0, 5), "speed");
+    EXPECT_NE(completed("zsh", {"shearcell", "bench", "sp"}).find("speed"), std::string::npos);
     EXPECT_NE(completed("zsh", {"shearcell", "run", "--sc"}).find(" --scale "), std::string::npos);
   }
   write("script", run({"completion", "fish"}).out);

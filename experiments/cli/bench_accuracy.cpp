@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `bench accuracy`: speed against error.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "analysis/plot.hpp"
+#include "experiments/cli/command.hpp"
+#include "experiments/report/accuracy/accuracy.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+struct AccuracyOptions {
+  accuracy::Options measure;
+  std::string out;
+};
+
+struct JsonOf {
+  nlohmann::json operator()(std::monostate) const { return nullptr; }
+  nlohmann::json operator()(const auto& value) const { return value; }
+};
+
+nlohmann::json facts(const accuracy::Section& section) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const std::vector<TableValue>& row : section.table.rows) {
+    nlohmann::json values = nlohmann::json::object();
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      values[section.table.columns[c]] = std::visit(JsonOf{}, row[c]);
+    }
+    rows.push_back(std::move(values));
+  }
+  return {{"name", section.table.name},
+          {"title", section.title},
+          {"rows", rows},
+          {"findings", section.findings}};
+}
+
+// All data before the first drawing, which needs gnuplot.
+void write(const std::vector<accuracy::Section>& sections, const std::filesystem::path& folder) {
+  for (const accuracy::Section& section : sections) write_csv(section.table, folder);
+  for (const accuracy::Section& section : sections) {
+    if (!section.table.plot.empty()) draw_svg(section.table, folder);
+  }
+}
+
+void print(const std::vector<accuracy::Section>& sections) {
+  for (const accuracy::Section& section : sections) {
+    fmt::print("{}\n", section.title);
+    print_table(section.header, section.summary);
+    for (const std::string& finding : section.findings) fmt::print("{}\n", finding);
+    fmt::print("\n");
+  }
+}
+
+void measure(const AccuracyOptions& options, Context& context) {
+  // A folder that cannot be made is told before minutes of measuring.
+  if (!options.out.empty()) std::filesystem::create_directories(options.out);
+  const std::vector<accuracy::Section> sections = accuracy::measure_accuracy(options.measure);
+  if (context.json) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const accuracy::Section& section : sections) all.push_back(facts(section));
+    print_json({{"quick", options.measure.quick}, {"sections", all}});
+  } else {
+    print(sections);
+  }
+  if (!options.out.empty()) write(sections, options.out);
+}
+
+}  // namespace
+
+void add_bench_accuracy(CLI::App& bench, Context& context) {
+  auto options = std::make_shared<AccuracyOptions>();
+  options->measure.jobs = std::max(1U, std::thread::hardware_concurrency());
+  CLI::App* command = bench.add_subcommand(
+      "accuracy", "Error against cost of integrators, time steps, stiffness and bond order");
+  command->add_flag("--quick", options->measure.quick, "Seconds instead of minutes: less of all");
+  command->add_option("--jobs", options->measure.jobs, "Runs computed at once")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("J");
+  command->add_option("--out", options->out, "Folder for CSV files and figures")->type_name("DIR");
+  command->add_flag("--json", context.json, "Print JSON for programs");
+  command->footer(
+      "What the tables mean, and what follows for a time step: core/ACCURACY.md.\n"
+      "Examples:\n  shearcell bench accuracy --quick\n  shearcell bench accuracy --out accuracy");
+  command->callback([options, &context] {
+    options->measure.report = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
+    measure(*options, context);
+  });
+}
+
+}  // namespace shearcell::cli

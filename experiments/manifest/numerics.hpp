@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run's numbers say of it before it is run: how its time step compares with the springs, and
+// how deep its grains will overlap.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "experiments/manifest/parameters.hpp"
+
+namespace shearcell {
+
+/// A time step beside the two times that it is measured by.
+struct TimeStep {
+  double seconds = 0;
+  double over_contact_time = 0;     ///< of a collision, pi/sqrt(2 k/m)
+  double over_stability_limit = 0;  ///< of stability_limit_s()
+};
+
+TimeStep shear_time_step(const Parameters& parameters);
+TimeStep settle_time_step(const Parameters& parameters);
+
+/// Mean overlap of touching grains at rest [d], to leading order in it: 0.75 p d/k. By the virial
+/// the mean pressure of a packing with n grains per volume and z contacts of each is p = n z k
+/// <overlap> d/6, so <overlap>/d = 6/(n d^3 z) p d/k, which is 0.78 for n d^3 = 1.22 and z = 6.36
+/// (found at N = 2000); 0.75 fits five settled packings within 7 % (core/ACCURACY.md), as
+/// rough side walls bear a part. The pressure
+/// p is that at half the height: P less half the grains' weight per area above a moving bottom
+/// wall, and P plus as much under a moving top wall.
+double expected_overlap(const Parameters& parameters);
+
+/// Below this part of the stability limit a smaller time step changes nothing that seeds would
+/// show, and above the other the fastest vibrations are off by more than 10 % (core/ACCURACY.md).
+inline constexpr double kNeedlesslySmallStep = 0.15;
+inline constexpr double kTooLargeStep = 0.7;
+
+/// What is unwise about a time step named `key` ("steps_per_cycle"), with the remedy, or nothing.
+std::optional<std::string> time_step_advice(const TimeStep& step, const std::string& key);
+
+}  // namespace shearcell
