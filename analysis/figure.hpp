@@ -11,9 +11,9 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
+#include "analysis/chart.hpp"
 #include "analysis/crystallite_map.hpp"
 #include "analysis/measures.hpp"
 #include "analysis/verdict.hpp"
@@ -41,19 +41,17 @@ struct FigureRun {
   std::vector<CheckpointMeasures> checkpoints;  ///< by cycle
 };
 
-/// Empty (not measured, or no error from one run), a number, a whole number, or text.
-using TableValue = std::variant<std::monostate, double, std::int64_t, std::string>;
-
 TableValue table_value(const std::optional<double>& value);
 
 /// One panel: its data and how gnuplot draws them.
 struct FigureTable {
   std::string name;                  ///< "S2a": letters, digits, '-' and '_'
   std::vector<std::string> columns;  ///< with the unit at the end where there is one
-  std::vector<std::vector<TableValue>> rows;
+  TableRows rows;
   /// gnuplot commands that read the variable `data`, the table's CSV file; draw_svg() sets it, the
   /// terminal and the output.
   std::string plot;
+  Chart chart;      ///< the same drawing for a reader who wants to zoom
   int width = 600;  ///< of the drawing [px]
   int height = 430;
 };

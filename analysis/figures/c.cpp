@@ -40,9 +40,24 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
   return all;
 }
 
+const std::array<const char*, 5> colours = {"#6a3d9a", "#000000", "#2ca02c", "#1f4fd8", "#d62728"};
+
+Chart chart_of(std::span<const AmplitudeGrowth> all, const TableRows& rows) {
+  Chart chart{
+      {.label = "crystallite size  [grains]", .low = 0, .high = 60},
+      {.label = "{/:Italic Δρ} = {/:Italic ρ}_{g} − {/:Italic ρ}_{s}", .low = -1.05, .high = 1.05},
+      {},
+      {0}};
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    chart.series.push_back(
+        {fmt::format("{{/:Italic A}} = {}", all[k].amplitude), colours[k % colours.size()],
+         5 + 2 * static_cast<int>(k % 5), false,
+         chart_points(rows, {.x = 2, .x_error = 0, .y = 6, .y_error = 7}, 1, all[k].amplitude)});
+  }
+  return chart;
+}
+
 std::string plot(std::span<const AmplitudeGrowth> all) {
-  static const std::array<const char*, 5> colours = {"#6a3d9a", "#000000", "#2ca02c", "#1f4fd8",
-                                                     "#d62728"};
   std::string text =
       "set xlabel 'crystallite size  [grains]'\n"
       "set ylabel '{/:Italic Δρ} = {/:Italic ρ}_{g} − {/:Italic ρ}_{s}'\n"
@@ -82,6 +97,7 @@ FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
     }
   }
   table.plot = plot(all);
+  table.chart = chart_of(all, table.rows);
   return table;
 }
 
@@ -98,6 +114,13 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
                           static_cast<std::int64_t>(one.runs.size())});
     any = any || one.critical.size.has_value();
   }
+  table.chart = {{.label = "amplitude  {/:Italic A}  [rad]", .low = 0, .high = 0.12},
+                 {.label = "critical size  [grains]", .low = 0},
+                 {{"supplement", "#888888", 6, true,
+                   chart_points(table.rows, {.x = 1, .x_error = 0, .y = 5, .y_error = 0})},
+                  {"simulated", "#000000", 5, false,
+                   chart_points(table.rows, {.x = 1, .x_error = 0, .y = 3, .y_error = 4})}},
+                 {}};
   table.plot =
       "set xlabel 'amplitude  {/:Italic A}  [rad]'\n"
       "set ylabel 'critical size  [grains]'\nset xrange [0:0.12]\nset yrange [0:*]\n";

@@ -16,6 +16,10 @@
 namespace shearcell {
 namespace {
 
+constexpr const char* cycle_label = "shear cycle  {/:Italic n}";
+constexpr const char* phi_label = "volume fraction  {/:Italic ϕ}";
+constexpr const char* crystalline_label = "percentage crystalline  [%]";
+
 bool matches(const nlohmann::json& a, const nlohmann::json& b) {
   if (a.is_number() && b.is_number()) {
     const auto x = a.get<double>();
@@ -167,6 +171,16 @@ std::string plot_curves(std::span<const Curve> curves, const CurveColumns& colum
   return text.empty() ? text : text + "\n";
 }
 
+std::vector<ChartSeries> chart_curves(std::span<const Curve> curves, const TableRows& rows,
+                                      const CurveColumns& columns) {
+  std::vector<ChartSeries> series;
+  for (const Curve& curve : curves) {
+    series.push_back({curve.style.title, curve.style.colour, curve.style.point, true,
+                      chart_points(rows, columns, 1, curve.variant)});
+  }
+  return series;
+}
+
 std::string points_with_errors(const std::string& x, const std::string& y, int error_column,
                                const std::string& colour, int point, const std::string& title) {
   return fmt::format(
@@ -175,9 +189,13 @@ std::string points_with_errors(const std::string& x, const std::string& y, int e
       x, y, error_column, colour, point, literal(title));
 }
 
+std::vector<double> onset_levels() {
+  return {0.645, 0.647};
+}
+
 std::string onset_lines() {
   std::string text = "set yrange [*<0.6445:0.6475<*]\n";  // both, wherever the data are
-  for (const char* phi : {"0.645", "0.647"}) {
+  for (const double phi : onset_levels()) {
     text += fmt::format(
         "set arrow from graph 0, first {0} to graph 1, first {0} nohead dt 2 lc rgb '#888888'\n",
         phi);
@@ -188,7 +206,7 @@ std::string onset_lines() {
 std::string cycle_axis(std::span<const Curve> curves) {
   std::int64_t last = 0;
   for (const Curve& curve : curves) last = std::max(last, curve.points.back().cycle);
-  return std::string("set xlabel 'shear cycle  {/:Italic n}'\n") +
+  return fmt::format("set xlabel '{}'\n", cycle_label) +
          (last <= 10 ? "set xtics 1\nunset mxtics\n" : "");
 }
 
@@ -215,8 +233,12 @@ FigureTable phi_against_cycle(const std::string& name, std::span<const Curve> cu
            table_value(overlap.standard_error), static_cast<std::int64_t>(phi.runs)});
     }
   }
-  table.plot = cycle_axis(curves) + "set ylabel 'volume fraction  {/:Italic ϕ}'\n" +
+  table.plot = cycle_axis(curves) + fmt::format("set ylabel '{}'\n", phi_label) +
                plot_curves(curves, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
+  table.chart = {{.label = cycle_label},
+                 {.label = phi_label},
+                 chart_curves(curves, table.rows, {.x = 2, .x_error = 0, .y = 3, .y_error = 4}),
+                 {}};
   return table;
 }
 
@@ -234,9 +256,12 @@ FigureTable crystallinity_against_cycle(const std::string& name, std::span<const
     }
   }
   table.plot = cycle_axis(curves) +
-               "set ylabel 'percentage crystalline  [%]'\n"
-               "set yrange [0:*]\n" +
+               fmt::format("set ylabel '{}'\nset yrange [0:*]\n", crystalline_label) +
                plot_curves(curves, {.x = 2, .x_error = 0, .y = 3, .y_error = 4});
+  table.chart = {{.label = cycle_label},
+                 {.label = crystalline_label, .low = 0},
+                 chart_curves(curves, table.rows, {.x = 2, .x_error = 0, .y = 3, .y_error = 4}),
+                 {}};
   return table;
 }
 
@@ -259,12 +284,14 @@ FigureTable crystallinity_against_phi(const std::string& name, std::span<const C
                             static_cast<std::int64_t>(bin.value.runs)});
     }
   }
-  table.plot =
-      "set xlabel 'volume fraction  {/:Italic ϕ}'\n"
-      "set ylabel 'percentage crystalline  [%]'\n"
-      "set yrange [0:*]\n"
-      "set offsets graph 0.03, graph 0.03, graph 0.05, 0\n" +
-      plot_curves(curves, {.x = 4, .x_error = 5, .y = 6, .y_error = 7});
+  table.plot = fmt::format("set xlabel '{}'\nset ylabel '{}'\n", phi_label, crystalline_label) +
+               "set yrange [0:*]\n"
+               "set offsets graph 0.03, graph 0.03, graph 0.05, 0\n" +
+               plot_curves(curves, {.x = 4, .x_error = 5, .y = 6, .y_error = 7});
+  table.chart = {{.label = phi_label},
+                 {.label = crystalline_label, .low = 0},
+                 chart_curves(curves, table.rows, {.x = 4, .x_error = 5, .y = 6, .y_error = 7}),
+                 {}};
   return table;
 }
 

@@ -55,18 +55,13 @@ const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& val
 
 RunStatistics over(const CurvePoint& point, double Measures::*quantity);
 
-/// Columns of a table, counted from 1; column 1 holds the variant. 0 for `x_error` means that there
-/// is none.
-struct CurveColumns {
-  int x;
-  int x_error;
-  int y;
-  int y_error;
-};
-
 /// gnuplot commands: lines with points and, where there is an error, error bars, for each curve.
 /// Many cycles are marked every 2, 5, 10, ... cycles; the line has them all.
 std::string plot_curves(std::span<const Curve> curves, const CurveColumns& columns);
+
+/// The same curves for a chart. Column 1 of the table holds the variant.
+std::vector<ChartSeries> chart_curves(std::span<const Curve> curves, const TableRows& rows,
+                                      const CurveColumns& columns);
 
 /// One part of a plot command: points, and error bars where there is an error, which `yerrorbars`
 /// alone would leave out with their points. `x` and `y` are gnuplot's `using` expressions.
@@ -79,6 +74,8 @@ std::string literal(const std::string& text);
 /// gnuplot commands: dashed horizontal lines at phi = 0.646 +- 0.001, the supplement's onset, and a
 /// range of y that holds them.
 std::string onset_lines();
+/// Where they lie.
+std::vector<double> onset_levels();
 
 /// gnuplot commands for an axis of cycles. Short runs get a tick for every cycle.
 std::string cycle_axis(std::span<const Curve> curves);

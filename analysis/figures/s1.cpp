@@ -63,6 +63,13 @@ FigureTable table_of(const std::map<int, Stiffness>& found) {
                           table_value(phi_u.standard_error), table_value(phi.mean),
                           table_value(phi.standard_error), static_cast<std::int64_t>(phi.runs)});
   }
+  table.chart = {{.label = "mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]", .log = true},
+                 {.label = "volume fraction  {/:Italic ϕ}"},
+                 {{"{/:Italic ϕ}_u, uncorrected", "#000000", 6, false,
+                   chart_points(table.rows, {.x = 2, .x_error = 3, .y = 4, .y_error = 5})},
+                  {"{/:Italic ϕ}", "#000000", 7, false,
+                   chart_points(table.rows, {.x = 2, .x_error = 3, .y = 6, .y_error = 7})}},
+                 {}};
   table.plot =
       "set xlabel 'mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]'\n"
       "set ylabel 'volume fraction  {/:Italic ϕ}'\n";

@@ -35,6 +35,19 @@ FigureTable amplitude_table(std::span<const AmplitudeOnset> onsets) {
   for (const AmplitudeOnset& o : onsets) {
     table.rows.push_back(onset_row({std::int64_t{2}, o.amplitude, o.critical_size}, o.by_slope));
   }
+  const CurveColumns columns{.x = 2, .x_error = 0, .y = 4, .y_error = 5};
+  table.chart = {{.label = "amplitude  {/:Italic A}  [rad]", .low = 0, .high = 0.12},
+                 {.label = "onset  {/:Italic ϕ}"},
+                 {{"experiment",
+                   "#ff7f0e",
+                   7,
+                   false,
+                   {{experiment_amplitude_rad, experiment_onset_phi, std::nullopt, std::nullopt}}},
+                  {"largest crystallite is critical", "#1f4fd8", 9, false,
+                   chart_points(table.rows, columns, 1, std::int64_t{1})},
+                  {"steepest growth", "#2ca02c", 13, false,
+                   chart_points(table.rows, columns, 1, std::int64_t{2})}},
+                 onset_levels()};
   table.plot =
       "set xlabel 'amplitude  {/:Italic A}  [rad]'\n"
       "set ylabel 'onset  {/:Italic ϕ}'\nset xrange [0:0.12]\n" +
@@ -112,6 +125,11 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
   if (!groups.contains(smallest_size)) {
     result.verdicts.push_back(interior_is_published(smallest_size, {}));
   }
+  table.chart = {{.label = "grains  {/:Italic N}", .low = 0, .high = 20000},
+                 {.label = "onset  {/:Italic ϕ}"},
+                 {{"simulated", "#000000", 5, false,
+                   chart_points(table.rows, {.x = 1, .x_error = 0, .y = 4, .y_error = 5})}},
+                 onset_levels()};
   table.plot =
       "set xlabel 'grains  {/:Italic N}'\n"
       "set ylabel 'onset  {/:Italic ϕ}'\nset xrange [0:20000]\nset xtics 5000\n" +

@@ -69,6 +69,16 @@ std::string onset_points(std::span<const CurveOnset> onsets) {
   return text;
 }
 
+ChartSeries onset_series(std::span<const CurveOnset> onsets) {
+  ChartSeries series{"onset", "#000000", 7, false, {}};
+  for (const CurveOnset& o : onsets) {
+    if (!o.onset.phi.mean) continue;
+    series.points.push_back(
+        {*o.onset.cycle.mean, *o.onset.phi.mean, std::nullopt, o.onset.phi_error});
+  }
+  return series;
+}
+
 FigureTable onset_table(std::span<const CurveOnset> onsets) {
   FigureTable table;
   table.name = "S6_onset";
@@ -79,6 +89,12 @@ FigureTable onset_table(std::span<const CurveOnset> onsets) {
                    table_value(o.onset.cycle.mean)},
                   o.onset));
   }
+  const CurveColumns columns{.x = 2, .x_error = 0, .y = 5, .y_error = 6};
+  table.chart = {{.label = "amplitude  {/:Italic A}  [rad]", .low = 0, .high = 0.12},
+                 {.label = "onset  {/:Italic ϕ}"},
+                 {{"gravity", "#000000", 5, false, chart_points(table.rows, columns, 3, "on")},
+                  {"no gravity", "#d62728", 7, false, chart_points(table.rows, columns, 3, "off")}},
+                 onset_levels()};
   table.plot =
       "set xlabel 'amplitude  {/:Italic A}  [rad]'\nset ylabel 'onset  {/:Italic ϕ}'\n"
       "set xrange [0:0.12]\n" +
@@ -117,6 +133,8 @@ FigureResult figure_s6(std::span<const FigureRun> runs) {
   const std::vector<CurveOnset> onsets = onsets_of(curves);
   FigureTable phi = phi_against_cycle("S6", curves);
   phi.plot = onset_lines() + onset_points(onsets) + phi.plot;
+  phi.chart.levels = onset_levels();
+  phi.chart.series.push_back(onset_series(onsets));
   FigureResult result{{std::move(phi), onset_table(onsets)}, {}};
   for (const CurveOnset& o : onsets) {
     if (o.gravity) continue;

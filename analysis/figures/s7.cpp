@@ -59,6 +59,14 @@ void add_rows(const char* axis, std::span<const DensityBin> density, const Place
   }
 }
 
+std::vector<ChartPoint> chart_points(std::span<const DensityBin> density) {
+  std::vector<ChartPoint> points;
+  for (const DensityBin& bin : density) {
+    points.push_back({(bin.low + bin.high) / 2, bin.density, std::nullopt, bin.error});
+  }
+  return points;
+}
+
 std::string enough_in_words(const Places& places) {
   return fmt::format("{} crystallites of 15 to 25 grains in {} runs", places.count,
                      places.runs.size());
@@ -144,6 +152,12 @@ FigureResult figure_s7(std::span<const FigureRun> runs) {
                    "standard_error", "crystallites", "runs"};
   add_rows("x/w", density_x, x, table);
   add_rows("y/h", density_y, y, table);
+  table.chart = {
+      {.label = "{/:Italic x}/{/:Italic w},  {/:Italic y}/{/:Italic h}", .low = 0, .high = 1},
+      {.label = "probability density  {/:Italic P}", .low = 0},
+      {{"{/:Italic P}({/:Italic x}/{/:Italic w})", "#000000", 4, false, chart_points(density_x)},
+       {"{/:Italic P}({/:Italic y}/{/:Italic h})", "#d62728", 6, false, chart_points(density_y)}},
+      {}};
   table.plot =
       "set xlabel '{/:Italic x}/{/:Italic w},  {/:Italic y}/{/:Italic h}'\n"
       "set ylabel 'probability density  {/:Italic P}'\nset xrange [0:1]\nset yrange [0:*]\n";

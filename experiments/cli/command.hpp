@@ -39,6 +39,7 @@ void add_prune(CLI::App& app, Context& context);
 void add_regenerate(CLI::App& app, Context& context);
 void add_merge(CLI::App& app, Context& context);
 void add_figures(CLI::App& app, Context& context);
+void add_report(CLI::App& app, Context& context);
 void add_export(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);
 void add_bench_accuracy(CLI::App& bench, Context& context);

@@ -196,14 +196,11 @@ nlohmann::json lineage(const RegeneratedFigure& result, const std::vector<Input>
                     {"seed", runs[r].seed},
                     {"checkpoints", checkpoints}});
   }
-  nlohmann::json outputs = nlohmann::json::object();
-  for (const auto& file : result.files)
-    outputs[file.filename().string()] = sha256_hex_of_file(file);
   return {{"figure", result.name},
           {"scale", result.scale},
           {"analysis_version", analysis_version},
           {"inputs", list},
-          {"outputs", outputs}};
+          {"outputs", nlohmann::json::object()}};
 }
 
 // Unless the newest record of the figure says the same, whoever made it.
@@ -235,17 +232,27 @@ std::vector<const Figure*> in_order_of_needs(std::vector<const Figure*> figures)
   return figures;
 }
 
-RegeneratedFigure regenerate(Store& store, const Figure& figure, const RegenerateOptions& options) {
-  RegeneratedFigure result;
-  result.name = figure.name;
-  const std::vector<Input> inputs = inputs_of(store, figure, options.scale, result.scale);
+ComputedFigure compute_figure(const Store& store, const Figure& figure,
+                              const RegenerateOptions& options) {
+  ComputedFigure computed;
+  RegeneratedFigure& about = computed.about;
+  about.name = figure.name;
+  const std::vector<Input> inputs = inputs_of(store, figure, options.scale, about.scale);
   const std::vector<FigureRun> runs =
-      figure_runs(inputs, measure(store, figure, inputs, options, result));
-  result.runs = runs.size();
-  for (const FigureRun& run : runs) result.checkpoints += run.checkpoints.size();
+      figure_runs(inputs, measure(store, figure, inputs, options, about));
+  about.runs = runs.size();
+  for (const FigureRun& run : runs) about.checkpoints += run.checkpoints.size();
+  computed.result = figure.make(runs);
+  about.verdicts = computed.result.verdicts;
+  computed.lineage = lineage(about, inputs, runs);
+  return computed;
+}
 
+RegeneratedFigure regenerate(Store& store, const Figure& figure, const RegenerateOptions& options) {
+  ComputedFigure computed = compute_figure(store, figure, options);
+  RegeneratedFigure& result = computed.about;
+  const FigureResult& made = computed.result;
   std::filesystem::create_directories(options.folder);
-  FigureResult made = figure.make(runs);
   for (const FigureTable& table : made.tables) {
     result.files.push_back(write_csv(table, options.folder));
     try {
@@ -261,14 +268,16 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
   verdict["scale"] = result.scale;
   result.files.push_back(
       write_text(options.folder / (result.name + ".verdict.json"), verdict.dump(1) + "\n"));
-  result.verdicts = std::move(made.verdicts);
 
-  const nlohmann::json facts = lineage(result, inputs, runs);
+  nlohmann::json& facts = computed.lineage;
+  for (const auto& file : result.files) {
+    facts["outputs"][file.filename().string()] = sha256_hex_of_file(file);
+  }
   result.files.push_back(
       write_text(options.folder / (result.name + ".lineage.json"), lineage_text(facts)));
 
   record(store, result.name, facts);
-  return result;
+  return std::move(result);
 }
 
 }  // namespace shearcell

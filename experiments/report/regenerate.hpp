@@ -37,12 +37,24 @@ struct RegeneratedFigure {
   std::string plot_error;                    ///< why there is no SVG; empty when there is
 };
 
+/// A figure as it is before anything is written.
+struct ComputedFigure {
+  RegeneratedFigure about;  ///< without files
+  FigureResult result;
+  nlohmann::json lineage;  ///< as the record of the figure has it; `outputs` is empty
+};
+
 /// Names of the figures that some registered manifest asks for, and of those of every experiment.
 std::vector<std::string> figures_of_store(const Store& store);
 
 /// Those that need more of a checkpoint come first: its one analysis then gives what the others
 /// need as well. Otherwise in the order given.
 std::vector<const Figure*> in_order_of_needs(std::vector<const Figure*> figures);
+
+/// The tables and verdicts of a figure, and what they come from. Reads the store, and writes
+/// nothing but measures into derived.sqlite. `folder` is not used. Throws as regenerate() does.
+ComputedFigure compute_figure(const Store& store, const Figure& figure,
+                              const RegenerateOptions& options);
 
 /// Writes FOLDER/PANEL.csv, .svg and, with librsvg, .pdf for each panel, FOLDER/NAME.verdict.json
 /// and FOLDER/NAME.lineage.json, and records a FigureGenerated event, with the host and build that

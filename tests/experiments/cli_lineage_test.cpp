@@ -94,5 +94,33 @@ TEST_F(CommandLineLineage, ExportsACrateAndOverwritesNothing) {
   EXPECT_EQ(listing(), before);
 }
 
+TEST_F(CommandLineLineage, WritesAReportAndChangesNothingElse) {
+  const nlohmann::json log = json({"log", "--json"});
+  std::set<std::string> before = listing();
+  const nlohmann::json facts = json({"report", "--out", "out/report.html", "--json"});
+  EXPECT_EQ(facts.at("experiments"), 1);
+  EXPECT_EQ(facts.at("figures"), 2);  // S2, and Table I of all experiments
+  EXPECT_EQ(facts.at("bytes"), std::filesystem::file_size(path("out/report.html")));
+  before.insert("out/report.html");
+  EXPECT_EQ(listing(), before);
+  EXPECT_EQ(json({"log", "--json"}), log);
+  EXPECT_TRUE(contains(read_bytes(path("out/report.html")), "as recorded"));
+
+  const std::string first = read_bytes(path("out/report.html"));
+  ASSERT_EQ(run({"report", "--out", "out/report.html"}).code, 0);
+  EXPECT_EQ(read_bytes(path("out/report.html")), first);
+
+  EXPECT_EQ(run({"report", "--run", "nothing"}).code, 2);
+  EXPECT_EQ(run({"report", "--accuracy", "nowhere"}).code, 2);
+  EXPECT_EQ(run({"report", "--out", "no/such/folder.html"}).code, 1);
+
+  const std::string file = newest_file(json({"status", "--json"})["runs"].back()["id"]);
+  std::filesystem::remove(path("shearcell-store/derived.sqlite"));
+  truncate_file(path(file));
+  const Outcome damaged = run({"report", "--out", "out/report.html"});
+  EXPECT_EQ(damaged.code, 4) << damaged.err;
+  EXPECT_TRUE(contains(damaged.err, "left out: ")) << damaged.err;
+}
+
 }  // namespace
 }  // namespace shearcell::test

@@ -37,7 +37,7 @@ TEST_F(CommandLine, EverySubcommandHasHelpWithAnExample) {
   EXPECT_EQ(all.code, 0);
   EXPECT_TRUE(contains(all.out, "Exit codes"));
   for (const char* command : {"plan", "run", "resume", "status", "log", "show", "verify", "rebuild",
-                              "prune", "regenerate", "merge", "figures"}) {
+                              "prune", "regenerate", "merge", "figures", "report"}) {
     EXPECT_TRUE(contains(all.out, std::string("  ") + command)) << command;
     const Outcome help = run({command, "--help"});
     EXPECT_EQ(help.code, 0) << command;
@@ -64,7 +64,7 @@ TEST_F(CommandLine, RefusesWhatItDoesNotKnow) {
   expect_usage_error({"run", kDrag, "--jobs", "0"}, "jobs");
   expect_usage_error({"run", kDrag, "--scale", "desc"}, "the nearest is desk");
   expect_usage_error({"run", "nowhere.yaml"}, "nowhere.yaml");
-  for (const char* command : {"status", "resume", "log", "verify", "figures"}) {
+  for (const char* command : {"status", "resume", "log", "verify", "figures", "report"}) {
     expect_usage_error({command}, "there is no store here");
   }
 }

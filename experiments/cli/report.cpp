@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `report`: the whole store in one HTML file.
+#include "experiments/report/report.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <thread>
+
+#include "experiments/cli/command.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+struct ReportCommand {
+  std::string out = "report.html";
+  std::string accuracy;
+  bool drawings = false;
+  double megabytes = 9;
+  ReportOptions report;
+};
+
+std::function<void(std::size_t, std::size_t)> counter(const char* what) {
+  if (isatty(STDERR_FILENO) == 0) return {};
+  return [what](std::size_t done, std::size_t total) {
+    fmt::print(stderr, "\r{} {} of {}{}", what, done, total, done == total ? "\n" : "");
+  };
+}
+
+// Beside its place first: a report that is being read is never half of one.
+void write(const std::filesystem::path& path, const std::string& html) {
+  const std::filesystem::path unfinished = path.string() + ".tmp";
+  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
+  file << html;
+  file.close();
+  std::error_code problem;
+  if (file) std::filesystem::rename(unfinished, path, problem);
+  if (!file || problem) {
+    std::filesystem::remove(unfinished, problem);
+    throw std::runtime_error(path.string() + ": cannot be written");
+  }
+}
+
+nlohmann::json facts(const Report& report, const ReportCommand& command) {
+  return {{"file", command.out},
+          {"bytes", report.html.size()},
+          {"interactive", report.interactive},
+          {"experiments", report.experiments},
+          {"figures", report.figures},
+          {"stages", report.runs},
+          {"packings", report.packings},
+          {"checkpoints", report.frames},
+          {"damage", report.damage},
+          {"notes", report.notes}};
+}
+
+void report(ReportCommand& command, Context& context) {
+  const Store store(context.store, Access::read);
+  ReportOptions& options = command.report;
+  options.interactive = !command.drawings;
+  options.packings.budget = static_cast<std::size_t>(command.megabytes * 1e6);
+  if (!command.accuracy.empty()) options.accuracy = command.accuracy;
+  for (std::string& run : options.packings.runs) run = store.find_run(run).id;
+  options.workers = std::max(1U, std::thread::hardware_concurrency());
+  options.measured = counter("measuring checkpoint");
+  options.packed = counter("packing checkpoint");
+  const Report made = make_report(store, options);
+  write(command.out, made.html);
+  if (!made.damage.empty()) context.exit_code = kStoreDamaged;
+  for (const std::string& line : made.damage) fmt::print(stderr, "left out: {}\n", line);
+  for (const std::string& line : made.notes) fmt::print(stderr, "left out: {}\n", line);
+  if (!has_front_end() && !command.drawings) {
+    fmt::print(stderr,
+               "Figures are drawings and there are no packings: this program was built without "
+               "Node.\n");
+  }
+  if (context.json) return print_json(facts(made, command));
+  fmt::print("{}: {}; {} experiments, {} figures, {} stages", command.out,
+             format_bytes(static_cast<double>(made.html.size())), made.experiments, made.figures,
+             made.runs);
+  if (made.interactive) {
+    fmt::print(", {} checkpoints of {} runs in 3D", made.frames, made.packings);
+  }
+  fmt::print("\n");
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Context& context) {
+  auto command = std::make_shared<ReportCommand>();
+  PackingChoice& packings = command->report.packings;
+  CLI::App* sub = app.add_subcommand("report", "Write the whole store as one HTML file");
+  sub->add_option("--out", command->out, "File to write")->capture_default_str()->type_name("FILE");
+  sub->add_option("--scale", command->report.scale, "Scale of the runs (default: declared last)");
+  sub->add_option("--run", packings.runs, "Show these runs in 3D instead of the default")
+      ->type_name("RUN");
+  sub->add_option("--runs-per-experiment", packings.runs_per_experiment,
+                  "Runs in 3D: the last of each variant, so many of them")
+      ->capture_default_str();
+  sub->add_option("--frames", packings.frames, "Checkpoints of each run in 3D, evenly spread")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  sub->add_option("--packings-mb", command->megabytes,
+                  "Room for all of them; fewer are taken where they would not fit")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
+  sub->add_option("--accuracy", command->accuracy,
+                  "Folder that `bench accuracy --out` wrote: adds its diagrams")
+      ->type_name("DIR");
+  sub->add_flag("--drawings", command->drawings,
+                "Figures as gnuplot draws them, no script, no packings");
+  add_common_options(*sub, context, true);
+  sub->footer(
+      "The file needs no network: figures to zoom and read values from, verdicts, runs, lineage, "
+      "and\n"
+      "packings in 3D with their positions rounded to 16 bits an axis. The store is only read.\n"
+      "Examples:\n  shearcell report --out report.html\n"
+      "  shearcell report --run 3f9a --frames 200 --out one-run.html\n"
+      "  shearcell report --scale desk --accuracy accuracy --out desk.html");
+  sub->callback([command, &context] { report(*command, context); });
+}
+
+}  // namespace shearcell::cli

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/report/frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace shearcell {
+namespace {
+
+constexpr double largest_word = 65535;
+
+void put_word(double value, std::vector<std::byte>& bytes) {
+  const auto word = static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, largest_word)));
+  bytes.push_back(static_cast<std::byte>(word & 0xFFU));
+  bytes.push_back(static_cast<std::byte>(word >> 8U));
+}
+
+/// Grains, then wall grains, with z folded into the period.
+Eigen::Matrix3Xd all_positions(const Checkpoint& checkpoint, const WallPose& pose) {
+  const Eigen::Matrix3Xd& grains = checkpoint.state.position;
+  const Eigen::Matrix3Xd walls = wall_grain_positions(checkpoint.cell, pose);
+  Eigen::Matrix3Xd all(3, grains.cols() + walls.cols());
+  all << grains, walls;
+  const double depth = checkpoint.cell.depth;
+  for (Eigen::Index i = 0; i < all.cols(); ++i) {
+    all(2, i) -= depth * std::floor(all(2, i) / depth);
+  }
+  return all;
+}
+
+}  // namespace
+
+PackedFrame pack_frame(const Checkpoint& checkpoint, const WallPose& pose,
+                       const GrainMeasures& grains) {
+  const Eigen::Matrix3Xd position = all_positions(checkpoint, pose);
+  PackedFrame frame;
+  frame.origin = position.rowwise().minCoeff();
+  frame.step = (position.rowwise().maxCoeff() - frame.origin) / largest_word;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const double step = frame.step[axis] > 0 ? frame.step[axis] : 1;
+    for (Eigen::Index i = 0; i < position.cols(); ++i) {
+      put_word((position(axis, i) - frame.origin[axis]) / step, frame.bytes);
+    }
+  }
+  for (const double phi : grains.phi_local) put_word(phi * largest_word, frame.bytes);
+  for (const double q6 : grains.q6) put_word(q6 * largest_word, frame.bytes);
+  for (const std::int32_t label : grains.crystallites.label) put_word(label + 1.0, frame.bytes);
+  for (std::size_t i = 0; i < grains.structure.size(); ++i) {
+    const unsigned interior = grains.interior[i] != 0 ? 4 : 0;
+    frame.bytes.push_back(
+        static_cast<std::byte>(static_cast<unsigned>(grains.structure[i]) + interior));
+  }
+  return frame;
+}
+
+std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains) {
+  const std::size_t bytes = 6 * (grains + wall_grains) + 7 * grains;
+  return (bytes + 2) / 3 * 4;
+}
+
+}  // namespace shearcell

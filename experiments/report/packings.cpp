@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/report/packings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "analysis/measures.hpp"
+#include "experiments/report/frames.hpp"
+#include "experiments/report/html.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+struct ChosenRun {
+  RunRecord run;
+  Membership membership;
+  std::vector<CheckpointRecord> checkpoints;  // that can be read
+  std::size_t bytes = 0;                      // of one of them in the page
+  std::size_t grains = 0;
+  std::size_t wall_grains = 0;
+};
+
+const Membership* member_of(const RunRecord& run, const std::string& experiment,
+                            const std::optional<std::string>& scale) {
+  const Membership* found = nullptr;
+  for (const Membership& member : run.memberships) {
+    if (member.experiment == experiment && (!scale || member.scale == *scale)) found = &member;
+  }
+  return found;
+}
+
+/// The last run of each variant, evenly thinned to `limit` variants.
+std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<RunRecord>& runs,
+                                          const std::string& experiment,
+                                          const std::optional<std::string>& scale,
+                                          std::size_t limit) {
+  std::vector<ChosenRun> last;
+  for (const RunRecord& run : runs) {
+    const Membership* member = member_of(run, experiment, scale);
+    if (member == nullptr || run.kind == "prepare") continue;
+    std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id);
+    if (checkpoints.empty()) continue;
+    const auto same = std::find_if(last.begin(), last.end(), [&](const ChosenRun& other) {
+      return other.membership.variant == member->variant;
+    });
+    ChosenRun chosen{run, *member, std::move(checkpoints), 0, 0, 0};
+    if (same == last.end()) {
+      last.push_back(std::move(chosen));
+    } else {
+      *same = std::move(chosen);
+    }
+  }
+  std::vector<ChosenRun> kept;
+  for (const std::size_t i : evenly(last.size(), limit)) kept.push_back(std::move(last[i]));
+  return kept;
+}
+
+std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>& experiments,
+                              const std::optional<std::string>& scale,
+                              const PackingChoice& choice) {
+  std::vector<ChosenRun> chosen;
+  if (!choice.runs.empty()) {
+    for (const std::string& id : choice.runs) {
+      const RunRecord run = store.find_run(id);
+      const Membership member = run.memberships.empty() ? Membership{} : run.memberships.front();
+      chosen.push_back({run, member, store.checkpoints(run.id), 0, 0, 0});
+    }
+    std::erase_if(chosen, [](const ChosenRun& run) { return run.checkpoints.empty(); });
+    return chosen;
+  }
+  std::set<std::string> known;
+  const std::vector<RunRecord> runs = store.runs();
+  for (const std::string& experiment : experiments) {
+    for (ChosenRun& run :
+         runs_of_experiment(store, runs, experiment, scale, choice.runs_per_experiment)) {
+      if (known.insert(run.run.id).second) chosen.push_back(std::move(run));
+    }
+  }
+  return chosen;
+}
+
+/// How large a checkpoint of each run is, from its newest that can be read; runs without any go.
+void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings) {
+  for (ChosenRun& run : runs) {
+    while (!run.checkpoints.empty() && run.bytes == 0) {
+      try {
+        const Checkpoint last = store.load_checkpoint(run.checkpoints.back());
+        run.wall_grains = last.cell.wall_grains.size();
+        run.grains = static_cast<std::size_t>(last.state.position.cols());
+        run.bytes = frame_size_in_page(run.grains, run.wall_grains) + 700;  // facts and braces
+      } catch (const StoreDamaged& damage) {
+        packings.notes.emplace_back(damage.what());
+        run.checkpoints.pop_back();
+      } catch (const CheckpointPruned&) {
+        run.checkpoints.pop_back();
+      }
+    }
+  }
+  std::erase_if(runs, [](const ChosenRun& run) { return run.checkpoints.empty(); });
+}
+
+std::size_t bytes_with(const std::vector<ChosenRun>& runs, std::size_t frames) {
+  std::size_t bytes = 0;
+  for (const ChosenRun& run : runs) bytes += run.bytes * std::min(frames, run.checkpoints.size());
+  return bytes;
+}
+
+void fit(std::vector<ChosenRun>& runs, const PackingChoice& choice, Packings& packings) {
+  while (!runs.empty() && bytes_with(runs, 1) > choice.budget) {
+    packings.notes.push_back(fmt::format("run {:.12} of {}: no room for its packings",
+                                         runs.back().run.id, runs.back().membership.experiment));
+    runs.pop_back();
+  }
+  std::size_t frames = std::max<std::size_t>(1, choice.frames);
+  while (frames > 1 && bytes_with(runs, frames) > choice.budget) --frames;
+  for (ChosenRun& run : runs) {
+    std::vector<CheckpointRecord> kept;
+    for (const std::size_t i : evenly(run.checkpoints.size(), frames)) {
+      kept.push_back(std::move(run.checkpoints[i]));
+    }
+    run.checkpoints = std::move(kept);
+  }
+}
+
+std::string frame_name(const CheckpointRecord& record) {
+  const auto stiffness = record.observables.find("stiffness_N_per_m");
+  if (stiffness != record.observables.end()) {
+    return fmt::format("state {:g}, k = {:.4g} N/m", record.cycle, stiffness->second);
+  }
+  return fmt::format("cycle {:.6g}", record.cycle);
+}
+
+json facts_of(const Measures& measures, double theta) {
+  json facts = json::array();
+  if (measures.interior_grains > 0) {
+    facts.push_back(fmt::format("{{/:Italic ϕ}} = {:.4f}", measures.phi));
+    facts.push_back(fmt::format("{:.1f} % crystalline", measures.crystalline_percent));
+    facts.push_back(fmt::format("largest crystallite {}", measures.largest_crystallite));
+  }
+  if (theta != 0) facts.push_back(fmt::format("tilt {:.4f} rad", theta));
+  return facts;
+}
+
+json vector_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+struct Frame {
+  json value;
+  double step = 0;
+};
+
+Frame make_frame(const Store& store, const CheckpointRecord& record) {
+  const Checkpoint checkpoint = store.load_checkpoint(record);
+  const Analysis analysis = analyse(checkpoint);
+  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  const PackedFrame packed = pack_frame(checkpoint, pose, analysis.grains);
+  return {{{"name", frame_name(record)},
+           {"sha256", record.sha256},
+           {"facts", facts_of(analysis.measures, checkpoint.theta)},
+           {"cell",
+            {{"width", checkpoint.cell.width},
+             {"depth", checkpoint.cell.depth},
+             {"bottom", pose.bottom},
+             {"top", pose.top},
+             {"tan_theta", pose.tan_theta}}},
+           {"origin", vector_json(packed.origin)},
+           {"step", vector_json(packed.step)},
+           {"data", base64(packed.bytes)}},
+          packed.step.maxCoeff()};
+}
+
+/// Frames of all runs, one after the other; null where one cannot be read.
+std::vector<Frame> make_frames(const Store& store, const std::vector<CheckpointRecord>& records,
+                               std::size_t workers,
+                               const std::function<void(std::size_t, std::size_t)>& report,
+                               Packings& packings) {
+  std::vector<Frame> frames(records.size());
+  std::atomic<std::size_t> next{0};
+  std::size_t done = 0;
+  std::mutex mutex;  // guards `done`, `error` and the notes
+  std::exception_ptr error;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < records.size(); i = next++) {
+      try {
+        frames[i] = make_frame(store, records[i]);
+      } catch (const StoreDamaged& damage) {
+        const std::lock_guard lock(mutex);
+        packings.notes.emplace_back(damage.what());
+      } catch (const CheckpointPruned& pruned) {
+        const std::lock_guard lock(mutex);
+        packings.notes.emplace_back(pruned.what());
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        error = std::current_exception();
+        return;
+      }
+      const std::lock_guard lock(mutex);
+      if (report) report(++done, records.size());
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::size_t w = 0; w < std::clamp<std::size_t>(workers, 1, records.size() + 1); ++w) {
+    threads.emplace_back(work);
+  }
+  for (std::thread& thread : threads) thread.join();
+  if (error) std::rethrow_exception(error);
+  return frames;
+}
+
+}  // namespace
+
+std::vector<std::size_t> evenly(std::size_t size, std::size_t count) {
+  std::vector<std::size_t> chosen;
+  if (size == 0 || count == 0) return chosen;
+  if (count == 1) return {size - 1};
+  count = std::min(count, size);
+  for (std::size_t k = 0; k < count; ++k) {
+    chosen.push_back(count == 1 ? 0 : (k * (size - 1) + (count - 1) / 2) / (count - 1));
+  }
+  return chosen;
+}
+
+Packings collect_packings(const Store& store, const std::vector<std::string>& experiments,
+                          const std::optional<std::string>& scale, const PackingChoice& choice,
+                          std::size_t workers,
+                          const std::function<void(std::size_t, std::size_t)>& report) {
+  Packings packings;
+  std::vector<ChosenRun> runs = choose(store, experiments, scale, choice);
+  weigh(store, runs, packings);
+  std::vector<std::size_t> stored;
+  for (const ChosenRun& run : runs) stored.push_back(run.checkpoints.size());
+  fit(runs, choice, packings);
+
+  std::vector<CheckpointRecord> records;
+  for (const ChosenRun& run : runs) {
+    records.insert(records.end(), run.checkpoints.begin(), run.checkpoints.end());
+  }
+  std::vector<Frame> frames = make_frames(store, records, workers, report, packings);
+  std::sort(packings.notes.begin(), packings.notes.end());
+  auto next = frames.begin();
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const ChosenRun& run = runs[r];
+    json list = json::array();
+    for (std::size_t k = 0; k < run.checkpoints.size(); ++k, ++next) {
+      if (next->value.is_null()) continue;
+      packings.largest_step = std::max(packings.largest_step, next->step);
+      list.push_back(std::move(next->value));
+    }
+    packings.frames += list.size();
+    if (list.empty()) continue;
+    packings.runs.push_back({{"id", run.run.id},
+                             {"label", fmt::format("{}, seed {}, N = {}", run.membership.variant,
+                                                   run.membership.seed, run.run.grains)},
+                             {"experiment", run.membership.experiment},
+                             {"grains", run.grains},
+                             {"wall_grains", run.wall_grains},
+                             {"checkpoints", stored[r]},
+                             {"frames", std::move(list)}});
+  }
+  return packings;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstddef>
+#include <set>
+#include <vector>
+
+#include "experiments/report/html.hpp"
+#include "experiments/report/web_assets.hpp"
+#include "provenance/sha256.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+/// For a Content-Security-Policy: only this very script may run.
+std::string script_hash(std::string_view script) {
+  const std::string hex = sha256_hex(script);
+  std::vector<std::byte> digest;
+  for (std::size_t at = 0; at < hex.size(); at += 2) {
+    unsigned value = 0;
+    std::from_chars(hex.data() + at, hex.data() + at + 2, value, 16);
+    digest.push_back(static_cast<std::byte>(value));
+  }
+  return "sha256-" + base64(digest);
+}
+
+std::string head_html(const ReportData& data) {
+  const std::string scripts =
+      data.interactive ? fmt::format("script-src '{}'; ", script_hash(front_end_script())) : "";
+  return fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n"
+      // Nothing is fetched, and no script but ours runs.
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; {}"
+      "style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'\">\n"
+      "<title>{} · shearcell report</title>\n<style>\n{}</style>\n</head>\n",
+      scripts, escape_html(data.store), page_style());
+}
+
+std::string count(std::size_t number, const char* one) {
+  return fmt::format("{} {}{}", number, one, number == 1 ? "" : "s");
+}
+
+std::string title_html(const ReportData& data) {
+  std::set<std::string> runs;
+  for (const ReportExperiment& experiment : data.experiments) {
+    for (const RunRecord& run : experiment.runs) runs.insert(run.id);
+  }
+  return fmt::format(
+      "<header>\n<p class=\"eyebrow\">shearcell report</p>\n<h1>{}</h1>\n<p class=\"lead\">{}, {}, "
+      "{}. Log at event {}, <code title=\"{}\">{}</code>. Made by shearcell {} ({}).</p>\n"
+      "<label class=\"theme\" hidden>Colours <select id=\"theme\"><option value=\"system\">as the "
+      "system</option><option value=\"light\">light</option><option "
+      "value=\"dark\">dark</option></select></label>\n</header>\n",
+      escape_html(data.store), count(data.experiments.size(), "experiment"),
+      count(data.figures.size(), "figure"), count(runs.size(), "stage"), data.head.seq,
+      escape_html(data.head.hash), escape_html(data.head.hash.substr(0, 12)),
+      escape_html(data.program.value("version", "")),
+      escape_html(data.program.value("commit", "")));
+}
+
+std::string overview_html(const ReportData& data) {
+  std::string html =
+      "<nav aria-label=\"Experiments\"><table class=\"overview\"><thead><tr><th>question</th>"
+      "<th>verdict</th><th>figures</th><th class=\"number\">stages</th></tr></thead><tbody>\n";
+  for (const ReportExperiment& experiment : data.experiments) {
+    std::string figures;
+    for (const std::string& name : experiment.figures) {
+      figures += fmt::format("<a href=\"#figure-{0}\">{0}</a> ", escape_html(name));
+    }
+    html += fmt::format(
+        "<tr><td><a href=\"#experiment-{0}\">{1}</a> <span class=\"small\">{0}</span></td>"
+        "<td>{2}</td><td>{3}</td><td class=\"number\">{4}</td></tr>\n",
+        escape_html(experiment.name),
+        escape_html(experiment.question.empty() ? experiment.name : experiment.question),
+        experiment.figures.empty() ? "" : ruling_html(ruling_of(data, experiment)), figures,
+        experiment.runs.size());
+  }
+  html += "</tbody></table>\n<p class=\"small\">";
+  if (!data.packings.runs.empty()) html += "<a href=\"#packings\">Packings in 3D</a> · ";
+  if (!data.accuracy.empty()) html += "<a href=\"#accuracy\">Error against cost</a> · ";
+  return html +
+         "<a href=\"#runs\">Runs and manifests</a> · <a href=\"#about\">About this file</a></p>"
+         "</nav>\n";
+}
+
+// The parts that web/src/viewer.js finds by their `data-part`.
+constexpr const char* viewer_controls = R"(<div class="viewer">
+<div class="controls">
+<label>Run <select data-part="run"></select></label>
+<label>Colour <select data-part="colour"><option value="class">FCC, HCP, disordered</option>
+<option value="crystallite">crystallites</option><option value="phi">local volume fraction</option>
+<option value="q6">bond order q6</option></select></label>
+<label>Disordered <select data-part="disordered"><option value="full">full size</option>
+<option value="small">small</option><option value="hidden">hidden</option></select></label>
+<label>Clip <select data-part="cut-axis"><option value="none">nothing</option>
+<option value="x">along x</option><option value="y">along y</option>
+<option value="z">along z</option></select></label>
+<label class="grow">at <input type="range" data-part="cut-at" min="0" max="1000" value="500">
+<output data-part="cut-text"></output></label>
+<label><input type="checkbox" data-part="cut-side"> other side</label>
+<label><input type="checkbox" data-part="walls" checked> wall grains</label>
+<label><input type="checkbox" data-part="box" checked> cell</label>
+</div>
+<p class="warning" data-part="trouble" hidden>This browser has no WebGL 2, so packings cannot be shown.</p>
+<div class="stage3d" data-part="stage">
+<canvas data-part="canvas" tabindex="0" role="img" aria-label="The packing. Arrow keys turn it, plus and minus zoom, 0 shows all."></canvas>
+<div class="key3d" data-part="key"></div>
+</div>
+<div class="timeline">
+<button type="button" data-part="play">Play</button>
+<label class="grow"><span class="visually-hidden">Checkpoint</span>
+<input type="range" data-part="cycle" min="0" max="0" step="1" value="0"></label>
+<output data-part="cycle-text"></output>
+</div>
+<p class="facts"><span data-part="facts"></span> <span>checkpoint <code data-part="checkpoint"></code></span></p>
+<p class="facts" data-part="grain" role="status"></p>
+<p><button type="button" data-part="reset">First view</button>
+<button type="button" data-part="save">Save PNG</button></p>
+</div>
+)";
+
+std::string packings_html(const ReportData& data) {
+  if (data.packings.runs.empty()) return "";
+  return fmt::format(
+      "<section id=\"packings\" hidden>\n<h2>Packings</h2>\n{}<p class=\"small\">{} of {}. "
+      "Positions are rounded to {:.2g} d (16 bits an axis), φ<sub>local</sub> and q<sub>6</sub> to "
+      "1.6e-5; the store has them exactly. Spheres are drawn with the diameter d, without "
+      "perspective; x is the shear direction, y points up, z is periodic. Crystallites are of "
+      "interior grains, at least 1.5 d from the walls. Drag turns, the wheel zooms once the "
+      "picture "
+      "has the focus.</p>\n</section>\n",
+      viewer_controls, count(data.packings.frames, "checkpoint"),
+      count(data.packings.runs.size(), "run"), data.packings.largest_step);
+}
+
+/// Figures that no experiment asks for.
+std::string across_html(const ReportData& data) {
+  std::string html;
+  for (const ReportFigure& figure : data.figures) {
+    if (figure.experiment.empty()) html += figure_html(data, figure);
+  }
+  if (html.empty()) return html;
+  return "<section id=\"across\">\n<h2>All experiments together</h2>\n" + html + "</section>\n";
+}
+
+std::string accuracy_html(const ReportData& data) {
+  if (data.accuracy.empty()) return "";
+  std::string html =
+      "<section id=\"accuracy\">\n<h2>Error against cost</h2>\n<p class=\"small\">Measured by "
+      "<code>shearcell bench accuracy</code>, not taken from this store.</p>\n"
+      "<div class=\"panels\">\n";
+  for (const ReportPanel& panel : data.accuracy) html += panel_html(data, panel);
+  return html + "</div>\n</section>\n";
+}
+
+std::string about_html(const ReportData& data) {
+  std::string html =
+      "<section id=\"about\">\n<h2>About this file</h2>\n<p>It holds all that it shows and fetches "
+      "nothing. Errors are standard errors over runs. Made from the store alone; the same store "
+      "gives the same file.</p>\n";
+  if (!data.interactive) {
+    html += has_front_end()
+                ? "<p>Figures are drawings here: it was asked for so.</p>\n"
+                : "<p>Figures are drawings here, and there are no packings: this program was built "
+                  "without Node, which bundles the interactive part.</p>\n";
+  } else {
+    html += fmt::format(
+        "<details><summary>Licences of the libraries in this file</summary><pre "
+        "tabindex=\"0\">{}</pre></details>\n",
+        escape_html(front_end_licences()));
+  }
+  return html + "</section>\n";
+}
+
+std::string data_html(const ReportData& data) {
+  if (!data.interactive) return "";
+  json charts = json::object();
+  for (const ReportFigure& figure : data.figures) {
+    for (const ReportPanel& panel : figure.panels) {
+      if (!panel.chart.series.empty()) charts[panel.name] = to_json(panel.chart);
+    }
+  }
+  for (const ReportPanel& panel : data.accuracy) charts[panel.name] = to_json(panel.chart);
+  return fmt::format(
+      "<script type=\"application/json\" id=\"report-data\">{}</script>\n<script>{}</script>\n",
+      script_json({{"charts", charts}, {"packings", data.packings.runs}}), front_end_script());
+}
+
+}  // namespace
+
+std::string report_page(const ReportData& data) {
+  std::string html =
+      head_html(data) + "<body>\n" + title_html(data) + "<main>\n" + overview_html(data);
+  for (const ReportExperiment& experiment : data.experiments) {
+    html += experiment_html(data, experiment);
+  }
+  html += across_html(data) + packings_html(data) + accuracy_html(data) + runs_html(data) +
+          about_html(data);
+  return html + "</main>\n" + data_html(data) + "</body>\n</html>\n";
+}
+
+}  // namespace shearcell

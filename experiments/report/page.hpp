@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The report as HTML. Every text that comes from a store or a file is escaped here.
+#pragma once
+
+#include <string>
+
+#include "experiments/report/report_data.hpp"
+
+namespace shearcell {
+
+/// The whole page: markup, style, data and, when it is interactive, the front end.
+std::string report_page(const ReportData& data);
+
+// --- Its parts ---
+
+/// The experiment's question, verdict, figures and runs.
+std::string experiment_html(const ReportData& data, const ReportExperiment& experiment);
+
+/// A figure: its panels, claims and lineage.
+std::string figure_html(const ReportData& data, const ReportFigure& figure);
+
+/// A plot (a place for one, when the page is interactive) and its numbers.
+std::string panel_html(const ReportData& data, const ReportPanel& panel);
+
+/// What a figure came from, folded away.
+std::string lineage_html(const ReportData& data, const ReportFigure& figure);
+
+/// Every run: how it was made, by which build, and its checkpoints.
+std::string runs_html(const ReportData& data);
+
+/// "pass", "fail" or "too few runs", as a mark that needs no colour to be read.
+std::string ruling_html(Ruling ruling);
+
+/// The experiment as a whole: the worst of its figures.
+Ruling ruling_of(const ReportData& data, const ReportExperiment& experiment);
+
+}  // namespace shearcell

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/report/html.hpp"
+#include "experiments/report/page.hpp"
+#include "experiments/runner/progress.hpp"
+
+namespace shearcell {
+namespace {
+
+const ReportFigure& figure_called(const ReportData& data, const std::string& name) {
+  return *std::find_if(data.figures.begin(), data.figures.end(),
+                       [&](const ReportFigure& figure) { return figure.name == name; });
+}
+
+std::string claim_html(const Verdict& verdict) {
+  const std::string value = verdict.value ? fmt::format("{:.4g}", *verdict.value) : "not measured";
+  const std::string limit = verdict.limit ? fmt::format(", limit {:.4g}", *verdict.limit) : "";
+  return fmt::format("<li>{}<div><p>{}</p><p class=\"small\">{}: {}{}{}</p></div></li>\n",
+                     ruling_html(verdict.ruling), escape_html(verdict.claim),
+                     escape_html(verdict.quantity), value, limit,
+                     verdict.note.empty() ? "" : ". " + escape_html(verdict.note));
+}
+
+std::string table_html(const ReportPanel& panel) {
+  std::string html = fmt::format(
+      "<div class=\"scroll tall\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table>",
+      escape_html(panel.name));
+  for (const std::vector<std::string>& row : panel.table) {
+    const char* tag = &row == &panel.table.front() ? "th" : "td";
+    html += "<tr>";
+    for (const std::string& cell : row) {
+      html += fmt::format("<{0}>{1}</{0}>", tag, escape_html(cell));
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table></div>";
+}
+
+std::string progress_of(const RunRecord& run) {
+  if (run.kind == "prepare") return "";
+  return fmt::format("{:.6g} / {}", run.cycle, run.target_cycles);
+}
+
+const Membership& member_of(const RunRecord& run, const std::string& experiment) {
+  return *std::find_if(run.memberships.begin(), run.memberships.end(),
+                       [&](const Membership& m) { return m.experiment == experiment; });
+}
+
+std::string run_row(const ReportData& data, const RunRecord& run, const std::string& experiment) {
+  const Membership& member = member_of(run, experiment);
+  const double rate = run.wall_seconds > 0 ? run.particle_steps / run.wall_seconds * 1e-6 : 0;
+  const bool shown = std::any_of(data.packings.runs.begin(), data.packings.runs.end(),
+                                 [&](const nlohmann::json& p) { return p.at("id") == run.id; });
+  const std::string view =
+      shown ? fmt::format("<a hidden data-packing=\"{}\" href=\"#packings\">3D</a>",
+                          escape_html(run.id))
+            : "";
+  return fmt::format(
+      "<tr><td><a class=\"id\" href=\"#run-{0}\">{10}</a></td><td>{1}</td><td>{2}</td>"
+      "<td class=\"number\">{3}</td><td class=\"number\">{4}</td><td class=\"state "
+      "{5}\">{5}</td><td class=\"number\">{6}</td><td class=\"number\">{7}</td><td "
+      "class=\"number\">{8}</td><td>{9}</td></tr>\n",
+      escape_html(run.id.substr(0, 12)), escape_html(member.scale), escape_html(member.variant),
+      member.seed, run.grains, name_of(run.state), progress_of(run),
+      rate > 0 ? fmt::format("{:.1f}", rate) : "",
+      run.wall_seconds > 0 ? format_duration(run.wall_seconds) : "", view,
+      escape_html(run.id.substr(0, 8)));
+}
+
+std::string run_table(const ReportData& data, const ReportExperiment& experiment) {
+  const auto completed =
+      std::count_if(experiment.runs.begin(), experiment.runs.end(),
+                    [](const RunRecord& run) { return run.state == RunState::completed; });
+  std::string html = fmt::format(
+      "<details class=\"runs\"><summary>Runs: {} of {} stages completed</summary>\n"
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Runs of {}\"><table>\n"
+      "<thead><tr><th>run</th><th>scale</th><th>variant</th><th class=\"number\">seed</th>"
+      "<th class=\"number\">N</th><th>state</th><th class=\"number\">cycle</th>"
+      "<th class=\"number\" title=\"million particle-steps per second\">M/s</th>"
+      "<th class=\"number\">time</th><th></th></tr></thead>\n<tbody>\n",
+      completed, experiment.runs.size(), escape_html(experiment.name));
+  for (const RunRecord& run : experiment.runs) html += run_row(data, run, experiment.name);
+  return html + "</tbody></table></div></details>\n";
+}
+
+}  // namespace
+
+std::string ruling_html(Ruling ruling) {
+  const char* mark = ruling == Ruling::pass ? "✓" : ruling == Ruling::fail ? "✗" : "?";
+  const char* kind = ruling == Ruling::pass ? "pass" : ruling == Ruling::fail ? "fail" : "open";
+  return fmt::format("<span class=\"ruling {}\"><span aria-hidden=\"true\">{}</span> {}</span>",
+                     kind, mark, ruling == Ruling::too_few_runs ? "too few runs" : kind);
+}
+
+Ruling ruling_of(const ReportData& data, const ReportExperiment& experiment) {
+  std::vector<Verdict> all;
+  for (const std::string& name : experiment.figures) {
+    const std::vector<Verdict>& own = figure_called(data, name).about.verdicts;
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  return overall(all);
+}
+
+std::string figure_html(const ReportData& data, const ReportFigure& figure) {
+  std::string html = fmt::format(
+      "<section class=\"figure\" id=\"figure-{0}\">\n<h3>Figure {0}. "
+      "{1}</h3>\n<div class=\"panels\">\n",
+      escape_html(figure.name), escape_html(figure.title));
+  for (const ReportPanel& panel : figure.panels) html += panel_html(data, panel);
+  html += "</div>\n<ul class=\"claims\">\n";
+  for (const Verdict& verdict : figure.about.verdicts) html += claim_html(verdict);
+  html += "</ul>\n";
+  for (const auto* list : {&figure.about.damage, &figure.about.pruned}) {
+    for (const std::string& line : *list) {
+      html += fmt::format("<p class=\"warning\">Left out: {}</p>\n", escape_html(line));
+    }
+  }
+  return html + lineage_html(data, figure) + "</section>\n";
+}
+
+std::string panel_html(const ReportData& data, const ReportPanel& panel) {
+  const std::string name = escape_html(panel.name);
+  std::string plot;
+  if (!panel.drawing.empty()) {
+    plot = fmt::format("<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">", name,
+                       base64(std::as_bytes(std::span(panel.drawing))));
+  } else if (data.interactive && !panel.chart.series.empty()) {
+    plot = fmt::format(
+        "<div class=\"plot\" data-chart=\"{}\"><noscript>Plots need JavaScript; "
+        "the numbers are below.</noscript></div>",
+        name);
+  } else if (!panel.table.empty()) {
+    plot = table_html(panel);
+  } else if (!data.interactive) {
+    plot =
+        fmt::format("<p class=\"warning\">No drawing: {}</p>", escape_html(data.drawing_trouble));
+  }
+  return fmt::format(
+      "<figure id=\"panel-{0}\">\n{1}\n<figcaption>{0} <button type=\"button\" hidden "
+      "data-csv=\"{0}\">CSV</button></figcaption>\n<details class=\"numbers\"><summary>Numbers of "
+      "{0}</summary><pre tabindex=\"0\" id=\"csv-{0}\">{2}</pre></details>\n</figure>\n",
+      name, plot, escape_html(panel.csv));
+}
+
+std::string experiment_html(const ReportData& data, const ReportExperiment& experiment) {
+  const std::string name = escape_html(experiment.name);
+  std::string html = fmt::format(
+      "<section class=\"experiment\" id=\"experiment-{0}\">\n<p class=\"eyebrow\">{0}</p>\n"
+      "<h2>{1}</h2>\n",
+      name, experiment.question.empty() ? name : escape_html(experiment.question));
+  if (experiment.figures.empty()) {
+    html += "<p class=\"small\">No figure can be made of this experiment yet.</p>\n";
+  } else {
+    html += "<p class=\"verdict\">Verdict: " + ruling_html(ruling_of(data, experiment)) + "</p>\n";
+  }
+  for (const std::string& figure_name : experiment.figures) {
+    const ReportFigure& figure = figure_called(data, figure_name);
+    if (figure.experiment == experiment.name) {
+      html += figure_html(data, figure);
+    } else {
+      html += fmt::format("<p>Figure <a href=\"#figure-{0}\">{0}</a> is shown under {1}.</p>\n",
+                          escape_html(figure.name), escape_html(figure.experiment));
+    }
+  }
+  return html + run_table(data, experiment) + "</section>\n";
+}
+
+}  // namespace shearcell

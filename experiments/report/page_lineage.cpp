@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <set>
+#include <span>
+
+#include "experiments/report/html.hpp"
+#include "experiments/report/page.hpp"
+#include "provenance/sha256.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+json at(const json& object, const char* key) {
+  return object.is_object() ? object.value(key, json()) : json();
+}
+
+std::string text_at(const json& object, const char* key) {
+  const json found = at(object, key);
+  if (found.is_null()) return "?";
+  return found.is_string() ? found.get<std::string>() : found.dump();
+}
+
+std::string row(const char* name, const std::string& html) {
+  return fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html);
+}
+
+std::string code(const std::string& text) {
+  return "<code>" + escape_html(text) + "</code>";
+}
+
+/// The beginning of an id. Cut first: an escape must not be.
+std::string brief(const std::string& id) {
+  return escape_html(id.substr(0, 12));
+}
+
+std::string run_link(const std::string& id) {
+  return fmt::format("<a class=\"id\" href=\"#run-{0}\">{0}</a>", brief(id));
+}
+
+/// "shearcell 0.1.0 (dd11cbe), GNU 12.2.0 Release, on HOST: CPU, AVX-512".
+std::string made_by(const json& host) {
+  const json build = at(host, "build");
+  return fmt::format("shearcell {} ({}), {} {}; {}, {}, {}", text_at(build, "version"),
+                     text_at(build, "commit"), text_at(build, "compiler"), text_at(build, "type"),
+                     text_at(host, "host"), text_at(host, "cpu"), text_at(host, "simd"));
+}
+
+std::string makers_html(const ReportData& data, const ReportFigure& figure) {
+  std::set<std::string> makers;
+  for (const auto& [id, stage] : figure.lineage.runs) {
+    const auto known = data.runs.find(id);
+    if (known == data.runs.end()) continue;
+    for (const Attempt& attempt : known->second.attempts) makers.insert(made_by(attempt.host));
+  }
+  std::string html;
+  for (const std::string& maker : makers) html += escape_html(maker) + "<br>";
+  return html;
+}
+
+std::string record_html(const ReportFigure& figure) {
+  if (!figure.recorded) {
+    return "no; " + code("shearcell figures " + figure.name) + " records it with its drawings";
+  }
+  return fmt::format("event {} of {}", figure.recorded->seq,
+                     escape_html(figure.recorded->recorded_at));
+}
+
+std::string outputs_html(const ReportFigure& figure) {
+  std::string html;
+  for (const ReportPanel& panel : figure.panels) {
+    const std::string file = panel.name + ".csv";
+    const std::string sha256 = sha256_hex(panel.csv);
+    std::string recorded;
+    if (figure.recorded) {
+      const json outputs = at(figure.recorded->provenance, "outputs");
+      recorded = text_at(outputs, file.c_str()) == sha256 ? ", as recorded" : ", NOT as recorded";
+    }
+    html += fmt::format("{} {}{}<br>", escape_html(file), code(sha256), recorded);
+  }
+  return html;
+}
+
+std::string manifests_html(const ReportFigure& figure) {
+  std::string html;
+  for (const ManifestText& manifest : figure.lineage.manifests) {
+    html += fmt::format("<a href=\"#manifest-{}\">{}</a> {}<br>", brief(manifest.sha256),
+                        escape_html(manifest.path), code(manifest.sha256));
+  }
+  return html;
+}
+
+std::string span_of_cycles(const FigureInput& input, const RunLineage& run) {
+  double first = 0;
+  double last = 0;
+  bool any = false;
+  for (const std::string& sha256 : input.checkpoints) {
+    const CheckpointHistory* known = run.find(sha256);
+    if (known == nullptr) continue;
+    if (!any) first = known->record.cycle;
+    last = known->record.cycle;
+    any = true;
+  }
+  return any ? fmt::format("{:g} to {:g}", first, last) : "?";
+}
+
+std::string inputs_table(const ReportFigure& figure) {
+  std::string html =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Inputs\"><table><thead>"
+      "<tr><th>run</th><th>experiment</th><th>variant</th><th class=\"number\">seed</th>"
+      "<th class=\"number\">checkpoints</th><th>cycles</th><th>manifest lines</th></tr></thead>"
+      "<tbody>\n";
+  for (const FigureInput& input : figure.lineage.inputs) {
+    std::set<int> lines;
+    for (const ManifestLine& line : input.lines) lines.insert(line.line);
+    html += fmt::format(
+        "<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"number\">{}</td><td "
+        "class=\"number\">{}</td><td>{}</td><td>{}</td></tr>\n",
+        run_link(input.run), escape_html(input.experiment), escape_html(input.variant), input.seed,
+        input.checkpoints.size(), span_of_cycles(input, figure.lineage.runs.at(input.run)),
+        fmt::format("{}", fmt::join(lines, ", ")));
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string attempts_html(const RunLineage& stage) {
+  std::string html;
+  for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
+    const Attempt& attempt = stage.attempts[a];
+    html += fmt::format("<p>Attempt {}, {}, {}: {}{}.<br><span class=\"small\">{}; flags {}</span>",
+                        a + 1, escape_html(attempt.started_at), name_of(attempt.outcome),
+                        attempt.from_run.empty() ? "from a fresh filling"
+                                                 : "from a state of " + run_link(attempt.from_run),
+                        attempt.from_checkpoint.empty()
+                            ? ""
+                            : ", checkpoint " + code(attempt.from_checkpoint.substr(0, 12)),
+                        escape_html(made_by(attempt.host)),
+                        code(text_at(at(attempt.host, "build"), "flags")));
+    if (!attempt.why.empty()) html += "<br>" + escape_html(attempt.why);
+    html += "</p>\n";
+  }
+  return html;
+}
+
+std::string run_html(const RunLineage& stage) {
+  const RunRecord& run = stage.run;
+  std::string html = fmt::format(
+      "<details class=\"run\" id=\"run-{0}\"><summary><span class=\"id\">{0}</span> {1}, "
+      "N = {2}, {3}</summary>\n<dl>\n",
+      brief(run.id), escape_html(run.kind), run.grains, name_of(run.state));
+  html += row("id", code(run.id));
+  if (!run.parent.empty()) html += row("begins from", run_link(run.parent));
+  for (const Membership& member : run.memberships) {
+    html += row("member of", fmt::format("{1} at scale {2}, {3}, seed {4}, manifest <a "
+                                         "href=\"#manifest-{0}\">{0}</a>",
+                                         brief(member.manifest), escape_html(member.experiment),
+                                         escape_html(member.scale.empty() ? "base" : member.scale),
+                                         escape_html(member.variant), member.seed));
+  }
+  if (!run.error.empty()) html += row("error", escape_html(run.error));
+  html += row("parameters", code(run.resolved.dump()));
+  html += "</dl>\n" + attempts_html(stage);
+  html += fmt::format("<details><summary>{} checkpoints</summary><pre tabindex=\"0\">",
+                      stage.checkpoints.size());
+  for (const CheckpointHistory& c : stage.checkpoints) {
+    html += fmt::format("cycle {:<8g} {}{}{}\n", c.record.cycle, escape_html(c.record.sha256),
+                        c.rejected ? " rejected" : "", c.pruned ? " pruned" : "");
+  }
+  return html + "</pre></details>\n</details>\n";
+}
+
+}  // namespace
+
+std::string lineage_html(const ReportData& data, const ReportFigure& figure) {
+  const json& facts = figure.lineage.record.provenance;
+  const std::string scale = text_at(facts, "scale");
+  std::string html = fmt::format(
+      "<details class=\"lineage\" id=\"lineage-{0}\"><summary>Where {0} "
+      "comes from</summary>\n<dl>\n",
+      escape_html(figure.name));
+  html += row("log", fmt::format("event {}, {}", data.head.seq, code(data.head.hash)));
+  html += row("scale", escape_html(scale.empty() ? "base" : scale));
+  html += row("inputs", fmt::format("{} runs, {} checkpoints; analysis version {}",
+                                    figure.about.runs, figure.about.checkpoints,
+                                    escape_html(text_at(facts, "analysis_version"))));
+  html += row("computed by", makers_html(data, figure));
+  html += row("manifests", manifests_html(figure));
+  html += row("outputs", outputs_html(figure));
+  html += row("recorded", record_html(figure));
+  html += row("check it", code("shearcell show " + figure.name) + ", " + code("shearcell verify"));
+  return html + "</dl>\n" + inputs_table(figure) + "</details>\n";
+}
+
+std::string runs_html(const ReportData& data) {
+  std::string html =
+      "<section id=\"runs\">\n<h2>Runs and manifests</h2>\n<p class=\"small\">Every stage with its "
+      "parameters, who computed it, and the SHA-256 of each checkpoint.</p>\n";
+  for (const auto& [id, stage] : data.runs) html += run_html(stage);
+  for (const auto& [sha256, manifest] : data.manifests) {
+    html += fmt::format(
+        "<details class=\"run\" id=\"manifest-{0}\"><summary><span "
+        "class=\"id\">{0}</span> {1}</summary><pre "
+        "tabindex=\"0\">{2}</pre></details>\n",
+        brief(sha256), escape_html(manifest.path), escape_html(manifest.text));
+  }
+  return html + "</section>\n";
+}
+
+}  // namespace shearcell

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/report/report_data.hpp"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "analysis/error.hpp"
+#include "analysis/plot.hpp"
+#include "experiments/report/accuracy_charts.hpp"
+#include "experiments/runner/host.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+/// In the order in which they were first registered, with the words of the newest manifest.
+std::vector<ReportExperiment> experiments_of(const Store& store) {
+  std::vector<ReportExperiment> found;
+  for (const Event& event : store.events()) {
+    if (event.type != "ManifestRegistered") continue;
+    const json body = event.body();
+    try {
+      const json& info = body.at("info");
+      const auto name = info.at("experiment").get<std::string>();
+      auto known = std::find_if(found.begin(), found.end(),
+                                [&](const ReportExperiment& e) { return e.name == name; });
+      if (known == found.end())
+        known = found.insert(found.end(), ReportExperiment{name, {}, {}, {}});
+      known->question = info.value("question", "");
+      info.at("figures").get_to(known->figures);
+    } catch (const json::exception& problem) {
+      throw StoreDamaged("event " + std::to_string(event.seq) +
+                         " (ManifestRegistered): its payload is not as it must be: " +
+                         problem.what() + "; run `verify`");
+    }
+  }
+  const std::vector<RunRecord> runs = store.runs();
+  for (ReportExperiment& experiment : found) {
+    for (const RunRecord& run : runs) {
+      const bool member =
+          std::any_of(run.memberships.begin(), run.memberships.end(),
+                      [&](const Membership& m) { return m.experiment == experiment.name; });
+      if (member) experiment.runs.push_back(run);
+    }
+  }
+  return found;
+}
+
+/// A folder for gnuplot that goes away.
+class DrawingFolder {
+ public:
+  DrawingFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "shearcell-report-XXXXXX");
+    if (mkdtemp(pattern.data()) == nullptr) {
+      throw std::runtime_error(pattern + ": a temporary folder cannot be made");
+    }
+    path_ = pattern;
+  }
+  ~DrawingFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  DrawingFolder(const DrawingFolder&) = delete;
+  DrawingFolder& operator=(const DrawingFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string draw(const FigureTable& table, const DrawingFolder& folder) {
+  write_csv(table, folder.path());
+  std::ifstream svg(draw_svg(table, folder.path()), std::ios::binary);
+  return {std::istreambuf_iterator<char>(svg), {}};
+}
+
+/// The newest record of the figure that came from the same checkpoints in the same way.
+std::optional<FigureRecord> record_of(const std::vector<FigureRecord>& records,
+                                      const std::string& name, const json& lineage) {
+  for (auto record = records.rbegin(); record != records.rend(); ++record) {
+    if (record->name != name || !record->provenance.is_object()) continue;
+    const auto same = [&](const char* key) {
+      const auto found = record->provenance.find(key);
+      return found != record->provenance.end() && *found == lineage.at(key);
+    };
+    if (same("scale") && same("analysis_version") && same("inputs")) return *record;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::vector<std::string>> texts_of(const FigureTable& table) {
+  std::vector<std::vector<std::string>> texts = {table.columns};
+  for (const std::vector<TableValue>& row : table.rows) {
+    std::vector<std::string>& line = texts.emplace_back();
+    for (const TableValue& value : row) {
+      const auto* text = std::get_if<std::string>(&value);
+      const auto* whole = std::get_if<std::int64_t>(&value);
+      const auto* real = std::get_if<double>(&value);
+      line.push_back(text != nullptr                           ? *text
+                     : whole != nullptr                        ? std::to_string(*whole)
+                     : real != nullptr && std::isfinite(*real) ? fmt::format("{:.9g}", *real)
+                                                               : "");
+    }
+  }
+  return texts;
+}
+
+ReportFigure make_figure(const Store& store, const Figure& figure, const ReportOptions& options,
+                         const std::vector<FigureRecord>& records, ReportData& data) {
+  RegenerateOptions how;
+  how.scale = options.scale;
+  how.workers = options.workers;
+  how.report = options.measured;
+  ComputedFigure computed = compute_figure(store, figure, how);
+  ReportFigure made;
+  made.name = figure.name;
+  made.title = figure.title;
+  made.about = std::move(computed.about);
+  made.recorded = record_of(records, made.name, computed.lineage);
+  made.lineage = figure_lineage(store, {made.name, 0, "", computed.lineage});
+  const DrawingFolder folder;
+  for (const FigureTable& table : computed.result.tables) {
+    ReportPanel panel{table.name, table.chart, to_csv(table), {}, ""};
+    if (table.chart.series.empty()) panel.table = texts_of(table);
+    try {
+      if (!data.interactive) panel.drawing = draw(table, folder);
+    } catch (const AnalysisError& error) {
+      data.drawing_trouble = error.what();
+    }
+    made.panels.push_back(std::move(panel));
+  }
+  return made;
+}
+
+/// Each figure once, under the first experiment that asks for it; then those about all of them.
+std::vector<std::pair<const Figure*, std::string>> figures_to_make(const ReportData& data,
+                                                                   Report& report) {
+  std::vector<std::pair<const Figure*, std::string>> wanted;
+  std::set<std::string> seen;
+  for (const ReportExperiment& experiment : data.experiments) {
+    for (const std::string& name : experiment.figures) {
+      if (!seen.insert(name).second) continue;
+      if (const Figure* figure = find_figure(name)) {
+        wanted.emplace_back(figure, experiment.name);
+      } else {
+        report.notes.push_back("figure " + name + ": this program cannot make it");
+      }
+    }
+  }
+  for (const Figure& figure : all_figures()) {
+    const bool about_all = figure.scope == FigureScope::every;
+    if (about_all && seen.insert(std::string(figure.name)).second) wanted.emplace_back(&figure, "");
+  }
+  return wanted;
+}
+
+void add_figures(const Store& store, const ReportOptions& options, ReportData& data,
+                 Report& report) {
+  const std::vector<FigureRecord> records = figure_records(store);
+  const auto wanted = figures_to_make(data, report);
+  std::map<const Figure*, std::string> experiments(wanted.begin(), wanted.end());
+  std::vector<const Figure*> figures;
+  for (const auto& [figure, experiment] : wanted) figures.push_back(figure);
+  std::set<std::string> made;
+  for (const Figure* figure : in_order_of_needs(std::move(figures))) {
+    try {
+      ReportFigure one = make_figure(store, *figure, options, records, data);
+      one.experiment = experiments.at(figure);
+      const RegeneratedFigure& about = one.about;
+      report.damage.insert(report.damage.end(), about.damage.begin(), about.damage.end());
+      report.notes.insert(report.notes.end(), about.pruned.begin(), about.pruned.end());
+      made.insert(one.name);
+      data.figures.push_back(std::move(one));
+    } catch (const NotFound& missing) {
+      report.notes.push_back("figure " + std::string(figure->name) + ": " + missing.what());
+    }
+  }
+  for (ReportExperiment& experiment : data.experiments) {
+    std::erase_if(experiment.figures,
+                  [&](const std::string& name) { return !made.contains(name); });
+  }
+}
+
+void add_runs(const Store& store, ReportData& data) {
+  for (const ReportExperiment& experiment : data.experiments) {
+    for (const RunRecord& run : experiment.runs) {
+      if (data.runs.contains(run.id)) continue;
+      for (RunLineage& stage : run_lineage(store, run.id)) {
+        const std::string id = stage.run.id;
+        data.runs.try_emplace(id, std::move(stage));
+      }
+    }
+  }
+  for (const ReportFigure& figure : data.figures) {
+    for (const ManifestText& manifest : figure.lineage.manifests) {
+      data.manifests.try_emplace(manifest.sha256, manifest);
+    }
+  }
+}
+
+}  // namespace
+
+ReportData collect_report(const Store& store, const ReportOptions& options, Report& report) {
+  ReportData data;
+  data.head = store.head();
+  data.store = std::filesystem::absolute(store.folder()).lexically_normal().filename().string();
+  data.program = host_facts().at("build");
+  data.interactive = options.interactive && has_front_end();
+  data.experiments = experiments_of(store);
+  if (data.experiments.empty()) {
+    throw NotFound(store.folder().string() +
+                   ": the store holds no experiment; `shearcell run` one first");
+  }
+  std::vector<std::string> names;
+  for (const ReportExperiment& experiment : data.experiments) names.push_back(experiment.name);
+  add_figures(store, options, data, report);
+  add_runs(store, data);
+  if (options.accuracy) data.accuracy = read_accuracy_charts(*options.accuracy);
+  if (data.interactive) {
+    data.packings = collect_packings(store, names, options.scale, options.packings, options.workers,
+                                     options.packed);
+    report.notes.insert(report.notes.end(), data.packings.notes.begin(), data.packings.notes.end());
+  }
+  return data;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a report shows, before any of it is HTML.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/report/figure_lineage.hpp"
+#include "experiments/report/packings.hpp"
+#include "experiments/report/regenerate.hpp"
+#include "experiments/report/report.hpp"
+#include "provenance/lineage.hpp"
+
+namespace shearcell {
+
+struct ReportPanel {
+  std::string name;
+  Chart chart;
+  std::string csv;
+  std::vector<std::vector<std::string>> table;  ///< header and rows, where there is no chart
+  std::string drawing;  ///< SVG, when the page is not interactive and gnuplot is there
+};
+
+struct ReportFigure {
+  std::string name;
+  std::string title;
+  std::string experiment;  ///< under which it is shown; "" when it is about all
+  RegeneratedFigure about;
+  std::vector<ReportPanel> panels;
+  FigureLineage lineage;
+  std::optional<FigureRecord> recorded;  ///< the newest record that says the same
+};
+
+struct ReportExperiment {
+  std::string name;
+  std::string question;
+  std::vector<std::string> figures;  ///< those of them that could be made
+  std::vector<RunRecord> runs;
+};
+
+struct ReportData {
+  std::string store;  ///< name of its folder
+  Head head;
+  nlohmann::json program;  ///< build of the program that makes the report
+  std::vector<ReportExperiment> experiments;
+  std::vector<ReportFigure> figures;       ///< those of `experiments`, and those about all of them
+  std::map<std::string, RunLineage> runs;  ///< by id
+  std::map<std::string, ManifestText> manifests;
+  std::vector<ReportPanel> accuracy;
+  Packings packings;
+  bool interactive = false;
+  std::string drawing_trouble;  ///< why a figure has no drawing
+};
+
+/// Throws as make_report() does.
+ReportData collect_report(const Store& store, const ReportOptions& options, Report& report);
+
+}  // namespace shearcell

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bundles the front end into report.js and the licences of what it holds into licences.txt:
+//   node build.mjs FOLDER_WITH_NODE_MODULES OUT_FOLDER
+import {existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync} from "node:fs";
+import {createRequire} from "node:module";
+import {dirname, join, resolve} from "node:path";
+import {fileURLToPath} from "node:url";
+
+const [modulesParent, out] = process.argv.slice(2).map((path) => resolve(path));
+const here = dirname(fileURLToPath(import.meta.url));
+const {build} = createRequire(join(modulesParent, "package.json"))("esbuild");
+
+const result = await build({
+  absWorkingDir: modulesParent,
+  entryPoints: [join(here, "src/main.js")],
+  nodePaths: [join(modulesParent, "node_modules")],
+  bundle: true,
+  minify: true,
+  format: "iife",
+  target: "es2021",
+  charset: "utf8",
+  legalComments: "none",  // licences.txt has them whole
+  metafile: true,
+  write: false
+});
+
+function licenceOf(folder) {
+  const file = readdirSync(folder).find((name) => /^(licen[cs]e|copying)/i.test(name));
+  if (!file) throw new Error(`${folder} has no licence file`);
+  return readFileSync(join(folder, file), "utf8").trim();
+}
+
+const packages = new Set();
+for (const [path, {bytesInOutput}] of Object.entries(Object.values(result.metafile.outputs)[0].inputs)) {
+  const name = path.match(/node_modules\/((?:@[^/]+\/)?[^/]+)\//)?.[1];
+  if (name && bytesInOutput > 0) packages.add(name);
+}
+const licences = [...packages].sort().map((name) => {
+  const folder = join(modulesParent, "node_modules", name);
+  const {version, license} = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
+  return `${name} ${version} (${license})\n\n${licenceOf(folder)}\n`;
+});
+
+const script = result.outputFiles[0].text.trim();
+// It is put into a page as it stands.
+if (/<\/script|<!--/i.test(script)) throw new Error("the bundle would end its own script element");
+if (!existsSync(out)) mkdirSync(out, {recursive: true});
+writeFileSync(join(out, "report.js"), script);
+writeFileSync(join(out, "licences.txt"), licences.join("\n" + "-".repeat(72) + "\n\n"));

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Colours of grains. Classes are told apart with any colour vision (Okabe and Ito), sizes of a
+// quantity by viridis.
+import {crystalliteSizes} from "./frames.js";
+
+const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+
+export const classColours = ["#c9cdd3", "#0072b2", "#e69f00"];  // disordered, FCC, HCP
+const crystalliteColours = [
+  "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#a6761d", "#7570b3"
+];
+const plain = "#c9cdd3";
+const small = "#8f98a3";  // crystallites beyond the palette
+const wall = "#6b7480";
+
+const viridisStops = ["#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da39",
+  "#fde725"].map(rgb);
+
+export function viridis(fraction) {
+  const place = Math.min(1, Math.max(0, fraction)) * (viridisStops.length - 1);
+  const below = Math.min(viridisStops.length - 2, Math.floor(place));
+  const t = place - below;
+  return viridisStops[below].map((c, i) => Math.round(c + (viridisStops[below + 1][i] - c) * t));
+}
+
+export const quantities = {
+  phi: {label: "ϕ_{local}", low: 0.55, high: 0.74, of: (grains) => grains.phiLocal},
+  q6: {label: "q_{6}", low: 0.2, high: 0.6, of: (grains) => grains.q6}
+};
+
+// Three bytes a sphere, grains first.
+export function coloursOf(grains, count, mode) {
+  const total = grains.position.length / 3;
+  const colours = new Uint8Array(3 * total);
+  const paint = painter(grains, mode);
+  for (let i = 0; i < count; ++i) colours.set(paint(i), 3 * i);
+  const of = rgb(wall);
+  for (let i = count; i < total; ++i) colours.set(of, 3 * i);
+  return colours;
+}
+
+function painter(grains, mode) {
+  if (mode in quantities) {
+    const {low, high, of} = quantities[mode];
+    const values = of(grains);
+    return (i) => viridis((values[i] - low) / (high - low));
+  }
+  if (mode === "crystallite") {
+    const {rank} = crystalliteSizes(grains.crystallite);
+    const palette = crystalliteColours.map(rgb);
+    const [none, rest] = [rgb(plain), rgb(small)];
+    return (i) => {
+      const label = grains.crystallite[i];
+      return label === 0 ? none : palette[rank.get(label)] ?? rest;
+    };
+  }
+  const classes = classColours.map(rgb);
+  return (i) => classes[grains.structure[i]];
+}
+
+// What the colours mean: [{colour, text}] or {label, low, high} for a bar.
+export function keyOf(grains, mode) {
+  if (mode in quantities) return {bar: quantities[mode]};
+  if (mode === "crystallite") {
+    const {size, rank} = crystalliteSizes(grains.crystallite);
+    const entries = [...rank].slice(0, 4).map(([label, place]) => ({
+      colour: crystalliteColours[place], text: size.get(label) === 1 ? "1 grain" : `${size.get(label)} grains`
+    }));
+    entries.push({colour: plain, text: entries.length > 0 ? "in none" : "no crystallite"});
+    return {entries};
+  }
+  const counts = [0, 0, 0];
+  for (const structure of grains.structure) ++counts[structure];
+  const names = ["disordered", "FCC", "HCP"];
+  return {
+    entries: [1, 2, 0].map((s) => ({colour: classColours[s], text: `${names[s]} ${counts[s]}`}))
+  };
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Brings a report to life. The page is complete without this, but for the plots and the packings.
+import {Plot} from "./plot.js";
+import {saveText} from "./save.js";
+import {addThemeSwitch} from "./theme.js";
+import {Viewer} from "./viewer.js";
+
+const data = JSON.parse(document.getElementById("report-data").textContent);
+
+// Plots are drawn when the reader comes near them, or before the page is printed.
+function addPlots() {
+  const waiting = new Map();
+  for (const host of document.querySelectorAll("[data-chart]")) {
+    const chart = data.charts[host.dataset.chart];
+    if (chart) waiting.set(host, () => new Plot(host, chart, host.dataset.chart));
+  }
+  const draw = (host) => {
+    const make = waiting.get(host);
+    waiting.delete(host);
+    if (make) make();
+  };
+  const watcher = new IntersectionObserver((entries) => {
+    for (const {isIntersecting, target} of entries) {
+      if (!isIntersecting) continue;
+      watcher.unobserve(target);
+      draw(target);
+    }
+  }, {rootMargin: "300px"});
+  for (const host of waiting.keys()) watcher.observe(host);
+  window.addEventListener("beforeprint", () => [...waiting.keys()].forEach(draw));
+}
+
+function addViewer() {
+  const section = document.getElementById("packings");
+  if (!section || data.packings.length === 0) return;
+  section.hidden = false;
+  let viewer = null;
+  const open = () => (viewer ??= new Viewer(section, data.packings));
+  const watcher = new IntersectionObserver((entries) => {
+    if (!entries.some((entry) => entry.isIntersecting)) return;
+    watcher.disconnect();
+    open();
+  }, {rootMargin: "200px"});
+  watcher.observe(section);
+  for (const link of document.querySelectorAll("[data-packing]")) {
+    link.hidden = false;
+    link.addEventListener("click", () => open().showRunCalled(link.dataset.packing));
+  }
+}
+
+function addDownloads() {
+  for (const button of document.querySelectorAll("[data-csv]")) {
+    button.hidden = false;
+    button.addEventListener("click", () => {
+      const name = button.dataset.csv;
+      saveText(`${name}.csv`, document.getElementById(`csv-${name}`).textContent, "text/csv");
+    });
+  }
+}
+
+// A link into a closed part of the page opens it.
+function openTarget() {
+  const target = location.hash.length > 1 && document.getElementById(location.hash.slice(1));
+  if (target instanceof HTMLDetailsElement) target.open = true;
+}
+
+const theme = document.getElementById("theme");
+theme.parentElement.hidden = false;
+addThemeSwitch(theme);
+addPlots();
+addViewer();
+addDownloads();
+window.addEventListener("hashchange", openTarget);
+openTarget();

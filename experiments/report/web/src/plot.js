@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One interactive plot: what is visible, which part of the axes is shown, and drawing it again when
+// either changes.
+import {drawFrame, drawLevels, drawSeries, drawSymbol, dress, svg} from "./draw.js";
+import {addGestures} from "./gestures.js";
+import {plainText, writeHtmlText} from "./markup.js";
+import {addReadout} from "./readout.js";
+import {saveSvg} from "./save.js";
+import {extentOf, makeScale} from "./scales.js";
+
+const margin = {left: 66, right: 14, top: 12, bottom: 52};
+let plots = 0;
+
+export class Plot {
+  constructor(host, chart, name) {
+    this.host = host;
+    this.chart = chart;
+    this.name = name;
+    this.hidden = new Set();  // indices of series
+    this.view = null;         // {x: [low, high], y: [low, high]}, or all of it
+    this.clipId = `plot-area-${++plots}`;
+    host.replaceChildren();
+    this.addToolbar();
+    this.canvas = svg("svg", {class: "canvas", tabindex: 0, role: "img"});
+    this.canvas.setAttribute("aria-label", this.description());
+    host.append(this.canvas);
+    this.addLegend();
+    this.readout = addReadout(this);
+    addGestures(this);
+    new ResizeObserver(() => this.resize()).observe(host);
+    this.resize();
+  }
+
+  visibleSeries() {
+    return this.chart.series.filter((_, index) => !this.hidden.has(index));
+  }
+
+  description() {
+    const {x, y, series} = this.chart;
+    const names = series.map((one) => plainText(one.title)).join("; ");
+    return `${this.name}: ${plainText(y.label)} against ${plainText(x.label)}. Series: ` +
+      `${names || "none"}. Arrow keys read values, plus and minus zoom, 0 shows all.`;
+  }
+
+  resize() {
+    const width = Math.round(this.host.clientWidth);
+    if (width < 50 || width === this.width) return;
+    this.width = width;
+    this.height = Math.round(Math.min(430, Math.max(260, width * 0.7)));
+    this.redraw();
+  }
+
+  redraw() {
+    const {width, height} = this;
+    const box = {
+      left: margin.left, right: width - margin.right, top: margin.top,
+      bottom: height - margin.bottom
+    };
+    const visible = this.visibleSeries();
+    const domain = this.view ?? {
+      x: extentOf(this.chart, visible, "x"), y: extentOf(this.chart, visible, "y")
+    };
+    this.box = box;
+    this.scales = {
+      x: makeScale(this.chart.x.log, domain.x, [box.left, box.right]),
+      y: makeScale(this.chart.y.log, domain.y, [box.bottom, box.top])
+    };
+    const root = this.canvas;
+    root.replaceChildren();
+    root.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    root.setAttribute("width", width);
+    root.setAttribute("height", height);
+    const clip = svg("clipPath", {id: this.clipId}, root);
+    svg("rect", {
+      x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top
+    }, clip);
+    const area = svg("g", {"clip-path": `url(#${this.clipId})`}, root);
+    drawLevels(area, this.chart, this.scales, box);
+    for (const one of visible) drawSeries(area, one, this.scales);
+    drawFrame(root, this.chart, this.scales, box);
+    if (visible.every((one) => one.points.length === 0)) {
+      const note = svg("text", {
+        class: "nothing", "text-anchor": "middle", x: (box.left + box.right) / 2,
+        y: (box.top + box.bottom) / 2
+      }, root);
+      note.textContent = this.hidden.size > 0 ? "all curves are hidden" : "no data yet";
+    }
+    this.overlay = svg("g", {class: "overlay"}, root);
+    this.readout?.moved();
+  }
+
+  // Shows this part of the axes, or everything.
+  show(view) {
+    this.view = view;
+    this.redraw();
+  }
+
+  // Around a point in pixels; a factor below 1 comes nearer.
+  zoom(factor, px, py) {
+    const {box, chart, scales} = this;
+    px ??= (box.left + box.right) / 2;
+    py ??= (box.top + box.bottom) / 2;
+    const around = (scale, p, log) => scale.range().map((end) => {
+      const at = scale.invert(p + (end - p) * factor);
+      return log ? Math.max(at, Number.MIN_VALUE) : at;
+    });
+    const view = {x: around(scales.x, px, chart.x.log), y: around(scales.y, py, chart.y.log)};
+    const tooClose = [view.x, view.y].some(([low, high]) =>
+      !(high - low > 1e-12 * Math.max(Math.abs(low), Math.abs(high))));
+    if (!tooClose) this.show(view);
+  }
+
+  addToolbar() {
+    const bar = document.createElement("div");
+    bar.className = "toolbar";
+    const button = (text, label, action) => {
+      const one = document.createElement("button");
+      one.type = "button";
+      one.textContent = text;
+      one.title = label;
+      one.setAttribute("aria-label", `${label} (${this.name})`);
+      one.addEventListener("click", action);
+      bar.append(one);
+    };
+    button("+", "Zoom in", () => this.zoom(0.6));
+    button("−", "Zoom out", () => this.zoom(1 / 0.6));
+    button("all", "Show everything", () => this.show(null));
+    button("SVG", "Save as SVG", () => saveSvg(this));
+    this.host.append(bar);
+  }
+
+  addLegend() {
+    const legend = document.createElement("div");
+    legend.className = "legend";
+    this.chart.series.forEach((one, index) => {
+      const entry = document.createElement("button");
+      entry.type = "button";
+      entry.setAttribute("aria-pressed", "true");
+      entry.title = "Show or hide this curve";
+      entry.classList.toggle("without-data", one.points.length === 0);
+      const key = svg("svg", {class: "key", width: 26, height: 14, "aria-hidden": "true"});
+      dress(key, one.colour);
+      if (one.line) svg("path", {class: "line", d: "M0 7H26"}, key);
+      drawSymbol(key, one.point, 13, 7);
+      const title = document.createElement("span");
+      writeHtmlText(title, one.title);
+      entry.append(key, title);
+      entry.addEventListener("click", () => {
+        if (!this.hidden.delete(index)) this.hidden.add(index);
+        entry.setAttribute("aria-pressed", String(!this.hidden.has(index)));
+        this.redraw();
+      });
+      legend.append(entry);
+    });
+    this.host.append(legend);
+  }
+}

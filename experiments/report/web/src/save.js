@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files out of the page: a plot as SVG that needs no stylesheet, a table as CSV, a view as PNG.
+import {writeSvgText} from "./markup.js";
+
+const written = [
+  "fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin",
+  "font-family", "font-size", "font-style", "font-weight", "opacity"
+];
+
+export function saveBlob(name, blob) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+export function saveText(name, text, type) {
+  saveBlob(name, new Blob([text], {type}));
+}
+
+// What is on the screen, in the colours of paper, with its legend below.
+export function plotAsSvg(plot) {
+  const stage = document.createElement("div");
+  stage.className = "stage";
+  stage.dataset.theme = "light";
+  const copy = plot.canvas.cloneNode(true);
+  copy.querySelector(".overlay")?.remove();
+  stage.append(copy);
+  document.body.append(stage);
+  const height = plot.height + addLegend(plot, copy);
+  copy.setAttribute("height", height);
+  copy.setAttribute("viewBox", `0 0 ${plot.width} ${height}`);
+  for (const element of copy.querySelectorAll("path, text, tspan, rect:not(clipPath *)")) {
+    const style = getComputedStyle(element);
+    for (const name of written) {
+      const value = style.getPropertyValue(name);
+      if (value && value !== "normal") element.setAttribute(name, value);
+    }
+  }
+  for (const element of [copy, ...copy.querySelectorAll("*")]) {
+    for (const name of ["class", "style", "tabindex", "role", "aria-label"]) {
+      element.removeAttribute(name);
+    }
+  }
+  stage.remove();
+  copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+  return new XMLSerializer().serializeToString(copy) + "\n";
+}
+
+function addLegend(plot, copy) {
+  const entries = [...plot.host.querySelectorAll(".legend button[aria-pressed=true]")];
+  const series = plot.visibleSeries();
+  entries.forEach((entry, row) => {
+    const group = entry.querySelector("svg").cloneNode(true);
+    group.setAttribute("x", 66);
+    group.setAttribute("y", plot.height + 4 + 18 * row);
+    const text = document.createElementNS("http://www.w3.org/2000/svg", "text");
+    text.setAttribute("x", 100);
+    text.setAttribute("y", plot.height + 15 + 18 * row);
+    writeSvgText(text, series[row].title);
+    copy.append(group, text);
+  });
+  return 18 * entries.length + 8;
+}
+
+export function saveSvg(plot) {
+  saveText(`${plot.name}.svg`, plotAsSvg(plot), "image/svg+xml");
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The files themselves. Their paths are defined by the build.
+.section .rodata
+
+.globl shearcell_style, shearcell_style_end
+shearcell_style:
+.incbin SHEARCELL_STYLE_FILE
+shearcell_style_end:
+
+.globl shearcell_script, shearcell_script_end
+shearcell_script:
+.incbin SHEARCELL_SCRIPT_FILE
+shearcell_script_end:
+
+.globl shearcell_licences, shearcell_licences_end
+shearcell_licences:
+.incbin SHEARCELL_LICENCES_FILE
+shearcell_licences_end:
+.byte 0
+
+.section .note.GNU-stack, "", %progbits

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Opens a report as a reader would and says what is not as it must be:
+//   node browser.mjs MODULES REPORT.html SCREENSHOTS [check...]
+// MODULES is the folder with node_modules/playwright-core. Without names all checks run.
+import {mkdirSync, readFileSync, statSync} from "node:fs";
+import {createRequire} from "node:module";
+import {join, resolve} from "node:path";
+import {pathToFileURL} from "node:url";
+
+const [modules, report, shots] = process.argv.slice(2, 5).map((path) => resolve(path));
+const wanted = process.argv.slice(5);
+const {chromium} = createRequire(join(modules, "package.json"))("playwright-core");
+const address = pathToFileURL(report).href;
+mkdirSync(shots, {recursive: true});
+
+const limits = {bytes: 15e6, milliseconds: 2000};
+const failures = [];
+const expect = (holds, what) => {
+  if (holds) return;
+  failures.push(what);
+  console.log(`  FAILED: ${what}`);
+};
+
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+});
+
+// A page that fails the check when it logs an error, throws, or asks for anything but itself.
+async function open(check, options = {}) {
+  const context = await browser.newContext({viewport: {width: 1280, height: 900}, ...options});
+  const page = await context.newPage();
+  page.on("console", (message) => {
+    if (message.type() === "error") expect(false, `${check}: console: ${message.text()}`);
+  });
+  page.on("pageerror", (error) => expect(false, `${check}: ${error.message}`));
+  page.on("request", (request) => {
+    const own = request.url() === address || /^(data|blob):/.test(request.url());
+    expect(own, `${check}: it asks for ${request.url().slice(0, 100)}`);
+  });
+  await page.goto(address, {waitUntil: "load"});
+  return page;
+}
+
+async function drawAllPlots(page) {
+  for (const plot of await page.locator("[data-chart]").all()) {
+    await plot.scrollIntoViewIfNeeded();
+    await plot.locator("svg.canvas .axes").waitFor();
+  }
+}
+
+// The plot with most points.
+async function richestPlot(page) {
+  const name = await page.locator("[data-chart]").evaluateAll((hosts) => hosts
+    .sort((a, b) => b.querySelectorAll(".symbol").length - a.querySelectorAll(".symbol").length)[0]
+    .dataset.chart);
+  const plot = page.locator(`[data-chart="${name}"]`);
+  await plot.scrollIntoViewIfNeeded();
+  return plot;
+}
+
+const pixels = (page) => page.locator('[data-part="canvas"]').screenshot();
+
+async function openPackings(page) {
+  await page.locator("#packings").scrollIntoViewIfNeeded();
+  await page.locator('[data-part="run"] option').first().waitFor({state: "attached"});
+  await page.waitForTimeout(300);
+}
+
+async function slide(page, part, value) {
+  await page.locator(`[data-part="${part}"]`).evaluate((slider, at) => {
+    slider.value = String(at);
+    slider.dispatchEvent(new Event("input", {bubbles: true}));
+  }, value);
+  await page.waitForTimeout(250);
+}
+
+const checks = {
+  async size() {
+    const {size} = statSync(report);
+    console.log(`  ${(size / 1e6).toFixed(2)} MB`);
+    expect(size < limits.bytes, `size: ${size} bytes`);
+  },
+
+  // browser.sh puts an experiment into the store whose texts are markup.
+  async hostile() {
+    const page = await open("hostile");
+    const found = await page.evaluate(() => ({
+      images: document.querySelectorAll("img").length,
+      scripts: document.querySelectorAll("script").length,
+      headings: [...document.querySelectorAll("h2")].map((one) => one.textContent),
+      spoiled: window.spoiled === true
+    }));
+    expect(!found.spoiled && found.images === 0 && found.scripts === 2,
+      `hostile: ${found.images} images, ${found.scripts} scripts`);
+    expect(found.headings.some((text) => text.includes("</script><img src=x")),
+      `hostile: its question is not shown as it stands: ${found.headings}`);
+    await page.context().close();
+  },
+
+  // The best of three, since other programs may keep the machine busy.
+  async quick() {
+    const times = [];
+    for (let n = 0; n < 3; ++n) {
+      const page = await open("quick");
+      await page.locator("svg.canvas .axes").first().waitFor();
+      times.push(await page.evaluate(() =>
+        Math.max(performance.getEntriesByType("navigation")[0].loadEventEnd, performance.now())));
+      await page.context().close();
+    }
+    console.log(`  first plot after ${times.map((t) => `${t.toFixed(0)} ms`).join(", ")}`);
+    expect(Math.min(...times) < limits.milliseconds, `quick: ${times} ms`);
+  },
+
+  async plots() {
+    const page = await open("plots");
+    await drawAllPlots(page);
+    const plots = await page.locator("[data-chart]").evaluateAll((hosts) => hosts.map((host) => ({
+      name: host.dataset.chart,
+      symbols: host.querySelectorAll("svg.canvas .symbol").length,
+      empty: Boolean(host.querySelector(".nothing")),
+      labels: [...host.querySelectorAll(".label")].map((label) => label.textContent)
+    })));
+    expect(plots.length > 0, "plots: none");
+    expect(plots.some((plot) => plot.symbols > 0), "plots: no data in any");
+    for (const {name, symbols, empty, labels} of plots) {
+      expect(symbols > 0 || empty, `plots: ${name} shows neither data nor that there are none`);
+      expect(labels.every((label) => label.length > 3 && !/[{}\\]/.test(label)),
+        `plots: labels of ${name}: ${labels}`);
+    }
+    console.log(`  ${plots.length} plots, ${plots.reduce((sum, p) => sum + p.symbols, 0)} points`);
+    await page.screenshot({path: join(shots, "report.png"), fullPage: true});
+    await page.evaluate(() => scrollTo(0, 0));
+    await page.screenshot({path: join(shots, "top.png")});
+    await page.context().close();
+  },
+
+  async interaction() {
+    const page = await open("interaction");
+    await drawAllPlots(page);
+    const plot = await richestPlot(page);
+    const canvas = plot.locator("svg.canvas");
+    const ticks = () => canvas.locator(".axes").textContent();
+
+    await canvas.locator(".symbol").first().hover({force: true});
+    const note = plot.locator(".readout");
+    expect(await note.isVisible() && /=/.test(await note.textContent()), "interaction: no values");
+
+    const before = await ticks();
+    const box = await canvas.boundingBox();
+    await page.mouse.move(box.x + box.width * 0.35, box.y + box.height * 0.3);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width * 0.7, box.y + box.height * 0.6, {steps: 4});
+    await page.mouse.up();
+    const zoomed = await ticks();
+    expect(zoomed !== before, "interaction: a dragged rectangle does not zoom");
+    await canvas.dblclick();
+    expect(await ticks() === before, "interaction: a double click does not show all");
+
+    const symbols = () => canvas.locator(".symbol").count();
+    const all = await symbols();
+    await plot.locator(".legend button").first().click();
+    expect(await symbols() < all, "interaction: the legend hides nothing");
+    await plot.locator(".legend button").first().click();
+    expect(await symbols() === all, "interaction: the legend does not bring it back");
+
+    const saved = page.waitForEvent("download");
+    await plot.getByRole("button", {name: /Save as SVG/}).click();
+    const file = await (await saved).path();
+    const text = readFileSync(file, "utf8");
+    expect(text.startsWith("<svg") && text.includes("<path") && !/class=|var\(/.test(text),
+      "interaction: the saved SVG needs the page's style");
+    const shot = await browser.newPage();
+    await shot.setContent(text);
+    await shot.locator("body > svg").screenshot({path: join(shots, "saved-plot.png")});
+    await shot.close();
+    await page.context().close();
+  },
+
+  async keyboard() {
+    const page = await open("keyboard");
+    await drawAllPlots(page);
+    const plot = await richestPlot(page);
+    const canvas = plot.locator("svg.canvas");
+    // By Tab alone, from the button before it.
+    await plot.getByRole("button", {name: /Save as SVG/}).focus();
+    await page.keyboard.press("Tab");
+    expect(await canvas.evaluate((svg) => document.activeElement === svg),
+      "keyboard: Tab does not reach the plot");
+    const outline = await canvas.evaluate((svg) => getComputedStyle(svg).outlineStyle);
+    expect(outline !== "none", "keyboard: the focus cannot be seen");
+    await page.keyboard.press("ArrowRight");
+    const first = await plot.locator(".readout").textContent();
+    await page.keyboard.press("ArrowRight");
+    const second = await plot.locator(".readout").textContent();
+    expect(first.length > 0 && first !== second, `keyboard: values: '${first}', '${second}'`);
+    const before = await canvas.locator(".axes").textContent();
+    await page.keyboard.press("+");
+    expect(await canvas.locator(".axes").textContent() !== before, "keyboard: + does not zoom");
+    await page.keyboard.press("0");
+    expect(await canvas.locator(".axes").textContent() === before, "keyboard: 0 does not show all");
+
+    const lineage = page.locator("details.lineage").first();
+    await lineage.locator("summary").first().focus();
+    await page.keyboard.press("Enter");
+    expect(await lineage.getAttribute("open") !== null, "keyboard: lineage does not open");
+
+    await openPackings(page);
+    const view = page.locator('[data-part="canvas"]');
+    await view.focus();
+    const still = await pixels(page);
+    await page.keyboard.press("ArrowLeft");
+    await page.keyboard.press("ArrowLeft");
+    await page.waitForTimeout(250);
+    expect(!still.equals(await pixels(page)), "keyboard: arrows do not turn the packing");
+    await page.context().close();
+  },
+
+  async lineage() {
+    const page = await open("lineage");
+    const lineage = page.locator("details.lineage").first();
+    await lineage.locator("summary").first().click();
+    const text = await lineage.innerText();
+    for (const part of ["event", "manifest", "shearcell show", "computed by"]) {
+      expect(text.includes(part), `lineage: does not tell '${part}'`);
+    }
+    await lineage.screenshot({path: join(shots, "lineage.png")});
+    await lineage.locator("td a.id").first().click();
+    await page.waitForTimeout(100);
+    expect(await page.locator("details.run[open]").count() === 1, "lineage: its run does not open");
+    await page.context().close();
+  },
+
+  async packings() {
+    const page = await open("packings");
+    await openPackings(page);
+    const box = page.locator(".viewer");
+    const last = await pixels(page);
+    await box.screenshot({path: join(shots, "packing.png")});
+    expect(last.length > 20000, "packings: the picture is all but empty");
+    await slide(page, "cycle", 0);
+    const first = await pixels(page);
+    expect(!first.equals(last), "packings: the slider changes nothing");
+    const name = await page.locator('[data-part="cycle-text"]').textContent();
+    expect(/^(cycle|state) 0/.test(name), `packings: the first one is '${name}'`);
+
+    const changes = async (what, action) => {
+      const before = await pixels(page);
+      await action();
+      await page.waitForTimeout(250);
+      expect(!before.equals(await pixels(page)), `packings: ${what} changes nothing`);
+    };
+    const choose = (part, value) => page.locator(`[data-part="${part}"]`).selectOption(value);
+    await changes("colour by q6", () => choose("colour", "q6"));
+    await box.screenshot({path: join(shots, "packing-q6.png")});
+    await changes("colour by phi_local", () => choose("colour", "phi"));
+    await changes("colour by class", () => choose("colour", "class"));
+    await changes("hiding wall grains", () => page.locator('[data-part="walls"]').uncheck());
+    await changes("hiding the cell", () => page.locator('[data-part="box"]').uncheck());
+    await changes("small disordered grains", () => choose("disordered", "small"));
+    await changes("full size again", () => choose("disordered", "full"));
+    await changes("a clip plane", () => choose("cut-axis", "x"));
+    await changes("moving it", () => slide(page, "cut-at", 250));
+    await changes("its other side", () => page.locator('[data-part="cut-side"]').check());
+    await box.screenshot({path: join(shots, "packing-cut.png")});
+    await choose("cut-axis", "none");
+    await changes("a drag", async () => {
+      const area = await page.locator('[data-part="canvas"]').boundingBox();
+      await page.mouse.move(area.x + area.width / 2, area.y + area.height / 2);
+      await page.mouse.down();
+      await page.mouse.move(area.x + area.width / 2 + 90, area.y + area.height / 2 + 30, {steps: 4});
+      await page.mouse.up();
+    });
+    await page.locator('[data-part="reset"]').click();
+    const area = await page.locator('[data-part="canvas"]').boundingBox();
+    await page.mouse.move(area.x + area.width / 2, area.y + area.height / 2);
+    const told = await page.locator('[data-part="grain"]').textContent();
+    expect(/grain \d+: .*q6 = /.test(told), `packings: pointing tells '${told}'`);
+    const runs = await page.locator('[data-part="run"] option').count();
+    for (let run = 0; run < runs; ++run) {
+      await choose("run", String(run));
+      const key = await page.locator('[data-part="key"]').textContent();
+      expect(/disordered \d+/.test(key), `packings: run ${run} shows '${key}'`);
+    }
+    console.log(`  ${runs} runs`);
+    await page.context().close();
+  },
+
+  async themes() {
+    const colours = {};
+    for (const colorScheme of ["light", "dark"]) {
+      const page = await open(`themes (${colorScheme})`, {colorScheme});
+      await drawAllPlots(page);
+      colours[colorScheme] = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+      await page.evaluate(() => document.querySelector(".figure").scrollIntoView());
+      await page.screenshot({path: join(shots, `${colorScheme}.png`)});
+      if (colorScheme === "dark") {
+        await openPackings(page);
+        await page.screenshot({path: join(shots, "dark-packing.png")});
+        await page.locator("#theme").selectOption("light");
+        const back = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+        expect(back === colours.light, "themes: the choice is not followed");
+      }
+      await page.context().close();
+    }
+    expect(colours.light !== colours.dark, `themes: both have ${colours.dark}`);
+  },
+
+  async phone() {
+    const page = await open("phone", {
+      viewport: {width: 375, height: 740}, deviceScaleFactor: 2, isMobile: true, hasTouch: true
+    });
+    await drawAllPlots(page);
+    await openPackings(page);
+    await page.screenshot({path: join(shots, "phone-packing.png")});
+    await page.locator("details").evaluateAll((all) => all.forEach((one) => (one.open = true)));
+    const {wide, culprits} = await page.evaluate(() => ({
+      wide: document.documentElement.scrollWidth,
+      culprits: [...document.querySelectorAll("body *")]
+        .filter((element) => !element.parentElement.closest(".scroll, pre") &&
+          element.getBoundingClientRect().right > 376)
+        .slice(0, 5).map((element) => element.outerHTML.slice(0, 120))
+    }));
+    expect(wide <= 375, `phone: it is ${wide} pixels wide: ${culprits.join(" | ")}`);
+    await page.locator("details").evaluateAll((all) => all.forEach((one) => (one.open = false)));
+    await page.evaluate(() => document.querySelector(".figure").scrollIntoView());
+    await page.screenshot({path: join(shots, "phone.png")});
+    await page.context().close();
+  }
+};
+
+for (const [name, check] of Object.entries(checks)) {
+  if (wanted.length > 0 && !wanted.includes(name)) continue;
+  console.log(name);
+  try {
+    await check();
+  } catch (error) {
+    expect(false, `${name}: ${error.message.split("\n").slice(0, 3).join(" ")}`);
+  }
+}
+await browser.close();
+console.log(failures.length === 0 ? "all as it must be" : `${failures.length} not as they must be`);
+process.exitCode = failures.length === 0 ? 0 : 1;

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A packed frame gives back what went in, to the step that it states.
+#include "experiments/report/frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+namespace shearcell {
+namespace {
+
+constexpr int kGrains = 500;
+
+/// Grains anywhere in a tilted cell, some beyond the period, and a wall grain on each side.
+Checkpoint tilted_checkpoint() {
+  Checkpoint checkpoint;
+  checkpoint.theta = 0.0833;
+  checkpoint.cell.width = 17;
+  checkpoint.cell.depth = 12;
+  checkpoint.cell.bottom = 0;
+  checkpoint.cell.top = 30;
+  for (const WallSide side : {WallSide::left, WallSide::right, WallSide::bottom, WallSide::top}) {
+    checkpoint.cell.wall_grains.push_back({side, {3.25, 5.5, 11.75}});
+  }
+  checkpoint.state.wall_height = 1.5;
+  checkpoint.state.position.resize(3, kGrains);
+  std::mt19937 random(7);  // NOLINT: the same in each run
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < kGrains; ++i) {
+    checkpoint.state.position.col(i) << 17 * unit(random) - 1.5, 1.5 + 28.5 * unit(random),
+        12 * (3 * unit(random) - 1);
+  }
+  return checkpoint;
+}
+
+GrainMeasures measures_of_each() {
+  GrainMeasures grains;
+  for (int i = 0; i < kGrains; ++i) {
+    grains.phi_local.push_back(0.5 + 0.24 * i / kGrains);
+    grains.q6.push_back(0.6 - 0.4 * i / kGrains);
+    grains.structure.push_back(static_cast<Structure>(i % 3));
+    grains.interior.push_back(i % 2 == 0 ? 1 : 0);
+    grains.crystallites.label.push_back(i % 5 - 1);
+  }
+  return grains;
+}
+
+double word(const PackedFrame& frame, std::size_t at) {
+  return std::to_integer<int>(frame.bytes[2 * at]) +
+         256 * std::to_integer<int>(frame.bytes[2 * at + 1]);
+}
+
+class Frames : public testing::Test {
+ protected:
+  const Checkpoint checkpoint_ = tilted_checkpoint();
+  const WallPose pose_ =
+      wall_pose(checkpoint_.cell, checkpoint_.theta, checkpoint_.state.wall_height);
+  const GrainMeasures grains_ = measures_of_each();
+  const PackedFrame frame_ = pack_frame(checkpoint_, pose_, grains_);
+  static constexpr std::size_t kAll = kGrains + 4;
+
+  double coordinate(std::size_t sphere, Eigen::Index axis) const {
+    return frame_.origin[axis] +
+           frame_.step[axis] * word(frame_, static_cast<std::size_t>(axis) * kAll + sphere);
+  }
+};
+
+TEST_F(Frames, RoundPositionsToHalfAStep) {
+  const Eigen::Matrix3Xd walls = wall_grain_positions(checkpoint_.cell, pose_);
+  double worst = 0;
+  for (std::size_t i = 0; i < kAll; ++i) {
+    Eigen::Vector3d exact =
+        i < kGrains ? checkpoint_.state.position.col(static_cast<Eigen::Index>(i)).eval()
+                    : walls.col(static_cast<Eigen::Index>(i) - kGrains).eval();
+    exact.z() -= 12 * std::floor(exact.z() / 12);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const double error = std::abs(coordinate(i, axis) - exact[axis]);
+      EXPECT_LE(error, 0.5 * frame_.step[axis] * (1 + 1e-9)) << "sphere " << i;
+      worst = std::max(worst, error);
+    }
+  }
+  EXPECT_LT(frame_.step.maxCoeff(), 30.0 / 65535);
+  RecordProperty("largest_error_d", std::to_string(worst));
+}
+
+TEST_F(Frames, KeepWallGrainsOnTheirTiltedWalls) {
+  // Left and right walls are displaced by (y - top) tan(theta).
+  const double displaced = 3.25 + (5.5 - 30) * std::tan(0.0833);
+  EXPECT_NEAR(coordinate(kGrains, 0), displaced, frame_.step.x());
+  EXPECT_NEAR(coordinate(kGrains + 2, 1), 5.5 + 1.5, frame_.step.y());
+}
+
+TEST_F(Frames, KeepTheMeasuresOfEachGrain) {
+  const std::size_t phi = 3 * kAll;
+  for (std::size_t i = 0; i < kGrains; ++i) {
+    EXPECT_NEAR(word(frame_, phi + i) / 65535, grains_.phi_local[i], 0.5 / 65535 * 1.001);
+    EXPECT_NEAR(word(frame_, phi + kGrains + i) / 65535, grains_.q6[i], 0.5 / 65535 * 1.001);
+    EXPECT_EQ(word(frame_, phi + 2 * kGrains + i), grains_.crystallites.label[i] + 1);
+    const int flags = std::to_integer<int>(frame_.bytes[2 * (phi + 3 * kGrains) + i]);
+    EXPECT_EQ(flags & 3, static_cast<int>(grains_.structure[i]));
+    EXPECT_EQ(flags >> 2, grains_.interior[i]);
+  }
+}
+
+TEST_F(Frames, HaveTheSizeThatIsReckonedWith) {
+  EXPECT_EQ(frame_.bytes.size(), 6 * kAll + 7 * kGrains);
+  EXPECT_EQ(frame_size_in_page(kGrains, 4), (frame_.bytes.size() + 2) / 3 * 4);
+}
+
+}  // namespace
+}  // namespace shearcell

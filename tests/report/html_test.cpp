@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Texts stay texts in a page.
+#include "experiments/report/html.hpp"
+
+#include <gtest/gtest.h>
+
+namespace shearcell {
+namespace {
+
+std::string base64_of(const std::string& text) {
+  return base64(std::as_bytes(std::span(text)));
+}
+
+TEST(Html, EscapesWhatMeansSomethingToAParser) {
+  EXPECT_EQ(escape_html("<a href=\"x\" id='y'>&amp;</a>"),
+            "&lt;a href=&quot;x&quot; id=&#39;y&#39;&gt;&amp;amp;&lt;/a&gt;");
+  EXPECT_EQ(escape_html("ϕ = 0.64,\ttab\nline"), "ϕ = 0.64,\ttab\nline");
+}
+
+TEST(Html, ReplacesWhatNoPageMayHold) {
+  EXPECT_EQ(escape_html(std::string("a\0b\x1b\x7f", 5)), "a\uFFFDb\uFFFD\uFFFD");
+  EXPECT_EQ(escape_html("cut \xCF"), "cut \uFFFD");
+}
+
+TEST(Html, JsonCannotEndItsScriptElement) {
+  const nlohmann::json value = {{"</script><!--", "<script>&amp;\u2028]]>"}, {"n", 1.5}};
+  const std::string text = script_json(value);
+  EXPECT_EQ(text.find_first_of("<>&"), std::string::npos) << text;
+  EXPECT_EQ(nlohmann::json::parse(text), value);
+}
+
+TEST(Html, JsonOfBytesThatAreNoUtf8IsStillJson) {
+  const std::string text = script_json({{"file", "\xFF\xFE"}});
+  EXPECT_TRUE(nlohmann::json::accept(text)) << text;
+}
+
+TEST(Html, Base64IsThatOfRfc4648) {
+  EXPECT_EQ(base64_of(""), "");
+  EXPECT_EQ(base64_of("f"), "Zg==");
+  EXPECT_EQ(base64_of("fo"), "Zm8=");
+  EXPECT_EQ(base64_of("foo"), "Zm9v");
+  EXPECT_EQ(base64_of("foob"), "Zm9vYg==");
+  EXPECT_EQ(base64_of("\xFB\xFF"), "+/8=");
+}
+
+}  // namespace
+}  // namespace shearcell

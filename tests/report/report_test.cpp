@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The report is a function of the store, and nothing that a store says becomes markup.
+#include "experiments/report/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "provenance/errors.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++found;
+  }
+  return found;
+}
+
+/// The JSON that the front end reads.
+nlohmann::json data_of(const std::string& html) {
+  const std::string begin = "id=\"report-data\">";
+  const std::size_t at = html.find(begin);
+  if (at == std::string::npos) return nullptr;
+  const std::size_t from = at + begin.size();
+  return nlohmann::json::parse(html.substr(from, html.find("</script>", from) - from));
+}
+
+class ReportOf : public testing::Test {
+ protected:
+  Report make(const ReportOptions& options = {}) { return make_report(store_, options); }
+
+  static ReportOptions drawings() {
+    ReportOptions options;
+    options.interactive = false;
+    return options;
+  }
+
+  TemporaryFolder folder_;
+  Store store_{folder_.path() / "store", Access::create};
+};
+
+class ReportOfRuns : public ReportOf {
+ protected:
+  ReportOfRuns() { compute(store_, tiny_manifest("", kBothFluids)); }
+};
+
+TEST_F(ReportOfRuns, HasTheSameBytesAgainAndLeavesTheLogAlone) {
+  const Head before = store_.head();
+  const std::string first = make().html;
+  std::filesystem::remove(folder_.path() / "store" / "derived.sqlite");
+  ReportOptions options;
+  options.workers = 3;
+  EXPECT_EQ(make(options).html, first);
+  EXPECT_EQ(make(drawings()).html, make(drawings()).html);
+  EXPECT_EQ(store_.head().hash, before.hash);
+}
+
+TEST_F(ReportOfRuns, HoldsQuestionVerdictRunsLineageAndNumbers) {
+  const Report report = make();
+  EXPECT_EQ(report.experiments, 1U);
+  EXPECT_EQ(report.figures, 2U) << "S2, and Table I of all experiments";
+  const Head head = store_.head();
+  for (const std::string& part :
+       {std::string("Does the runner keep its promises?"), std::string("too few runs"),
+        std::string("fluid=still"), std::string("variant,cycle,phi_mean"), head.hash,
+        runs_of_kind(store_, "shear").front().id,
+        store_.checkpoints(runs_of_kind(store_, "shear").front().id).back().sha256}) {
+    EXPECT_NE(report.html.find(part), std::string::npos) << part;
+  }
+}
+
+TEST_F(ReportOfRuns, GivesTheFrontEndPlotsAndPackings) {
+  if (!has_front_end()) GTEST_SKIP() << "built without Node: there is no front end";
+  const nlohmann::json data = data_of(make().html);
+  ASSERT_TRUE(data.is_object());
+  EXPECT_TRUE(data.at("charts").contains("S2b"));
+  const auto& series = data.at("charts").at("S2a").at("series");
+  ASSERT_EQ(series.size(), 2U);
+  EXPECT_EQ(series[0].at("points").size(), 3U) << "cycles 0, 1 and 2";
+  ASSERT_EQ(data.at("packings").size(), 2U);
+  const auto& run = data.at("packings")[0];
+  const auto grains = run.at("grains").get<std::size_t>();
+  const auto walls = run.at("wall_grains").get<std::size_t>();
+  const auto bytes = run.at("frames")[0].at("data").get<std::string>();
+  EXPECT_EQ(bytes.size(), (6 * (grains + walls) + 7 * grains + 2) / 3 * 4);
+}
+
+TEST_F(ReportOfRuns, AllowsOnlyItsOwnScript) {
+  const std::string html = make().html;
+  EXPECT_NE(html.find("Content-Security-Policy\" content=\"default-src 'none';"),
+            std::string::npos);
+  EXPECT_EQ(count(html, "script-src 'sha256-"), has_front_end() ? 1U : 0U);
+  for (const char* link : {"src=\"http", "href=\"http", "url(http", "@import"}) {
+    EXPECT_EQ(count(html, link), 0U) << link;
+  }
+}
+
+TEST_F(ReportOfRuns, HasDrawingsAndNoScriptWhenItIsAskedTo) {
+  const Report report = make(drawings());
+  EXPECT_FALSE(report.interactive);
+  EXPECT_EQ(count(report.html, "<script"), 0U);
+  EXPECT_EQ(count(report.html, "<img alt=\"S2"), 2U)
+      << (report.notes.empty() ? "" : report.notes.front());
+}
+
+TEST_F(ReportOfRuns, NamesDamagedCheckpoints) {
+  const std::string run = runs_of_kind(store_, "shear").front().id;
+  truncate_file(folder_.path() / "store" / store_.checkpoints(run).front().file);
+  const Report report = make();
+  ASSERT_EQ(report.damage.size(), 1U);
+  EXPECT_NE(report.html.find("Left out: "), std::string::npos);
+}
+
+TEST_F(ReportOf, NeedsAnExperiment) {
+  EXPECT_THROW(make(), NotFound);
+}
+
+// Such a store is never written by this program, and may be handed to it.
+TEST_F(ReportOf, ShowsMarkupAsText) {
+  const std::string evil = "</script><script>alert(1)</script><img src=x onerror='a()'>\"&<!--";
+  store_.register_manifest("# " + evil + "\n", evil + ".yaml",
+                           {{"experiment", evil}, {"question", evil}, {"figures", {evil, "S2"}}});
+  RunDeclaration run;
+  run.id = std::string(64, 'a');
+  run.kind = evil;
+  run.resolved = {{evil, evil}};
+  run.grains = 10;
+  run.target_cycles = 1;
+  run.membership.experiment = evil;
+  run.membership.scale = evil;
+  run.membership.variant = evil;
+  run.membership.labels = {{evil, evil}};
+  run.membership.manifest = evil;
+  store_.declare_run(run);
+  store_.start_run(run.id, {{"host", evil}, {"build", {{"version", evil}, {"flags", evil}}}});
+  store_.fail_run(run.id, evil);
+
+  for (const bool interactive : {true, false}) {
+    ReportOptions options;
+    options.interactive = interactive;
+    const Report report = make(options);
+    EXPECT_EQ(count(report.html, "<script>alert"), 0U);
+    EXPECT_EQ(count(report.html, "<img"), report.interactive ? 0U : count(report.html, "<img alt"));
+    EXPECT_EQ(count(report.html, "<script"), report.interactive ? 2U : 0U);
+    EXPECT_EQ(count(report.html, "</script"), report.interactive ? 2U : 0U);
+    EXPECT_GT(count(report.html, "&lt;script&gt;alert(1)"), 5U);
+    EXPECT_EQ(data_of(report.html).is_object(), report.interactive);
+  }
+}
+
+}  // namespace
+}  // namespace shearcell
