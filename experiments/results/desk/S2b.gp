@@ -4,6 +4,7 @@ set datafile separator ','
 set border 15 lw 1.2
 set xtics in mirror scale 0.9,0.5
 set ytics in mirror scale 0.9,0.5
+set format '%h'
 set mxtics 2
 set mytics 2
 set autoscale noextend
