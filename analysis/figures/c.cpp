@@ -153,7 +153,8 @@ NearCritical near_critical(const AmplitudeGrowth& one) {
   return near;
 }
 
-/// The supplement states whole numbers and says "about": one grain is allowed for that.
+/// The supplement states whole numbers and says "about": one grain is allowed for that. A limit of
+/// more than half of the stated size would let anything pass, and so tells nothing.
 Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   std::optional<double> distance;
   double limit = 1;
@@ -171,7 +172,7 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   }
   constexpr std::size_t crystallites_to_tell = 50;
   const bool enough = near.runs >= runs_to_tell && near.crystallites >= crystallites_to_tell &&
-                      one.critical.error.has_value();
+                      one.critical.error.has_value() && limit <= one.published->critical_size / 2;
   return below_if(enough,
                   fmt::format("C: the critical size at A = {} rad is about {} grains",
                               one.amplitude, one.published->critical_size),
