@@ -249,7 +249,7 @@ std::vector<FigureRun> stiffened(std::size_t systems, double fall, double drift)
 }
 
 TEST(FigureS1, PhiStaysWherePhiUFalls) {
-  EXPECT_EQ(rulings("S1", stiffened(3, 0.02, 0.0015)), (Rulings{pass, pass}));
+  EXPECT_EQ(rulings("S1", stiffened(3, 0.013, 0.0015)), (Rulings{pass, pass}));
   EXPECT_EQ(rulings("S1", stiffened(3, 0.035, 0.0025)), (Rulings{fail, fail}));
   EXPECT_EQ(rulings("S1", stiffened(2, 0.02, 0)), (Rulings{too_few, too_few}));
   std::vector<FigureRun> part = stiffened(3, 0.02, 0);
