@@ -110,11 +110,14 @@ std::vector<std::string> files_of(const fs::path& out) {
   return files;
 }
 
-template <auto Writer>
-std::vector<std::string> to_file(const Store& store, const RunRecord& run,
-                                 const ExportOptions& options) {
+enum class Output { file, folder };
+
+template <auto Writer, Output Kind>
+std::vector<std::string> frames(const Store& store, const RunRecord& run,
+                                const ExportOptions& options) {
   const std::vector<CheckpointRecord> records = chosen(store, run, options.cycles);
   require_new(options.out);
+  if constexpr (Kind == Output::folder) fs::create_directories(options.out);
   if constexpr (std::is_invocable_v<decltype(Writer), fs::path, std::size_t>) {
     write_frames(store, records, Writer(options.out, records.size()));
   } else {
@@ -123,22 +126,15 @@ std::vector<std::string> to_file(const Store& store, const RunRecord& run,
   return files_of(options.out);
 }
 
-template <auto Writer>
-std::vector<std::string> to_folder(const Store& store, const RunRecord& run,
-                                   const ExportOptions& options) {
-  const std::vector<CheckpointRecord> records = chosen(store, run, options.cycles);
-  require_new(options.out);
-  fs::create_directories(options.out);
-  write_frames(store, records, Writer(options.out));
-  return files_of(options.out);
-}
-
 // A new format is one function and one line here.
 constexpr std::array kFormats = {
-    ExportFormat{"h5md", "H5MD 1.1, one file: MDAnalysis, h5py, VMD", to_file<h5md_writer>},
-    ExportFormat{"extxyz", "extended XYZ, one file: OVITO, ASE", to_file<extxyz_writer>},
-    ExportFormat{"vtk", "VTK PolyData, a folder: ParaView", to_folder<vtk_writer>},
-    ExportFormat{"lammps", "LAMMPS data, a folder: LAMMPS, OVITO", to_folder<lammps_writer>},
+    ExportFormat{"h5md", "H5MD 1.1, one file: MDAnalysis, h5py, VMD",
+                 frames<h5md_writer, Output::file>},
+    ExportFormat{"extxyz", "extended XYZ, one file: OVITO, ASE",
+                 frames<extxyz_writer, Output::file>},
+    ExportFormat{"vtk", "VTK PolyData, a folder: ParaView", frames<vtk_writer, Output::folder>},
+    ExportFormat{"lammps", "LAMMPS data, a folder: LAMMPS, OVITO",
+                 frames<lammps_writer, Output::folder>},
     ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5, and PROV-JSON", ro_crate},
 };
 
