@@ -5,7 +5,8 @@
 #include <CGAL/Mpzf.h>
 
 #include <cmath>
-#include <limits>
+
+#include "analysis/rounding.hpp"
 
 namespace shearcell {
 namespace {
@@ -16,10 +17,9 @@ using Exact = CGAL::Mpzf;
 using Exact = CGAL::MP_Float;
 #endif
 
-constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 // Above this the corner is computed again in exact arithmetic: its three planes nearly share a
 // line.
-constexpr double worst_error = 1e-10;
+constexpr double worst_corner_error = 1e-10;
 
 struct ExactVector {
   Exact x, y, z;
@@ -132,7 +132,7 @@ void ConvexCell::add_corner(Triple t) {
                        std::abs(c.offset) * a.length * b.length;
   double error =
       24 * unit_roundoff * inverse * (terms + v.lpNorm<1>() * a.length * b.length * c.length);
-  if (!(error >= 0 && error <= worst_error)) {
+  if (!(error >= 0 && error <= worst_corner_error)) {
     v = rounded(meet_exactly(a, b, c));
     error = 8 * unit_roundoff * v.lpNorm<1>();
   }

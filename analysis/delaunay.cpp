@@ -10,19 +10,18 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <string>
 #include <type_traits>
 
 #include "analysis/error.hpp"
+#include "analysis/rounding.hpp"
 
 namespace shearcell {
 namespace {
 
-constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 // A circumcentre that may be farther from the true one than this [d] is computed exactly.
-constexpr double worst_error = 1e-12;
+constexpr double worst_centre_error = 1e-12;
 
 /// The edges of a tetrahedron by the numbers of its corners.
 constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {
@@ -141,7 +140,7 @@ Eigen::Vector3d Delaunay::circumcentre(const std::array<std::int32_t, 4>& vertic
   // by one.
   const double longest2 = std::max({aa, bb, cc});
   const double terms = longest2 * (longest2 + std::sqrt(longest2 * v.squaredNorm()));
-  if (32 * unit_roundoff * terms < worst_error * determinant) return origin + v;
+  if (32 * unit_roundoff * terms < worst_centre_error * determinant) return origin + v;
 
   using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
   const auto exact = [&](std::size_t k) {

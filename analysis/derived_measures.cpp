@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-json scalars(const Analysis& analysis) {
+json scalars_of(const Analysis& analysis) {
   const Measures& m = analysis.measures;
   return {{"grains", m.grains},
           {"interior_grains", m.interior_grains},
@@ -38,7 +38,7 @@ json criteria() {
 }  // namespace
 
 const DerivedMeasure& scalar_measures() {
-  static const DerivedMeasure measure{"scalars", criteria(), scalars};
+  static const DerivedMeasure measure{"scalars", criteria(), scalars_of};
   return measure;
 }
 

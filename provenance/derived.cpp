@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kApplicationId = 0x73686364;
 constexpr std::int64_t kLayout = 1;
 
-constexpr const char* kTable = R"sql(
+constexpr const char* kDerivedTable = R"sql(
 CREATE TABLE derived(
   checkpoint TEXT NOT NULL,
   measure TEXT NOT NULL,
@@ -67,7 +67,7 @@ void DerivedCache::open() {
   if (database.integer("PRAGMA page_count") == 0) {
     sqlite::WriteTransaction lock(database);
     if (database.integer("SELECT count(*) FROM sqlite_schema") == 0) {
-      database.execute(kTable);
+      database.execute(kDerivedTable);
       database.execute(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};",
                                    kApplicationId, kLayout));
     }

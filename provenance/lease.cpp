@@ -18,7 +18,7 @@ namespace {
 using sqlite::Database;
 using sqlite::Statement;
 
-constexpr const char* kTable = R"sql(
+constexpr const char* kLeaseTable = R"sql(
 CREATE TABLE leases(
   run TEXT PRIMARY KEY,
   host TEXT NOT NULL,
@@ -32,7 +32,7 @@ CREATE TABLE leases(
 ) STRICT;
 )sql";
 
-constexpr std::string_view kColumns =
+constexpr std::string_view kLeaseColumns =
     "SELECT run, host, place, pid, started, token, attempt, renewed_at_ms, expires_at_ms FROM "
     "leases ";
 
@@ -126,12 +126,12 @@ std::string describe(const Holder& holder) {
 }
 
 void create_leases(Database& database) {
-  database.execute(kTable);
+  database.execute(kLeaseTable);
 }
 
 std::optional<Lease> query_lease(const Database& database, std::string_view run) {
   if (!has_table(database)) return std::nullopt;
-  Statement query(database, std::string(kColumns) + "WHERE run = ?");
+  Statement query(database, std::string(kLeaseColumns) + "WHERE run = ?");
   query.bind(1, run);
   if (!query.step()) return std::nullopt;
   return read_lease(query);
@@ -140,7 +140,7 @@ std::optional<Lease> query_lease(const Database& database, std::string_view run)
 std::vector<Lease> query_leases(const Database& database) {
   std::vector<Lease> found;
   if (!has_table(database)) return found;
-  Statement query(database, std::string(kColumns) + "ORDER BY run");
+  Statement query(database, std::string(kLeaseColumns) + "ORDER BY run");
   while (query.step()) found.push_back(read_lease(query));
   return found;
 }

@@ -40,7 +40,8 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
   return all;
 }
 
-const std::array<const char*, 5> colours = {"#6a3d9a", "#000000", "#2ca02c", "#1f4fd8", "#d62728"};
+const std::array<const char*, 5> amplitude_colours = {"#6a3d9a", "#000000", "#2ca02c", "#1f4fd8",
+                                                      "#d62728"};
 
 Chart chart_of(std::span<const AmplitudeGrowth> all, const TableRows& rows) {
   Chart chart{
@@ -50,8 +51,8 @@ Chart chart_of(std::span<const AmplitudeGrowth> all, const TableRows& rows) {
       {0}};
   for (std::size_t k = 0; k < all.size(); ++k) {
     chart.series.push_back(
-        {fmt::format("{{/:Italic A}} = {}", all[k].amplitude), colours[k % colours.size()],
-         5 + 2 * static_cast<int>(k % 5), false,
+        {fmt::format("{{/:Italic A}} = {}", all[k].amplitude),
+         amplitude_colours[k % amplitude_colours.size()], 5 + 2 * static_cast<int>(k % 5), false,
          chart_points(rows, {.x = 2, .x_error = 0, .y = 6, .y_error = 7}, 1, all[k].amplitude)});
   }
   return chart;
@@ -65,19 +66,20 @@ std::string plot(std::span<const AmplitudeGrowth> all) {
       "set arrow from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#888888'\n";
   for (std::size_t k = 0; k < all.size(); ++k) {
     text += fmt::format("set arrow from {0}, graph 0 to {0}, graph 0.06 nohead lw 2 lc rgb '{1}'\n",
-                        all[k].published->critical_size, colours[k % colours.size()]);
+                        all[k].published->critical_size,
+                        amplitude_colours[k % amplitude_colours.size()]);
   }
   const bool any = std::any_of(all.begin(), all.end(),
                                [](const AmplitudeGrowth& one) { return !one.rates.empty(); });
   if (!any) return text;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    text +=
-        fmt::format("{}{}", k == 0 ? "plot " : ", \
+    text += fmt::format(
+        "{}{}", k == 0 ? "plot " : ", \
      ",
-                    points_with_errors(
-                        "2", fmt::format("(column(1) == {} ? column(6) : NaN)", all[k].amplitude),
-                        7, colours[k % colours.size()], 5 + 2 * static_cast<int>(k % 5),
-                        fmt::format("{{/:Italic A}} = {}", all[k].amplitude)));
+        points_with_errors(
+            "2", fmt::format("(column(1) == {} ? column(6) : NaN)", all[k].amplitude), 7,
+            amplitude_colours[k % amplitude_colours.size()], 5 + 2 * static_cast<int>(k % 5),
+            fmt::format("{{/:Italic A}} = {}", all[k].amplitude)));
   }
   return text + "\n";
 }

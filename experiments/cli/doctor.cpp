@@ -95,7 +95,8 @@ Finding sync_time(const fs::path& place) {
   constexpr int count = 10;
   const auto begin = std::chrono::steady_clock::now();
   bool written = true;
-  for (int k = 0; k < count; ++k) written = write(file, "x", 1) == 1 && fsync(file) == 0 && written;
+  for (int k = 0; k < count; ++k)
+    written = ::write(file, "x", 1) == 1 && fsync(file) == 0 && written;
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
   close(file);
   fs::remove(name);

@@ -12,7 +12,7 @@ namespace {
 
 using std::string_view;
 
-constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kLongestGuess = 64;
 
 std::string lower(string_view text) {
   std::string result(text);
@@ -47,7 +47,7 @@ bool has_no_unit(string_view name) {
 }  // namespace
 
 Suggestion suggest_name(string_view unknown, std::span<const string_view> candidates) {
-  if (unknown.empty() || unknown.size() > kLongestName) return {};
+  if (unknown.empty() || unknown.size() > kLongestGuess) return {};
   const std::string written = lower(unknown);
   std::vector<string_view> with_unit;
   for (const string_view candidate : candidates) {
