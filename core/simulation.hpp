@@ -83,6 +83,9 @@ class Simulation {
   /// Other forces from here on; the state stays as it is.
   void set_scene(const Scene& scene);
 
+  /// Another largest overlap for the watchdog [d].
+  void set_overlap_limit(double limit) { settings_.limits.overlap = limit; }
+
  private:
   void load(const State& state);
   void copy_in(const State& state);

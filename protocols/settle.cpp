@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kLookInterval = 0.1;  // [s]
 constexpr std::uint64_t kLooksPerCheckpoint = 20;
-constexpr double kDenseGrains = 1.2;  // per d^3, of a packing at phi = 0.63
+constexpr double kDenseGrains = 1.2;      // per d^3, of a packing at phi = 0.63
+constexpr double kPressingOverlap = 0.5;  // [d]
 
 std::uint64_t look_steps(const Scene& scene) {
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kLookInterval / scene.time_step));
@@ -34,7 +35,11 @@ Settle::Settle(const SettleParameters& parameters, const Scene& scene)
       limit_steps_(static_cast<std::uint64_t>(parameters.time_limit / scene.time_step)) {}
 
 std::uint64_t Settle::press_steps(const Cell& cell, std::size_t grains) const {
-  if (scene_.gravity == 0 || scene_.pressure == 0) return 0;
+  return scene_.gravity == 0 ? 0 : way_steps(cell, grains);
+}
+
+std::uint64_t Settle::way_steps(const Cell& cell, std::size_t grains) const {
+  if (scene_.pressure == 0) return 0;
   const double looks =
       std::min(press_looks(cell, scene_, grains), parameters_.time_limit / kLookInterval);
   return look_steps_ * static_cast<std::uint64_t>(looks);
@@ -43,6 +48,7 @@ std::uint64_t Settle::press_steps(const Cell& cell, std::size_t grains) const {
 State pressed(const Cell& cell, const State& loose, Scene scene, const EngineSettings& settings) {
   scene.gravity = 0;
   Simulation simulation(cell, scene, loose, settings);
+  simulation.set_overlap_limit(std::max(settings.limits.overlap, kPressingOverlap));
   const double looks = press_looks(cell, scene, simulation.grains());
   simulation.advance(Drive{}, look_steps(scene) * static_cast<std::uint64_t>(looks));
   State state = simulation.state();
@@ -71,6 +77,9 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
   const auto finished = [&] {
     return simulation.step() > pressed && at_look() && settled(simulation);
   };
+  const bool on_the_way = simulation.step() < way_steps(simulation.cell(), simulation.grains());
+  simulation.set_overlap_limit(on_the_way ? std::max(parameters_.overlap_limit, kPressingOverlap)
+                                          : parameters_.overlap_limit);
   StageProgress progress;
   // A stage that was cut off between its last checkpoint and its end must not go on.
   progress.finished = progress.checkpoint_due = finished();

@@ -11,6 +11,7 @@ struct SettleParameters {
   double force_tolerance = 1e-3;    ///< largest |P A - F| / (P A) of the moving wall
   double kinetic_tolerance = 1e-8;  ///< largest kinetic energy per grain over P d^3
   double time_limit = 60;           ///< [s]; a packing that takes longer is an error
+  double overlap_limit = 0.1;       ///< the watchdog's, once the wall has had time to press [d]
 };
 
 /// Gravity is switched on only when the moving wall has had time to press the grains together.
@@ -20,6 +21,9 @@ struct SettleParameters {
 /// Settled: at one of the looks, every 0.1 s under gravity, the force balance of the moving wall,
 /// its speed and the kinetic energy per grain are all under their tolerances. The speed counts as
 /// the drag force B_w y' over P A, so a wall that creeps is not taken for one in balance.
+///
+/// On its way the wall may catch a grain between its own wall grains and those of a side wall, and
+/// push it out with all its force: overlaps up to half a diameter pass until the packing is dense.
 class Settle final : public Protocol {
  public:
   /// `scene` is what acts on the packing in the end, gravity included.
@@ -34,6 +38,7 @@ class Settle final : public Protocol {
   std::uint64_t press_steps(const Cell& cell, std::size_t grains) const;
 
  private:
+  std::uint64_t way_steps(const Cell& cell, std::size_t grains) const;
   bool settled(const Simulation& simulation) const;
 
   SettleParameters parameters_;

@@ -34,7 +34,7 @@ std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t 
   if (stage.stage == Stage::prepare) {
     return std::make_unique<Settle>(
         SettleParameters{p.settle_force_tolerance, p.settle_kinetic_tolerance,
-                         p.settle_time_limit_s},
+                         p.settle_time_limit_s, p.max_overlap_diameters},
         settle_scene(p));
   }
   if (stage.stage == Stage::stiffen) {

@@ -192,6 +192,25 @@ TEST(Settle, SaysWhichLimitItRanInto) {
   }
 }
 
+// The moving wall pushes out what it has caught between the wall grains; see settle.hpp.
+TEST(Settle, TakesLargeOverlapsUntilTheWallHasDoneItsWay) {
+  Packing packing = loose(rough_geometry(300), table_1());
+  packing.state.position.col(1) = packing.state.position.col(0) + Eigen::Vector3d(0, 0, 0.75);
+  const Settle protocol({}, table_1());
+  Simulation early(packing.cell, table_1(), packing.state);
+  EXPECT_NO_THROW(protocol.advance(early, 1));
+
+  packing.state.step = protocol.press_steps(packing.cell, 300);
+  Simulation late(packing.cell, table_1(), packing.state);
+  try {
+    protocol.advance(late, 1);
+    FAIL() << "an overlap of 0.25 d in a dense packing was not seen";
+  } catch (const NumericalFailure& failure) {
+    EXPECT_EQ(failure.limit, 0.1);
+    EXPECT_NEAR(failure.value, 0.25, 1e-9);
+  }
+}
+
 TEST(Settle, PressesUntilTheWallHasDoneItsWay) {
   const Packing packing = loose(rough_geometry(600), table_1());
   const auto pressed = [&](const Scene& scene, const SettleParameters& parameters = {}) {
