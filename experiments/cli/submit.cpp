@@ -100,6 +100,11 @@ void write_script(const fs::path& file, const std::string& text) {
   if (!out) throw std::runtime_error("cannot write " + file.string());
 }
 
+/// As the tasks name the store, from wherever they run.
+fs::path whole_path(const std::string& store) {
+  return fs::weakly_canonical(fs::absolute(store));
+}
+
 JobPlaces places_of(const fs::path& store, const fs::path& folder) {
   JobPlaces places{fs::read_symlink("/proc/self/exe"), store, folder};
   for (const fs::path& path : {places.program, places.folder}) {
@@ -113,7 +118,7 @@ std::vector<std::string> output_option(const fs::path& folder, std::string_view 
 }
 
 void dry_run(const Proposal& proposal, Context& context) {
-  const fs::path store = fs::weakly_canonical(context.store);
+  const fs::path store = whole_path(context.store);
   const JobPlaces places = places_of(store, store / "submissions" / "SUBMISSION");
   const std::string script = array_script(proposal.job, places, proposal.shares.size());
   const std::string folding = fold_script(proposal.job, places, proposal.shares.size());
@@ -214,8 +219,9 @@ nlohmann::json event_facts(const SubmitOptions& options, const Proposal& proposa
 
 void submit_really(const SubmitOptions& options, const LoadedManifests& loaded, Context& context) {
   require_slurm();
-  places_of(fs::weakly_canonical(context.store), fs::weakly_canonical(context.store));
-  Store store(fs::weakly_canonical(context.store), Access::create);
+  const fs::path folder = whole_path(context.store);
+  places_of(folder, folder);  // or says why it cannot be
+  Store store(folder, Access::create);
   const std::size_t seen = store.events(kSubmissions).size();
   const std::vector<OpenSubmission> open = open_submissions(store);
   fold_leftovers(store, open);

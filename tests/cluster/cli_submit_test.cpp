@@ -62,7 +62,8 @@ TEST_F(Submit, ShowsAllWithoutSlurmAndWritesNothing) {
   EXPECT_TRUE(contains(shown.out, "6 runs in 3 tasks of 2 cores")) << shown.out;
   EXPECT_TRUE(contains(shown.out, "#SBATCH --array=1-3\n"));
   EXPECT_TRUE(contains(shown.out, "#SBATCH --time=2:00:00\n"));
-  EXPECT_TRUE(contains(shown.out, "shearcell-store/submissions/SUBMISSION/task-"));
+  EXPECT_TRUE(contains(
+      shown.out, "store='" + path("shearcell-store/submissions/SUBMISSION/task-").string() + "'"));
   const auto facts =
       json({"submit", manifest_, "--seeds", "5", "--array-size", "2", "--dry-run", "--json"});
   EXPECT_EQ(facts.at("tasks").size(), 2U);

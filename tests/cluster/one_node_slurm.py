@@ -48,7 +48,7 @@ JobAcctGatherType=jobacct_gather/none
 MpiDefault=none
 ReturnToService=2
 SlurmdTimeout=60
-BatchStartTimeout=2
+BatchStartTimeout=1
 KillWait=10
 NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus}
 PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
@@ -63,6 +63,11 @@ def missing():
     if names:
         return f"{', '.join(names)} not installed (Debian packages slurm-wlm and munge)"
     return None
+
+
+# Slurm requeues what a node that comes back does not run any more, when it was begun this long before:
+# BatchStartTimeout and MessageTimeout.
+MISSED_AFTER = 12
 
 
 def wait_for(what, condition, seconds=120):
@@ -153,13 +158,12 @@ class OneNodeSlurm:
             raise
 
     def __exit__(self, *_):
-        # The daemons of running jobs have left their parent, and so have the jobs of a killed node.
-        for process in self.job_processes():
-            kill(process)
+        own = [p for daemon in self.daemons.values() for p in descendants(daemon.pid)]
         for daemon in reversed(self.daemons.values()):
             kill(daemon.pid)
             daemon.wait()
-        for process in self.job_processes():
+        # Daemons that watch jobs have left their parent; without Slurm nobody starts new ones.
+        for process in [*own, *self.job_processes()]:
             kill(process)
 
     def start(self, name, words, **options):
@@ -189,32 +193,28 @@ class OneNodeSlurm:
                  in ("idle", "mixed", "allocated"))
 
     def job_processes(self):
-        """Of the node: daemons of steps, and what they started or left behind."""
-        steps = [p for p in processes("slurmstepd") if self.is_own(p)]
-        scripts = processes(f"{self.folder}/spool")
-        return sorted({p for one in steps + scripts for p in [one, *descendants(one)]})
-
-    def is_own(self, process):
-        try:
-            with open(f"/proc/{process}/environ", "rb") as file:
-                return f"SLURM_CONF={self.folder}/slurm.conf".encode() in file.read().split(b"\0")
-        except OSError:
-            return False
+        """Of the node: its jobs' scripts, what these started, and the daemons that watch them."""
+        scripts = processes(f"{self.folder}/spool/")
+        parent = parents()
+        daemons = [parent[script] for script in scripts if parent.get(script, 1) != 1]
+        return daemons + scripts + [p for script in scripts for p in descendants(script)]
 
     def lose_node(self):
         """The node is gone at once, with its daemon and everything that ran there."""
         kill(self.daemons["slurmd"].pid)
-        for process in self.job_processes():
-            kill(process)
         self.daemons["slurmd"].wait()
+        lost = self.job_processes()
+        for process in lost:
+            kill(process)
+        wait_for("the node's processes to be gone", lambda: not set(lost) & set(self.job_processes()))
 
     def ask(self, *words):
-        """What one of Slurm's programs says; nothing when it fails."""
+        """What one of Slurm's programs says; None when it fails."""
         done = subprocess.run(words, env=self.environment, text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL, check=False)
-        return done.stdout.strip() if done.returncode == 0 else ""
+        return done.stdout.strip() if done.returncode == 0 else None
 
     def queue(self):
-        """{"7_2": "RUNNING", "8": "PENDING"}"""
-        lines = self.ask("squeue", "--noheader", "--array", "--format=%i %T").splitlines()
-        return dict(line.split() for line in lines)
+        """{"7_2": "RUNNING", "8": "PENDING"}; None when Slurm does not answer."""
+        lines = self.ask("squeue", "--noheader", "--array", "--format=%i %T")
+        return None if lines is None else dict(line.split() for line in lines.splitlines())
