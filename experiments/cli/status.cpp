@@ -61,7 +61,8 @@ nlohmann::json facts(const RunRecord& run) {
 nlohmann::json facts(const QueuedRun& run) {
   nlohmann::json said = {
       {"job", run.job}, {"state", run.state}, {"reason", run.reason}, {"node", run.node}};
-  said["reported_state"] = run.reported ? nlohmann::json(run.reported->state) : nlohmann::json();
+  said["reported_state"] =
+      run.reported ? nlohmann::json(name_of(run.reported->state)) : nlohmann::json();
   said["reported_cycle"] = run.reported ? nlohmann::json(run.reported->cycle) : nlohmann::json();
   return said;
 }
@@ -76,10 +77,7 @@ struct Shown {
     return queued != nullptr && queued->reported && run.state != RunState::completed &&
            queued->reported->cycle >= run.cycle;
   }
-  std::string state() const {
-    return ahead() ? queued->reported->state
-                   : fmt::format("{}{}", name_of(run.state), held ? " *" : "");
-  }
+  RunState state() const { return ahead() ? queued->reported->state : run.state; }
   double cycle() const { return ahead() ? queued->reported->cycle : run.cycle; }
   std::string queue() const {
     if (queued == nullptr || run.state == RunState::completed) return "";
@@ -95,7 +93,7 @@ std::vector<std::string> row(const Shown& shown) {
           first.variant,
           std::to_string(first.seed),
           std::to_string(run.grains),
-          shown.state(),
+          fmt::format("{}{}", name_of(shown.state()), shown.held ? " *" : ""),
           run.kind == "prepare" ? "" : fmt::format("{:.4g}/{}", shown.cycle(), run.target_cycles),
           fmt::format("{:.1f}", rate(run) * 1e-6),
           format_duration(run.wall_seconds)};
@@ -117,7 +115,7 @@ void print(const std::vector<RunRecord>& runs, const std::map<std::string, Lease
                       queued == queue.runs.end() ? nullptr : &queued->second};
     tables[name].push_back(row(shown));
     if (!queue.runs.empty()) tables[name].back().push_back(shown.queue());
-    ++count[run.state];
+    ++count[shown.state()];
   }
   for (const std::string& name : experiments) {
     fmt::print("{}\n", name);

@@ -73,7 +73,7 @@ void print_shares(const Proposal& proposal) {
                     format_duration(seconds_of(share, proposal))});
     runs += share.runs.size();
   }
-  fmt::print("{} runs in {} tasks of {} cores\n\n", runs, rows.size(), proposal.job.cpus);
+  fmt::print("{} runs in {} tasks; cores of each: {}\n\n", runs, rows.size(), proposal.job.cpus);
   print_table({"task", "runs", "packings", "particle-steps", "about"}, rows);
 }
 

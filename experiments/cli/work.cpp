@@ -75,12 +75,13 @@ class WorkStore {
                                         whole.filename().string());
     store_.emplace(copy_, Access::create);
     store_->merge({task});
+    for (const RunRecord& run : store_->runs()) runs_.insert(run.id);
   }
 
   Store& store() { return *store_; }
   bool is_copy() const { return !copy_.empty(); }
 
-  void save() const { Store(task_, Access::write).merge({copy_}); }
+  void save() const { Store(task_, Access::write).merge({copy_}, runs_); }
 
   /// Folds the copy back and removes it.
   void finish() {
@@ -92,6 +93,7 @@ class WorkStore {
 
  private:
   fs::path task_, copy_;
+  std::set<std::string> runs_;  // and nothing else of the copy is folded back
   std::optional<Store> store_;
 };
 

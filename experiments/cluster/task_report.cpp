@@ -5,7 +5,6 @@
 #include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 namespace shearcell {
 namespace {
@@ -13,8 +12,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 5> kStates = {"declared", "running", "interrupted", "failed",
-                                                     "completed"};
+constexpr std::array<RunState, 5> kStates = {RunState::declared, RunState::running,
+                                             RunState::interrupted, RunState::failed,
+                                             RunState::completed};
 
 fs::path report_file(fs::path folder) {
   return folder += ".progress.json";
@@ -42,10 +42,11 @@ std::map<std::string, ReportedRun> read_task_report(const fs::path& folder) {
   const json facts = json::parse(in, nullptr, false);
   try {
     for (const json& run : facts.at("runs")) {
-      const std::string state = run.at("state");
-      // The file may hold anything, and what is kept of it is printed.
-      if (std::find(kStates.begin(), kStates.end(), state) == kStates.end()) continue;
-      reported[run.at("id").get<std::string>()] = {state, run.at("cycle").get<double>()};
+      const std::string name = run.at("state");
+      const auto state = std::find_if(kStates.begin(), kStates.end(),
+                                      [&name](RunState known) { return name == name_of(known); });
+      if (state == kStates.end()) continue;
+      reported[run.at("id").get<std::string>()] = {*state, run.at("cycle").get<double>()};
     }
   } catch (const json::exception&) {
     reported.clear();  // it only informs

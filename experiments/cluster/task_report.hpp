@@ -13,7 +13,7 @@
 namespace shearcell {
 
 struct ReportedRun {
-  std::string state;
+  RunState state = RunState::declared;
   double cycle = 0;
 };
 

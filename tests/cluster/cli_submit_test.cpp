@@ -59,7 +59,7 @@ TEST_F(Submit, ShowsAllWithoutSlurmAndWritesNothing) {
   const Outcome shown =
       run({"submit", manifest_, "--seeds", "3", "--time", "2:00:00", "--dry-run"});
   EXPECT_EQ(shown.code, 0) << shown.err;
-  EXPECT_TRUE(contains(shown.out, "6 runs in 3 tasks of 2 cores")) << shown.out;
+  EXPECT_TRUE(contains(shown.out, "6 runs in 3 tasks; cores of each: 2")) << shown.out;
   EXPECT_TRUE(contains(shown.out, "#SBATCH --array=1-3\n"));
   EXPECT_TRUE(contains(shown.out, "#SBATCH --time=2:00:00\n"));
   EXPECT_TRUE(contains(

@@ -6,6 +6,7 @@
 
 Needs root. All of its processes end with the block, whatever happened.
 """
+import ctypes
 import os
 import pwd
 import shutil
@@ -122,6 +123,12 @@ def kill(process):
         pass
 
 
+def end_with_parent():
+    """In a child: even a killed test leaves no daemon behind."""
+    PR_SET_PDEATHSIG = 1
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
 def free_ports(count):
     sockets = [socket.socket() for _ in range(count)]
     for one in sockets:
@@ -170,7 +177,7 @@ class OneNodeSlurm:
         with open(f"{self.folder}/{name}.out", "ab") as out:
             self.daemons[name] = subprocess.Popen(
                 words, stdin=subprocess.DEVNULL, stdout=out, stderr=out, env=self.environment,
-                start_new_session=True, **options)
+                start_new_session=True, preexec_fn=end_with_parent, **options)
 
     def start_munge(self):
         user = pwd.getpwnam("munge")

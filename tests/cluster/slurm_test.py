@@ -211,6 +211,7 @@ def main():
     if why := missing():
         print(f"skipped: {why}")
         sys.exit(77)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("ended by a signal"))  # and so cleaned up
     folder = pathlib.Path(tempfile.mkdtemp(prefix="shearcell-slurm-"))
     folder.chmod(0o755)  # munged has a user of its own
     try:

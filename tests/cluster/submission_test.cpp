@@ -159,7 +159,7 @@ TEST(TaskReport, ComesBackAndIsNotTrusted) {
   run.cycle = 1.5;
   write_task_report(task, {run});
   ASSERT_EQ(read_task_report(task).count("abc"), 1U);
-  EXPECT_EQ(read_task_report(task).at("abc").state, "interrupted");
+  EXPECT_EQ(read_task_report(task).at("abc").state, RunState::interrupted);
   EXPECT_EQ(read_task_report(task).at("abc").cycle, 1.5);
   for (const char* text :
        {"", "{", "[]", "3", "{\"runs\":3}", "{\"runs\":[3]}", "{\"runs\":[{\"id\":1}]}",
