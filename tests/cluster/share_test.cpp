@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sharing out: every run once, packings settled once, the same every time, nobody much busier.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,7 +68,7 @@ Bundle bundle(const std::string& name, double cost) {
 
 TEST(SharingOut, GivesEveryRunToOneTaskWithItsPacking) {
   std::vector<Bundle> bundles;
-  for (int b = 0; b < 23; ++b) bundles.push_back(bundle("p" + std::to_string(b), 1 + b % 5));
+  for (int b = 0; b < 23; ++b) bundles.push_back(bundle(fmt::format("p{}", b), 1 + b % 5));
   for (const std::size_t tasks : {1U, 2U, 7U, 22U, 23U, 500U}) {
     const auto shares = share_out(bundles, tasks);
     EXPECT_EQ(shares.size(), std::min<std::size_t>(tasks, 23));

@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "experiments/cluster/proposal.hpp"
 #include "experiments/cluster/queue_view.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
@@ -89,6 +90,45 @@ TEST_F(Submitted, ATaskGoesOnFromWhatTheStoreHolds) {
       EXPECT_EQ(run.particle_steps, 3.0 * kStepsPerCycle * kGrains) << "no step was made twice";
     }
   }
+}
+
+TEST_F(Submitted, RunsInTheQueueAreBusyWithTheirPackings) {
+  const Submission made = submit(shares());
+  EXPECT_TRUE(busy_runs(store_, {{made, {}}}).empty()) << "its jobs have ended";
+  const QueuedTask waiting{
+      .name = made.name(), .job = "17", .task = 2, .state = "PENDING", .reason = {}, .node = {}};
+  EXPECT_EQ(busy_runs(store_, {{made, {waiting}}}).size(), 6U)
+      << "nothing is folded before the end";
+}
+
+TEST_F(Submitted, RunsAtWorkHereAreBusyWithTheirPackings) {
+  const std::string run = shares().at(0).runs.at(0), packing = store_.run(run).parent;
+  EXPECT_TRUE(busy_runs(store_, {}).empty());
+  store_.start_run(run, nlohmann::json::object());
+  EXPECT_EQ(busy_runs(store_, {}), (std::set<std::string>{run, packing}));
+  store_.start_run(packing, nlohmann::json::object());
+  store_.complete_run(packing);
+  EXPECT_EQ(busy_runs(store_, {}), (std::set<std::string>{run})) << "others may start from it";
+}
+
+TEST(Proposed, LeavesOutBundlesThatAreBusyAndGivesACoreToEachRun) {
+  ExpandOptions options;
+  options.seeds = 3;
+  const std::vector<Plan> plans = {
+      expand(parse_manifest(tiny_manifest("", kBothFluids), "tiny.yaml"), options)};
+  const Proposal all = propose(plans, {}, {}, 1000, {});
+  EXPECT_EQ(all.shares.size(), 3U);
+  EXPECT_EQ(all.job.cpus, 2U);
+  JobOptions threaded, single;
+  threaded.threads = 4;
+  single.cpus = 1;
+  const Proposal rest = propose(plans, {}, {all.shares[1].runs[0]}, 1000, threaded);
+  EXPECT_EQ(rest.shares.size(), 2U);
+  EXPECT_EQ(rest.left_out, 2U);
+  EXPECT_EQ(rest.job.cpus, 8U);
+  const Proposal few = propose(plans, {}, {}, 1, single);
+  EXPECT_EQ(few.shares.size(), 1U);
+  EXPECT_EQ(few.job.cpus, 1U);
 }
 
 TEST_F(Submitted, TwoAtOnceAreToldApart) {
