@@ -161,22 +161,22 @@ TEST_F(Submit, TasksRunWhatWasSubmitted) {
 
 TEST_F(Submit, WorkStopsWhenItIsWarnedHoweverOftenAndGoesOn) {
   slurm_that_works();
-  const std::string folder = json({"submit", manifest_, "--cycles", "40", "--json"}).at("folder");
+  const std::string folder = json({"submit", manifest_, "--cycles", "16", "--json"}).at("folder");
   const std::string task = folder + "/task-1";
   const Running worker = start_beside({"work", "--store", task, "-j", "2"}, "worker");
   while (objects(task) < 4) usleep(10000);
   for (const int signal : {SIGUSR1, SIGTERM, SIGTERM}) kill(worker.pid, signal);
   EXPECT_EQ(wait_for(worker).code, 85) << "the second signal does not kill";
   const std::size_t recorded = objects(task);
-  ASSERT_LT(recorded, 80U);
+  ASSERT_LT(recorded, 30U);
   EXPECT_EQ(run({"work", "--store", task, "-j", "2", "--leave-failed"}).code, 0);
-  ASSERT_EQ(run({"run", manifest_, "--cycles", "40", "-q", "--store", "here"}).code, 0);
+  ASSERT_EQ(run({"run", manifest_, "--cycles", "16", "-q", "--store", "here"}).code, 0);
   EXPECT_EQ(hashes(task), hashes("here"));
 }
 
 TEST_F(Submit, WorkOnScratchBringsEverythingBack) {
   slurm_that_works();
-  const std::string folder = json({"submit", manifest_, "--cycles", "40", "--json"}).at("folder");
+  const std::string folder = json({"submit", manifest_, "--cycles", "16", "--json"}).at("folder");
   const std::string task = folder + "/task-1";
   fs::create_directory(path("scratch"));
   const Arguments words = {
@@ -195,7 +195,7 @@ TEST_F(Submit, WorkOnScratchBringsEverythingBack) {
   EXPECT_TRUE(fs::is_empty(path("scratch")));
   EXPECT_GE(objects(task), 8U);
   EXPECT_EQ(run(words).code, 0);
-  ASSERT_EQ(run({"run", manifest_, "--cycles", "40", "-q", "--store", "here"}).code, 0);
+  ASSERT_EQ(run({"run", manifest_, "--cycles", "16", "-q", "--store", "here"}).code, 0);
   EXPECT_EQ(hashes(task), hashes("here"));
 }
 
