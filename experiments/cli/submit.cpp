@@ -321,6 +321,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
       ->capture_default_str();
   command.add_option("--sbatch", job.sbatch, "Further option of sbatch, as --sbatch=--mem=2G")
       ->check(check_sbatch)
+      ->allow_extra_args(false)  // what follows may be a manifest
       ->type_name("OPTION");
   command.add_flag("--dry-run", options.dry_run,
                    "Show the scripts and who would do what; needs no Slurm, writes nothing");

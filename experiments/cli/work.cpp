@@ -129,12 +129,14 @@ void work(const WorkOptions& options, Context& context) {
   tell();
   place.finish();
   report(result, context);
-  const bool stopped = stop_requested() && result.interrupted + result.blocked > 0;
-  if (stopped) {
-    context.exit_code = kInterrupted;  // it goes on later, whatever else happened to it
-  } else if (failed_before && result.damaged == 0) {
-    context.exit_code = kRunFailed;
+  if (stop_requested()) {
+    // With work left it goes on later, whatever else happened to it.
+    const bool work_left = result.interrupted + result.blocked > 0;
+    if (work_left || context.exit_code == kInterrupted) {
+      context.exit_code = work_left ? kInterrupted : kDone;
+    }
   }
+  if (failed_before && context.exit_code == kDone) context.exit_code = kRunFailed;
 }
 
 }  // namespace

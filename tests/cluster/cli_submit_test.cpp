@@ -64,6 +64,9 @@ TEST_F(Submit, ShowsAllWithoutSlurmAndWritesNothing) {
   EXPECT_TRUE(contains(shown.out, "#SBATCH --time=2:00:00\n"));
   EXPECT_TRUE(contains(
       shown.out, "store='" + path("shearcell-store/submissions/SUBMISSION/task-").string() + "'"));
+  const Outcome options =
+      run({"submit", "--sbatch=--mem=2G", "--sbatch", "--qos=low", manifest_, "--dry-run"});
+  EXPECT_TRUE(contains(options.out, "#SBATCH --mem=2G\n#SBATCH --qos=low\n")) << options.err;
   const auto facts =
       json({"submit", manifest_, "--seeds", "5", "--array-size", "2", "--dry-run", "--json"});
   EXPECT_EQ(facts.at("tasks").size(), 2U);
