@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/plot.hpp"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "analysis/error.hpp"
+#include "analysis/program.hpp"
 
 namespace shearcell {
 namespace {
@@ -41,12 +35,6 @@ constexpr const char* empty_plot =
     "set label 'no data' at graph 0.5, graph 0.5 center\n"
     "plot [0:1] [0:1] NaN notitle\n";
 
-/// What one process wrote to its standard error, and how it ended.
-struct Outcome {
-  int status = 0;
-  std::string messages;
-};
-
 /// A name goes into a script and into file names, so it may hold only what means nothing to either.
 void require_plain_name(const std::string& name) {
   const bool plain = !name.empty() && name.front() != '-' &&
@@ -56,87 +44,15 @@ void require_plain_name(const std::string& name) {
   if (!plain) throw AnalysisError("'" + name + "' cannot name a figure's files");
 }
 
-class Pipe {
- public:
-  Pipe() {
-    if (pipe2(ends_.data(), O_CLOEXEC) != 0) {
-      throw AnalysisError(std::string("cannot make a pipe: ") + std::strerror(errno));
-    }
-  }
-  ~Pipe() {
-    close(ends_[0]);
-    close_writer();
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  int writer() const { return ends_[1]; }
-  void close_writer() {
-    if (ends_[1] >= 0) close(ends_[1]);
-    ends_[1] = -1;
-  }
-  std::string read_all() {
-    std::string text;
-    std::array<char, 4096> buffer;
-    while (true) {
-      const ssize_t got = read(ends_[0], buffer.data(), buffer.size());
-      if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) return text;
-      text.append(buffer.data(), static_cast<std::size_t>(got));
-    }
-  }
-
- private:
-  std::array<int, 2> ends_{-1, -1};
-};
-
-/// The environment with the date that programs write into their files fixed.
-std::vector<std::string> timeless_environment() {
-  std::vector<std::string> variables = {"SOURCE_DATE_EPOCH=0"};
-  for (char** variable = environ; *variable != nullptr; ++variable) {
-    const std::string_view text(*variable);
-    if (!text.starts_with("SOURCE_DATE_EPOCH=")) variables.emplace_back(text);
-  }
-  return variables;
+/// Runs a program with the date that it writes into its files fixed.
+std::optional<ProgramOutcome> run_timeless(const std::filesystem::path& folder,
+                                           std::vector<std::string> words) {
+  return run_program(std::move(words), folder, {"SOURCE_DATE_EPOCH=0"});
 }
 
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
-/// Runs a program in `folder`; nothing when it is not installed.
-std::optional<Outcome> run_program(const std::filesystem::path& folder,
-                                   std::vector<std::string> words) {
-  Pipe messages;
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, messages.writer(), STDERR_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, messages.writer(), STDOUT_FILENO);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  std::vector<std::string> variables = timeless_environment();
-  pid_t child = 0;
-  const int failure = posix_spawnp(&child, words.front().c_str(), &actions, nullptr,
-                                   pointers_to(words).data(), pointers_to(variables).data());
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure == ENOENT) return std::nullopt;
-  if (failure != 0) {
-    throw AnalysisError("cannot start " + words.front() + ": " + std::strerror(failure));
-  }
-  messages.close_writer();
-  Outcome outcome;
-  outcome.messages = messages.read_all();
-  while (waitpid(child, &outcome.status, 0) < 0) {
-    if (errno != EINTR) throw AnalysisError(words.front() + " was lost while it ran");
-  }
-  return outcome;
-}
-
-bool made(const Outcome& outcome, const std::filesystem::path& file) {
-  return WIFEXITED(outcome.status) && WEXITSTATUS(outcome.status) == 0 &&
-         std::filesystem::exists(file) && std::filesystem::file_size(file) > 0;
+bool made(const ProgramOutcome& outcome, const std::filesystem::path& file) {
+  return outcome.succeeded() && std::filesystem::exists(file) &&
+         std::filesystem::file_size(file) > 0;
 }
 
 /// librsvg drops the space at either end of a stretch of text, where gnuplot's markup begins or
@@ -174,8 +90,8 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
   if (!file) throw AnalysisError("cannot write " + script.string());
 
   // -d keeps a user's own defaults out of the figure.
-  const std::optional<Outcome> outcome =
-      run_program(folder, {"gnuplot", "-d", script.filename().string()});
+  const std::optional<ProgramOutcome> outcome =
+      run_timeless(folder, {"gnuplot", "-d", script.filename().string()});
   if (!outcome) {
     throw AnalysisError("gnuplot is not installed (Debian package gnuplot-nox); the data are in " +
                         folder.string());
@@ -191,9 +107,9 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
 std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path& svg) {
   std::filesystem::path pdf = svg;
   pdf.replace_extension(".pdf");
-  const std::optional<Outcome> outcome =
-      run_program(svg.parent_path(), {"rsvg-convert", "--format=pdf", "--output",
-                                      pdf.filename().string(), svg.filename().string()});
+  const std::optional<ProgramOutcome> outcome =
+      run_timeless(svg.parent_path(), {"rsvg-convert", "--format=pdf", "--output",
+                                       pdf.filename().string(), svg.filename().string()});
   if (!outcome) return std::nullopt;
   if (!made(*outcome, pdf)) {
     std::filesystem::remove(pdf);

@@ -117,7 +117,8 @@ bool is_empty(const EventLog& log, const std::string& stream) {
 
 }  // namespace
 
-MergeSource read_merge_source(const std::filesystem::path& folder) {
+MergeSource read_merge_source(const std::filesystem::path& folder,
+                              const std::set<std::string>& runs) {
   const std::filesystem::path file = folder / "store.sqlite";
   if (!std::filesystem::exists(file)) {
     throw NotFound(fmt::format("{}: there is no store here to merge", folder.string()));
@@ -137,6 +138,12 @@ MergeSource read_merge_source(const std::filesystem::path& folder) {
     }
     source.head = log.head();
     source.events = log.events();
+  }
+  if (!runs.empty()) {
+    std::erase_if(source.events, [&runs](const Event& event) {
+      return !event.stream.starts_with("manifest/") &&
+             !(event.stream.starts_with("run/") && runs.contains(event.stream.substr(4)));
+    });
   }
   create_projections(*source.tables);
   for (const Event& event : source.events) apply(*source.tables, event);

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,10 @@ struct MergeSource {
   ObjectStore objects;
 };
 
-/// Throws NotFound when there is no store and StoreDamaged when its chain does not hold.
-MergeSource read_merge_source(const std::filesystem::path& folder);
+/// With `runs`, of these runs and the manifests only. Throws NotFound when there is no store and
+/// StoreDamaged when its chain does not hold.
+MergeSource read_merge_source(const std::filesystem::path& folder,
+                              const std::set<std::string>& runs = {});
 
 /// Throws MergeConflict, naming both stores, when two of them hold different states of the same run
 /// at the same step, or different runs under one id.

@@ -352,4 +352,13 @@ void Store::record_figure(const std::string& name, const json& provenance) {
   lock.commit();
 }
 
+void Store::record_submission(const std::string& type, const json& facts,
+                              std::optional<std::uint64_t> seen) {
+  must_write();
+  const std::scoped_lock guard(mutex_);
+  sqlite::WriteTransaction lock(database_);
+  append(kSubmissions, seen.value_or(log_.version(kSubmissions)), {type, facts}, lock);
+  lock.commit();
+}
+
 }  // namespace shearcell

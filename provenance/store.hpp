@@ -7,6 +7,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,9 @@ struct StoreOptions {
   /// After this long without a sign of life of its holder a run may be taken by others.
   double lease_seconds = 60;
 };
+
+/// The stream of what `record_submission` records.
+inline constexpr std::string_view kSubmissions = "store/submission";
 
 struct LoadedCheckpoint {
   CheckpointRecord record;
@@ -109,6 +113,12 @@ class Store {
   /// `provenance` holds the inputs and the SHA-256 of the outputs.
   void record_figure(const std::string& name, const nlohmann::json& provenance);
 
+  /// Work that was handed to a cluster ("CampaignSubmitted", "JobQueued"). Throws
+  /// ConcurrencyConflict when `seen`, the number of such events that the caller has read, is not
+  /// all.
+  void record_submission(const std::string& type, const nlohmann::json& facts,
+                         std::optional<std::uint64_t> seen = std::nullopt);
+
   // --- What is known ---
 
   std::vector<RunRecord> runs() const;  ///< in the order in which they were declared
@@ -150,9 +160,11 @@ class Store {
   /// ReplayVerified or ReplayDiverged: what came of computing a part of the run again.
   void record_replay(const std::string& id, bool same, const nlohmann::json& facts);
 
-  /// Folds the events and checkpoints of other stores in (merge.hpp). Throws StoreDamaged or
-  /// MergeConflict, naming what is wrong, before anything is changed.
-  std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources);
+  /// Folds the events and checkpoints of other stores in (merge.hpp); with `runs`, only of these
+  /// runs, which must hold the parents of each. Throws StoreDamaged or MergeConflict, naming what
+  /// is wrong, before anything is changed.
+  std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
+                                 const std::set<std::string>& runs = {});
 
  private:
   void append(std::string_view stream, std::uint64_t expected_version, NewEvent event,

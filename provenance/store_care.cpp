@@ -161,7 +161,8 @@ void Store::record_replay(const std::string& id, bool same, const json& facts) {
   lock.commit();
 }
 
-std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& folders) {
+std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& folders,
+                                      const std::set<std::string>& runs) {
   must_write();
   const auto require_idle = [this] {
     for (const Lease& lease : query_leases(database_)) {
@@ -177,7 +178,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
     if (std::filesystem::equivalent(folder, folder_, ignored)) {
       throw NotFound(folder.string() + ": a store is not merged into itself; name another one");
     }
-    sources.push_back(read_merge_source(folder));
+    sources.push_back(read_merge_source(folder, runs));
   }
   const std::scoped_lock guard(mutex_);
   require_idle();

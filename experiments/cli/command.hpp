@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/runner/campaign.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell::cli {
@@ -37,6 +38,8 @@ void add_verify(CLI::App& app, Context& context);
 void add_rebuild(CLI::App& app, Context& context);
 void add_prune(CLI::App& app, Context& context);
 void add_regenerate(CLI::App& app, Context& context);
+void add_submit(CLI::App& app, Context& context);
+void add_work(CLI::App& app, Context& context);
 void add_merge(CLI::App& app, Context& context);
 void add_figures(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
@@ -49,6 +52,9 @@ void add_completion(CLI::App& app, Context& context);
 void add_manual(CLI::App& app, Context& context);
 /// A subcommand of `bench`.
 void add_bench_stability(CLI::App& bench, Context& context);
+
+/// Prints what came of a campaign and sets the exit code.
+void report(const CampaignResult& result, Context& context);
 
 /// --store DIR, and --json where the subcommand prints facts.
 void add_common_options(CLI::App& command, Context& context, bool with_json);

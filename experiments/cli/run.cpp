@@ -30,36 +30,6 @@ std::size_t workers(const RunOptions& options) {
   return std::max<std::size_t>(1, cores / options.threads);
 }
 
-void report(const CampaignResult& result, Context& context) {
-  if (context.json) {
-    print_json({{"completed", result.completed},
-                {"already_done", result.already},
-                {"done_elsewhere", result.elsewhere},
-                {"failed", result.failed},
-                {"interrupted", result.interrupted},
-                {"not_begun", result.blocked},
-                {"damaged", result.damaged},
-                {"messages", result.messages}});
-  } else {
-    fmt::print(
-        "{} stages computed, {} were done already, {} failed, {} interrupted, {} not begun\n",
-        result.completed, result.already, result.failed, result.interrupted, result.blocked);
-    if (result.elsewhere > 0) {
-      fmt::print("{} were computed by other programs meanwhile\n", result.elsewhere);
-    }
-  }
-  if (result.damaged > 0) {
-    context.exit_code = kStoreDamaged;
-  } else if (result.failed > 0) {
-    context.exit_code = kRunFailed;
-  } else if (result.interrupted > 0 || stop_requested()) {
-    context.exit_code = kInterrupted;
-    fmt::print(stderr, "Interrupted. Continue with: shearcell resume --store {}\n", context.store);
-  } else if (result.blocked > 0) {
-    context.exit_code = kOtherError;
-  }
-}
-
 void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options,
              Context& context) {
   catch_stop_signals();
@@ -101,6 +71,36 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
 }
 
 }  // namespace
+
+void report(const CampaignResult& result, Context& context) {
+  if (context.json) {
+    print_json({{"completed", result.completed},
+                {"already_done", result.already},
+                {"done_elsewhere", result.elsewhere},
+                {"failed", result.failed},
+                {"interrupted", result.interrupted},
+                {"not_begun", result.blocked},
+                {"damaged", result.damaged},
+                {"messages", result.messages}});
+  } else {
+    fmt::print(
+        "{} stages computed, {} were done already, {} failed, {} interrupted, {} not begun\n",
+        result.completed, result.already, result.failed, result.interrupted, result.blocked);
+    if (result.elsewhere > 0) {
+      fmt::print("{} were computed by other programs meanwhile\n", result.elsewhere);
+    }
+  }
+  if (result.damaged > 0) {
+    context.exit_code = kStoreDamaged;
+  } else if (result.failed > 0) {
+    context.exit_code = kRunFailed;
+  } else if (result.interrupted > 0 || stop_requested()) {
+    context.exit_code = kInterrupted;
+    fmt::print(stderr, "Interrupted. Continue with: shearcell resume --store {}\n", context.store);
+  } else if (result.blocked > 0) {
+    context.exit_code = kOtherError;
+  }
+}
 
 void add_run(CLI::App& app, Context& context) {
   auto options = std::make_shared<RunOptions>();

@@ -2,6 +2,7 @@
 // `status`: every run with its state, how far it is and how fast it went.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <map>
@@ -9,6 +10,7 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cluster/queue_view.hpp"
 #include "experiments/runner/progress.hpp"
 #include "experiments/runner/stop.hpp"
 #include "experiments/runner/terminal.hpp"
@@ -56,21 +58,51 @@ nlohmann::json facts(const RunRecord& run) {
           {"updated_at", run.updated_at}};
 }
 
-std::vector<std::string> row(const RunRecord& run, bool held) {
+nlohmann::json facts(const QueuedRun& run) {
+  nlohmann::json said = {
+      {"job", run.job}, {"state", run.state}, {"reason", run.reason}, {"node", run.node}};
+  said["reported_state"] =
+      run.reported ? nlohmann::json(name_of(run.reported->state)) : nlohmann::json();
+  said["reported_cycle"] = run.reported ? nlohmann::json(run.reported->cycle) : nlohmann::json();
+  return said;
+}
+
+/// What is shown of one run: as the store has it, or further, as the task that computes it reports.
+struct Shown {
+  const RunRecord& run;
+  bool held = false;
+  const QueuedRun* queued = nullptr;
+
+  bool ahead() const {
+    return queued != nullptr && queued->reported && run.state != RunState::completed &&
+           queued->reported->cycle >= run.cycle;
+  }
+  RunState state() const { return ahead() ? queued->reported->state : run.state; }
+  double cycle() const { return ahead() ? queued->reported->cycle : run.cycle; }
+  std::string queue() const {
+    if (queued == nullptr || run.state == RunState::completed) return "";
+    const std::string& more = queued->state == "pending" ? queued->reason : queued->node;
+    return fmt::format("{} {}{}{}", queued->job, queued->state, more.empty() ? "" : " ", more);
+  }
+};
+
+std::vector<std::string> row(const Shown& shown) {
+  const RunRecord& run = shown.run;
   const Membership first = run.memberships.empty() ? Membership{} : run.memberships.front();
   return {run.id.substr(0, 8),
           first.variant,
           std::to_string(first.seed),
           std::to_string(run.grains),
-          fmt::format("{}{}", name_of(run.state), held ? " *" : ""),
-          run.kind == "prepare" ? "" : fmt::format("{:.4g}/{}", run.cycle, run.target_cycles),
+          fmt::format("{}{}", name_of(shown.state()), shown.held ? " *" : ""),
+          run.kind == "prepare" ? "" : fmt::format("{:.4g}/{}", shown.cycle(), run.target_cycles),
           fmt::format("{:.1f}", rate(run) * 1e-6),
           format_duration(run.wall_seconds)};
 }
 
 /// A table for each experiment, each run under the first that declared it, and what is to be said
 /// of single runs below them.
-void print(const std::vector<RunRecord>& runs, const std::map<std::string, Lease>& by_run) {
+void print(const std::vector<RunRecord>& runs, const std::map<std::string, Lease>& by_run,
+           const QueueView& queue) {
   std::vector<std::string> experiments;
   std::map<std::string, std::vector<std::vector<std::string>>> tables;
   std::map<RunState, std::size_t> count;
@@ -78,12 +110,19 @@ void print(const std::vector<RunRecord>& runs, const std::map<std::string, Lease
     const Membership first = run.memberships.empty() ? Membership{} : run.memberships.front();
     const std::string name = first.experiment + " at scale " + first.scale;
     if (!tables.contains(name)) experiments.push_back(name);
-    tables[name].push_back(row(run, by_run.contains(run.id)));
-    ++count[run.state];
+    const auto queued = queue.runs.find(run.id);
+    const Shown shown{run, by_run.contains(run.id),
+                      queued == queue.runs.end() ? nullptr : &queued->second};
+    tables[name].push_back(row(shown));
+    if (!queue.runs.empty()) tables[name].back().push_back(shown.queue());
+    ++count[shown.state()];
   }
   for (const std::string& name : experiments) {
     fmt::print("{}\n", name);
-    print_table({"run", "variant", "seed", "N", "state", "cycle", "M/s", "time"}, tables[name]);
+    std::vector<std::string> header = {"run",   "variant", "seed", "N",
+                                       "state", "cycle",   "M/s",  "time"};
+    if (!queue.runs.empty()) header.emplace_back("queue");
+    print_table(header, tables[name]);
     fmt::print("\n");
   }
   std::string all;
@@ -94,31 +133,49 @@ void print(const std::vector<RunRecord>& runs, const std::map<std::string, Lease
   for (const auto& [run, lease] : by_run) {
     fmt::print("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
   }
+  for (const OpenSubmission& submission : queue.submissions) {
+    if (queue.problem.empty()) fmt::print("{}\n", describe(submission));
+  }
+  if (!queue.problem.empty()) fmt::print("The queue is not known: {}\n", queue.problem);
   for (const RunRecord& run : runs) {
     if (!run.error.empty()) fmt::print("{}: {}\n", run.id.substr(0, 8), run.error);
   }
 }
 
-void print_facts(const std::vector<RunRecord>& runs, const std::map<std::string, Lease>& by_run) {
+void print_facts(const std::vector<RunRecord>& runs, const std::map<std::string, Lease>& by_run,
+                 const QueueView& queue) {
   nlohmann::json list = nlohmann::json::array();
   for (const RunRecord& run : runs) {
     list.push_back(facts(run));
     const auto held = by_run.find(run.id);
     list.back()["holder"] = held == by_run.end() ? nlohmann::json() : facts(held->second);
+    const auto queued = queue.runs.find(run.id);
+    list.back()["queue"] = queued == queue.runs.end() ? nlohmann::json() : facts(queued->second);
   }
-  print_json({{"runs", list}});
+  nlohmann::json submissions = nlohmann::json::array();
+  for (const OpenSubmission& open : queue.submissions) {
+    submissions.push_back({{"id", open.submission.id},
+                           {"job", open.submission.job},
+                           {"fold_job", open.submission.fold_job},
+                           {"tasks", open.submission.tasks.size()},
+                           {"in_queue", open.queue.size()}});
+  }
+  print_json({{"runs", list},
+              {"submissions", submissions},
+              {"queue_problem",
+               queue.problem.empty() ? nlohmann::json() : nlohmann::json(queue.problem)}});
 }
 
 void status(Context& context) {
   const Store store(context.store, Access::read);
   if (context.json) {
-    print_facts(store.runs(), holders(store));
+    print_facts(store.runs(), holders(store), look_at_queue(store));
   } else {
-    print(store.runs(), holders(store));
+    print(store.runs(), holders(store), look_at_queue(store));
   }
 }
 
-/// Prints again and again until nobody holds a run or a signal comes.
+/// Prints again and again until nobody holds a run and nothing is queued, or a signal comes.
 void watch(Context& context, double interval) {
   catch_stop_signals();
   const bool terminal = terminal_columns(stdout).has_value();
@@ -126,10 +183,13 @@ void watch(Context& context, double interval) {
     const Store store(context.store, Access::read);
     const std::map<std::string, Lease> by_run = holders(store);
     if (terminal) fmt::print("\x1b[H\x1b[2J");
-    print(store.runs(), by_run);
+    const QueueView queue = look_at_queue(store);
+    print(store.runs(), by_run, queue);
     std::fflush(stdout);
-    if (by_run.empty()) return;
-    for (double waited = 0; waited < interval; waited += 0.05) {
+    if (by_run.empty() && !queue.busy()) return;
+    // A cluster's queue serves many, and is not asked so often.
+    const double pause = queue.submissions.empty() ? interval : std::max(interval, 10.0);
+    for (double waited = 0; waited < pause; waited += 0.05) {
       if (stop_requested()) return;
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
@@ -149,7 +209,10 @@ void add_status(CLI::App& app, Context& context) {
                              ->excludes("--json");
   command->footer(
       "M/s is million particle-steps per second over all recorded work. A run that is running and\n"
-      "held by nobody was killed; `resume` goes on with it. --watch ends when nobody holds a run.\n"
+      "held by nobody was killed; `resume` goes on with it. --watch ends when nobody holds a run\n"
+      "and nothing is queued. Runs that were handed to a cluster show where they are in its "
+      "queue,\n"
+      "and how far their tasks say that they are.\n"
       "Examples:\n  shearcell status\n  shearcell status --watch\n  shearcell status --json");
   command->callback([watched, interval, &context] {
     watched->count() > 0 ? watch(context, *interval) : status(context);

@@ -15,11 +15,19 @@ extern "C" void on_stop_signal(int number) {
   std::signal(number, SIG_DFL);
 }
 
+extern "C" void on_batch_signal(int) {
+  stop_wish.store(true);
+}
+
 }  // namespace
 
 void catch_stop_signals() {
   std::signal(SIGINT, on_stop_signal);
   std::signal(SIGTERM, on_stop_signal);
+}
+
+void catch_batch_signals() {
+  for (const int number : {SIGINT, SIGTERM, SIGUSR1}) std::signal(number, on_batch_signal);
 }
 
 bool stop_requested() {

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `submit`: hands what is left of a campaign to a cluster as an array job.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/cluster/job_script.hpp"
+#include "experiments/cluster/proposal.hpp"
+#include "experiments/cluster/submission.hpp"
+#include "experiments/manifest/expand.hpp"
+#include "experiments/runner/progress.hpp"
+#include "provenance/errors.hpp"
+#include "provenance/sha256.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Slurm's own limit, where a cluster does not state another.
+constexpr std::size_t kMostTasks = 1000;
+// Slurm looks twice a minute, and so the warning may come this much earlier.
+constexpr double kWarningResolution = 30;
+
+struct SubmitOptions {
+  std::vector<std::string> manifests;
+  ExpandOptions expand;
+  std::string engine = "slurm";
+  JobOptions job;
+  std::size_t array_size = kMostTasks;
+  bool dry_run = false;
+};
+
+struct LoadedManifests {
+  std::vector<Manifest> manifests;
+  std::vector<Plan> plans;
+};
+
+LoadedManifests load(const SubmitOptions& options) {
+  LoadedManifests loaded;
+  for (const std::string& path : options.manifests) {
+    loaded.manifests.push_back(load_manifest(path));
+    loaded.plans.push_back(expand(loaded.manifests.back(), options.expand));
+    for (const std::string& warning : loaded.plans.back().warnings) {
+      fmt::print(stderr, "warning: {}\n", warning);
+    }
+  }
+  return loaded;
+}
+
+nlohmann::json facts(const Proposal& proposal) {
+  nlohmann::json tasks = nlohmann::json::array();
+  for (const Share& share : proposal.shares) {
+    tasks.push_back({{"runs", share.runs},
+                     {"packings", share.packings},
+                     {"particle_steps", share.particle_steps},
+                     {"seconds", seconds_of(share, proposal)}});
+  }
+  return {{"tasks", tasks}, {"cpus_per_task", proposal.job.cpus}, {"left_out", proposal.left_out}};
+}
+
+void print_shares(const Proposal& proposal) {
+  std::vector<std::vector<std::string>> rows;
+  std::size_t runs = 0;
+  for (const Share& share : proposal.shares) {
+    rows.push_back({std::to_string(rows.size() + 1), std::to_string(share.runs.size()),
+                    std::to_string(share.packings), fmt::format("{:.3g}", share.particle_steps),
+                    format_duration(seconds_of(share, proposal))});
+    runs += share.runs.size();
+  }
+  fmt::print("{} runs in {} tasks; cores of each: {}\n\n", runs, rows.size(), proposal.job.cpus);
+  print_table({"task", "runs", "packings", "particle-steps", "about"}, rows);
+}
+
+void print_nothing(const Proposal& proposal, Context& context) {
+  if (context.json) {
+    nlohmann::json said = facts(proposal);
+    said["submission"] = nullptr;
+    return print_json(said);
+  }
+  if (proposal.left_out == 0) {
+    fmt::print("Nothing to do: the store holds every run at its length\n");
+  } else {
+    fmt::print(
+        "Nothing to submit: {} runs are queued or at work already, or wait for a packing that is; "
+        "see `shearcell status`\n",
+        proposal.left_out);
+  }
+}
+
+void write_script(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + file.string());
+}
+
+/// As the tasks name the store, from wherever they run.
+fs::path whole_path(const std::string& store) {
+  return fs::weakly_canonical(fs::absolute(store));
+}
+
+JobPlaces places_of(const fs::path& store, const fs::path& folder) {
+  JobPlaces places{fs::read_symlink("/proc/self/exe"), store, folder};
+  for (const fs::path& path : {places.program, places.folder}) {
+    if (const auto why = unfit_path(path)) throw ClusterError(*why);
+  }
+  return places;
+}
+
+std::vector<std::string> output_option(const fs::path& folder, std::string_view file) {
+  return {"--output=" + output_pattern(folder, file)};
+}
+
+void dry_run(const Proposal& proposal, Context& context) {
+  const fs::path store = whole_path(context.store);
+  const JobPlaces places = places_of(store, store / "submissions" / "SUBMISSION");
+  const std::string script = array_script(proposal.job, places, proposal.shares.size());
+  const std::string folding = fold_script(proposal.job, places, proposal.shares.size());
+  if (context.json) {
+    nlohmann::json said = facts(proposal);
+    said["script"] = script;
+    said["fold_script"] = folding;
+    return print_json(said);
+  }
+  print_shares(proposal);
+  fmt::print("\nNothing was submitted. The array job:\n\n{}\nand, when all of it has ended:\n\n{}",
+             script, folding);
+}
+
+/// Queues the array. Nothing is left of a submission that could not be queued.
+std::string queue_array(const Submission& submission, const Proposal& proposal,
+                        const fs::path& store) {
+  const fs::path folder = submission.folder(store);
+  const std::size_t tasks = proposal.shares.size();
+  try {
+    const JobPlaces places = places_of(store, folder);
+    write_script(folder / "job.sh", array_script(proposal.job, places, tasks));
+    write_script(folder / "fold.sh", fold_script(proposal.job, places, tasks));
+    return queue_job(folder, "job.sh", submission.name(), output_option(folder, "task-%a.log"));
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    throw;
+  }
+}
+
+/// Queues both jobs. Without the second the stores can be folded by hand.
+void queue(const Submission& submission, const Proposal& proposal, Store& store, Context& context) {
+  const fs::path folder = submission.folder(store.folder());
+  const std::string job = queue_array(submission, proposal, store.folder());
+  std::string fold_job;
+  try {
+    std::vector<std::string> words = output_option(folder, "fold.log");
+    words.push_back("--dependency=afterany:" + job);
+    fold_job = queue_job(folder, "fold.sh", submission.fold_name(), words);
+  } catch (const ClusterError& error) {
+    fmt::print(stderr,
+               "warning: {}\nThe stores of the tasks are not folded by themselves: `shearcell "
+               "submit` again, or `merge` them, when the job has ended\n",
+               error.what());
+  }
+  store.record_submission("JobQueued",
+                          {{"submission", submission.id}, {"job", job}, {"fold_job", fold_job}});
+  if (context.json) {
+    nlohmann::json said = facts(proposal);
+    said["submission"] = submission.id;
+    said["job"] = job;
+    said["fold_job"] = fold_job;
+    said["folder"] = folder.string();
+    return print_json(said);
+  }
+  print_shares(proposal);
+  fmt::print("\nSubmitted as job {}; {} its stores. Logs: {}\n", job,
+             fold_job.empty() ? "nothing folds" : "job " + fold_job + " folds", folder.string());
+  if (proposal.left_out > 0) {
+    fmt::print("{} more runs were left out: they are queued or at work already\n",
+               proposal.left_out);
+  }
+}
+
+/// What earlier submissions computed and no job folded, as after `scancel`.
+void fold_leftovers(Store& store, const std::vector<OpenSubmission>& open) {
+  for (const OpenSubmission& submission : open) {
+    if (!submission.queue.empty()) continue;
+    std::uint64_t checkpoints = 0;
+    for (const MergeReport& report : fold(store, submission.submission)) {
+      checkpoints += report.checkpoints;
+    }
+    if (checkpoints == 0) continue;
+    fmt::print(stderr, "folded in {} checkpoints of submission {}, whose jobs have ended\n",
+               checkpoints, submission.submission.id);
+  }
+}
+
+nlohmann::json event_facts(const SubmitOptions& options, const Proposal& proposal,
+                           const LoadedManifests& loaded, const std::vector<std::string>& shas) {
+  nlohmann::json scales = nlohmann::json::array();
+  for (const Plan& plan : loaded.plans) scales.push_back(plan.scale);
+  const JobOptions& job = proposal.job;
+  return {{"engine", options.engine},
+          {"manifests", shas},
+          {"scales", scales},
+          {"options",
+           {{"partition", job.partition},
+            {"account", job.account},
+            {"time", job.time},
+            {"cpus_per_task", job.cpus},
+            {"threads", job.threads},
+            {"warn_seconds", job.warn_seconds},
+            {"scratch", job.scratch},
+            {"sbatch", job.sbatch}}}};
+}
+
+void submit_really(const SubmitOptions& options, const LoadedManifests& loaded, Context& context) {
+  require_slurm();
+  const fs::path folder = whole_path(context.store);
+  places_of(folder, folder);  // or says why it cannot be
+  Store store(folder, Access::create);
+  const std::size_t seen = store.events(kSubmissions).size();
+  const std::vector<OpenSubmission> open = open_submissions(store);
+  fold_leftovers(store, open);
+  std::vector<std::string> shas;
+  for (std::size_t m = 0; m < loaded.manifests.size(); ++m) {
+    declare(store, loaded.manifests[m], loaded.plans[m]);
+    shas.push_back(sha256_hex(loaded.manifests[m].text));
+  }
+  const Proposal proposal =
+      propose(loaded.plans, store.runs(), busy_runs(store, open), options.array_size, options.job);
+  if (proposal.shares.empty()) return print_nothing(proposal, context);
+  const Submission made = prepare_submission(store, proposal.shares,
+                                             event_facts(options, proposal, loaded, shas), seen);
+  queue(made, proposal, store, context);
+}
+
+void submit(const SubmitOptions& options, Context& context) {
+  const LoadedManifests loaded = load(options);
+  if (!options.dry_run) return submit_really(options, loaded, context);
+  std::vector<RunRecord> known;
+  std::set<std::string> busy;
+  if (fs::exists(fs::path(context.store) / "store.sqlite")) {
+    const Store store(context.store, Access::read);
+    known = store.runs();
+    std::vector<OpenSubmission> open = unfinished_submissions(store);
+    try {
+      ask_queue(open);
+    } catch (const ClusterError& error) {
+      fmt::print(stderr, "warning: runs that are queued already are not left out: {}\n",
+                 error.what());
+    }
+    busy = busy_runs(store, open);
+  }
+  const Proposal proposal = propose(loaded.plans, known, busy, options.array_size, options.job);
+  proposal.shares.empty() ? print_nothing(proposal, context) : dry_run(proposal, context);
+}
+
+std::string check_value(const std::string& text) {
+  return unfit_value(text).value_or("");
+}
+
+std::string check_sbatch(const std::string& text) {
+  if (text.starts_with("--") && text.size() > 2) return check_value(text);
+  return fmt::format("'{}' is no long option of sbatch; write --sbatch=--qos=long", text);
+}
+
+void check_time(const JobOptions& job) {
+  if (job.time.empty()) return;
+  const double needed = static_cast<double>(job.warn_seconds) + kWarningResolution;
+  const auto limit = slurm_seconds(job.time);
+  if (!limit) {
+    throw CLI::ValidationError("--time", "'" + job.time +
+                                             "' is no time limit of Slurm's: write MINUTES, "
+                                             "HH:MM:SS or DAYS-HH:MM:SS");
+  }
+  if (*limit <= needed) {
+    throw CLI::ValidationError(
+        "--time", fmt::format("{} s leave no time to compute: the warning comes up to {} s before "
+                              "the end; ask for more, or a smaller --warn",
+                              *limit, needed));
+  }
+}
+
+void add_job_options(CLI::App& command, SubmitOptions& options) {
+  JobOptions& job = options.job;
+  command.add_option("--engine", options.engine, "What queues the jobs")
+      ->check(CLI::IsMember({"slurm"}))
+      ->capture_default_str();
+  command.add_option("--partition,-p", job.partition, "Partition")->check(check_value);
+  command.add_option("--account,-A", job.account, "Account")->check(check_value);
+  command
+      .add_option("--time", job.time,
+                  "Time limit of one start of a task; it goes on until it is done")
+      ->check(check_value)
+      ->type_name("HH:MM:SS");
+  command.add_option("--array-size", options.array_size, "Most tasks (default: one per packing)")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("K");
+  command
+      .add_option("--cpus-per-task,-c", job.cpus,
+                  "Cores, and so runs at a time, of a task (default: one per run, at most 16)")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("C");
+  command.add_option("--threads,-t", job.threads, "Threads inside each run, for large cells")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("T");
+  command
+      .add_option("--scratch", job.scratch,
+                  "Folder on each node's own disk to work in; the stores are saved every five "
+                  "minutes")
+      ->type_name("DIR");
+  command
+      .add_option("--warn", job.warn_seconds,
+                  "Seconds before the time limit at which tasks write checkpoints and queue "
+                  "themselves again")
+      ->check(CLI::Range(10, 3600))
+      ->capture_default_str();
+  command.add_option("--sbatch", job.sbatch, "Further option of sbatch, as --sbatch=--mem=2G")
+      ->check(check_sbatch)
+      ->allow_extra_args(false)  // what follows may be a manifest
+      ->type_name("OPTION");
+  command.add_flag("--dry-run", options.dry_run,
+                   "Show the scripts and who would do what; needs no Slurm, writes nothing");
+}
+
+}  // namespace
+
+void add_submit(CLI::App& app, Context& context) {
+  auto options = std::make_shared<SubmitOptions>();
+  CLI::App* command =
+      app.add_subcommand("submit", "Hand the runs of manifests to a cluster as an array job");
+  command->add_option("manifest", options->manifests, "YAML manifests")->required();
+  command->add_option("--scale", options->expand.scale, "Named size (default: desk)");
+  command->add_option("--cycles", options->expand.cycles, "Cycles instead of the manifest's");
+  command->add_option("--seeds", options->expand.seeds,
+                      "Number of seeds instead of the manifest's");
+  add_job_options(*command, *options);
+  add_common_options(*command, context, true);
+  command->footer(
+      "Each task computes the runs of some packings in a store of its own, under\n"
+      "STORE/submissions, and a job after the array folds these stores into STORE. A task that is\n"
+      "warned of its time limit writes checkpoints and queues itself again. What the store holds,\n"
+      "and what is queued already, is not submitted: submit again at any time, as after a\n"
+      "cancellation. STORE must be on a disk that all nodes see.\n"
+      "Examples:\n"
+      "  shearcell submit experiments/drag.yaml --scale paper --partition long --time 24:00:00\n"
+      "  shearcell submit experiments/*.yaml --scale desk --scratch /scratch --sbatch=--mem=4G\n"
+      "  shearcell submit experiments/drag.yaml --dry-run");
+  command->callback([options, &context] {
+    check_time(options->job);
+    if (const auto why = unfit_path(options->job.scratch))
+      throw CLI::ValidationError("--scratch", *why);
+    submit(*options, context);
+  });
+}
+
+}  // namespace shearcell::cli

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `work`: what a task of an array job does with the store that `submit` made for it.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stop_token>
+#include <thread>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/cluster/task_report.hpp"
+#include "experiments/runner/campaign.hpp"
+#include "experiments/runner/stop.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::seconds;
+
+struct WorkOptions {
+  std::size_t jobs = 1;
+  std::size_t threads = 1;
+  std::string scratch;
+  bool leave_failed = false;
+};
+
+// How often others learn how far the task is, and how often the states on a node's own disk are
+// brought to safety: what is lost with a node is what it computed since.
+constexpr seconds kReportEvery{10};
+constexpr seconds kSaveEvery{300};
+
+/// Does something every so often, beside the work, until it goes away.
+class Repeated {
+ public:
+  Repeated(seconds interval, std::function<void()> deed)
+      : thread_([this, interval, deed = std::move(deed)](const std::stop_token& stop) {
+          std::unique_lock lock(mutex_);
+          while (!wake_.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
+            try {
+              deed();
+            } catch (const std::exception& problem) {
+              fmt::print(stderr, "shearcell: {}; tried again in {} s\n", problem.what(),
+                         interval.count());
+            }
+          }
+        }) {}
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread thread_;  // last, so that it ends before what it uses
+};
+
+/// The store that is worked on: the task's own, or a copy on the node's disk that is folded back.
+class WorkStore {
+ public:
+  WorkStore(const fs::path& task, const std::string& scratch) : task_(task) {
+    if (scratch.empty()) {
+      store_.emplace(task, Access::write);
+      return;
+    }
+    const Store sound(task, Access::write);  // or says what is wrong, before a copy is made
+    // Named after submission and task: a start after a kill finds what was left there.
+    const fs::path whole = fs::absolute(task);
+    copy_ =
+        fs::path(scratch) / fmt::format("shearcell-{}-{}", whole.parent_path().filename().string(),
+                                        whole.filename().string());
+    store_.emplace(copy_, Access::create);
+    store_->merge({task});
+    for (const RunRecord& run : store_->runs()) runs_.insert(run.id);
+  }
+
+  Store& store() { return *store_; }
+  bool is_copy() const { return !copy_.empty(); }
+
+  void save() const { Store(task_, Access::write).merge({copy_}, runs_); }
+
+  /// Folds the copy back and removes it.
+  void finish() {
+    if (!is_copy()) return;
+    save();
+    store_.reset();
+    fs::remove_all(copy_);
+  }
+
+ private:
+  fs::path task_, copy_;
+  std::set<std::string> runs_;  // and nothing else of the copy is folded back
+  std::optional<Store> store_;
+};
+
+/// Takes out those that failed, and those that start from them. Returns whether there were any.
+bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
+  std::set<std::string> left;
+  std::erase_if(jobs, [&](const StageJob& job) {  // parents come first
+    const bool leave = left.contains(job.parent) || store.run(job.id).state == RunState::failed;
+    if (leave) left.insert(job.id);
+    return leave;
+  });
+  return !left.empty();
+}
+
+void work(const WorkOptions& options, Context& context) {
+  catch_batch_signals();
+  const fs::path task = context.store;
+  WorkStore place(task, options.scratch);
+  Store& store = place.store();
+  const auto tell = [&] { write_task_report(task, store.runs()); };
+  CampaignResult result;
+  bool failed_before = false;
+  {
+    tell();
+    const Repeated reports(kReportEvery, tell);
+    std::optional<Repeated> saves;
+    if (place.is_copy()) saves.emplace(kSaveEvery, [&] { place.save(); });
+    std::vector<StageJob> jobs = unfinished(store, {});
+    if (options.leave_failed) failed_before = leave_failed(store, jobs);
+    Progress progress(jobs.size());
+    result = run_campaign(store, jobs, options.jobs, progress, options.threads);
+  }
+  tell();
+  place.finish();
+  report(result, context);
+  if (stop_requested()) {
+    // With work left it goes on later, whatever else happened to it.
+    const bool work_left = result.interrupted + result.blocked > 0;
+    if (work_left || context.exit_code == kInterrupted) {
+      context.exit_code = work_left ? kInterrupted : kDone;
+    }
+  }
+  if (failed_before && context.exit_code == kDone) context.exit_code = kRunFailed;
+}
+
+}  // namespace
+
+void add_work(CLI::App& app, Context& context) {
+  auto options = std::make_shared<WorkOptions>();
+  CLI::App* command =
+      app.add_subcommand("work", "Compute one task's share of what `submit` handed to a cluster");
+  command->add_option("--jobs,-j", options->jobs, "Runs at a time")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("J")
+      ->capture_default_str();
+  command->add_option("--threads,-t", options->threads, "Threads inside each run")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("T")
+      ->capture_default_str();
+  command
+      ->add_option("--scratch", options->scratch,
+                   "Work on a copy of the store in this folder, on the node's own disk")
+      ->type_name("DIR");
+  command->add_flag("--leave-failed", options->leave_failed, "Do not try failed runs again");
+  add_common_options(*command, context, true);
+  command->footer(
+      "--store names the task's store. SIGTERM and SIGUSR1 make it write checkpoints and end with\n"
+      "code 85, however often they come; started again it goes on bit for bit. A copy on scratch\n"
+      "is folded back every five minutes and at the end.\n"
+      "Examples:\n  shearcell work --store shearcell-store/submissions/3f9a12bc45de/task-1 -j 2");
+  command->callback([options, &context] { work(*options, context); });
+}
+
+}  // namespace shearcell::cli

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/cluster/job_script.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+namespace shearcell {
+namespace {
+
+// Slurm sends USR1 some time before the limit (to the shell alone: B) and TERM to all processes
+// when a job is cancelled or preempted. Both make the program record its states and end with 85;
+// after USR1 the task is queued again, by its own number, because the number of its job may be that
+// of the whole array. A program that was killed, as for lack of memory, is begun again here.
+constexpr std::string_view kTaskBody = R"sh(
+again= signalled= leave=${SLURM_RESTART_COUNT:+--leave-failed}
+trap 'signalled=yes again=yes; kill -USR1 "$program"' USR1
+trap 'signalled=yes again=; kill -TERM "$program"; stopped=yes' TERM
+stopped=
+for start in 1 2 3 4; do
+  "$shearcell" work --store "$store" --jobs @JOBS@ --threads @THREADS@@SCRATCH@ $leave &
+  program=$!
+  wait "$program"; code=$?
+  while [ -n "$signalled" ]; do signalled=; wait "$program"; code=$?; done
+  [ "$code" -gt 128 ] && [ -z "$again$stopped" ] || break
+  echo "The program was killed (code $code), start $start."
+  leave=--leave-failed
+done
+if [ -n "$again" ] && [ "$code" -ge 85 ]; then
+  echo "The time is over; the task is queued again."
+  scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
+fi
+exit "$code"
+)sh";
+
+constexpr std::string_view kFoldBody = R"sh(
+code=0
+for task in $(seq @TASKS@); do
+  "$shearcell" merge "$tasks$task" --store "$store" || code=$?
+done
+exit "$code"
+)sh";
+
+std::string replaced(std::string text, std::string_view what, std::string_view by) {
+  text.replace(text.find(what), what.size(), by);
+  return text;
+}
+
+std::string directives(const JobOptions& options, const std::vector<std::string>& own) {
+  std::string text;
+  // The user's first: of two equal ones Slurm takes the last.
+  for (const std::string& option : options.sbatch) text += "#SBATCH " + option + "\n";
+  if (!options.partition.empty()) text += "#SBATCH --partition=" + options.partition + "\n";
+  if (!options.account.empty()) text += "#SBATCH --account=" + options.account + "\n";
+  if (!options.time.empty()) text += "#SBATCH --time=" + options.time + "\n";
+  for (const std::string& option : own) text += "#SBATCH " + option + "\n";
+  return text +
+         "#SBATCH --nodes=1\n#SBATCH --ntasks=1\n#SBATCH --requeue\n"
+         "#SBATCH --open-mode=append\n";
+}
+
+}  // namespace
+
+std::string shell_quoted(std::string_view text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      quoted += "'\\''";
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "'";
+}
+
+std::optional<std::string> unfit_path(const std::filesystem::path& path) {
+  const std::string text = path.string();
+  const bool fit = std::none_of(text.begin(), text.end(), [](char c) {
+    return c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+  });
+  if (fit) return std::nullopt;
+  return fmt::format(
+      "{}: Slurm cannot be given a path with a backslash, a line feed or another control "
+      "character; name another folder",
+      text);
+}
+
+std::optional<std::string> unfit_value(std::string_view text) {
+  constexpr std::string_view kSafe =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+.,:;/=@%*()[]|&!";
+  if (!text.empty() && text.find_first_not_of(kSafe) == std::string_view::npos) {
+    return std::nullopt;
+  }
+  return fmt::format("'{}' is no value for Slurm: one word without spaces or quotes is", text);
+}
+
+std::optional<double> slurm_seconds(std::string_view time) {
+  double days = 0;
+  const auto dash = time.find('-');
+  std::vector<double> parts;
+  const auto number = [](std::string_view text, double& value) {
+    unsigned whole = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), whole);
+    value = whole;
+    return error == std::errc() && end == text.data() + text.size();
+  };
+  if (dash != std::string_view::npos) {
+    if (!number(time.substr(0, dash), days)) return std::nullopt;
+    time.remove_prefix(dash + 1);
+  }
+  for (bool more = true; more;) {
+    const auto colon = time.find(':');
+    more = colon != std::string_view::npos;
+    if (!number(time.substr(0, colon), parts.emplace_back())) return std::nullopt;
+    if (more) time.remove_prefix(colon + 1);
+  }
+  if (parts.size() > 3) return std::nullopt;
+  // After days the first number is hours; else a lone number is minutes, and two are minutes and
+  // seconds.
+  if (dash == std::string_view::npos && parts.size() < 3) parts.insert(parts.begin(), 0);
+  parts.resize(3, 0);
+  return ((days * 24 + parts[0]) * 60 + parts[1]) * 60 + parts[2];
+}
+
+std::string array_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks) {
+  const std::size_t jobs = std::max<std::size_t>(1, options.cpus / options.threads);
+  std::string body = replaced(std::string(kTaskBody), "@JOBS@", fmt::to_string(jobs));
+  body = replaced(std::move(body), "@THREADS@", fmt::to_string(options.threads));
+  body = replaced(std::move(body), "@SCRATCH@",
+                  options.scratch.empty() ? "" : " --scratch " + shell_quoted(options.scratch));
+  return "#!/bin/bash\n" +
+         directives(options, {fmt::format("--array=1-{}", tasks),
+                              fmt::format("--cpus-per-task={}", options.cpus),
+                              fmt::format("--signal=B:USR1@{}", options.warn_seconds)}) +
+         fmt::format("\nshearcell={}\nstore={}$SLURM_ARRAY_TASK_ID",
+                     shell_quoted(places.program.string()),
+                     shell_quoted((places.folder / "task-").string())) +
+         body;
+}
+
+std::string fold_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks) {
+  return "#!/bin/bash\n" + directives(options, {}) +
+         fmt::format("\nshearcell={}\nstore={}\ntasks={}", shell_quoted(places.program.string()),
+                     shell_quoted(places.store.string()),
+                     shell_quoted((places.folder / "task-").string())) +
+         replaced(std::string(kFoldBody), "@TASKS@", fmt::to_string(tasks));
+}
+
+std::string output_pattern(const std::filesystem::path& folder, std::string_view file) {
+  std::string pattern;
+  for (const char c : folder.string()) pattern += c == '%' ? "%%" : std::string(1, c);
+  return pattern + "/" + std::string(file);
+}
+
+}  // namespace shearcell

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/cluster/share.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "experiments/runner/cost.hpp"
+
+namespace shearcell {
+namespace {
+
+/// Particle-steps left of a stage; nothing when it is done.
+std::optional<double> left_of(const PlannedRun& run, const StageSpec& stage,
+                              const std::map<std::string, const RunRecord*>& known) {
+  const auto found = known.find(stage.key);
+  const double cycle = found == known.end() ? 0 : found->second->cycle;
+  const bool reached = stage.stage == Stage::prepare || cycle >= static_cast<double>(run.cycles);
+  if (found != known.end() && found->second->state == RunState::completed && reached) {
+    return std::nullopt;
+  }
+  return stage_cost(run, stage, cycle).particle_steps;
+}
+
+}  // namespace
+
+std::vector<Bundle> work_left(const std::vector<Plan>& plans, const std::vector<RunRecord>& known) {
+  std::map<std::string, const RunRecord*> by_id;
+  for (const RunRecord& run : known) by_id[run.id] = &run;
+  // Two manifests may ask for one run; the longer one decides.
+  std::map<std::string, const PlannedRun*> longest;
+  for (const Plan& plan : plans) {
+    for (const PlannedRun& run : plan.runs) {
+      const PlannedRun*& kept = longest[run.last.key];
+      if (kept == nullptr || run.cycles > kept->cycles) kept = &run;
+    }
+  }
+  std::vector<Bundle> bundles;
+  std::set<std::string> seen;
+  for (const Plan& plan : plans) {
+    for (const PlannedRun& planned : plan.runs) {
+      if (!seen.insert(planned.last.key).second) continue;
+      const PlannedRun& run = *longest.at(planned.last.key);
+      const auto left = left_of(run, run.last, by_id);
+      if (!left) continue;
+      auto bundle = std::find_if(bundles.begin(), bundles.end(), [&](const Bundle& other) {
+        return other.packing == run.prepare.key;
+      });
+      if (bundle == bundles.end()) {
+        const double settling = left_of(run, run.prepare, by_id).value_or(0);
+        bundle = bundles.insert(bundle, {run.prepare.key, {}, settling});
+      }
+      bundle->runs.push_back(run.last.key);
+      bundle->particle_steps += *left;
+    }
+  }
+  return bundles;
+}
+
+std::vector<Share> share_out(std::vector<Bundle> bundles, std::size_t tasks) {
+  std::stable_sort(bundles.begin(), bundles.end(), [](const Bundle& a, const Bundle& b) {
+    return a.particle_steps > b.particle_steps;
+  });
+  std::vector<Share> shares(std::min(tasks, bundles.size()));
+  for (const Bundle& bundle : bundles) {
+    // Costs may be 0, and no share may stay empty.
+    const auto least =
+        std::min_element(shares.begin(), shares.end(), [](const Share& a, const Share& b) {
+          return std::pair(a.particle_steps, a.packings) < std::pair(b.particle_steps, b.packings);
+        });
+    least->runs.insert(least->runs.end(), bundle.runs.begin(), bundle.runs.end());
+    least->stages.insert(bundle.packing);
+    least->stages.insert(bundle.runs.begin(), bundle.runs.end());
+    least->particle_steps += bundle.particle_steps;
+    ++least->packings;
+  }
+  return shares;
+}
+
+}  // namespace shearcell

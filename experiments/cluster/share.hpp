@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What of a campaign is left to do, and which task of an array job does which part of it.
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "experiments/manifest/expand.hpp"
+#include "provenance/records.hpp"
+
+namespace shearcell {
+
+/// Runs that start from one packing. They stay together, so that it is settled once.
+struct Bundle {
+  std::string packing;            ///< id of the `prepare` stage
+  std::vector<std::string> runs;  ///< ids of the stages left that start from it, as planned
+  double particle_steps = 0;      ///< left, the packing's own included
+};
+
+/// What one task computes.
+struct Share {
+  std::vector<std::string> runs;  ///< ids of the stages to compute, without their packings
+  std::set<std::string> stages;   ///< ids of these and of the packings that they start from
+  std::size_t packings = 0;
+  double particle_steps = 0;
+};
+
+/// Every run of the plans that `known`, the store's runs, does not hold completed at its length;
+/// each once, in the order of the plans.
+std::vector<Bundle> work_left(const std::vector<Plan>& plans, const std::vector<RunRecord>& known);
+
+/// Deals the bundles out, the largest first and each to the task that has least to do: equal ones
+/// go round. At most `tasks` shares, none empty. The same bundles give the same shares.
+std::vector<Share> share_out(std::vector<Bundle> bundles, std::size_t tasks);
+
+}  // namespace shearcell
