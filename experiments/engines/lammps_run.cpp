@@ -52,9 +52,11 @@ Command command_for(const LammpsProgram& program, const fs::path& folder, std::s
   }
   command.folder = folder;
   command.output = folder / "said";
-  // Several of these may share a machine, which Open MPI would tie to the same cores.
+  // Several of these may share a machine: Open MPI would tie them to the same cores, and keep these
+  // busy while it waits.
   command.environment = {{"OMP_NUM_THREADS", "1"},
                          {"OMPI_MCA_hwloc_base_binding_policy", "none"},
+                         {"OMPI_MCA_mpi_yield_when_idle", "1"},
                          {"OMPI_MCA_rmaps_base_oversubscribe", "1"}};
   if (geteuid() == 0) {
     command.environment.emplace_back("OMPI_ALLOW_RUN_AS_ROOT", "1");
