@@ -7,8 +7,9 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
-#include <stdexcept>
 #include <string_view>
+
+#include "experiments/engines/child_process.hpp"
 
 namespace shearcell {
 namespace {
@@ -164,6 +165,8 @@ class Deck {
         "message no",
         task_.look);
     add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.look);
+    // Under mpirun: as many grains for each process, however far the wall grains reach.
+    add(text_, "balance 1.05 shift xyz 20 1.02 weight group 1 planted 0.1");
     add(text_, "timestep {:.17g}\nrun 0 post no", scene_.time_step);
     add(text_, "velocity free set v_kicked_x v_kicked_y v_kicked_z units box");
     add(text_, "variable next equal (floor(step/{0})+1)*{0}", task_.stride);
@@ -262,7 +265,7 @@ class Numbers {
   }
 
   [[noreturn]] void refuse() const {
-    throw std::runtime_error(file_ + ": not the whole state of the grains, as LAMMPS was to write");
+    throw EngineError(file_ + ": not the whole state of the grains, as LAMMPS was to write");
   }
 
  private:

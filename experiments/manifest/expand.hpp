@@ -19,7 +19,7 @@ struct ExpandOptions {
   std::optional<std::string> scale;     ///< default: `desk`, or the manifest's base without scales
   std::optional<std::uint64_t> cycles;  ///< instead of the manifest's
   std::optional<std::uint64_t> seeds;   ///< how many; of a listed set the first ones
-  std::optional<std::string> engine;    ///< instead of the manifest's; named in the variant
+  std::optional<std::string> engine = {};  ///< instead of the manifest's; named in the variant
 };
 
 struct PlannedRun {
