@@ -43,6 +43,7 @@ nlohmann::json facts(const EngineCheck& check) {
           {"trajectories", trajectories},
           {"explicit_drag_order", check.explicit_drag_order},
           {"means", means},
+          {"limit_in_standard_errors", check.limit},
           {"speeds", speeds},
           {"agree", check.agree()}};
 }
@@ -77,7 +78,7 @@ void print_means(const EngineCheck& check) {
   header.insert(header.end(), check.engines.begin(), check.engines.end());
   fmt::print("\n");
   print_table(header, rows);
-  fmt::print("In brackets: standard errors from ours.\n");
+  fmt::print("In brackets: standard errors from ours, at most {:.1f} by chance.\n", check.limit);
 }
 
 void print(const EngineCheck& check) {
@@ -115,7 +116,7 @@ void add_bench_engines(CLI::App& bench, Context& context) {
       ->check(CLI::Range(0, 1000))
       ->type_name("C");
   command->add_option("--seeds", options->seeds, "Packings of the means")
-      ->check(CLI::Range(2, 1000))
+      ->check(CLI::Range(3, 1000))
       ->type_name("K");
   command->add_option("--mpi", options->ranks, "Also LAMMPS with so many processes, by mpirun")
       ->check(CLI::Range(1, 65536))
@@ -124,7 +125,7 @@ void add_bench_engines(CLI::App& bench, Context& context) {
   command->add_flag("--json", context.json, "Print JSON for programs");
   command->footer(
       "Ends with code 3 if the engines do not agree: trajectories as far as rounding lets them,\n"
-      "means within three standard errors. Means of three cycles at N = 2000 take minutes.\n"
+      "means within their scatter over seeds. Means of three cycles at N = 2000 take minutes.\n"
       "Examples:\n  shearcell bench engines --size 600 --cycles 1\n"
       "  shearcell bench engines --size 100000 --no-gravity --cycles 0 --mpi 2");
   command->callback([options, weightless, &context] {

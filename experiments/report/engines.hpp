@@ -55,10 +55,10 @@ struct EngineCheck {
   double explicit_drag_order = 0;  ///< log2 of the ratio of errors at dt and dt/2
   std::vector<std::string> engines;
   std::vector<EngineMean> means;
+  double limit = 0;  ///< of `apart`, by Student's t, shared among all comparisons
   std::vector<EngineSpeed> speeds;
 
-  /// Whether trajectories agree as far as rounding lets them, and means within three standard
-  /// errors.
+  /// Whether trajectories agree as far as rounding lets them, and means within the limit.
   bool agree() const;
 };
 
