@@ -63,7 +63,7 @@ void add_bench(CLI::App& app, Context& context) {
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  shearcell bench speed\n  shearcell bench accuracy --quick\n"
-      "  shearcell bench stability --quick");
+      "  shearcell bench stability --quick\n  shearcell bench engines --size 600 --cycles 1");
   auto options = std::make_shared<SpeedOptions>();
   CLI::App* rate = command->add_subcommand(
       "speed", "Particle-steps per second in the sheared rough cell, and where the time goes");
@@ -83,6 +83,7 @@ void add_bench(CLI::App& app, Context& context) {
     speed(*options, context);
   });
   add_bench_accuracy(*command, context);
+  add_bench_engines(*command, context);
   add_bench_stability(*command, context);
 }
 

@@ -12,6 +12,12 @@ void add_common_options(CLI::App& command, Context& context, bool with_json) {
   if (with_json) command.add_flag("--json", context.json, "Print JSON for programs");
 }
 
+void add_engine_option(CLI::App& command, ExpandOptions& options) {
+  command.add_option("--engine", options.engine, "What computes the shear (default: shearcell)")
+      ->check(CLI::IsMember({"shearcell", "lammps"}))
+      ->type_name("NAME");
+}
+
 void print_json(const nlohmann::json& facts) {
   // Paths and hostnames may hold any byte; JSON may not.
   fmt::print("{}\n", facts.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/runner/campaign.hpp"
+#include "experiments/manifest/expand.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell::cli {
@@ -45,6 +46,7 @@ void add_figures(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
 void add_export(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);
+void add_bench_engines(CLI::App& bench, Context& context);
 void add_bench_accuracy(CLI::App& bench, Context& context);
 void add_new(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);
@@ -58,6 +60,9 @@ void report(const CampaignResult& result, Context& context);
 
 /// --store DIR, and --json where the subcommand prints facts.
 void add_common_options(CLI::App& command, Context& context, bool with_json);
+
+/// --engine NAME.
+void add_engine_option(CLI::App& command, ExpandOptions& options);
 
 /// Prints facts for programs: one JSON value, indented by two.
 void print_json(const nlohmann::json& facts);

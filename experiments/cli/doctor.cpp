@@ -7,13 +7,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/engines/child_process.hpp"
 #include "experiments/report/speed.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/store.hpp"
@@ -107,12 +107,7 @@ Finding sync_time(const fs::path& place) {
 }
 
 Finding program(const std::string& name, const std::string& use, const std::string& package) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path file = fs::path(folder) / name;
-    if (access(file.c_str(), X_OK) == 0) return {name, file.string(), "ok", use};
-  }
+  if (const auto file = find_program(name)) return {name, file->string(), "ok", use};
   return {name, "not found", "missing", use + ": apt install " + package};
 }
 
@@ -146,7 +141,8 @@ std::vector<Finding> examine(const std::string& store, bool with_speed) {
                                 {"SQLite", version("sqlite"), "ok", "the log"},
                                 {"HDF5", version("hdf5"), "ok", "checkpoints"},
                                 program("gnuplot", "draws figures", "gnuplot-nox"),
-                                program("rsvg-convert", "figures as PDF", "librsvg2-bin")};
+                                program("rsvg-convert", "figures as PDF", "librsvg2-bin"),
+                                program("lmp", "`run --engine lammps`", "lammps")};
   if (with_speed) found.push_back(speed());
   return found;
 }

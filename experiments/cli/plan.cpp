@@ -10,6 +10,8 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/engines/engine.hpp"
+#include "experiments/engines/lammps_run.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/numerics.hpp"
 #include "experiments/runner/cost.hpp"
@@ -109,6 +111,18 @@ void print_numerics(const std::vector<Line>& lines) {
               rows);
 }
 
+// What to know of runs by another engine.
+std::vector<std::string> notes_of(const Plan& plan) {
+  if (!asks_for_lammps(plan)) return {};
+  std::vector<std::string> notes = lammps_caveats();
+  try {
+    notes.push_back("LAMMPS here: " + find_lammps().version);
+  } catch (const EngineError& missing) {
+    notes.emplace_back(missing.what());
+  }
+  return notes;
+}
+
 std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store) {
   std::vector<RunRecord> known;
   if (store) known = store->runs();
@@ -145,14 +159,21 @@ void plan(const PlanOptions& options, Context& context) {
   }
   const std::optional<Store> store = open_if_there(context.store);
   const std::vector<Line> lines = lines_of(expanded, store);
-  const Rate rate = expected_rate(store ? store->runs() : std::vector<RunRecord>{});
+  const auto known = store ? store->runs() : std::vector<RunRecord>{};
   StageCost left;
+  double core_seconds = 0;
+  Rate rate = expected_rate(known);
   for (const Line& line : lines) {
+    const Rate own = expected_rate(known, engine_of(line.stage->resolved));
     left.particle_steps += line.left.particle_steps;
     left.bytes += line.left.bytes;
+    core_seconds += line.left.particle_steps / own.particle_steps_per_second;
+    rate.measured = rate.measured && own.measured;
   }
+  if (core_seconds > 0) rate.particle_steps_per_second = left.particle_steps / core_seconds;
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  const double seconds = left.particle_steps / (rate.particle_steps_per_second * cores);
+  const double seconds = core_seconds / cores;
+  const std::vector<std::string> notes = notes_of(expanded);
 
   if (context.json) {
     nlohmann::json list = nlohmann::json::array();
@@ -174,6 +195,7 @@ void plan(const PlanOptions& options, Context& context) {
     }
     print_json({{"experiment", expanded.experiment},
                 {"scale", expanded.scale},
+                {"notes", notes},
                 {"runs", expanded.runs.size()},
                 {"stages", list},
                 {"particle_steps_left", left.particle_steps},
@@ -203,6 +225,7 @@ void plan(const PlanOptions& options, Context& context) {
       left.particle_steps, format_duration(seconds), cores, rate.particle_steps_per_second * 1e-6,
       rate.measured ? "measured in this store" : "assumed until a run has been measured",
       format_bytes(left.bytes));
+  if (!notes.empty()) fmt::print("\n{}\n", fmt::join(notes, "\n"));
 }
 
 }  // namespace
@@ -216,6 +239,7 @@ void add_plan(CLI::App& app, Context& context) {
   command->add_option("--cycles", options->expand.cycles, "Cycles instead of the manifest's");
   command->add_option("--seeds", options->expand.seeds,
                       "Number of seeds instead of the manifest's");
+  add_engine_option(*command, options->expand);
   add_common_options(*command, context, true);
   command->footer(
       "A run that the store does not know is compared with the nearest one that it knows: the "

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/runner/replay.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell::cli {
@@ -64,6 +65,11 @@ bool agreed() {
 void prune(const PruneOptions& options, Context& context) {
   Store store(context.store, Access::write);
   std::vector<CheckpointRecord> records = store.prunable(choice_of(options, store));
+  const std::size_t kept = std::erase_if(
+      records, [&](const CheckpointRecord& c) { return why_not_again(store.run(c.run)); });
+  if (!context.json && kept > 0) {
+    fmt::print("{} checkpoints that LAMMPS made are kept: they cannot be computed again\n", kept);
+  }
   const std::size_t news = records.size();
   for (CheckpointRecord& left : store.prune_leftovers()) records.push_back(std::move(left));
   if (!context.json) {
@@ -82,6 +88,7 @@ void prune(const PruneOptions& options, Context& context) {
     }
     print_json({{"checkpoints", list},
                 {"leftovers", records.size() - news},
+                {"kept_of_other_engines", kept},
                 {"bytes", bytes_of(records)},
                 {"pruned", go},
                 {"bytes_freed", freed}});
@@ -109,8 +116,9 @@ void add_prune(CLI::App& app, Context& context) {
   add_common_options(*command, context, true);
   command->footer(
       "Shows first what it would free. Kept in any case are the newest checkpoint of each run, "
-      "and\n"
-      "those that other stages started from. What was pruned stays on record, and figures that "
+      "those\n"
+      "that other stages started from, and those that LAMMPS made. What was pruned stays on "
+      "record, and figures that "
       "need\n"
       "it say so.\n"
       "Examples:\n  shearcell prune --keep-every 10\n  shearcell prune --state failed --yes");

@@ -46,6 +46,11 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
     return facts;
   };
   if (sound(store, record)) return say("kept", "it is there and sound");
+  if (const auto why = why_not_again(store.run(record.run))) {
+    context.exit_code = kOtherError;
+    facts["why"] = *why;
+    return say("refused", *why + "; keep a copy of its file elsewhere");
+  }
   const Replay replay = regenerate_checkpoint(store, record, threads);
   facts["steps"] = replay.steps;
   if (replay.interrupted) {

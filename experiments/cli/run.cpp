@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/engines/lammps_run.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/campaign.hpp"
 #include "experiments/runner/stop.hpp"
@@ -19,22 +20,23 @@ struct RunOptions {
   std::vector<std::string> manifests;
   ExpandOptions expand;
   std::size_t jobs = 0;
-  std::size_t threads = 1;
+  Parallel parallel;
   bool quiet = false;
 };
 
-// As many runs at a time as their threads leave cores for.
+// As many runs at a time as their threads or processes leave cores for.
 std::size_t workers(const RunOptions& options) {
   if (options.jobs > 0) return options.jobs;
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  return std::max<std::size_t>(1, cores / options.threads);
+  return std::max<std::size_t>(1,
+                               cores / std::max(options.parallel.threads, options.parallel.ranks));
 }
 
 void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options,
              Context& context) {
   catch_stop_signals();
   Progress progress(jobs.size(), options.quiet);
-  report(run_campaign(store, jobs, workers(options), progress, options.threads), context);
+  report(run_campaign(store, jobs, workers(options), progress, options.parallel), context);
 }
 
 void run(const RunOptions& options, Context& context) {
@@ -48,6 +50,8 @@ void run(const RunOptions& options, Context& context) {
       fmt::print(stderr, "warning: {}\n", warning);
     }
   }
+  const bool lammps = std::any_of(plans.begin(), plans.end(), asks_for_lammps);
+  if (lammps) find_lammps();  // or say what to install
   Store store(context.store, Access::create);
   std::vector<StageJob> jobs;
   for (std::size_t m = 0; m < manifests.size(); ++m) {
@@ -64,9 +68,16 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
   command.add_option("--jobs,-j", options.jobs, "Runs at a time (default: one per core)")
       ->check(CLI::Range(1, 1024))
       ->type_name("J");
-  command.add_option("--threads,-t", options.threads, "Threads inside each run, for large cells")
+  command
+      .add_option("--threads,-t", options.parallel.threads,
+                  "Threads inside each run, for large cells")
       ->check(CLI::Range(1, 1024))
       ->type_name("T");
+  command
+      .add_option("--mpi", options.parallel.ranks,
+                  "Processes of each run in LAMMPS, by mpirun; it changes the last digits")
+      ->check(CLI::Range(1, 65536))
+      ->type_name("N");
   command.add_flag("--quiet,-q", options.quiet, "No progress");
 }
 
@@ -110,12 +121,14 @@ void add_run(CLI::App& app, Context& context) {
   command->add_option("--cycles", options->expand.cycles, "Cycles instead of the manifest's");
   command->add_option("--seeds", options->expand.seeds,
                       "Number of seeds instead of the manifest's");
+  add_engine_option(*command, options->expand);
   add_worker_options(*command, *options);
   add_common_options(*command, context, true);
   command->footer(
       "Examples:\n"
       "  shearcell run experiments/drag.yaml --scale smoke\n"
       "  shearcell run experiments/drag.yaml --scale desk --cycles 100   # extend\n"
+      "  shearcell run experiments/drag.yaml --scale smoke --engine lammps --mpi 2\n"
       "\n"
       "What the store holds already is not computed again. Ctrl-C writes checkpoints and ends\n"
       "with code 85; run again, or resume, to continue bit for bit. Several programs may run on "

@@ -27,8 +27,20 @@ nlohmann::json facts(const CheckpointRecord& c) {
           {"observables", c.observables}};
 }
 
+// The engine of its latest attempt, as that recorded it; null for our own.
+nlohmann::json engine_of_run(const Store& store, const std::string& run) {
+  nlohmann::json engine;
+  for (const Event& event : store.events("run/" + run)) {
+    const nlohmann::json body = event.body();
+    const nlohmann::json host = body.value("host", nlohmann::json::object());
+    if (host.is_object() && host.contains("engine")) engine = host["engine"];
+  }
+  return engine;
+}
+
 void show_run(const Store& store, const RunRecord& run, Context& context) {
   const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, true);
+  const nlohmann::json engine = engine_of_run(store, run.id);
   if (context.json) {
     nlohmann::json members = nlohmann::json::array();
     for (const Membership& m : run.memberships) {
@@ -46,6 +58,7 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                 {"state", name_of(run.state)},
                 {"resolved", run.resolved},
                 {"attempts", run.attempts},
+                {"engine", engine},
                 {"memberships", members},
                 {"checkpoints", list},
                 {"error", run.error}});
@@ -54,6 +67,10 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   fmt::print("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {} attempts\n",
              run.id, run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state), run.cycle,
              run.target_cycles, run.attempts);
+  if (engine.is_object()) {
+    fmt::print("engine   {} {}, {} processes\n", engine.value("name", ""),
+               engine.value("version", ""), engine.value("processes", 1));
+  }
   if (!run.error.empty()) fmt::print("error    {}\n", run.error);
   for (const Membership& m : run.memberships) {
     fmt::print("part of  {} ({}) {} seed {}\n", m.experiment, m.scale.empty() ? "base" : m.scale,

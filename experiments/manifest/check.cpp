@@ -31,6 +31,10 @@ class VariantChecker {
       check_settle_step(p, where);
       check_pause(p, where);
       check_depth(p, where);
+      if (asks_lammps_to_stiffen(p)) {
+        report("engine", where("engine"), "LAMMPS cannot do the protocol stiffen",
+               "Leave the engine out, or shear.");
+      }
       if (p.fill_packing_fraction >= p.nominal_packing_fraction) {
         report("fill_packing_fraction", where("fill_packing_fraction"),
                "the grains are placed at random more densely than they are to settle",

@@ -71,6 +71,10 @@ double stability_limit_s(const Parameters& p) {
   return 2 / std::sqrt(8 * p.stiffness_N_per_m / p.mass_kg);
 }
 
+bool asks_lammps_to_stiffen(const Parameters& p) {
+  return p.engine == EngineKind::lammps && p.protocol == "stiffen";
+}
+
 bool pressure_lifts_column(const Parameters& p) {
   if (p.gravity_m_per_s2 == 0 || p.moving_wall == MovingWall::top) return true;
   constexpr double grains_per_d3 = 1.2;

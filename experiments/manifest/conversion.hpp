@@ -46,4 +46,7 @@ double stability_limit_s(const Parameters& parameters);
 /// P d^2 > 1.2 (h/d) m g, with 1.2 grains per d^3. A moving top wall has nothing to lift.
 bool pressure_lifts_column(const Parameters& parameters);
 
+/// Stiffening has no time steps that LAMMPS could take.
+bool asks_lammps_to_stiffen(const Parameters& parameters);
+
 }  // namespace shearcell

@@ -71,6 +71,26 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
   return {stated.values.begin(), stated.values.begin() + static_cast<std::ptrdiff_t>(*wanted)};
 }
 
+// As one more swept key, so that runs of two engines are never taken for one curve.
+void set_engine(const Manifest& manifest, const AtScale& scale, const std::string& engine,
+                Sweep& sweep) {
+  const Field& field = *find_field("engine");
+  if (const auto wrong = check_value(field, engine)) {
+    refuse(manifest, "engine", wrong->problem, printable(engine), wrong->remedy);
+  }
+  for (const auto* axes : {&sweep.grid, &sweep.zip}) {
+    if (std::ranges::find(*axes, field.name, &SweepAxis::key) == axes->end()) continue;
+    refuse(manifest, "engine", "the manifest sweeps this key itself", engine,
+           "Leave the option out.");
+  }
+  const auto stated = scale.settings.find(field.name);
+  const nlohmann::json own =
+      stated == scale.settings.end() ? get_value(field, Parameters{}) : stated->second.value;
+  if (own == engine) return;
+  const Setting value{engine, {}};
+  sweep.grid.insert(sweep.grid.begin(), SweepAxis{std::string(field.name), {}, {value}});
+}
+
 void warn_of_time_steps(const Variant& variant, Plan& plan) {
   const Parameters& p = variant.parameters;
   std::optional<std::string> of_shear;
@@ -106,6 +126,11 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     }
     resolved.settings["cycles"] = cycles;
   }
+  Sweep with_engine = *resolved.sweep;
+  if (options.engine) {
+    set_engine(manifest, resolved, *options.engine, with_engine);
+    resolved.sweep = &with_engine;
+  }
   const std::vector<std::uint64_t> seeds = choose_seeds(manifest, *resolved.seeds, options.seeds);
   if (variant_count(*resolved.sweep) > ManifestLimits::runs / seeds.size()) {
     refuse(manifest, "seeds",
@@ -118,6 +143,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   for_each_variant(resolved, [&](const Variant& variant) {
     warn_of_pressure(variant, plan);
     warn_of_time_steps(variant, plan);
+    if (options.engine && asks_lammps_to_stiffen(variant.parameters)) {
+      refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", *options.engine,
+             "Leave the option out.");
+    }
     if (options.cycles && variant.parameters.protocol == "stiffen") {
       plan.warnings.push_back(fmt::format(
           "{}: variant {}: a number of cycles has no effect on stiffening, whose length is "
@@ -147,6 +176,11 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     }
   });
   return plan;
+}
+
+bool asks_for_lammps(const Plan& plan) {
+  return std::ranges::any_of(
+      plan.runs, [](const PlannedRun& run) { return run.parameters.engine == EngineKind::lammps; });
 }
 
 }  // namespace shearcell

@@ -19,6 +19,7 @@ struct ExpandOptions {
   std::optional<std::string> scale;     ///< default: `desk`, or the manifest's base without scales
   std::optional<std::uint64_t> cycles;  ///< instead of the manifest's
   std::optional<std::uint64_t> seeds;   ///< how many; of a listed set the first ones
+  std::optional<std::string> engine = {};  ///< instead of the manifest's; named in the variant
 };
 
 struct PlannedRun {
@@ -44,5 +45,8 @@ struct Plan {
 
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
+
+/// Whether LAMMPS computes any of its runs.
+bool asks_for_lammps(const Plan& plan);
 
 }  // namespace shearcell

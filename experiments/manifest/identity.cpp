@@ -32,6 +32,8 @@ bool enters(const Field& field, Stage stage, std::string_view protocol, const js
       return true;
     case Identity::prepare_if_set:
       return !is_default(field, value);
+    case Identity::shear_if_set:
+      return stage == Stage::shear && !is_default(field, value);
     case Identity::shear:
       return stage == Stage::shear;
     case Identity::paused_shear:
@@ -189,6 +191,12 @@ StageRecord read_stage(const json& resolved) {
     if (!known.contains(key)) throw damaged(key.substr(0, 64), "is unknown");
   }
   return record;
+}
+
+EngineKind engine_of(const json& resolved) {
+  const json none = json::object();
+  const json values = value_in(resolved, "parameters", none);
+  return value_in(values, "engine", "") == "lammps" ? EngineKind::lammps : EngineKind::shearcell;
 }
 
 std::string canonical_json(const json& value) {

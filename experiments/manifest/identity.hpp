@@ -51,6 +51,9 @@ std::string stage_key(const nlohmann::json& resolved);
 /// missing, unknown or out of range. Compare stage_key(resolved) with the run's id as well.
 StageRecord read_stage(const nlohmann::json& resolved);
 
+/// The engine that a record names, whatever else is wrong with it.
+EngineKind engine_of(const nlohmann::json& resolved);
+
 /// JSON without whitespace, keys sorted by their bytes, doubles as the shortest digits that read
 /// back to the same value: one text for one value. Throws std::invalid_argument on NaN or infinity.
 std::string canonical_json(const nlohmann::json& json);

@@ -12,6 +12,9 @@
 
 namespace shearcell {
 
+/// What computes a shear: our own simulation, or LAMMPS.
+enum class EngineKind : std::uint8_t { shearcell, lammps };
+
 struct Parameters {
   // Grains and what acts on them (Table I).
   std::uint64_t grains = 7900;
@@ -50,6 +53,7 @@ struct Parameters {
   double period_s = 2;
   std::uint64_t steps_per_cycle = 45600;
   double pause_s = 2;
+  EngineKind engine = EngineKind::shearcell;
 
   // Stiffening.
   std::uint64_t stiffness_steps_per_decade = 4;

@@ -15,6 +15,7 @@ using std::string_view;
 // In the order of their enumerators.
 constexpr std::array<string_view, 2> kFluids = {"still", "cell"};
 constexpr std::array<string_view, 2> kTextures = {"rough", "smooth"};
+constexpr std::array<string_view, 2> kEngines = {"shearcell", "lammps"};
 constexpr std::array<string_view, 2> kMovingWalls = {"bottom", "top"};
 // What can be done to a settled packing. One more protocol is one more name here.
 constexpr std::array<string_view, 3> kProtocols = {"continuous", "paused", "stiffen"};
@@ -147,6 +148,9 @@ std::vector<Field> shear_fields() {
                  "to whole time steps"),
       integer("cycles", "n", &P::cycles, 0, 1e6, Identity::none,
               "cycles to shear for; a larger value extends a run"),
+      names("engine", "", choice<&P::engine>(kEngines), Identity::shear_if_set,
+            "what computes the shear: this program, or LAMMPS (another run, equal up to rounding; "
+            "settling is always ours)"),
   };
 }
 
@@ -188,6 +192,8 @@ string_view identity_markdown(Identity identity) {
       return "prepare, if not 0";
     case Identity::shear:
       return "shear";
+    case Identity::shear_if_set:
+      return "shear, if lammps";
     case Identity::paused_shear:
       return "shear, if paused";
     case Identity::stiffen:

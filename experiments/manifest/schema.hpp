@@ -21,9 +21,17 @@ namespace shearcell {
 /// The stage whose key a parameter enters. Settling comes first, so what settling feels enters the
 /// key of `prepare` and, through its parent's key, that of `shear` as well. `paused_shear` enters
 /// that of `shear` where the protocol is `paused`, and `stiffen` that of the stage of that name.
-/// `prepare_if_set` is as `prepare` where the value is not the default: for a parameter that is
-/// younger than the stores, whose runs it must not rename.
-enum class Identity : std::uint8_t { prepare, prepare_if_set, shear, paused_shear, stiffen, none };
+/// `prepare_if_set` and `shear_if_set` are as `prepare` and `shear` where the value is not the
+/// default: for a parameter that is younger than the stores, whose runs it must not rename.
+enum class Identity : std::uint8_t {
+  prepare,
+  prepare_if_set,
+  shear,
+  shear_if_set,
+  paused_shear,
+  stiffen,
+  none
+};
 
 /// A parameter that takes one of a few names; the index of the name stands for its value.
 struct ChoiceMember {

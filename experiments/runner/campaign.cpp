@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "core/filling.hpp"
+#include "experiments/engines/child_process.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
 
@@ -53,11 +54,12 @@ class Heartbeat {
 
 class Campaign {
  public:
-  Campaign(Store& store, const std::vector<StageJob>& jobs, Progress& progress, std::size_t threads)
+  Campaign(Store& store, const std::vector<StageJob>& jobs, Progress& progress,
+           const Parallel& parallel)
       : store_(store),
         jobs_(jobs),
         progress_(progress),
-        threads_(threads),
+        parallel_(parallel),
         states_(jobs.size(), JobState::waiting),
         holds_(jobs.size()) {}
 
@@ -153,6 +155,8 @@ class Campaign {
       note(job, &CampaignResult::damaged, damage.what());
     } catch (const GeometryError& error) {
       note(job, &CampaignResult::failed, error.what());
+    } catch (const EngineError& error) {
+      note(job, &CampaignResult::failed, error.what());
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
@@ -217,7 +221,8 @@ class Campaign {
   StageOptions options_of(const StageJob& job) {
     StageOptions options;
     options.checkpoint_every = job.checkpoint_every;
-    options.threads = threads_;
+    options.threads = parallel_.threads;
+    options.ranks = parallel_.ranks;
     options.damaged = [&](const std::string& what) {
       note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
     };
@@ -244,7 +249,7 @@ class Campaign {
   Store& store_;
   const std::vector<StageJob>& jobs_;
   Progress& progress_;
-  std::size_t threads_;
+  Parallel parallel_;
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   std::vector<JobState> states_;
@@ -325,8 +330,8 @@ std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& p
 }
 
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
-                            Progress& progress, std::size_t threads) {
-  return Campaign(store, jobs, progress, threads).run(workers);
+                            Progress& progress, const Parallel& parallel) {
+  return Campaign(store, jobs, progress, parallel).run(workers);
 }
 
 }  // namespace shearcell

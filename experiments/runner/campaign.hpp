@@ -20,6 +20,12 @@ struct StageJob {
   std::uint64_t checkpoint_every = 1;
 };
 
+/// How much of the machine one stage takes.
+struct Parallel {
+  std::size_t threads = 1;  ///< of each simulation; it changes no bit
+  std::size_t ranks = 1;    ///< processes of LAMMPS, for stages of that engine
+};
+
 struct CampaignResult {
   std::size_t completed = 0;  ///< stages computed now
   std::size_t already = 0;    ///< stages that were done before
@@ -41,9 +47,8 @@ std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& p
 
 /// Computes every job that is not done. A failure stops only the stages that depend on it. Stages
 /// that another program is at work on are left to it while there is other work, then waited for,
-/// and taken over when that program ends or its lease expires. `threads` is how many each
-/// simulation uses; it changes no bit.
+/// and taken over when that program ends or its lease expires.
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
-                            Progress& progress, std::size_t threads = 1);
+                            Progress& progress, const Parallel& parallel = {});
 
 }  // namespace shearcell

@@ -6,12 +6,14 @@
 #include "core/drive.hpp"
 #include "core/filling.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/identity.hpp"
 
 namespace shearcell {
 namespace {
 
 // Until the store has measured one: a modern core with AVX-512, in a cell of a few thousand grains.
 constexpr double kAssumedRate = 50e6;
+constexpr double kAssumedLammpsRate = 4e6;  // N = 2000 to 100000, rough walls
 
 // Size of a checkpoint file, measured: its grains, its wall grains, and the layout around them.
 constexpr double kBytesPerGrain = 121;
@@ -60,13 +62,16 @@ StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle
   return {grains * steps * cycles, bytes * (files + (cycle == 0 ? 1 : 0))};
 }
 
-Rate expected_rate(const std::vector<RunRecord>& runs) {
+Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine) {
   double steps = 0, seconds = 0;
   for (const RunRecord& run : runs) {
+    if (engine_of(run.resolved) != engine) continue;
     steps += run.particle_steps;
     seconds += run.wall_seconds;
   }
-  if (seconds < 1) return {kAssumedRate, false};
+  if (seconds < 1) {
+    return {engine == EngineKind::lammps ? kAssumedLammpsRate : kAssumedRate, false};
+  }
   return {steps / seconds, true};
 }
 

@@ -23,6 +23,7 @@ struct Rate {
   bool measured;                     ///< in the store's own runs, or assumed
 };
 
-Rate expected_rate(const std::vector<RunRecord>& runs);
+/// Of stages of one engine.
+Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine = EngineKind::shearcell);
 
 }  // namespace shearcell

@@ -30,8 +30,12 @@ struct Replay {
   bool interrupted = false;  ///< by a signal; nothing is known and nothing was recorded
 };
 
-/// Every checkpoint that can be replayed, in the order of their runs and steps. Pruned ones can.
+/// Every checkpoint that can be replayed, in the order of their runs and steps. Pruned ones can;
+/// those that another engine made cannot.
 std::vector<CheckpointRecord> replayable(const Store& store);
+
+/// Why the checkpoints of a run cannot be computed again bit for bit; nothing where they can.
+std::optional<std::string> why_not_again(const RunRecord& run);
 
 /// `count` of them without repetition, or all; the same for the same seed.
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,

@@ -99,16 +99,21 @@ std::uint64_t chunk_steps(std::size_t grains) {
 
 Checkpoint make_checkpoint(const StagePlan& plan, const Simulation& simulation, double cycle) {
   simulation.check();
+  return make_checkpoint(plan, simulation.cell(), simulation.scene(), simulation.state(), cycle);
+}
+
+Checkpoint make_checkpoint(const StagePlan& plan, const Cell& cell, const Scene& scene,
+                           const State& state, double cycle) {
   Checkpoint checkpoint;
   checkpoint.run = plan.run.id;
-  checkpoint.cell = simulation.cell();
-  checkpoint.state = simulation.state();
+  checkpoint.cell = cell;
+  checkpoint.state = state;
   checkpoint.cycle = cycle;
-  checkpoint.time_s = static_cast<double>(simulation.step()) * plan.scene.time_step;
-  checkpoint.theta = tilt(plan.protocol->drive(), simulation.step()).theta;
+  checkpoint.time_s = static_cast<double>(state.step) * plan.scene.time_step;
+  checkpoint.theta = tilt(plan.protocol->drive(), state.step).theta;
   checkpoint.units = units(plan.stage.parameters);
   const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
-  const Diagnostics facts = diagnose(checkpoint.cell, simulation.scene(), checkpoint.state, pose);
+  const Diagnostics facts = diagnose(cell, scene, state, pose);
   checkpoint.observables = {{"kinetic_energy_per_grain_m_d2_per_s2", facts.kinetic_energy},
                             {"mean_overlap_d", facts.mean_overlap},
                             {"largest_overlap_d", facts.largest_overlap},
@@ -117,10 +122,9 @@ Checkpoint make_checkpoint(const StagePlan& plan, const Simulation& simulation, 
                             {"cell_height_d", pose.top - pose.bottom}};
   if (plan.stage.stage == Stage::stiffen) {
     const Parameters& p = plan.stage.parameters;
-    const double raised = simulation.scene().stiffness / plan.scene.stiffness;
+    const double raised = scene.stiffness / plan.scene.stiffness;
     checkpoint.observables["stiffness_N_per_m"] = raised * p.stiffness_N_per_m;
-    checkpoint.observables["force_residual_P_d2"] =
-        force_residual(checkpoint.cell, simulation.scene(), checkpoint.state);
+    checkpoint.observables["force_residual_P_d2"] = force_residual(cell, scene, state);
   }
   return checkpoint;
 }

@@ -52,4 +52,8 @@ std::uint64_t chunk_steps(std::size_t grains);
 /// rather than keep a state that went wrong.
 Checkpoint make_checkpoint(const StagePlan& plan, const Simulation& simulation, double cycle);
 
+/// The same of a state that was looked at elsewhere; `scene` is what acts on it now.
+Checkpoint make_checkpoint(const StagePlan& plan, const Cell& cell, const Scene& scene,
+                           const State& state, double cycle);
+
 }  // namespace shearcell

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "experiments/engines/child_process.hpp"
+#include "experiments/engines/engine.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
@@ -19,7 +21,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A stage in progress: the simulation and what has not been recorded of it yet.
+// A stage in progress, and what has not been recorded of it yet.
 class Attempt {
  public:
   Attempt(Store& store, RunRecord run, const StageOptions& options)
@@ -34,15 +36,22 @@ class Attempt {
       if (options_.damaged) options_.damaged(what);
     }
     const bool fresh = !beginning.from;
-    store_.start_run(id(), host_facts(),
-                     fresh ? std::nullopt : std::optional(beginning.from->sha256),
+    const EngineOptions engine_options{options_.threads, options_.ranks, options_.checkpoint_every};
+    nlohmann::json facts = host_facts();
+    if (auto engine = engine_facts(plan_, engine_options); !engine.is_null()) {
+      facts["engine"] = std::move(engine);
+    }
+    store_.start_run(id(), facts, fresh ? std::nullopt : std::optional(beginning.from->sha256),
                      beginning.parent_checkpoint);
     try {
-      Simulation simulation = make_simulation(plan_, std::move(beginning), options_.threads);
-      first_step_ = simulation.step();
+      const auto engine = make_engine(plan_, std::move(beginning), engine_options);
+      first_step_ = engine->step();
       // The settled packing is cycle 0 of what follows.
-      if (fresh && plan_.stage.stage != Stage::prepare) record(simulation, 0);
-      return advance(simulation);
+      if (fresh && plan_.stage.stage != Stage::prepare) record(*engine, 0);
+      return advance(*engine);
+    } catch (const EngineError& error) {
+      store_.fail_run(id(), error.what(), nlohmann::json::object());
+      return StageOutcome::failed;
     } catch (const NumericalFailure& failure) {
       store_.fail_run(id(), failure.what(),
                       {{"quantity", failure.quantity},
@@ -55,38 +64,38 @@ class Attempt {
   }
 
  private:
-  StageOutcome advance(Simulation& simulation) {
-    const std::uint64_t chunk = chunk_steps(simulation.grains());
+  StageOutcome advance(Engine& engine) {
     for (;;) {
-      const StageProgress progress = plan_.protocol->advance(simulation, chunk);
-      if (progress.checkpoint_due) record(simulation, progress.cycle);
+      StageProgress progress = engine.advance();
+      const bool stop = !progress.finished && stop_requested();
+      if (stop && !progress.checkpoint_due) progress = engine.halt();
+      if (stop || progress.checkpoint_due) record(engine, progress.cycle);
       if (progress.finished) {
         store_.complete_run(id(), nlohmann::json::object(), plan_.run.target_cycles);
         return StageOutcome::completed;
       }
-      if (stop_requested()) {
-        if (!progress.checkpoint_due) record(simulation, progress.cycle);
+      if (stop) {
         store_.interrupt_run(id(), "stopped by a signal");
         return StageOutcome::interrupted;
       }
       if (!store_.holds(id())) return StageOutcome::lost;
-      report(simulation, progress.cycle);
+      report(engine, progress.cycle);
     }
   }
 
   const std::string& id() const { return plan_.run.id; }
 
-  void record(const Simulation& simulation, double cycle) {
-    const Checkpoint checkpoint = make_checkpoint(plan_, simulation, cycle);
-    const auto steps = static_cast<double>(simulation.evaluations() - recorded_evaluations_);
+  void record(const Engine& engine, double cycle) {
+    const Checkpoint checkpoint = engine.checkpoint(cycle);
+    const auto steps = static_cast<double>(engine.evaluations() - recorded_evaluations_);
     store_.record_checkpoint(
         id(), checkpoint,
-        {seconds_since(recorded_at_), steps * static_cast<double>(simulation.grains())});
+        {seconds_since(recorded_at_), steps * static_cast<double>(engine.grains())});
     recorded_at_ = Clock::now();
-    recorded_evaluations_ = simulation.evaluations();
+    recorded_evaluations_ = engine.evaluations();
   }
 
-  void report(const Simulation& simulation, double cycle) {
+  void report(const Engine& engine, double cycle) {
     const double since = seconds_since(reported_at_);
     if (!options_.report || since < 0.2) return;
     StageStatus status;
@@ -94,16 +103,17 @@ class Attempt {
     status.target_cycles =
         plan_.stage.stage != Stage::prepare ? static_cast<double>(plan_.run.target_cycles) : 0;
     status.steps_per_second =
-        static_cast<double>(simulation.evaluations() - reported_evaluations_) / since;
-    status.grains = simulation.grains();
-    status.step = simulation.step();
+        static_cast<double>(engine.evaluations() - reported_evaluations_) / since;
+    status.grains = engine.grains();
+    status.step = engine.step();
     const std::uint64_t end = plan_.protocol->expected_steps();
     const double mean_rate =
-        static_cast<double>(simulation.step() - first_step_) / seconds_since(started_at_);
-    status.seconds_left = end == 0 ? -1 : static_cast<double>(end - simulation.step()) / mean_rate;
+        static_cast<double>(engine.step() - first_step_) / seconds_since(started_at_);
+    status.seconds_left =
+        end == 0 || !(mean_rate > 0) ? -1 : static_cast<double>(end - engine.step()) / mean_rate;
     options_.report(status);
     reported_at_ = Clock::now();
-    reported_evaluations_ = simulation.evaluations();
+    reported_evaluations_ = engine.evaluations();
   }
 
   Store& store_;

@@ -28,6 +28,7 @@ struct StageStatus {
 struct StageOptions {
   std::uint64_t checkpoint_every = 1;               ///< cycles
   std::size_t threads = 1;                          ///< inside this one simulation
+  std::size_t ranks = 1;                            ///< processes of another engine
   std::function<void(const std::string&)> damaged;  ///< told of each checkpoint passed over
   std::function<void(const StageStatus&)> report;   ///< called a few times a second
 };
@@ -36,8 +37,9 @@ struct StageOptions {
 /// or else begins from its parent's last state, or from a fresh filling. Checks for
 /// stop_requested(), and whether the store still holds the run, between chunks of steps of about
 /// 50 ms.
-/// Throws StoreDamaged when the parent's last state cannot be read and GeometryError for a cell
-/// that cannot be filled, both before an attempt is recorded.
+/// Throws StoreDamaged when the parent's last state cannot be read, GeometryError for a cell that
+/// cannot be filled, and EngineError when the stage's engine is not installed, all before an
+/// attempt is recorded.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
 /// Whether the stage is completed and its last state can be read; else there is work left.

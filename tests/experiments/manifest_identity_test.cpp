@@ -57,8 +57,9 @@ TEST(Identity, DependsOnEachFieldAsTheSchemaSays) {
     const StageSpec other_prepare = prepare_stage(parameters, 1);
     const StageSpec other_shear = shear_stage(parameters, 1, other_prepare);
     EXPECT_EQ(other_prepare.key != prepare.key, settling_feels(field));
-    EXPECT_EQ(other_shear.key != shear.key,
-              settling_feels(field) || field.identity == Identity::shear);
+    EXPECT_EQ(other_shear.key != shear.key, settling_feels(field) ||
+                                                field.identity == Identity::shear ||
+                                                field.identity == Identity::shear_if_set);
   }
   EXPECT_GE(changed, 26);
 }
@@ -243,6 +244,25 @@ TEST(Identity, ADrawOfWallGrainsEntersOnlyWhereItIsNotTheFirst) {
   for (const json& value : {json(0), json(-1), json("one"), json(), json(1e300)}) {
     json record = other.resolved;
     record["parameters"]["wall_grain_draw"] = value;
+    EXPECT_THROW(read_stage(record), std::runtime_error) << value;
+  }
+}
+
+TEST(Identity, AnEngineEntersOnlyTheShearAndOnlyWhereItIsAnother) {
+  const StageSpec packing = prepare_stage({}, 1);
+  const StageSpec ours = shear_stage({}, 1, packing);
+  EXPECT_FALSE(ours.resolved.at("parameters").contains("engine"));
+  Parameters other;
+  other.engine = EngineKind::lammps;
+  EXPECT_EQ(prepare_stage(other, 1).key, packing.key);
+  const StageSpec theirs = shear_stage(other, 1, packing);
+  EXPECT_NE(theirs.key, ours.key);
+  EXPECT_EQ(read_stage(theirs.resolved).parameters.engine, EngineKind::lammps);
+  EXPECT_EQ(engine_of(theirs.resolved), EngineKind::lammps);
+  EXPECT_EQ(engine_of(ours.resolved), EngineKind::shearcell);
+  for (const json& value : {json("shearcell"), json("gromacs"), json(1)}) {
+    json record = theirs.resolved;
+    record["parameters"]["engine"] = value;
     EXPECT_THROW(read_stage(record), std::runtime_error) << value;
   }
 }

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What takes a stage on: our own simulation in this process, or LAMMPS beside it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "experiments/runner/stage.hpp"
+
+namespace shearcell {
+
+struct EngineOptions {
+  std::size_t threads = 1;             ///< inside our own simulation
+  std::size_t ranks = 1;               ///< processes of LAMMPS, under mpirun when more than one
+  std::uint64_t checkpoint_every = 1;  ///< cycles
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  /// Goes on for about 50 ms and tells where it is, as Protocol::advance does. Throws
+  /// NumericalFailure, and EngineError when another program failed.
+  virtual StageProgress advance() = 0;
+
+  /// Ends before the stage does, at a state that can be recorded.
+  virtual StageProgress halt() = 0;
+
+  /// What is recorded of the state at which the last call to one of these left it, or of the
+  /// beginning. Throws NumericalFailure.
+  virtual Checkpoint checkpoint(double cycle) const = 0;
+
+  virtual std::size_t grains() const = 0;
+  virtual std::uint64_t step() const = 0;         ///< where it is
+  virtual std::uint64_t evaluations() const = 0;  ///< of the forces since construction
+};
+
+/// Takes the beginning's cell and state over. For a stage of LAMMPS throws EngineError when it is
+/// not installed.
+std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,
+                                    const EngineOptions& options);
+
+/// What an attempt records of the engine beside the host: null for our own, else {name, version,
+/// program, processes}. Throws EngineError when it is not installed.
+nlohmann::json engine_facts(const StagePlan& plan, const EngineOptions& options);
+
+/// What LAMMPS cannot do, or not exactly, of what our own simulation does; one sentence each.
+std::vector<std::string> lammps_caveats();
+
+}  // namespace shearcell

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A stage of shear as LAMMPS reads it: a data file and an input deck, and the frames that come
+// back.
+//
+// LAMMPS's `fix nve` with an explicit drag -b v is our leapfrog with the implicit one, exactly,
+// when every mass is raised by b dt/2: with m' = m + b dt/2,
+//   v + (dt/m') (F + b u - b v) = [(1 - b dt/2m) v + dt (F/m + b/m u)] / (1 + b dt/2m).
+// So the two differ by rounding alone. README.md tells how each part of the scene is said.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "core/cell.hpp"
+#include "core/scene.hpp"
+#include "core/state.hpp"
+
+namespace shearcell {
+
+struct LammpsTask {
+  Cell cell;
+  Scene scene;
+  Drive drive;
+  State state;               ///< from which it begins
+  std::uint64_t end = 0;     ///< step at which it ends
+  std::uint64_t stride = 1;  ///< a frame at every multiple of it, and at the end
+  std::uint64_t look = 100;  ///< steps between two looks for a file `stop`, which ends it early
+  bool added_mass = true;    ///< false: the drag as LAMMPS users take it, wrong by order dt
+};
+
+/// The file `scene.data`: grains (ids 1 .. N), an atom for the moving wall (N + 1), wall grains.
+/// Lengths in d, masses in m, times in s.
+std::string lammps_data(const LammpsTask& task);
+
+/// The input deck. Run in a folder with `scene.data` it leaves there `frame.STEP` for every frame,
+/// each complete when it has that name; a file `stop` makes it leave one more and end.
+std::string lammps_deck(const LammpsTask& task);
+
+/// Reads a frame. Throws EngineError, naming the file, when it is not the whole state of so
+/// many grains.
+State read_lammps_frame(const std::filesystem::path& file, std::size_t grains);
+
+}  // namespace shearcell

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stages that LAMMPS computes, through the program: recorded like ours, named apart from ours,
+// continued after an interruption.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <set>
+
+#include "experiments/engines/child_process.hpp"
+#include "tests/experiments/program.hpp"
+
+namespace shearcell::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// $SHEARCELL_LAMMPS while it lives.
+struct NamedLammps {
+  explicit NamedLammps(const std::string& program) {
+    setenv("SHEARCELL_LAMMPS", program.c_str(), 1);
+  }
+  ~NamedLammps() { unsetenv("SHEARCELL_LAMMPS"); }
+  NamedLammps(const NamedLammps&) = delete;
+  NamedLammps& operator=(const NamedLammps&) = delete;
+};
+
+class EngineRun : public ProgramTest {
+ protected:
+  bool lammps() const { return find_program("lmp").has_value(); }
+
+  /// The run of that variant in `status --json`.
+  nlohmann::json run_of(const std::string& variant) {
+    const nlohmann::json status = json({"status", "--json"});
+    for (const nlohmann::json& run : status["runs"]) {
+      if (run["variant"] == variant) return run;
+    }
+    ADD_FAILURE() << "no variant " << variant;
+    return {};
+  }
+
+  std::vector<double> cycles(const std::string& id) {
+    std::vector<double> all;
+    const nlohmann::json run = json({"show", id, "--json"});
+    for (const nlohmann::json& c : run["checkpoints"]) {
+      all.push_back(c["cycle"]);
+    }
+    return all;
+  }
+
+  /// A program that passes for LAMMPS and then does as it is told.
+  std::string fake(const std::string& body) {
+    const std::string file = path("fake").string();
+    write("fake",
+          "#!/bin/sh\nif [ \"$1\" = -h ]; then echo 'Massively Parallel Simulator - "
+          "1 Jan 2000'; echo gran/hooke; exit 0; fi\n" +
+              body + "\n");
+    fs::permissions(file, fs::perms::owner_all);
+    return file;
+  }
+};
+
+TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
+  if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
+  const std::string manifest =
+      write("m.yaml", tiny_manifest("", "sweep: {grid: {engine: [shearcell, lammps]}}\n"));
+  const Outcome plan = run({"plan", manifest});
+  EXPECT_TRUE(contains(plan.out, "not the same bits")) << plan.out;
+  const Outcome outcome = run({"run", manifest, "--mpi", "1"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto ours = run_of("engine=shearcell"), theirs = run_of("engine=lammps");
+  EXPECT_NE(ours["id"], theirs["id"]);
+  EXPECT_NE(ours["state_hash"], theirs["state_hash"]);
+  EXPECT_EQ(cycles(theirs["id"]), (std::vector<double>{0, 1, 2}));
+  const auto a = json({"show", ours["id"], "--json"}), b = json({"show", theirs["id"], "--json"});
+  EXPECT_EQ(a["parent"], b["parent"]);
+  EXPECT_EQ(a["checkpoints"][0]["state_hash"], b["checkpoints"][0]["state_hash"]);
+  EXPECT_FALSE(a["resolved"]["parameters"].contains("engine"));
+  const double height = a["checkpoints"][2]["observables"]["cell_height_d"];
+  EXPECT_NEAR(height, b["checkpoints"][2]["observables"]["cell_height_d"], 0.1);
+  EXPECT_EQ(b["engine"]["name"], "LAMMPS");
+  EXPECT_EQ(b["engine"]["processes"], 1);
+  EXPECT_TRUE(a["engine"].is_null());
+  EXPECT_TRUE(contains(run({"show", theirs["id"]}).out, "engine   LAMMPS "));
+
+  ASSERT_EQ(run({"figures", "S2", "--out", "figures"}).code, 0);
+  const std::string csv = read_bytes(path("figures/S2a.csv"));
+  EXPECT_TRUE(contains(csv, "engine=lammps")) << csv;
+
+  // Ours alone are replayed, pruned and made again.
+  const auto replayed = json({"verify", "--replay", "99", "--json"});
+  EXPECT_TRUE(replayed["ok"]);
+  EXPECT_EQ(replayed["replay"]["left_out"], 3);
+  const auto pruned = json({"prune", "--keep-every", "2", "--yes", "--json"});
+  EXPECT_EQ(pruned["kept_of_other_engines"], 1);
+  const Outcome again = run({"regenerate", b["checkpoints"][1]["sha256"]});
+  EXPECT_EQ(again.code, 0) << "it is there and sound";
+  fs::remove(path("shearcell-store") / b["checkpoints"][1]["file"].get<std::string>());
+  const Outcome refused = run({"regenerate", b["checkpoints"][1]["sha256"]});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_TRUE(contains(refused.out, "LAMMPS made it")) << refused.out;
+}
+
+TEST_F(EngineRun, GoesOnWhereASignalStoppedIt) {
+  if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
+  const std::string manifest = write("m.yaml", tiny_manifest("  cycles: 6\n"));
+  ASSERT_EQ(run({"run", manifest, "--cycles", "0", "-q"}).code, 0);
+  const std::size_t packing = objects();
+  const Outcome stopped =
+      run_until({"run", manifest, "--engine", "lammps", "-q"}, packing + 2, SIGINT);
+  ASSERT_EQ(stopped.code, 85) << stopped.err;
+  const std::string id = run_of("engine=lammps")["id"];
+  const std::vector<double> before = cycles(id);
+  ASSERT_FALSE(before.empty());
+  EXPECT_LT(before.back(), 6);
+  ASSERT_EQ(run({"resume", "-q"}).code, 0);
+  const std::vector<double> after = cycles(id);
+  ASSERT_GT(after.size(), before.size());
+  EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin()));
+  for (double cycle = 0; cycle <= 6; ++cycle) {
+    EXPECT_TRUE(std::count(after.begin(), after.end(), cycle) == 1) << cycle;
+  }
+  EXPECT_EQ(run({"verify"}).code, 0);
+}
+
+TEST_F(EngineRun, GoesOnAfterAKill) {
+  if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
+  const std::string manifest = write("m.yaml", tiny_manifest("  cycles: 4\n"));
+  ASSERT_EQ(run({"run", manifest, "--cycles", "0", "-q"}).code, 0);
+  const std::size_t packing = objects();
+  run_until({"run", manifest, "--engine", "lammps", "-q"}, packing + 2, SIGKILL);
+  ASSERT_EQ(run({"resume", "-q"}).code, 0);
+  EXPECT_EQ(run_of("engine=lammps")["cycle"], 4);
+  EXPECT_EQ(run({"verify"}).code, 0);
+}
+
+TEST_F(EngineRun, SaysThatLammpsIsMissing) {
+  const NamedLammps nowhere("/no/such/lmp");
+  const std::string manifest = write("m.yaml", tiny_manifest());
+  const Outcome outcome = run({"run", manifest, "--engine", "lammps"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_TRUE(contains(outcome.err, "Debian package lammps")) << outcome.err;
+  EXPECT_FALSE(fs::exists(path("shearcell-store"))) << "nothing was begun";
+  EXPECT_TRUE(contains(run({"plan", manifest, "--engine", "lammps"}).out, "Debian package lammps"));
+}
+
+TEST_F(EngineRun, TellsWhatLammpsSaidWhenItFails) {
+  const std::string manifest = write("m.yaml", tiny_manifest());
+  for (const auto& [body, says] : std::vector<std::pair<std::string, std::string>>{
+           {"echo 'ERROR: Lost atoms'; exit 1", "ERROR: Lost atoms"},
+           {"kill -9 $$", "code 137"},
+           {"exit 0", "code 0"},
+           {"echo garbage > frame.10000; sleep 1", "frame.10000"}}) {
+    const NamedLammps program(fake(body));
+    const Outcome outcome = run({"run", manifest, "--engine", "lammps", "-q"});
+    EXPECT_EQ(outcome.code, 3) << body;
+    EXPECT_TRUE(contains(outcome.err, says)) << body << ": " << outcome.err;
+  }
+  EXPECT_EQ(run({"verify"}).code, 0);
+}
+
+TEST_F(EngineRun, RefusesWhatLammpsCannotDo) {
+  const std::string stiffen = write("s.yaml", tiny_manifest("  protocol: stiffen\n"));
+  const Outcome option = run({"plan", stiffen, "--engine", "lammps"});
+  EXPECT_EQ(option.code, 2);
+  EXPECT_TRUE(contains(option.err, "engine: LAMMPS cannot do the protocol stiffen")) << option.err;
+  const std::string both =
+      write("b.yaml", tiny_manifest("  protocol: stiffen\n  engine: lammps\n"));
+  const Outcome manifest = run({"plan", both});
+  EXPECT_EQ(manifest.code, 2);
+  EXPECT_TRUE(contains(manifest.err, "b.yaml:11:11: engine: LAMMPS")) << manifest.err;
+  const std::string swept =
+      write("w.yaml", tiny_manifest("", "sweep: {grid: {engine: [shearcell, lammps]}}\n"));
+  EXPECT_EQ(run({"plan", swept, "--engine", "lammps"}).code, 2);
+}
+
+}  // namespace
+}  // namespace shearcell::test

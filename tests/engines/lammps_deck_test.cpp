@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The text that LAMMPS is given, and what is made of the text that it gives back. No LAMMPS needed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "core/filling.hpp"
+#include "experiments/engines/lammps_deck.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell::test {
+namespace {
+
+LammpsTask loose_task(const Parameters& p) {
+  LammpsTask task;
+  task.cell = make_cell(geometry(p), 1);
+  task.scene = shear_scene(p);
+  task.drive = drive(p);
+  task.state = fill_cell(task.cell, geometry(p), 1);
+  task.end = 100;
+  return task;
+}
+
+Parameters small() {
+  Parameters p;
+  p.grains = 100;
+  return p;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// The number behind a piece of text.
+double number_after(const std::string& text, const std::string& words) {
+  const auto at = text.find(words);
+  EXPECT_NE(at, std::string::npos) << words;
+  return at == std::string::npos ? 0 : std::stod(text.substr(at + words.size()));
+}
+
+TEST(LammpsDeck, RaisesMassesByTheDragAndKeepsWeight) {
+  const LammpsTask task = loose_task(small());
+  const std::string deck = lammps_deck(task);
+  const double b = task.scene.drag_rate, dt = task.scene.time_step;
+  const double mass = 1 + b * dt / 2;
+  const double area = task.cell.width * task.cell.depth;
+  EXPECT_DOUBLE_EQ(number_after(deck, "set group grains mass "), mass);
+  EXPECT_DOUBLE_EQ(number_after(deck, "set group wall mass "),
+                   area * (task.scene.wall_mass + task.scene.wall_drag * dt / 2));
+  EXPECT_DOUBLE_EQ(number_after(deck, "fix weight grains gravity ") * mass, task.scene.gravity);
+  EXPECT_DOUBLE_EQ(number_after(deck, "fix drag grains viscous "), b);
+  EXPECT_DOUBLE_EQ(number_after(deck, "variable push equal "), task.scene.pressure * area);
+}
+
+TEST(LammpsDeck, HoldsNothingThatTheSceneLacks) {
+  Parameters p = small();
+  p.gravity_m_per_s2 = 0;
+  p.drag_kg_per_s = 0;
+  p.amplitude_rad = 0;
+  p.walls = WallTexture::smooth;
+  const std::string deck = lammps_deck(loose_task(p));
+  for (const char* part : {"gravity", "fix drag", "fix flow", "theta", "displace_atoms", "fcm"}) {
+    EXPECT_FALSE(contains(deck, part)) << part;
+  }
+  EXPECT_EQ(number_after(deck, "set group grains mass "), 1);
+}
+
+TEST(LammpsDeck, FollowsTheMovingWall) {
+  Parameters p = small();
+  const std::string bottom = lammps_deck(loose_task(p));
+  EXPECT_TRUE(contains(bottom, "variable bottom equal y[101]\n"));
+  EXPECT_TRUE(contains(bottom, "f_bottom_plane[1]+fcm(bottom,y)\n"));
+  EXPECT_FALSE(contains(bottom, "fix top top move"));
+  p.moving_wall = MovingWall::top;
+  const LammpsTask task = loose_task(p);
+  const std::string top = lammps_deck(task);
+  EXPECT_TRUE(contains(top, "variable top equal y[101]\n"));
+  EXPECT_TRUE(contains(top, "fix top top move"));
+  EXPECT_LT(number_after(top, "variable push equal "), 0) << "the pressure points inwards";
+}
+
+TEST(LammpsDeck, WritesEveryAtomOnceWithAVelocity) {
+  const LammpsTask task = loose_task(small());
+  const std::size_t atoms = 101 + task.cell.wall_grains.size();
+  std::istringstream data(lammps_data(task));
+  std::size_t lines = 0, sections = 0;
+  std::vector<std::size_t> seen(atoms + 1, 0);
+  for (std::string line; std::getline(data, line);) {
+    if (line.rfind("Atoms", 0) == 0 || line == "Velocities") ++sections;
+    if (sections == 0 || line.empty() || !std::isdigit(static_cast<unsigned char>(line[0]))) {
+      continue;
+    }
+    ++lines;
+    const std::size_t id = std::stoul(line);
+    ASSERT_LE(id, atoms);
+    ++seen[id];
+  }
+  EXPECT_EQ(lines, 2 * atoms);
+  EXPECT_EQ(std::count(seen.begin() + 1, seen.end(), 2U), static_cast<long>(atoms));
+}
+
+class LammpsFrame : public testing::Test {
+ protected:
+  State read(const std::string& text) {
+    const auto file = folder_.path() / "frame.7";
+    std::ofstream(file, std::ios::binary) << text;
+    return read_lammps_frame(file, 2);
+  }
+
+  static std::string frame(const std::string& rows, int atoms = 3) {
+    return "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n" + std::to_string(atoms) +
+           "\nITEM: BOX BOUNDS ss ss pp\n0 1\n0 1\n0 1\nITEM: ATOMS id xu yu zu v_a v_b v_c\n" +
+           rows;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(LammpsFrame, IsReadInAnyOrder) {
+  const State state = read(frame("3 0 2.5 0 0 -1 0\n2 4 5 -6e-1 7 8 9\n1 1 2 3 4 5 6\n"));
+  EXPECT_EQ(state.step, 7U);
+  EXPECT_EQ(state.wall_height, 2.5);
+  EXPECT_EQ(state.wall_velocity, -1);
+  EXPECT_EQ(state.position.col(1), Eigen::Vector3d(4, 5, -0.6));
+  EXPECT_EQ(state.velocity.col(0), Eigen::Vector3d(4, 5, 6));
+}
+
+TEST_F(LammpsFrame, IsRefusedWhenItIsNotWhole) {
+  const std::string good = "1 1 2 3 4 5 6\n2 4 5 6 7 8 9\n3 0 2.5 0 0 -1 0\n";
+  for (const std::string& text :
+       {std::string(), frame(good.substr(0, 20)), frame(good, 4), frame("ITEM: ATOMS\n"),
+        frame("1 1 2 3 4 5 6\n1 4 5 6 7 8 9\n3 0 2.5 0 0 -1 0\n"),
+        frame("0 1 2 3 4 5 6\n2 4 5 6 7 8 9\n3 0 2.5 0 0 -1 0\n"),
+        frame("1 1 2 x 4 5 6\n2 4 5 6 7 8 9\n3 0 2.5 0 0 -1 0\n"),
+        frame("1 1 2 1e999 4 5 6\n2 4 5 6 7 8 9\n3 0 2.5 0 0 -1 0\n")}) {
+    try {
+      read(text);
+      ADD_FAILURE() << "was read: " << text;
+    } catch (const std::runtime_error& error) {
+      EXPECT_TRUE(contains(error.what(), "frame.7")) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shearcell::test

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One packing in our engine and in LAMMPS: after 200 steps under shear every grain and the moving
+// wall are at the same place, whatever the scene. Rounding alone would leave 1e-12 d.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/filling.hpp"
+#include "core/simulation.hpp"
+#include "experiments/engines/lammps_run.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "protocols/settle.hpp"
+
+namespace shearcell::test {
+namespace {
+
+struct Case {
+  const char* name;
+  std::function<void(Parameters&)> change;
+  std::size_t ranks = 1;
+  bool resting = false;  ///< begins shortly before a pause ends
+};
+
+void PrintTo(const Case& scene, std::ostream* out) {
+  *out << scene.name;
+}
+
+// A pressed packing after some steps of the scene's own shear.
+LammpsTask task_of(const Case& scene) {
+  Parameters p;
+  p.grains = 300;
+  p.amplitude_rad = 0.1;
+  p.period_s = 0.5;  // walls that move fast
+  p.steps_per_cycle = 10000;
+  scene.change(p);
+  LammpsTask task;
+  task.cell = make_cell(geometry(p), 1);
+  task.scene = shear_scene(p);
+  task.drive = drive(p);
+  Parameters pressing = p;
+  pressing.drag_kg_per_s = Parameters{}.drag_kg_per_s;
+  const State loose = fill_cell(task.cell, geometry(p), 1);
+  Simulation simulation(task.cell, task.scene,
+                        pressed(task.cell, loose, settle_scene(pressing), {}));
+  simulation.advance(task.drive, scene.resting ? cycle_steps(task.drive) - 100 : 500);
+  task.state = simulation.state();
+  task.end = task.state.step + 200;
+  task.stride = 1'000'000;
+  return task;
+}
+
+class LammpsTrajectory : public testing::TestWithParam<Case> {
+ protected:
+  void SetUp() override {
+    if (!find_program("lmp")) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
+    if (GetParam().ranks > 1 && !find_program("mpirun")) {
+      GTEST_SKIP() << "needs mpirun (Debian package openmpi-bin)";
+    }
+  }
+};
+
+TEST_P(LammpsTrajectory, IsOurs) {
+  const LammpsTask task = task_of(GetParam());
+  LammpsRun run(find_lammps(), task, GetParam().ranks);
+  const auto theirs = run.next_frame(std::chrono::minutes(5));
+  ASSERT_TRUE(theirs.has_value());
+  run.finish();
+  Simulation simulation(task.cell, task.scene, task.state);
+  simulation.advance(task.drive, 200);
+  const State ours = simulation.state();
+  const double apart = (ours.position - theirs->position).colwise().norm().maxCoeff();
+  const double moved = (ours.position - task.state.position).colwise().norm().maxCoeff();
+  std::printf("moved %.2g d, apart %.2g d, the wall %.2g d\n", moved, apart,
+              std::fabs(ours.wall_height - theirs->wall_height));
+  EXPECT_EQ(theirs->step, task.end);
+  EXPECT_GT(moved, 0.01);
+  EXPECT_LT(apart, 1e-9);
+  EXPECT_LT(std::fabs(ours.wall_height - theirs->wall_height), 1e-10);
+  const double faster = (ours.velocity - theirs->velocity).colwise().norm().maxCoeff();
+  EXPECT_LT(faster, 1e-5);  // d/s, beside some 10 d/s
+  EXPECT_LT(std::fabs(ours.wall_velocity - theirs->wall_velocity), 1e-6);
+}
+
+void top(Parameters& p) {
+  p.moving_wall = MovingWall::top;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, LammpsTrajectory,
+    testing::Values(Case{"TableI", [](Parameters&) {}}, Case{"TopMoves", top},
+                    Case{"Smooth", [](Parameters& p) { p.walls = WallTexture::smooth; }},
+                    Case{"SmoothTop",
+                         [](Parameters& p) {
+                           top(p);
+                           p.walls = WallTexture::smooth;
+                         }},
+                    Case{"NoGravity", [](Parameters& p) { p.gravity_m_per_s2 = 0; }},
+                    Case{"NoDrag", [](Parameters& p) { p.drag_kg_per_s = 0; }},
+                    Case{"NoDragAtAll",
+                         [](Parameters& p) { p.drag_kg_per_s = p.wall_drag_grains_per_d2_s = 0; }},
+                    Case{"MovingFluid", [](Parameters& p) { p.fluid = Fluid::cell; }},
+                    Case{"MovingFluidTop",
+                         [](Parameters& p) {
+                           top(p);
+                           p.fluid = Fluid::cell;
+                         }},
+                    Case{"EndOfAPause",
+                         [](Parameters& p) {
+                           p.fluid = Fluid::cell;
+                           p.protocol = "paused";
+                           p.pause_s = 0.01;
+                         },
+                         1, true},
+                    Case{"TwoProcesses", [](Parameters& p) { p.fluid = Fluid::cell; }, 2}),
+    [](const auto& scene) { return std::string(scene.param.name); });
+
+TEST(LammpsDrag, ExplicitlyErrsByOrderDt) {
+  if (!find_program("lmp")) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
+  LammpsTask task = task_of({"", [](Parameters&) {}});
+  task.added_mass = false;
+  const auto apart = [&](std::uint64_t finer) {
+    LammpsTask fine = task;
+    fine.scene.time_step /= static_cast<double>(finer);
+    fine.drive.steps_per_cycle *= finer;
+    fine.state.step *= finer;
+    fine.end = fine.state.step + 50 * finer;
+    LammpsRun run(find_lammps(), fine, 1);
+    const auto theirs = run.next_frame(std::chrono::minutes(5));
+    Simulation simulation(fine.cell, fine.scene, fine.state);
+    simulation.advance(fine.drive, 50 * finer);
+    return (simulation.state().position - theirs->position).colwise().norm().maxCoeff();
+  };
+  const double coarse = apart(1), fine = apart(4);
+  std::printf("apart %.2g d at dt, %.2g d at dt/4\n", coarse, fine);
+  EXPECT_GT(coarse, 1e-7) << "without the added mass the difference is not rounding";
+  EXPECT_NEAR(std::log2(coarse / fine) / 2, 1, 0.25);
+}
+
+}  // namespace
+}  // namespace shearcell::test
