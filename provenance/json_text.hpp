@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// JSON that nobody vouches for. The library reads it without recursion, and then writes, copies
+// and compares it with recursion: nested deeply enough, it would end the program.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+
+namespace shearcell {
+
+/// A discarded value when the text is no JSON or is nested deeper than StoreLimits::json_depth.
+nlohmann::json parse_json(std::string_view text);
+/// The same of CBOR, which the library reads with recursion too.
+nlohmann::json parse_cbor(std::span<const std::byte> bytes);
+
+}  // namespace shearcell
