@@ -71,4 +71,11 @@ nlohmann::json parse_cbor(std::span<const std::byte> bytes) {
   return json::from_cbor(first, last, true, false);
 }
 
+std::uint64_t count_at(const nlohmann::json& object, const char* key) {
+  const nlohmann::json& value = object.at(key);
+  if (value.is_number_unsigned()) return value.get<std::uint64_t>();
+  throw nlohmann::json::type_error::create(
+      302, std::string(key) + " must be a whole number, but is " + value.type_name(), &value);
+}
+
 }  // namespace shearcell

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
@@ -14,5 +15,9 @@ namespace shearcell {
 nlohmann::json parse_json(std::string_view text);
 /// The same of CBOR, which the library reads with recursion too.
 nlohmann::json parse_cbor(std::span<const std::byte> bytes);
+
+/// A whole number from 0 to 2^64 - 1 of an object. Throws nlohmann::json::exception when it is
+/// missing or something else; the library's own `get` would cast 1e300 to it.
+std::uint64_t count_at(const nlohmann::json& object, const char* key);
 
 }  // namespace shearcell

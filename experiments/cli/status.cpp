@@ -82,20 +82,20 @@ void print(const std::vector<RunRecord>& runs, const std::map<std::string, Lease
     ++count[run.state];
   }
   for (const std::string& name : experiments) {
-    fmt::print("{}\n", name);
+    tell("{}\n", name);
     print_table({"run", "variant", "seed", "N", "state", "cycle", "M/s", "time"}, tables[name]);
-    fmt::print("\n");
+    tell("\n");
   }
   std::string all;
   for (const auto& [state, runs_in_it] : count) {
     all += fmt::format("{}{} {}", all.empty() ? "" : ", ", runs_in_it, name_of(state));
   }
-  fmt::print("{} stages{}{}\n", runs.size(), all.empty() ? "" : ": ", all);
+  tell("{} stages{}{}\n", runs.size(), all.empty() ? "" : ": ", all);
   for (const auto& [run, lease] : by_run) {
-    fmt::print("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
+    tell("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
   }
   for (const RunRecord& run : runs) {
-    if (!run.error.empty()) fmt::print("{}: {}\n", run.id.substr(0, 8), run.error);
+    if (!run.error.empty()) tell("{}: {}\n", run.id.substr(0, 8), run.error);
   }
 }
 

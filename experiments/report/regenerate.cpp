@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <set>
 #include <span>
@@ -16,6 +15,8 @@
 #include "experiments/runner/host.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/plain_file.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -175,9 +176,7 @@ std::vector<FigureRun> figure_runs(const std::vector<Input>& inputs,
 }
 
 std::filesystem::path write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << text;
-  if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+  write_output(path, text);
   return path;
 }
 
@@ -253,6 +252,14 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
   RegeneratedFigure& result = computed.about;
   const FigureResult& made = computed.result;
   std::filesystem::create_directories(options.folder);
+  for (const FigureTable& table : made.tables) require_own_files(table, options.folder);
+  require_ours(options.folder / (result.name + ".verdict.json"), [](std::string_view beginning) {
+    return beginning.starts_with("{\n \"claims\": [");
+  });
+  require_ours(options.folder / (result.name + ".lineage.json"), [&](std::string_view beginning) {
+    return beginning.starts_with("{\n \"analysis_version\": ") &&
+           beginning.find("\n \"figure\": \"" + result.name + "\"") != beginning.npos;
+  });
   for (const FigureTable& table : made.tables) {
     result.files.push_back(write_csv(table, options.folder));
     try {
