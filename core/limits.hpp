@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much of anything is taken in, in one place: every input is untrusted, and none may cost more
-// than its limit. tests/README.md has them as a table, with what enforces each.
+// than its limit. experiments/README.md has them as a table, with what comes of more.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "provenance/json_text.hpp"
 
+#include <fmt/format.h>
+
 #include "core/limits.hpp"
+#include "provenance/event_log.hpp"
 
 namespace shearcell {
 
@@ -76,6 +79,11 @@ std::uint64_t count_at(const nlohmann::json& object, const char* key) {
   if (value.is_number_unsigned()) return value.get<std::uint64_t>();
   throw nlohmann::json::type_error::create(
       302, std::string(key) + " must be a whole number, but is " + value.type_name(), &value);
+}
+
+StoreDamaged damaged_payload(const Event& event, const nlohmann::json::exception& problem) {
+  return StoreDamaged(fmt::format("event {} ({} of {}): its payload is not as it must be: {}",
+                                  event.seq, event.type, event.stream, problem.what()));
 }
 
 }  // namespace shearcell

@@ -41,8 +41,7 @@ class Folding {
         if (CheckpointHistory* known = find(body)) known->pruned = event.type == "CheckpointPruned";
       }
     } catch (const json::exception& problem) {
-      throw StoreDamaged(fmt::format("event {} ({} of {}): its payload is not as it must be: {}",
-                                     event.seq, event.type, event.stream, problem.what()));
+      throw damaged_payload(event, problem);
     }
   }
 

@@ -227,8 +227,7 @@ void apply(Database& database, const Event& event) {
     if (event.stream.starts_with("run/")) apply_to_run(database, event, event.body());
     if (event.stream.starts_with("figure/")) record_figure(database, event, event.body());
   } catch (const json::exception& problem) {
-    throw StoreDamaged(fmt::format("event {} ({} of {}): its payload is not as it must be: {}",
-                                   event.seq, event.type, event.stream, problem.what()));
+    throw damaged_payload(event, problem);
   }
 }
 

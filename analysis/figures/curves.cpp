@@ -137,7 +137,7 @@ std::string literal(const std::string& text) {
   std::string inside;
   for (const char c : text) {
     if (c == '\'') inside += '\'';
-    if (c != '\n') inside += c;
+    if (static_cast<unsigned char>(c) >= 0x20) inside += c;  // a line's end would end the text
   }
   return fmt::format("'{}'", inside);
 }

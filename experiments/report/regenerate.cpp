@@ -31,10 +31,14 @@ std::vector<ManifestFacts> manifests(const Store& store) {
   std::vector<ManifestFacts> found;
   for (const Event& event : store.events()) {
     if (event.type != "ManifestRegistered") continue;
-    const nlohmann::json body = event.body();
-    const nlohmann::json& info = body.at("info");
-    found.push_back({info.at("experiment").get<std::string>(),
-                     info.at("figures").get<std::vector<std::string>>()});
+    try {
+      const nlohmann::json body = event.body();
+      const nlohmann::json& info = body.at("info");
+      found.push_back({info.at("experiment").get<std::string>(),
+                       info.at("figures").get<std::vector<std::string>>()});
+    } catch (const nlohmann::json::exception& problem) {
+      throw damaged_payload(event, problem);
+    }
   }
   return found;
 }

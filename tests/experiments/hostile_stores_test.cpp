@@ -371,7 +371,7 @@ std::vector<Case> damaged_events() {
        payload("ManifestRegistered", [](auto& b) { b.erase("info"); }),
        {"figures", "--all"},
        4,
-       {"shearcell verify", "backup"}},
+       {"ManifestRegistered", "info"}},
       {"manifest_of_another_text",
        payload("ManifestRegistered", [](auto& b) { b["text"] = "a: 1"; }),
        {"show", "S2a.csv"},
@@ -379,13 +379,15 @@ std::vector<Case> damaged_events() {
        {"has another SHA-256"}},
       {"parameters_of_another_run",
        [](auto& s) {
-         payload("RunDeclared",
-                 [](auto& b) { b["resolved"]["parameters"]["grains"] = 100'000'000; })(s);
+         payload("RunDeclared", [](auto& b) {
+           b["resolved"]["parameters"]["grains"] = 100'000'000;
+           b["target_cycles"] = 5;
+         })(s);
          Store(s, Access::write).rebuild();
        },
-       {"run", "m.yaml", "--cycles", "2"},
-       2,
-       {}},
+       {"resume"},
+       4,
+       {"are not those that it is named after"}},
   };
 }
 
