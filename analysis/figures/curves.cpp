@@ -39,9 +39,13 @@ std::string plain_title(const std::string& text) {
   return result;
 }
 
-/// gnuplot's strcol() ends a field at a comma, quoted or not.
-std::string without_commas(std::string variant) {
-  std::replace(variant.begin(), variant.end(), ',', ';');
+/// gnuplot's strcol() ends a field at a comma, quoted or not. Quotes and control characters are in
+/// no name that a manifest gives; in a stranger's store they may be.
+std::string plain_field(std::string variant) {
+  const auto odd = [](char c) {
+    return c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20;
+  };
+  std::replace_if(variant.begin(), variant.end(), odd, ';');
   return variant;
 }
 
@@ -99,7 +103,7 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs,
   std::vector<std::pair<std::size_t, Curve>> ranked;
   for (auto& [variant, members] : variants) {
     Curve curve;
-    curve.variant = without_commas(variant);
+    curve.variant = plain_field(variant);
     curve.value = value_of(*members.front());
     curve.points = points_of(members);
     curve.runs = std::move(members);

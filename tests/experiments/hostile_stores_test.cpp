@@ -39,7 +39,7 @@ class RawLog {
   sqlite3* handle_ = nullptr;
 };
 
-std::string quoted(const std::string& text) {
+std::string sql_text(const std::string& text) {
   std::string literal = "'";
   for (const char c : text) literal.append(c == '\'' ? 2 : 1, c);
   return literal + "'";
@@ -61,9 +61,9 @@ Damage forged(const std::function<void(Event&)>& change) {
       change(event);
       event.prev_hash = prev;
       prev = event.hash = event_hash(event);
-      log.run("UPDATE events SET type = " + quoted(event.type) +
+      log.run("UPDATE events SET type = " + sql_text(event.type) +
               ", schema = " + std::to_string(event.schema) +
-              ", payload = " + quoted(event.payload) + ", prev_hash = '" + event.prev_hash +
+              ", payload = " + sql_text(event.payload) + ", prev_hash = '" + event.prev_hash +
               "', hash = '" + event.hash + "' WHERE seq = " + std::to_string(event.seq));
     }
   };
