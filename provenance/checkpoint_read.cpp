@@ -61,26 +61,6 @@ Cell read_cell(const Object& group) {
   return cell;
 }
 
-/// Numbers far outside of any cell would take an analysis forever, or out of the range of a double.
-void require_plausible(const Checkpoint& checkpoint) {
-  constexpr double farthest = 1e9;  // [d]; grains may drift along the period
-  constexpr double steepest = 1.5;  // [rad]
-  const Cell& cell = checkpoint.cell;
-  if (!(cell.width > 0 && cell.depth > 0)) fail("/restart/cell", "has no width or no depth");
-  for (const double length :
-       {cell.width, cell.depth, cell.bottom, cell.top, checkpoint.state.wall_height}) {
-    if (std::abs(length) > farthest) fail("/restart/cell", "is larger than any cell");
-  }
-  if (std::abs(checkpoint.theta) > steepest) fail("/restart/theta", "is no tilt of a cell");
-  const bool near = (checkpoint.state.position.array().abs() <= farthest).all();
-  if (!near) fail("/restart/position", "has a grain far outside of any cell");
-  for (const WallGrain& grain : cell.wall_grains) {
-    if (grain.position.cwiseAbs().maxCoeff() > farthest) {
-      fail("/restart/cell/wall_grain_position", "has a grain far outside of any cell");
-    }
-  }
-}
-
 void read_restart(const Object& restart, Checkpoint& checkpoint) {
   if (restart.count("format") != hdf5::kRestartFormat) {
     fail("/restart/format", "this program does not know the format; use the one that wrote it");
@@ -100,7 +80,6 @@ void read_restart(const Object& restart, Checkpoint& checkpoint) {
     fail("/restart/velocity", "has another length than position");
   }
   checkpoint.cell = read_cell(restart.child("cell"));
-  require_plausible(checkpoint);
 }
 
 }  // namespace

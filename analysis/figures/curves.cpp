@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "analysis/binning.hpp"
@@ -39,11 +41,13 @@ std::string plain_title(const std::string& text) {
   return result;
 }
 
-/// gnuplot's strcol() ends a field at a comma, quoted or not. Quotes and control characters are in
-/// no name that a manifest gives; in a stranger's store they may be.
+/// gnuplot's strcol() ends a field at a comma, quoted or not, and reads quotes in ways of its own.
+/// No name that a manifest gives has other characters than these; one of a stranger's store may.
 std::string plain_field(std::string variant) {
   const auto odd = [](char c) {
-    return c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20;
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < 0x80 && std::isalnum(byte) == 0 &&
+           std::string_view("=.+-_;: /").find(c) == std::string_view::npos;
   };
   std::replace_if(variant.begin(), variant.end(), odd, ';');
   return variant;

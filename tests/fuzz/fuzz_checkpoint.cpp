@@ -3,6 +3,7 @@
 #include "analysis/measures.hpp"
 #include "provenance/checkpoint.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/plausible.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/fuzz/targets.hpp"
 
@@ -30,6 +31,7 @@ void run(Input input) {
       return;
     }
     check_round_trip(checkpoint);
+    require_plausible(checkpoint);
     analyse(checkpoint);
   } catch (const StoreDamaged&) {
   } catch (const AnalysisError&) {
