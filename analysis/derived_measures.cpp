@@ -4,6 +4,7 @@
 #include "analysis/crystal.hpp"
 #include "analysis/error.hpp"
 #include "analysis/packing_fraction.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -77,8 +78,7 @@ std::vector<std::byte> encode_result(const json& result) {
 }
 
 json decode_result(std::span<const std::byte> bytes) {
-  const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  json result = json::from_cbor(first, first + bytes.size(), true, false);
+  json result = parse_cbor(bytes);
   if (result.is_discarded()) throw AnalysisError("a kept result is no CBOR");
   return result;
 }

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 
 #include "analysis/error.hpp"
 #include "analysis/figures/figures.hpp"
+#include "provenance/plain_file.hpp"
 
 namespace shearcell {
 namespace {
@@ -93,10 +93,7 @@ std::string to_csv(const FigureTable& table) {
 
 std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / (table.name + ".csv");
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << to_csv(table);
-  file.close();
-  if (!file) throw AnalysisError("cannot write " + path.string());
+  write_output(path, to_csv(table));
   return path;
 }
 

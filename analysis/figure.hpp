@@ -61,7 +61,7 @@ struct FigureTable {
 /// leaves its field empty.
 std::string to_csv(const FigureTable& table);
 
-/// Writes FOLDER/NAME.csv and returns its path. Throws AnalysisError when it cannot.
+/// Writes FOLDER/NAME.csv and returns its path. Throws std::runtime_error when it cannot.
 std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder);
 
 /// The panels of a figure in order, and what the supplement's claims of it come to.

@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,9 +11,12 @@
 
 #include "analysis/error.hpp"
 #include "analysis/program.hpp"
+#include "provenance/plain_file.hpp"
 
 namespace shearcell {
 namespace {
+
+constexpr const char* script_beginning = "set terminal svg size ";
 
 constexpr const char* style =
     "set encoding utf8\n"
@@ -65,13 +69,27 @@ void keep_spaces(const std::filesystem::path& svg) {
   for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at)) {
     text.replace(at, plain.size(), keeping);
   }
-  std::ofstream out(svg, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  if (!in || !out) throw AnalysisError("cannot write " + svg.string());
+  if (!in) throw AnalysisError("cannot read " + svg.string());
+  write_output(svg, text);
 }
 
 }  // namespace
+
+void require_own_files(const FigureTable& table, const std::filesystem::path& folder) {
+  require_plain_name(table.name);
+  const std::filesystem::path base = folder / table.name;
+  const auto is_script = [](std::string_view beginning) {
+    return beginning.starts_with(script_beginning);
+  };
+  require_ours(base.string() + ".gp", is_script);
+  const bool drawn = std::filesystem::exists(base.string() + ".gp");
+  const std::string header = to_csv({.name = table.name, .columns = table.columns});
+  require_ours(base.string() + ".csv",
+               [&](std::string_view beginning) { return drawn || beginning.starts_with(header); });
+  for (const char* kind : {".svg", ".pdf"}) {
+    require_ours(base.string() + kind, [&](std::string_view) { return drawn; });
+  }
+}
 
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder) {
   require_plain_name(table.name);
@@ -80,14 +98,14 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
   if (!std::filesystem::exists(folder / (table.name + ".csv"))) {
     throw AnalysisError("there is no " + table.name + ".csv in " + folder.string() + " to draw");
   }
-  std::ofstream file(script, std::ios::binary | std::ios::trunc);
-  file << "set terminal svg size " << table.width << ',' << table.height
+  std::ostringstream text;
+  text << script_beginning << table.width << ',' << table.height
        << " enhanced font 'Helvetica,14' background '#ffffff'\n"
        << style << "set output '" << table.name << ".svg'\n"
        << "data = '" << table.name << ".csv'\n"
        << table.plot << (table.rows.empty() ? empty_plot : "") << "set output\n";
-  file.close();
-  if (!file) throw AnalysisError("cannot write " + script.string());
+  write_output(script, text.str());
+  std::filesystem::remove(svg);  // gnuplot would follow a link
 
   // -d keeps a user's own defaults out of the figure.
   const std::optional<ProgramOutcome> outcome =
@@ -107,6 +125,7 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
 std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path& svg) {
   std::filesystem::path pdf = svg;
   pdf.replace_extension(".pdf");
+  std::filesystem::remove(pdf);  // rsvg-convert would follow a link
   const std::optional<ProgramOutcome> outcome =
       run_timeless(svg.parent_path(), {"rsvg-convert", "--format=pdf", "--output",
                                        pdf.filename().string(), svg.filename().string()});

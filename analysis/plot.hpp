@@ -9,6 +9,11 @@
 
 namespace shearcell {
 
+/// Throws NotOurs when something that this program did not make stands where the table and its
+/// drawings go: a script of ours is known by its first words, the CSV by its header or by the
+/// script beside it, drawings by that script.
+void require_own_files(const FigureTable& table, const std::filesystem::path& folder);
+
 /// Draws FOLDER/NAME.svg from FOLDER/NAME.csv, which write_csv() must have left there, and keeps
 /// the script beside them as FOLDER/NAME.gp (`gnuplot -d NAME.gp` in that folder draws it again).
 /// Returns the path of the SVG. The same table gives the same bytes with the same gnuplot.

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "core/limits.hpp"
 #include "provenance/hdf5_handle.hpp"
 #include "provenance/hdf5_write.hpp"
 #include "provenance/sha256.hpp"
@@ -101,7 +102,7 @@ void put_particles(const Handle& file, const Checkpoint& checkpoint) {
 }
 
 void put_observables(const Handle& file, const Checkpoint& checkpoint) {
-  const Handle group = make_group(file, "observables");
+  const Handle group = make_group(file, "observables", checkpoint.observables.size());
   for (const auto& [name, value] : checkpoint.observables) {
     put_element(group, name, checkpoint, &value, {1}, "");
   }
@@ -148,7 +149,8 @@ void require_sound(const Checkpoint& c) {
   const auto refuse = [](const std::string& why) {
     throw std::invalid_argument("a checkpoint cannot be written: " + why);
   };
-  if (c.run.size() > 4096 || c.run.find('\0') != std::string::npos) refuse("bad run id");
+  if (c.run.size() > StoreLimits::text || c.run.find('\0') != std::string::npos)
+    refuse("bad run id");
   if (c.state.position.cols() != c.state.velocity.cols()) {
     refuse("there are not as many velocities as positions");
   }
@@ -163,7 +165,9 @@ void require_sound(const Checkpoint& c) {
         c.cell.bottom, c.cell.top, c.state.wall_height, c.state.wall_velocity}) {
     if (!std::isfinite(value)) refuse("a number of the cell, wall or clock is not finite");
   }
+  if (c.observables.size() > StoreLimits::observables) refuse("there are too many observables");
   for (const auto& [name, value] : c.observables) {
+    if (name.size() > StoreLimits::text) refuse("the name of an observable is too long");
     if (name.empty() || name == "." || name.find_first_of(std::string("/\0", 2)) != name.npos) {
       refuse("'" + name + "' cannot name an observable");
     }

@@ -79,6 +79,9 @@ void DerivedCache::open() {
   if (database.integer("PRAGMA user_version") != kLayout) {
     throw StoreDamaged(file_.string() + ": another layout");
   }
+  // A trigger or view of a stranger would run whenever something is kept.
+  sqlite::Statement odd(database, "SELECT 1 FROM sqlite_schema WHERE instr(?1, sql) = 0");
+  if (odd.bind(1, kTable).step()) throw StoreDamaged(file_.string() + ": another schema");
 }
 
 void DerivedCache::start_over() {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/upcast.hpp"
 
@@ -71,10 +72,12 @@ std::string changed_field(const Event& event, const std::string& prev_hash, std:
 }  // namespace
 
 nlohmann::json Event::body() const {
-  nlohmann::json body = nlohmann::json::parse(payload, nullptr, false);
+  nlohmann::json body = parse_json(payload);
   if (!body.is_object()) {
-    throw StoreDamaged(fmt::format(
-        "event {} ({} of {}): its payload is not a JSON object; run `verify`", seq, type, stream));
+    throw StoreDamaged(
+        fmt::format("event {} ({} of {}): its payload is not a JSON object (or one nested too "
+                    "deeply); run `verify`",
+                    seq, type, stream));
   }
   try {
     return upcast(type, schema, std::move(body));

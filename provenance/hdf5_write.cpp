@@ -18,8 +18,10 @@ Handle creation_list(hid_t kind) {
   return list;
 }
 
-Handle make_group(const Handle& parent, const std::string& name) {
+Handle make_group(const Handle& parent, const std::string& name, std::size_t links) {
   const Handle list = creation_list(H5P_GROUP_CREATE);
+  // More than eight links would go into a heap, which hdf5_read.cpp does not read.
+  if (links > 8) H5Pset_link_phase_change(list.get(), 65535, 0);
   return {require(H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
                   "group " + name),
           H5Gclose};

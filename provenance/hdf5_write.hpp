@@ -19,7 +19,8 @@ hid_t require(hid_t result, const std::string& what);
 /// Property list for creating files, groups or datasets without times of writing.
 Handle creation_list(hid_t kind);
 
-Handle make_group(const Handle& parent, const std::string& name);
+/// For so many members.
+Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0);
 
 /// A scalar when the shape is empty.
 Handle make_space(const Shape& shape);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -40,8 +41,7 @@ class Folding {
         if (CheckpointHistory* known = find(body)) known->pruned = event.type == "CheckpointPruned";
       }
     } catch (const json::exception& problem) {
-      throw StoreDamaged(fmt::format("event {} ({} of {}): its payload is not as it must be: {}",
-                                     event.seq, event.type, event.stream, problem.what()));
+      throw damaged_payload(event, problem);
     }
   }
 
@@ -76,10 +76,10 @@ class Folding {
     CheckpointHistory checkpoint;
     CheckpointRecord& c = checkpoint.record;
     c.run = lineage_.run.id;
-    body.at("step").get_to(c.step);
+    c.step = count_at(body, "step");
     body.at("cycle").get_to(c.cycle);
     body.at("time_s").get_to(c.time_s);
-    body.at("size").get_to(c.size);
+    c.size = count_at(body, "size");
     body.at("sha256").get_to(c.sha256);
     body.at("state_hash").get_to(c.state_hash);
     if (!is_sha256_hex(c.sha256)) {

@@ -106,7 +106,8 @@ std::vector<std::byte> read_object(const MergeSource& source, const CheckpointRe
 
 bool merged_before(const EventLog& log, const Head& head) {
   for (const Event& event : log.events("store/merge")) {
-    if (event.body().value("/head/hash"_json_pointer, std::string()) == head.hash) return true;
+    const nlohmann::json known = event.body().value("/head/hash"_json_pointer, nlohmann::json());
+    if (known == head.hash) return true;
   }
   return false;
 }

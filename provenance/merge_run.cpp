@@ -6,6 +6,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "provenance/json_text.hpp"
 #include "provenance/queries.hpp"
 
 namespace shearcell {
@@ -57,9 +58,9 @@ bool declares_news(const Database& into, const Event& event) {
   same.bind(2, m.at("experiment").get_ref<const std::string&>());
   same.bind(3, m.at("scale").get_ref<const std::string&>());
   same.bind(4, m.at("variant").get_ref<const std::string&>());
-  same.bind(5, m.at("seed").get<std::uint64_t>());
+  same.bind(5, count_at(m, "seed"));
   same.bind(6, m.at("manifest").get_ref<const std::string&>());
-  return !same.step() || same.u64(0) < body.at("target_cycles").get<std::uint64_t>();
+  return !same.step() || same.u64(0) < count_at(body, "target_cycles");
 }
 
 /// Events of one run's stream in the order of the log.

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/memory.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/sha256.hpp"
 
@@ -116,7 +117,7 @@ std::pair<Descriptor, std::string> create_temporary(const Descriptor& folder,
   for (;;) {
     std::string name = fmt::format(".tmp-{}-{}", getpid(), counter++);
     const int number = openat(folder.get(), name.c_str(),
-                              O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+                              O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
     if (number >= 0) return {Descriptor(number), std::move(name)};
     if (errno != EEXIST) fail(path / name, "create");
   }
@@ -181,6 +182,11 @@ std::vector<std::byte> ObjectStore::get(std::string_view sha256, std::uint64_t s
   if (!S_ISREG(status.st_mode)) throw damaged("it is not a regular file");
   const auto found = static_cast<std::uint64_t>(status.st_size);
   if (found != size) throw damaged(fmt::format("it has {} bytes instead of {}", found, size));
+  // A file with holes may claim more than any disk has. Decoding takes a few copies.
+  if (static_cast<double>(size) > machine_memory() / 4) {
+    throw std::runtime_error(fmt::format(
+        "{}: its {} bytes do not fit into the memory of this machine", path.string(), size));
+  }
   std::vector<std::byte> bytes = read_all(file, size, path);
   if (sha256_hex(bytes) != sha256) {
     throw damaged("its SHA-256 is not the recorded one, so its content was changed");

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 
@@ -81,7 +82,7 @@ std::string after_slash(const std::string& stream) {
 
 void declare_run(Database& database, const Event& event, const json& body) {
   const std::string id = after_slash(event.stream);
-  const auto target = body.at("target_cycles").get<std::uint64_t>();
+  const auto target = count_at(body, "target_cycles");
   // An upsert would also count as an insert of a second ordinal, so the two cases are apart.
   Statement known(database, "SELECT 1 FROM runs WHERE id = ?");
   if (known.bind(1, id).step()) {
@@ -97,7 +98,7 @@ void declare_run(Database& database, const Event& event, const json& body) {
     insert.bind(1, id).bind(2, event.seq);
     insert.bind_or_null(3, body.at("parent").get_ref<const std::string&>());
     insert.bind(4, body.at("kind").get_ref<const std::string&>());
-    insert.bind(5, body.at("resolved").dump()).bind(6, body.at("grains").get<std::uint64_t>());
+    insert.bind(5, body.at("resolved").dump()).bind(6, count_at(body, "grains"));
     insert.bind(7, target).bind(8, event.recorded_at).run();
   }
   const json& membership = body.at("membership");
@@ -110,10 +111,10 @@ void declare_run(Database& database, const Event& event, const json& body) {
   member.bind(2, membership.at("experiment").get_ref<const std::string&>());
   member.bind(3, membership.at("scale").get_ref<const std::string&>());
   member.bind(4, membership.at("variant").get_ref<const std::string&>());
-  member.bind(5, membership.at("seed").get<std::uint64_t>());
+  member.bind(5, count_at(membership, "seed"));
   member.bind(6, membership.at("manifest").get_ref<const std::string&>());
   member.bind(7, membership.at("labels").dump()).bind(8, target);
-  member.bind(9, membership.at("checkpoint_every").get<std::uint64_t>()).bind(10, event.seq).run();
+  member.bind(9, count_at(membership, "checkpoint_every")).bind(10, event.seq).run();
 }
 
 void set_state(Database& database, const Event& event, std::string_view state,
@@ -131,7 +132,7 @@ void complete_run(Database& database, const Event& event, const json& body) {
                    "UPDATE runs SET error = '', state = CASE WHEN ?2 AND target_cycles > ?3 THEN "
                    "'declared' ELSE 'completed' END WHERE id = ?1");
   update.bind(1, after_slash(event.stream)).bind(2, std::uint64_t{!reached.is_null()});
-  update.bind(3, reached.is_null() ? 0 : reached.get<std::uint64_t>()).run();
+  update.bind(3, reached.is_null() ? 0 : count_at(body, "target_cycles")).run();
 }
 
 void move_to_furthest_checkpoint(Database& database, const std::string& run) {
@@ -150,10 +151,10 @@ void record_checkpoint(Database& database, const Event& event, const json& body)
                    "state_hash, observables, state, seq) VALUES(?,?,?,?,?,?,?,?,?,'recorded',?) "
                    "ON CONFLICT DO UPDATE SET state = 'recorded', seq = excluded.seq");
   insert.bind(1, run).bind(2, body.at("sha256").get_ref<const std::string&>());
-  insert.bind(3, body.at("step").get<std::uint64_t>()).bind(4, body.at("cycle").get<double>());
+  insert.bind(3, count_at(body, "step")).bind(4, body.at("cycle").get<double>());
   insert.bind(5, body.at("time_s").get<double>());
   insert.bind(6, body.at("file").get_ref<const std::string&>());
-  insert.bind(7, body.at("size").get<std::uint64_t>());
+  insert.bind(7, count_at(body, "size"));
   insert.bind(8, body.at("state_hash").get_ref<const std::string&>());
   insert.bind(9, body.at("observables").dump()).bind(10, event.seq).run();
   Statement effort(database,
@@ -226,8 +227,7 @@ void apply(Database& database, const Event& event) {
     if (event.stream.starts_with("run/")) apply_to_run(database, event, event.body());
     if (event.stream.starts_with("figure/")) record_figure(database, event, event.body());
   } catch (const json::exception& problem) {
-    throw StoreDamaged(fmt::format("event {} ({} of {}): its payload is not as it must be: {}",
-                                   event.seq, event.type, event.stream, problem.what()));
+    throw damaged_payload(event, problem);
   }
 }
 

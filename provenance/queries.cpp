@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "provenance/json_text.hpp"
+
 namespace shearcell {
 
 namespace {
@@ -12,7 +14,7 @@ using sqlite::Database;
 using sqlite::Statement;
 
 json parse(const Database& database, const std::string& text) {
-  json value = json::parse(text, nullptr, false);
+  json value = parse_json(text);
   if (value.is_discarded()) {
     throw StoreDamaged(
         fmt::format("{}: a derived table holds broken JSON; run `rebuild`", database.name()));

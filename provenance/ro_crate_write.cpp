@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <fstream>
 #include <set>
 #include <stdexcept>
 #include <system_error>
 
+#include "core/limits.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/plain_file.hpp"
 #include "provenance/prov_json.hpp"
 #include "provenance/ro_crate.hpp"
 #include "provenance/sha256.hpp"
@@ -18,22 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Replaces a file whole: under a temporary name first, so that a link is replaced and not
-/// followed.
-void write_file(const fs::path& path, std::string_view bytes) {
-  const fs::path temporary = path.string() + fmt::format(".tmp-{}", getpid());
-  fs::remove(temporary);
-  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw std::runtime_error(path.string() + ": cannot be written; is the disk full?");
-  }
-  fs::rename(temporary, path);
-}
-
 /// Recorded text may hold bytes that are not UTF-8, and JSON may not.
 std::string dump(const json& value) {
   return value.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
@@ -41,9 +27,8 @@ std::string dump(const json& value) {
 
 bool is_crate_of(const fs::path& folder, const std::string& run) {
   const fs::path metadata = folder / kCrateMetadata;
-  if (!fs::is_regular_file(fs::symlink_status(metadata))) return false;
-  std::ifstream in(metadata, std::ios::binary);
-  const json crate = json::parse(in, nullptr, false);
+  const auto text = read_plain(metadata, StoreLimits::value_bytes);
+  const json crate = text ? parse_json(*text) : json();
   if (!crate.is_object() || !crate.contains("@graph") || !crate["@graph"].is_array()) return false;
   for (const json& entity : crate["@graph"]) {
     if (entity.is_object() && entity.value("@id", json()) == "./" &&
@@ -77,19 +62,19 @@ std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const
       if (c.rejected || c.pruned || !done.insert(c.record.sha256).second) continue;
       const std::vector<std::byte> bytes = objects.get(c.record.sha256, c.record.size);
       const std::string path = crate_path_of_checkpoint(c.record.sha256);
-      write_file(folder / path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+      write_output(folder / path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
       written.push_back(path);
     }
   }
   for (const ManifestText& manifest : facts.manifests) {
     written.push_back(crate_path_of_manifest(manifest.sha256));
-    write_file(folder / written.back(), manifest.text);
+    write_output(folder / written.back(), manifest.text);
   }
   const std::string prov = dump(prov_json(facts));
-  write_file(folder / kCrateProv, prov);
+  write_output(folder / kCrateProv, prov);
   written.emplace_back(kCrateProv);
   // Last: what it describes is there.
-  write_file(folder / kCrateMetadata, dump(ro_crate_metadata(facts, prov)));
+  write_output(folder / kCrateMetadata, dump(ro_crate_metadata(facts, prov)));
   written.emplace_back(kCrateMetadata);
   return written;
 }

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <set>
+#include <string>
 
 #include "provenance/errors.hpp"
 #include "provenance/lease.hpp"
@@ -67,6 +69,22 @@ void create_tables(sqlite::Database& database) {
   lock.commit();
 }
 
+/// A forged schema could run statements of its own whenever a table is read or written, so every
+/// statement of it must be one that this program writes. What is missing shows when it is used.
+void require_own_schema(const sqlite::Database& database) {
+  sqlite::Database own = sqlite::Database::in_memory();
+  create_tables(own);
+  constexpr const char* statements = "SELECT sql, name FROM sqlite_schema WHERE sql IS NOT NULL";
+  std::set<std::string> known;
+  for (sqlite::Statement row(own, statements); row.step();) known.insert(row.text(0));
+  for (sqlite::Statement row(database, statements); row.step();) {
+    if (known.contains(row.text(0))) continue;
+    throw StoreDamaged(fmt::format(
+        "{}: the database holds '{}', which no store of schema {} has; restore it from a backup",
+        database.name(), row.text(1), kSchemaVersion));
+  }
+}
+
 void require_known_schema(sqlite::Database& database) {
   if (database.integer("PRAGMA application_id") != kApplicationId) {
     throw StoreDamaged(
@@ -124,6 +142,7 @@ sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open m
     create_tables(database);
   }
   require_known_schema(database);
+  require_own_schema(database);
   database.execute(read_only ? "PRAGMA query_only=ON" : "PRAGMA journal_mode=DELETE");
   if (!read_only) migrate(database);
   return database;

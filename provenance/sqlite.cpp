@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/limits.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell::sqlite {
@@ -33,6 +34,12 @@ Database::Database(const std::filesystem::path& file, Open mode) : name_(file.st
   handle_.reset(handle);
   if (code != SQLITE_OK) fail(code, "open");
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);
+  sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, static_cast<int>(StoreLimits::value_bytes));
+  sqlite3_limit(handle, SQLITE_LIMIT_ATTACHED, 0);
+  // What a forged schema may hold: views and triggers that never end, or that reach for files.
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
 }
 
 Database Database::in_memory() {
@@ -52,6 +59,11 @@ void Database::fail(int code, std::string_view doing) const {
       throw StoreBusy(fmt::format(
           "{}: another process kept the store locked for {} s; wait until it ends, then run again",
           name_, kBusyTimeoutMs / 1000));
+    case SQLITE_TOOBIG:
+      throw StoreDamaged(fmt::format(
+          "{}: a value of the database is larger than {} MiB, more than this program writes or "
+          "reads; restore it from a backup",
+          name_, StoreLimits::value_bytes >> 20));
     case SQLITE_CORRUPT:
     case SQLITE_CONSTRAINT:
     case SQLITE_ERROR:  // our SQL is fixed, so it fails only on tables that are not ours

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "provenance/json_text.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/queries.hpp"
 #include "provenance/sha256.hpp"
@@ -22,9 +23,13 @@ std::set<std::string> beginnings_of_others(const EventLog& log) {
   std::set<std::string> found;
   log.for_each([&found](const Event& event) {
     if (event.type != "RunStarted") return;
-    const json body = event.body();
-    const json& parent = body.at("parent_checkpoint");
-    if (parent.is_string()) found.insert(parent.get<std::string>());
+    try {
+      const json body = event.body();
+      const json& parent = body.at("parent_checkpoint");
+      if (parent.is_string()) found.insert(parent.get<std::string>());
+    } catch (const json::exception& problem) {
+      throw damaged_payload(event, problem);
+    }
   });
   return found;
 }

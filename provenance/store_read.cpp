@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "provenance/plausible.hpp"
 #include "provenance/queries.hpp"
 #include "provenance/store.hpp"
 
@@ -130,6 +131,7 @@ Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
   Checkpoint checkpoint;
   try {
     checkpoint = decode_checkpoint(bytes);
+    require_plausible(checkpoint);
   } catch (const StoreDamaged& damage) {
     throw StoreDamaged(fmt::format("{}: {}", file, damage.what()));
   }

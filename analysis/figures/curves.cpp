@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "analysis/binning.hpp"
@@ -39,9 +41,15 @@ std::string plain_title(const std::string& text) {
   return result;
 }
 
-/// gnuplot's strcol() ends a field at a comma, quoted or not.
-std::string without_commas(std::string variant) {
-  std::replace(variant.begin(), variant.end(), ',', ';');
+/// gnuplot's strcol() ends a field at a comma, quoted or not, and reads quotes in ways of its own.
+/// No name that a manifest gives has other characters than these; one of a stranger's store may.
+std::string plain_field(std::string variant) {
+  const auto odd = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < 0x80 && std::isalnum(byte) == 0 &&
+           std::string_view("=.+-_;: /").find(c) == std::string_view::npos;
+  };
+  std::replace_if(variant.begin(), variant.end(), odd, ';');
   return variant;
 }
 
@@ -99,7 +107,7 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs,
   std::vector<std::pair<std::size_t, Curve>> ranked;
   for (auto& [variant, members] : variants) {
     Curve curve;
-    curve.variant = without_commas(variant);
+    curve.variant = plain_field(variant);
     curve.value = value_of(*members.front());
     curve.points = points_of(members);
     curve.runs = std::move(members);
@@ -137,7 +145,7 @@ std::string literal(const std::string& text) {
   std::string inside;
   for (const char c : text) {
     if (c == '\'') inside += '\'';
-    if (c != '\n') inside += c;
+    if (static_cast<unsigned char>(c) >= 0x20) inside += c;  // a line's end would end the text
   }
   return fmt::format("'{}'", inside);
 }

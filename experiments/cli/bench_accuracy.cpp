@@ -40,6 +40,7 @@ nlohmann::json facts(const accuracy::Section& section) {
 
 // All data before the first drawing, which needs gnuplot.
 void write(const std::vector<accuracy::Section>& sections, const std::filesystem::path& folder) {
+  for (const accuracy::Section& section : sections) require_own_files(section.table, folder);
   for (const accuracy::Section& section : sections) write_csv(section.table, folder);
   for (const accuracy::Section& section : sections) {
     if (!section.table.plot.empty()) draw_svg(section.table, folder);

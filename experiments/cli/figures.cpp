@@ -9,7 +9,9 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/report/regenerate.hpp"
+#include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -29,8 +31,10 @@ std::string known_figures() {
 }
 
 void complain(const RegeneratedFigure& result) {
-  for (const std::string& line : result.damage) fmt::print(stderr, "left out: {}\n", line);
-  for (const std::string& line : result.pruned) fmt::print(stderr, "left out: {}\n", line);
+  for (const std::string& line : result.damage)
+    fmt::print(stderr, "left out: {}\n", for_terminal(line));
+  for (const std::string& line : result.pruned)
+    fmt::print(stderr, "left out: {}\n", for_terminal(line));
   for (const std::string& sha256 : result.changed) {
     fmt::print(stderr, "checkpoint {:.12}: other measures than these were kept; replaced\n",
                sha256);
@@ -108,6 +112,9 @@ void figures(const FigureOptions& options, Context& context) {
       take(result, list, context);
     } catch (const NotFound& missing) {  // the other figures are made all the same
       fmt::print(stderr, "shearcell: {}\n", missing.what());
+      context.exit_code = kUsageError;
+    } catch (const NotOurs& refused) {
+      fmt::print(stderr, "shearcell: {}\n", refused.what());
       context.exit_code = kUsageError;
     }
   }

@@ -11,7 +11,9 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/runner/host.hpp"
+#include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -46,7 +48,7 @@ std::string version_text() {
 }
 
 int complain(int code, const char* what) {
-  fmt::print(stderr, "shearcell: {}\n", what);
+  fmt::print(stderr, "shearcell: {}\n", for_terminal(what));
   return code;
 }
 
@@ -76,12 +78,21 @@ int run(int argc, char** argv) {
     return complain(kUsageError, error.what());
   } catch (const NotFound& error) {
     return complain(kUsageError, error.what());
+  } catch (const NotOurs& error) {
+    return complain(kUsageError, error.what());
   } catch (const GeometryError& error) {
     return complain(kUsageError, error.what());
   } catch (const NumericalFailure& error) {
     return complain(kRunFailed, error.what());
   } catch (const StoreDamaged& error) {
     return complain(kStoreDamaged, error.what());
+  } catch (const nlohmann::json::exception& error) {
+    // What is read from elsewhere says so itself; what is left are records of a store.
+    const std::string why = fmt::format(
+        "{}: a record is not as this program writes it ({}); run `shearcell verify`, and restore "
+        "the store from a backup",
+        context.store, error.what());
+    return complain(kStoreDamaged, why.c_str());
   } catch (const std::exception& error) {
     return complain(kOtherError, error.what());
   }

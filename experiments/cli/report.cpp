@@ -6,12 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <thread>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/runner/terminal.hpp"
+#include "provenance/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -31,18 +31,12 @@ std::function<void(std::size_t, std::size_t)> counter(const char* what) {
   };
 }
 
-// Beside its place first: a report that is being read is never half of one.
-void write(const std::filesystem::path& path, const std::string& html) {
-  const std::filesystem::path unfinished = path.string() + ".tmp";
-  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
-  file << html;
-  file.close();
-  std::error_code problem;
-  if (file) std::filesystem::rename(unfinished, path, problem);
-  if (!file || problem) {
-    std::filesystem::remove(unfinished, problem);
-    throw std::runtime_error(path.string() + ": cannot be written");
-  }
+// What every report begins with, and hardly another page (report/page.cpp).
+bool is_report(std::string_view beginning) {
+  return beginning.starts_with("<!doctype html>") &&
+         beginning.find(
+             "<meta name=\"color-scheme\" content=\"light dark\">\n"
+             "<meta http-equiv=\"Content-Security-Policy\"") != beginning.npos;
 }
 
 nlohmann::json facts(const Report& report, const ReportCommand& command) {
@@ -59,6 +53,7 @@ nlohmann::json facts(const Report& report, const ReportCommand& command) {
 }
 
 void report(ReportCommand& command, Context& context) {
+  require_ours(command.out, is_report);
   const Store store(context.store, Access::read);
   ReportOptions& options = command.report;
   options.interactive = !command.drawings;
@@ -69,10 +64,12 @@ void report(ReportCommand& command, Context& context) {
   options.measured = counter("measuring checkpoint");
   options.packed = counter("packing checkpoint");
   const Report made = make_report(store, options);
-  write(command.out, made.html);
+  write_output(command.out, made.html);
   if (!made.damage.empty()) context.exit_code = kStoreDamaged;
-  for (const std::string& line : made.damage) fmt::print(stderr, "left out: {}\n", line);
-  for (const std::string& line : made.notes) fmt::print(stderr, "left out: {}\n", line);
+  for (const std::string& line : made.damage)
+    fmt::print(stderr, "left out: {}\n", for_terminal(line));
+  for (const std::string& line : made.notes)
+    fmt::print(stderr, "left out: {}\n", for_terminal(line));
   if (!has_front_end() && !command.drawings) {
     fmt::print(stderr,
                "Figures are drawings and there are no packings: this program was built without "

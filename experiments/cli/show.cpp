@@ -8,6 +8,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/show_figure.hpp"
 #include "experiments/runner/progress.hpp"
+#include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell::cli {
@@ -64,27 +65,27 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                 {"error", run.error}});
     return;
   }
-  fmt::print("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {} attempts\n",
+  tell("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {} attempts\n",
              run.id, run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state), run.cycle,
              run.target_cycles, run.attempts);
   if (engine.is_object()) {
-    fmt::print("engine   {} {}, {} processes\n", engine.value("name", ""),
+    tell("engine   {} {}, {} processes\n", engine.value("name", ""),
                engine.value("version", ""), engine.value("processes", 1));
   }
-  if (!run.error.empty()) fmt::print("error    {}\n", run.error);
+  if (!run.error.empty()) tell("error    {}\n", run.error);
   for (const Membership& m : run.memberships) {
-    fmt::print("part of  {} ({}) {} seed {}\n", m.experiment, m.scale.empty() ? "base" : m.scale,
-               m.variant, m.seed);
+    tell("part of  {} ({}) {} seed {}\n", m.experiment, m.scale.empty() ? "base" : m.scale,
+         m.variant, m.seed);
   }
-  fmt::print("\n");
+  tell("\n");
   for (const auto& [key, value] : run.resolved.items()) {
     if (value.is_object()) {
-      for (const auto& [name, inner] : value.items()) fmt::print("{:<32} {}\n", name, inner.dump());
+      for (const auto& [name, inner] : value.items()) tell("{:<32} {}\n", name, inner.dump());
     } else {
-      fmt::print("{:<32} {}\n", key, value.dump());
+      tell("{:<32} {}\n", key, value.dump());
     }
   }
-  fmt::print("\n");
+  tell("\n");
   std::vector<std::vector<std::string>> rows;
   for (const CheckpointRecord& c : checkpoints) {
     rows.push_back({fmt::format("{:g}", c.cycle), std::to_string(c.step), c.sha256.substr(0, 12),
@@ -97,12 +98,11 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
 // What stays on record of a checkpoint whose file was freed.
 void show_pruned(const CheckpointRecord& record, Context& context) {
   if (context.json) return print_json(facts(record));
-  fmt::print("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
-             record.run);
-  fmt::print("file        pruned; `shearcell regenerate {:.12}` makes it again\n", record.sha256);
-  fmt::print("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step,
-             record.time_s);
-  for (const auto& [name, value] : record.observables) fmt::print("{:<42} {:.6g}\n", name, value);
+  tell("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
+       record.run);
+  tell("file        pruned; `shearcell regenerate {:.12}` makes it again\n", record.sha256);
+  tell("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step, record.time_s);
+  for (const auto& [name, value] : record.observables) tell("{:<42} {:.6g}\n", name, value);
 }
 
 void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
@@ -115,15 +115,14 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
     print_json(all);
     return;
   }
-  fmt::print("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
-             record.run);
-  fmt::print("file        {} ({}, hash verified)\n", record.file,
-             format_bytes(static_cast<double>(record.size)));
-  fmt::print("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step,
-             record.time_s);
-  fmt::print("grains      {} and {} wall grains\n", checkpoint.state.position.cols(),
-             checkpoint.cell.wall_grains.size());
-  for (const auto& [name, value] : record.observables) fmt::print("{:<42} {:.6g}\n", name, value);
+  tell("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
+       record.run);
+  tell("file        {} ({}, hash verified)\n", record.file,
+       format_bytes(static_cast<double>(record.size)));
+  tell("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step, record.time_s);
+  tell("grains      {} and {} wall grains\n", checkpoint.state.position.cols(),
+       checkpoint.cell.wall_grains.size());
+  for (const auto& [name, value] : record.observables) tell("{:<42} {:.6g}\n", name, value);
 }
 
 std::optional<CheckpointRecord> find_checkpoint(const Store& store, const std::string& prefix) {

@@ -118,27 +118,27 @@ void print(const std::vector<RunRecord>& runs, const std::map<std::string, Lease
     ++count[shown.state()];
   }
   for (const std::string& name : experiments) {
-    fmt::print("{}\n", name);
+    tell("{}\n", name);
     std::vector<std::string> header = {"run",   "variant", "seed", "N",
                                        "state", "cycle",   "M/s",  "time"};
     if (!queue.runs.empty()) header.emplace_back("queue");
     print_table(header, tables[name]);
-    fmt::print("\n");
+    tell("\n");
   }
   std::string all;
   for (const auto& [state, runs_in_it] : count) {
     all += fmt::format("{}{} {}", all.empty() ? "" : ", ", runs_in_it, name_of(state));
   }
-  fmt::print("{} stages{}{}\n", runs.size(), all.empty() ? "" : ": ", all);
+  tell("{} stages{}{}\n", runs.size(), all.empty() ? "" : ": ", all);
   for (const auto& [run, lease] : by_run) {
-    fmt::print("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
+    tell("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
   }
   for (const OpenSubmission& submission : queue.submissions) {
-    if (queue.problem.empty()) fmt::print("{}\n", describe(submission));
+    if (queue.problem.empty()) tell("{}\n", describe(submission));
   }
-  if (!queue.problem.empty()) fmt::print("The queue is not known: {}\n", queue.problem);
+  if (!queue.problem.empty()) tell("The queue is not known: {}\n", queue.problem);
   for (const RunRecord& run : runs) {
-    if (!run.error.empty()) fmt::print("{}: {}\n", run.id.substr(0, 8), run.error);
+    if (!run.error.empty()) tell("{}: {}\n", run.id.substr(0, 8), run.error);
   }
 }
 

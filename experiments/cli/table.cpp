@@ -76,7 +76,11 @@ std::string painted(const std::string& word, const std::string& text) {
 }  // namespace
 
 void print_table(const std::vector<std::string>& header,
-                 const std::vector<std::vector<std::string>>& rows) {
+                 const std::vector<std::vector<std::string>>& given) {
+  std::vector<std::vector<std::string>> rows = given;
+  for (auto& row : rows) {
+    for (std::string& cell : row) cell = for_terminal(cell);
+  }
   std::vector<Column> columns = measure(header, rows);
   if (const auto limit = terminal_columns(stdout)) narrow(columns, *limit);
   const bool colours = shows_colours(stdout);

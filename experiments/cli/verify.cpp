@@ -8,6 +8,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stop.hpp"
+#include "experiments/runner/terminal.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell::cli {
@@ -94,8 +95,7 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
     fmt::print("{} checkpoints that LAMMPS made are left out: it does not repeat bits\n", left_out);
   }
   if (!context.json) {
-    fmt::print("replaying up to {} of {} checkpoints, --seed {}\n", chosen.size(), all.size(),
-               seed);
+    tell("replaying up to {} of {} checkpoints, --seed {}\n", chosen.size(), all.size(), seed);
   }
   for (const CheckpointRecord& record : chosen) {
     const Replay result = verify_by_replay(store, record, options.threads);
@@ -105,7 +105,7 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
     }
     if (result.divergence) context.exit_code = kStoreDamaged;
     list.push_back(facts(result));
-    if (!context.json) fmt::print("{}\n", describe(result));
+    if (!context.json) tell("{}\n", describe(result));
   }
   return {{"seed", seed}, {"candidates", all.size()}, {"left_out", left_out}, {"replayed", list}};
 }
@@ -129,11 +129,11 @@ nlohmann::json facts(const VerifyReport& report) {
 
 void print(const VerifyReport& report) {
   for (const Finding& finding : report.findings) {
-    fmt::print("{}: {}: {}\n", name_of_severity(finding), finding.subject, finding.message);
+    tell("{}: {}: {}\n", name_of_severity(finding), finding.subject, finding.message);
   }
-  fmt::print("{} events, {} checkpoints ({}), {} orphans: {}\nhead {} {}\n", report.events,
-             report.checkpoints, format_bytes(static_cast<double>(report.bytes)), report.orphans,
-             report.ok() ? "all as it was written" : "DAMAGED", report.head.seq, report.head.hash);
+  tell("{} events, {} checkpoints ({}), {} orphans: {}\nhead {} {}\n", report.events,
+       report.checkpoints, format_bytes(static_cast<double>(report.bytes)), report.orphans,
+       report.ok() ? "all as it was written" : "DAMAGED", report.head.seq, report.head.hash);
 }
 
 void verify(const VerifyOptions& options, Context& context) {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "experiments/export/formats.hpp"
-#include "experiments/export/text_file.hpp"
+#include "provenance/plain_file.hpp"
 
 namespace shearcell {
 namespace {
@@ -26,7 +26,7 @@ std::string comment(const Frame& f) {
 }  // namespace
 
 FrameWriter extxyz_writer(const std::filesystem::path& file) {
-  return [out = std::make_shared<TextFile>(file)](const Frame& f) {
+  return [out = std::make_shared<NewFile>(file)](const Frame& f) {
     std::string text = fmt::format("{}\n{}\n", f.particles(), comment(f));
     for (std::size_t i = 0; i < f.particles(); ++i) {
       const auto r = f.position.col(static_cast<Eigen::Index>(i));

@@ -73,7 +73,7 @@ class Trajectory {
     const hdf5::Quiet quiet;
     const Handle creation = hdf5::creation_list(H5P_FILE_CREATE);
     return {
-        require(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), H5P_DEFAULT), path.string()),
+        require(H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.get(), H5P_DEFAULT), path.string()),
         H5Fclose};
   }
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "experiments/export/formats.hpp"
-#include "experiments/export/text_file.hpp"
+#include "provenance/plain_file.hpp"
 
 namespace shearcell {
 namespace {
@@ -44,7 +44,7 @@ FrameWriter lammps_writer(const std::filesystem::path& folder) {
       fmt::format_to(std::back_inserter(text), "{} {:.17g} {:.17g} {:.17g} 0 0 0\n", i + 1, v.x(),
                      v.y(), v.z());
     }
-    TextFile(folder / fmt::format("frame_{:g}.data", f.cycle)).add(text);
+    NewFile(folder / fmt::format("frame_{:g}.data", f.cycle)).add(text);
   };
 }
 

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "experiments/export/formats.hpp"
-#include "experiments/export/text_file.hpp"
+#include "provenance/plain_file.hpp"
 
 namespace shearcell {
 namespace {
@@ -31,7 +31,7 @@ class PolyData {
   }
 
   void write(const std::filesystem::path& file, const std::string& piece) const {
-    TextFile(file).add(
+    NewFile(file).add(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
         "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n" +
         piece + "</PolyData>\n<AppendedData encoding=\"raw\">\n_" + data_ +
@@ -103,7 +103,7 @@ FrameWriter vtk_writer(const std::filesystem::path& folder) {
         "<DataSet timestep=\"{0:.17g}\" part=\"0\" name=\"grains\" file=\"{1}\"/>\n"
         "<DataSet timestep=\"{0:.17g}\" part=\"1\" name=\"cell\" file=\"{2}\"/>\n",
         f.cycle, grains, cell);
-    TextFile(folder / "frames.pvd")
+    NewFile(folder / "frames.pvd")
         .add(
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" "
             "version=\"1.0\">\n<Collection>\n" +

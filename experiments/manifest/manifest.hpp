@@ -13,17 +13,9 @@
 #include <string_view>
 #include <vector>
 
-namespace shearcell {
+#include "core/limits.hpp"
 
-/// Limits of what is read; they keep hostile input from costing more than a moment.
-struct ManifestLimits {
-  static constexpr std::size_t bytes = 1 << 20;
-  static constexpr std::size_t nodes = 100'000;
-  static constexpr std::size_t depth = 16;
-  static constexpr std::size_t values_per_list = 1'000;
-  static constexpr std::size_t scales = 16;
-  static constexpr std::uint64_t runs = 10'000;  ///< of all scales together
-};
+namespace shearcell {
 
 /// Place in the manifest's text, counted from 1; line 0 means the file as a whole.
 struct Position {

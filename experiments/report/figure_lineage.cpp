@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 
+#include "core/limits.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/plain_file.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -20,7 +22,7 @@ FigureInput read_input(const json& input) {
   input.at("run").get_to(result.run);
   input.at("experiment").get_to(result.experiment);
   input.at("variant").get_to(result.variant);
-  input.at("seed").get_to(result.seed);
+  result.seed = count_at(input, "seed");
   input.at("manifest").get_to(result.manifest);
   input.at("checkpoints").get_to(result.checkpoints);
   return result;
@@ -85,8 +87,10 @@ json stage_json(const RunLineage& stage) {
 
 // Of a lineage file beside the published one, or "".
 std::string hash_in_lineage_beside(const std::filesystem::path& file, const std::string& figure) {
-  std::ifstream in(file.parent_path() / (figure + ".lineage.json"), std::ios::binary);
-  const json lineage = json::parse(in, nullptr, false);
+  const auto text =
+      read_plain(file.parent_path() / (figure + ".lineage.json"), StoreLimits::value_bytes);
+  if (!text) return "";
+  const json lineage = parse_json(*text);
   if (!lineage.is_object() || !lineage.contains("outputs")) return "";
   const json& outputs = lineage["outputs"];
   const std::string name = file.filename().string();
@@ -202,6 +206,9 @@ json to_json(const FigureLineage& lineage) {
 std::optional<PublishedFile> find_published(const Store& store, const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) {
     throw NotFound(file.string() + ": there is no such regular file");
+  }
+  if (std::filesystem::file_size(file) > StoreLimits::published_bytes) {
+    throw NotFound(file.string() + ": larger than any file of a figure");
   }
   const std::string sha256 = sha256_hex_of_file(file);
   const std::string name = file.filename().string();

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <set>
 #include <span>
@@ -16,6 +15,8 @@
 #include "experiments/runner/host.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/plain_file.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -30,10 +31,14 @@ std::vector<ManifestFacts> manifests(const Store& store) {
   std::vector<ManifestFacts> found;
   for (const Event& event : store.events()) {
     if (event.type != "ManifestRegistered") continue;
-    const nlohmann::json body = event.body();
-    const nlohmann::json& info = body.at("info");
-    found.push_back({info.at("experiment").get<std::string>(),
-                     info.at("figures").get<std::vector<std::string>>()});
+    try {
+      const nlohmann::json body = event.body();
+      const nlohmann::json& info = body.at("info");
+      found.push_back({info.at("experiment").get<std::string>(),
+                       info.at("figures").get<std::vector<std::string>>()});
+    } catch (const nlohmann::json::exception& problem) {
+      throw damaged_payload(event, problem);
+    }
   }
   return found;
 }
@@ -175,9 +180,7 @@ std::vector<FigureRun> figure_runs(const std::vector<Input>& inputs,
 }
 
 std::filesystem::path write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << text;
-  if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+  write_output(path, text);
   return path;
 }
 
@@ -253,6 +256,14 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
   RegeneratedFigure& result = computed.about;
   const FigureResult& made = computed.result;
   std::filesystem::create_directories(options.folder);
+  for (const FigureTable& table : made.tables) require_own_files(table, options.folder);
+  require_ours(options.folder / (result.name + ".verdict.json"), [](std::string_view beginning) {
+    return beginning.starts_with("{\n \"claims\": [");
+  });
+  require_ours(options.folder / (result.name + ".lineage.json"), [&](std::string_view beginning) {
+    return beginning.starts_with("{\n \"analysis_version\": ") &&
+           beginning.find("\n \"figure\": \"" + result.name + "\"") != beginning.npos;
+  });
   for (const FigureTable& table : made.tables) {
     result.files.push_back(write_csv(table, options.folder));
     try {

@@ -45,7 +45,7 @@ void Progress::begin(const std::string& name) {
   const std::lock_guard lock(mutex_);
   running_[name] = "starting";
   said_at_[name] = std::chrono::steady_clock::now();
-  if (!terminal_ && !quiet_) fmt::print(stderr, "{}: started\n", name);
+  if (!terminal_ && !quiet_) fmt::print(stderr, "{}: started\n", for_terminal(name));
 }
 
 void Progress::update(const std::string& name, const StageStatus& status) {
@@ -59,7 +59,7 @@ void Progress::update(const std::string& name, const StageStatus& status) {
   const auto now = std::chrono::steady_clock::now();
   if (now - said_at_[name] < kPlainInterval) return;
   said_at_[name] = now;
-  fmt::print(stderr, "{}: {}\n", name, running_[name]);
+  fmt::print(stderr, "{}: {}\n", for_terminal(name), running_[name]);
 }
 
 void Progress::end(const std::string& name, const std::string& how) {
@@ -68,7 +68,8 @@ void Progress::end(const std::string& name, const std::string& how) {
   ++ended_;
   if (quiet_) return;
   erase();
-  fmt::print(stderr, "{}: {} ({} of {} stages)\n", name, how, ended_, stages_);
+  fmt::print(stderr, "{}: {} ({} of {} stages)\n", for_terminal(name), for_terminal(how), ended_,
+             stages_);
   if (terminal_) draw();
 }
 
@@ -85,7 +86,7 @@ void Progress::note(const std::string& line) {
 void Progress::say(const std::string& line) {
   const std::lock_guard lock(mutex_);
   erase();
-  fmt::print(stderr, "{}\n", line);
+  fmt::print(stderr, "{}\n", for_terminal(line));
 }
 
 void Progress::erase() {
@@ -97,7 +98,7 @@ void Progress::draw() {
   // A longer line would wrap, and drawing over it would leave its beginning behind.
   const std::size_t longest = terminal_columns(stderr).value_or(80) - 1;
   for (const auto& [name, text] : running_) {
-    fmt::print(stderr, "{:.{}}\n", fmt::format("{:<28} {}", name, text), longest);
+    fmt::print(stderr, "{:.{}}\n", fmt::format("{:<28} {}", for_terminal(name), text), longest);
     ++drawn_;
   }
   std::fflush(stderr);

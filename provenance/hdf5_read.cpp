@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance/hdf5_read.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "core/limits.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell::hdf5 {
+
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+static_assert(std::endian::native == std::endian::little, "files hold native numbers");
+
+constexpr std::uint64_t kNowhere = ~std::uint64_t{0};  // HDF5's undefined address
+constexpr std::uint64_t kMostMessages = 4096;          // of one object
+
+/// Messages of an object header (section IV.A.2 of the format).
+enum Message : unsigned {
+  kNil = 0,
+  kSpace = 1,
+  kLinkInfo = 2,
+  kType = 3,
+  kFill = 5,
+  kLink = 6,
+  kLayout = 8,
+  kGroupInfo = 10,
+  kAttribute = 12,
+  kContinuation = 16,
+  kModified = 18
+};
+
+// Datatype messages, byte for byte: class and version, bit field, size, and properties.
+using namespace std::string_view_literals;
+constexpr std::string_view kFloat64 =
+    "\x11\x20\x3f\0\x08\0\0\0\0\0\x40\0\x34\x0b\0\x34\xff\x03\0\0"sv;
+constexpr std::string_view kUnsigned64 = "\x10\0\0\0\x08\0\0\0\0\0\x40\0"sv;
+constexpr std::string_view kUnsigned8 = "\x10\0\0\0\x01\0\0\0\0\0\x08\0"sv;
+constexpr std::byte kFixedText{0x13};
+
+[[noreturn]] void refuse(const std::string& where, const std::string& why) {
+  throw StoreDamaged("checkpoint: " + where + ": " + why);
+}
+
+/// The bytes end before what they should hold.
+struct Short {};
+
+/// Takes numbers from the front of some bytes. Throws Short.
+class Cursor {
+ public:
+  explicit Cursor(Bytes bytes) : rest_(bytes) {}
+  Bytes take(std::uint64_t size) {
+    if (size > rest_.size()) throw Short();
+    const Bytes front = rest_.first(static_cast<std::size_t>(size));
+    rest_ = rest_.subspan(static_cast<std::size_t>(size));
+    return front;
+  }
+  std::uint64_t number(std::size_t bytes) {
+    std::uint64_t value = 0;
+    std::memcpy(&value, take(bytes).data(), bytes);
+    return value;
+  }
+  /// Bytes that version 1 of the format fills up to a multiple of eight.
+  Bytes take_padded(std::uint64_t size) {
+    const Bytes front = take(size);
+    take((8 - size % 8) % 8);
+    return front;
+  }
+  std::string text(std::uint64_t size) {
+    const Bytes bytes = take(size);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
+  Bytes rest() const { return rest_; }
+
+ private:
+  Bytes rest_;
+};
+
+/// Whether a datatype message is this one; zeros may follow it.
+bool is_type(Bytes found, std::string_view wanted) {
+  return found.size() >= wanted.size() &&
+         std::memcmp(found.data(), wanted.data(), wanted.size()) == 0;
+}
+
+/// Sizes along each dimension: none for a single value. Nothing when it is no such message.
+std::optional<std::vector<std::uint64_t>> shape_of(Bytes space) {
+  if (space.size() < 8) return std::nullopt;
+  Cursor cursor(space);
+  const std::uint64_t version = cursor.number(1), rank = cursor.number(1);
+  if (version != 1 || rank > 2 || space.size() < 8 + 8 * rank) return std::nullopt;
+  cursor.take(6);  // flags; the largest sizes may follow and say nothing about what is there
+  std::vector<std::uint64_t> shape;
+  for (std::uint64_t d = 0; d < rank; ++d) shape.push_back(cursor.number(8));
+  return shape;
+}
+
+}  // namespace
+
+void Object::fail(const std::string& why) const {
+  refuse(path_.empty() ? "/" : path_, why);
+}
+
+Object::Bytes Object::at(std::uint64_t address, std::uint64_t size) const {
+  if (address > file_.size() || size > file_.size() - address) fail("points outside the file");
+  return file_.subspan(static_cast<std::size_t>(address), static_cast<std::size_t>(size));
+}
+
+Object Object::root(Bytes file, std::size_t user_block) {
+  constexpr std::size_t superblock_size = 96;
+  if (file.size() < superblock_size) refuse("file", "it is cut short");
+  Cursor cursor(file);
+  if (cursor.text(8) != "\x89HDF\r\n\x1a\n") refuse("file", "it is no HDF5");
+  const bool known =
+      cursor.number(5) == 0 && cursor.number(2) == 0x0808;  // versions, address sizes
+  cursor.take(9);
+  if (!known || cursor.number(8) != user_block) {
+    refuse("file", "its superblock is not one that this program writes");
+  }
+  cursor.take(8);
+  if (cursor.number(8) != user_block + file.size()) refuse("file", "it is cut short or has a tail");
+  cursor.take(16);
+  return {file, cursor.number(8), ""};
+}
+
+Object::Object(Bytes file, std::uint64_t address, std::string path)
+    : file_(file), path_(std::move(path)) {
+  try {
+    Cursor prefix(at(address, 16));
+    if (prefix.number(1) != 1) fail("is not laid out as this program writes it");
+    prefix.take(1);
+    std::uint64_t messages = prefix.number(2);
+    if (messages > kMostMessages) fail("has too many messages");
+    prefix.take(4);
+    std::vector<Bytes> blocks = {at(address + 16, prefix.number(4))};
+    // The vector grows while it is read.
+    for (std::size_t b = 0; b < blocks.size(); ++b) read_block(blocks[b], blocks, messages);
+    if (messages != 0) fail("has fewer messages than it claims");
+  } catch (const Short&) {
+    fail("is cut short");
+  }
+}
+
+/// Messages left to read are counted down, so that blocks which point at each other come to an end.
+void Object::read_block(Bytes block, std::vector<Bytes>& blocks, std::uint64_t& messages) {
+  for (Cursor cursor(block); cursor.rest().size() >= 8;) {
+    if (messages == 0) fail("has more messages than it claims");
+    --messages;
+    const auto type = static_cast<unsigned>(cursor.number(2));
+    const std::uint64_t size = cursor.number(2);
+    const std::uint64_t flags = cursor.number(1);
+    cursor.take(3);
+    const Bytes body = cursor.take(size);
+    if ((flags & 2) != 0) fail("shares a message with another object");
+    if (type == kContinuation) {
+      Cursor where(body);
+      const std::uint64_t address = where.number(8);
+      blocks.push_back(at(address, where.number(8)));
+    } else {
+      read_message(type, body);
+    }
+  }
+}
+
+void Object::read_message(unsigned type, Bytes body) {
+  const auto once = [this](std::optional<Bytes>& place, Bytes found) {
+    if (place) fail("has two shapes or two types");
+    place = found;
+  };
+  switch (type) {
+    case kNil:
+    case kFill:
+    case kGroupInfo:
+    case kModified:
+      return;
+    case kSpace:
+      return once(space_, body);
+    case kType:
+      return once(type_, body);
+    case kLink:
+      return read_link(body);
+    case kAttribute:
+      return read_attribute(body);
+    case kLayout:
+      return read_layout(body);
+    case kLinkInfo: {
+      Cursor cursor(body);
+      cursor.take(1);
+      if ((cursor.number(1) & 1) != 0) cursor.take(8);
+      if (cursor.number(8) != kNowhere) plain_ = false;  // links in a heap
+      return;
+    }
+    default:
+      plain_ = false;  // a filter, an external file, an old or dense group, ...
+  }
+}
+
+void Object::read_link(Bytes body) {
+  Cursor cursor(body);
+  if (cursor.number(1) != 1) fail("has a link of another version");
+  const std::uint64_t flags = cursor.number(1);
+  Link link;
+  if ((flags & 8) != 0) link.hard = cursor.number(1) == 0;
+  if ((flags & 4) != 0) cursor.take(8);   // creation order
+  if ((flags & 16) != 0) cursor.take(1);  // character set
+  const std::uint64_t length = cursor.number(std::size_t{1} << (flags & 3));
+  if (length == 0 || length > StoreLimits::text) fail("holds a bad name");
+  const std::string name = cursor.text(length);
+  if (link.hard) link.address = cursor.number(8);
+  if (!links_.emplace(name, link).second) fail("holds a name twice");
+  if (links_.size() > StoreLimits::observables) fail("holds too many entries");
+}
+
+void Object::read_attribute(Bytes body) {
+  Cursor cursor(body);
+  if (cursor.number(1) != 1) fail("has an attribute of another version");
+  cursor.take(1);
+  const std::uint64_t name_size = cursor.number(2);
+  const std::uint64_t type_size = cursor.number(2);
+  const std::uint64_t space_size = cursor.number(2);
+  std::string name = cursor.text(name_size);
+  cursor.take((8 - name_size % 8) % 8);
+  name.resize(std::min(name.size(), name.find('\0')));
+  Attribute attribute;
+  attribute.type = cursor.take_padded(type_size);
+  attribute.space = cursor.take_padded(space_size);
+  attribute.data = cursor.rest();
+  if (!attributes_.emplace(std::move(name), attribute).second) fail("has an attribute twice");
+}
+
+void Object::read_layout(Bytes body) {
+  Cursor cursor(body);
+  if (layout_) fail("has two layouts");
+  const bool contiguous = cursor.number(1) == 3 && cursor.number(1) == 1;
+  if (!contiguous) {
+    plain_ = false;
+    return;
+  }
+  const std::uint64_t address = cursor.number(8);
+  layout_ = Layout{address, cursor.number(8)};
+}
+
+Object Object::child(const std::string& name) const {
+  const auto found = links_.find(name);
+  if (found == links_.end()) {
+    refuse(below(name),
+           plain_ ? "is missing" : "is missing, or its group is not laid out as this program does");
+  }
+  if (!found->second.hard) refuse(below(name), "is a link to elsewhere");
+  return {file_, found->second.address, below(name)};
+}
+
+std::vector<std::string> Object::names() const {
+  if (!plain_ || layout_) fail("is not a group as this program writes it");
+  std::vector<std::string> found;
+  for (const auto& [name, link] : links_) found.push_back(name);
+  return found;
+}
+
+/// The bytes of an attribute that holds one value of this type (any type when it is empty).
+Object::Bytes Object::attribute(const std::string& name, std::string_view type,
+                                std::size_t size) const {
+  const auto found = attributes_.find(name);
+  if (found == attributes_.end()) refuse(below(name), "is missing");
+  const Attribute& attribute = found->second;
+  const auto shape = shape_of(attribute.space);
+  if (!shape || !shape->empty()) refuse(below(name), "is not a single value");
+  if (!type.empty() && !is_type(attribute.type, type))
+    refuse(below(name), "has another number type");
+  if (attribute.data.size() < size) refuse(below(name), "is cut short");
+  return attribute.data.first(size);
+}
+
+double Object::number(const std::string& name) const {
+  double value = 0;
+  std::memcpy(&value, attribute(name, kFloat64, sizeof value).data(), sizeof value);
+  if (!std::isfinite(value)) refuse(below(name), "is not finite");
+  return value;
+}
+
+std::uint64_t Object::count(const std::string& name) const {
+  std::uint64_t value = 0;
+  std::memcpy(&value, attribute(name, kUnsigned64, sizeof value).data(), sizeof value);
+  return value;
+}
+
+std::string Object::text(const std::string& name) const {
+  attribute(name, "", 0);  // it is there, and one value
+  Cursor type(attributes_.at(name).type);
+  if (type.rest().size() < 8 || type.take(1).front() != kFixedText) {
+    refuse(below(name), "is not a text of fixed length");
+  }
+  type.take(3);
+  const std::uint64_t length = type.number(4);
+  if (length == 0 || length > StoreLimits::text) refuse(below(name), "is too long");
+  const Bytes bytes = attribute(name, "", static_cast<std::size_t>(length));
+  const std::string value(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return value.substr(0, value.find('\0'));
+}
+
+/// The block of a dataset, once its shape is the expected one and the block lies in this very file.
+Object::Bytes Object::values(const std::string& name, std::string_view type, std::uint64_t columns,
+                             std::size_t bytes_each) const {
+  const Object dataset = child(name);
+  if (!dataset.plain_ || !dataset.layout_ || !dataset.links_.empty()) {
+    dataset.fail("is not stored as one plain block of this file");
+  }
+  if (!dataset.type_ || !is_type(*dataset.type_, type)) dataset.fail("has another number type");
+  const auto shape = dataset.space_ ? shape_of(*dataset.space_) : std::nullopt;
+  if (!shape || shape->size() != (columns == 0 ? 1 : 2) ||
+      (columns != 0 && shape->back() != columns)) {
+    dataset.fail("has another shape");
+  }
+  if (shape->front() > StoreLimits::grains) dataset.fail("claims too many rows");
+  const std::uint64_t size = shape->front() * std::max<std::uint64_t>(columns, 1) * bytes_each;
+  if (size == 0) return {};
+  if (dataset.layout_->size != size) dataset.fail("does not have the bytes that it claims");
+  return dataset.at(dataset.layout_->address, size);
+}
+
+std::vector<double> Object::numbers(const std::string& name, std::uint64_t columns) const {
+  const Bytes block = values(name, kFloat64, columns, sizeof(double));
+  std::vector<double> data(block.size() / sizeof(double));
+  if (!data.empty()) std::memcpy(data.data(), block.data(), block.size());
+  return data;
+}
+
+std::vector<std::uint8_t> Object::bytes(const std::string& name) const {
+  const Bytes block = values(name, kUnsigned8, 0, 1);
+  std::vector<std::uint8_t> data(block.size());
+  if (!data.empty()) std::memcpy(data.data(), block.data(), block.size());
+  return data;
+}
+
+}  // namespace shearcell::hdf5

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/experiments/damage.hpp"
+
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include "provenance/derived.hpp"
+#include "provenance/objects.hpp"
+#include "provenance/sha256.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell::test {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The log behind the back of this program's own limits and checks.
+class RawLog {
+ public:
+  explicit RawLog(const fs::path& store) {
+    EXPECT_EQ(sqlite3_open((store / "store.sqlite").c_str(), &handle_), SQLITE_OK);
+    run("DROP TRIGGER IF EXISTS events_are_never_updated");
+    run("DROP TRIGGER IF EXISTS events_are_never_deleted");
+  }
+  ~RawLog() { sqlite3_close(handle_); }
+  RawLog(const RawLog&) = delete;
+  RawLog& operator=(const RawLog&) = delete;
+  void run(const std::string& sql) {
+    EXPECT_EQ(sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+        << sql << ": " << sqlite3_errmsg(handle_);
+  }
+
+ private:
+  sqlite3* handle_ = nullptr;
+};
+
+std::string sql_text(const std::string& text) {
+  std::string literal = "'";
+  for (const char c : text) literal.append(c == '\'' ? 2 : 1, c);
+  return literal + "'";
+}
+
+}  // namespace
+
+Damage sql(const std::string& statements) {
+  return [=](const fs::path& store) { RawLog(store).run(statements); };
+}
+
+Damage forged(const std::function<void(Event&)>& change) {
+  return [=](const fs::path& store) {
+    std::vector<Event> events = Store(store, Access::read).events();
+    RawLog log(store);
+    std::string prev(64, '0');
+    for (Event& event : events) {
+      change(event);
+      event.prev_hash = prev;
+      prev = event.hash = event_hash(event);
+      log.run("UPDATE events SET type = " + sql_text(event.type) +
+              ", schema = " + std::to_string(event.schema) +
+              ", payload = " + sql_text(event.payload) + ", prev_hash = '" + event.prev_hash +
+              "', hash = '" + event.hash + "' WHERE seq = " + std::to_string(event.seq));
+    }
+  };
+}
+
+Damage payload(const std::string& type, const std::function<void(nlohmann::json&)>& change) {
+  return forged([=](Event& event) {
+    if (event.type != type) return;
+    nlohmann::json body = nlohmann::json::parse(event.payload);
+    change(body);
+    event.payload = body.dump();
+  });
+}
+
+fs::path an_object(const fs::path& store) {
+  std::set<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(store / "objects")) {
+    if (entry.path().extension() == ".h5") files.insert(entry.path());
+  }
+  return *files.begin();
+}
+
+Damage object(const std::function<void(const fs::path& file)>& change) {
+  return [=](const fs::path& store) { change(an_object(store)); };
+}
+
+void write_file(const fs::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+/// Moves something out of the store and leaves a link to it.
+void link_instead(const fs::path& path) {
+  const fs::path elsewhere = fs::path(path.parent_path()) / "moved-away";
+  fs::rename(path, elsewhere);
+  fs::create_symlink(elsewhere, path);
+}
+
+void pipe_instead(const fs::path& path) {
+  fs::remove_all(path);
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+}
+
+void folder_instead(const fs::path& path) {
+  fs::remove(path);
+  fs::create_directory(path);
+}
+
+void forge_checkpoints(const fs::path& store, const std::string& hdf5) {
+  std::string image =
+      "shearcell checkpoint 1\nsha256 of all bytes after the first 512: " + sha256_hex(hdf5) + "\n";
+  image.resize(512, '\0');
+  image += hdf5;
+  ObjectStore objects(store);
+  const ObjectInfo object = objects.put(std::as_bytes(std::span(image)));
+  payload("CheckpointRecorded", [&](nlohmann::json& body) {
+    body["sha256"] = object.sha256;
+    body["file"] = object.file;
+    body["size"] = object.size;
+  })(store);
+  Store(store, Access::write).rebuild();
+}
+
+void forge_measures(const fs::path& store) {
+  const Store known(store, Access::read);
+  DerivedCache cache(store);
+  fs::path file = store / DerivedCache::kFile;
+  std::vector<std::byte> nested(1 << 20, std::byte{0x81});
+  sqlite3* raw = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &raw), SQLITE_OK);
+  std::vector<DerivedObject> forged;
+  const auto take = [](void* list, int, char** row, char**) {
+    static_cast<std::vector<DerivedObject>*>(list)->push_back(
+        {{row[0], row[1], std::stoull(row[2])}, {}});
+    return 0;
+  };
+  sqlite3_exec(raw, "SELECT checkpoint, measure, version FROM derived", take, &forged, nullptr);
+  sqlite3_close(raw);
+  ASSERT_FALSE(forged.empty());
+  for (DerivedObject& object : forged) object.content = nested;
+  cache.put(forged);
+}
+
+}  // namespace shearcell::test

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ways to damage or forge a store, behind the back of the program's own checks.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "provenance/event_log.hpp"
+
+namespace shearcell::test {
+
+using Damage = std::function<void(const std::filesystem::path& store)>;
+
+/// Statements on the log, without this program's limits and triggers.
+Damage sql(const std::string& statements);
+
+/// Changes events and computes the chain anew: what a forger who knows the format would do.
+Damage forged(const std::function<void(Event&)>& change);
+
+/// The same of the payload of every event of a type.
+Damage payload(const std::string& type, const std::function<void(nlohmann::json&)>& change);
+
+/// To one checkpoint file.
+Damage object(const std::function<void(const std::filesystem::path& file)>& change);
+
+std::filesystem::path an_object(const std::filesystem::path& store);
+void write_file(const std::filesystem::path& file, const std::string& bytes);
+
+// Something else in the place of a file or folder; what a link points to is what stood there.
+void link_instead(const std::filesystem::path& path);
+void pipe_instead(const std::filesystem::path& path);
+void folder_instead(const std::filesystem::path& path);
+
+/// Bytes of one's own under a right digest in the place of every checkpoint, and a log that vouches
+/// for them.
+void forge_checkpoints(const std::filesystem::path& store, const std::string& hdf5);
+
+/// Kept measures under right hashes that hold something else.
+void forge_measures(const std::filesystem::path& store);
+
+}  // namespace shearcell::test

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hostile manifests through the program, hostile names that reach gnuplot, and what stands in the
+// way of the files that the program writes.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <sstream>
+
+#include "core/memory.hpp"
+#include "provenance/event_log.hpp"
+#include "tests/experiments/program.hpp"
+
+namespace shearcell::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class HostileManifest : public ProgramTest {};
+
+/// Every file of tests/data/manifests/bad says in its first lines what is to be expected.
+TEST_F(HostileManifest, EachEndsWithCode2AndItsMessageAndWritesNothing) {
+  const fs::path bad = fs::path(SHEARCELL_TEST_DATA) / "manifests" / "bad";
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(bad)) {
+    std::istringstream lines(read_bytes(entry.path()));
+    std::string expected = "shearcell: ";
+    for (std::string line; std::getline(lines, line) && line.starts_with("# expect ");) {
+      expected += entry.path().string() + ":" + line.substr(9) + "\n";
+    }
+    const char* command = ++count % 2 == 0 ? "plan" : "run";
+    const Outcome outcome = run({command, entry.path().string()});
+    EXPECT_EQ(outcome.code, 2) << entry.path();
+    EXPECT_EQ(outcome.err, expected);
+    EXPECT_EQ(outcome.out, "");
+  }
+  EXPECT_GE(count, 60U);
+  EXPECT_TRUE(listing().empty()) << "nothing is written for a manifest that is refused";
+}
+
+TEST_F(HostileManifest, MoreGrainsThanTheMachineHoldsAreRefusedBeforeTheyAreMade) {
+  if (machine_memory() > 60e9) GTEST_SKIP() << "this machine holds them";
+  write("m.yaml", tiny_manifest("  grains: 100000000\n"));
+  const Outcome outcome = run({"run", "m.yaml"});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_NE(outcome.err.find("use fewer grains"), std::string::npos) << outcome.err;
+}
+
+class Outputs : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(run({"run", write("m.yaml", tiny_manifest("  grains: 200\n", kBothFluids)),
+                   "--cycles", "1", "-q"})
+                  .code,
+              0);
+    id_ = json({"status", "--json"})["runs"].back()["id"];
+    fs::create_directory(path("out"));
+  }
+
+  void expect_refused(const std::vector<std::string>& command, const std::string& file) {
+    const auto listed = [this] {  // measures are kept all the same
+      auto files = listing();
+      files.erase("shearcell-store/derived.sqlite");
+      return files;
+    };
+    const auto before = listed();
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.code, 2) << file << outcome.err;
+    EXPECT_NE(outcome.err.find(file), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("--out"), std::string::npos) << outcome.err;
+    EXPECT_EQ(listed(), before);
+  }
+
+  std::string id_;
+};
+
+TEST_F(Outputs, FiguresReplaceTheirOwnFilesAndNoOthers) {
+  const std::vector<std::string> figures = {"figures", "S2", "--out", "out"};
+  for (const char* file :
+       {"S2a.csv", "S2a.gp", "S2b.svg", "S2b.pdf", "S2.verdict.json", "S2.lineage.json"}) {
+    write(std::string("out/") + file, "{\"mine\": 1}\n");
+    expect_refused(figures, file);
+    EXPECT_EQ(read_bytes(path(std::string("out/") + file)), "{\"mine\": 1}\n");
+    fs::remove(path(std::string("out/") + file));
+    fs::create_symlink(path("m.yaml"), path(std::string("out/") + file));
+    expect_refused(figures, file);
+    fs::remove(path(std::string("out/") + file));
+  }
+  ASSERT_EQ(run(figures).code, 0);
+  EXPECT_EQ(run(figures).code, 0) << "made by an earlier call";
+  fs::remove(path("out/S2a.gp"));  // killed before it was drawn
+  fs::remove(path("out/S2a.svg"));
+  fs::remove(path("out/S2a.pdf"));
+  EXPECT_EQ(run(figures).code, 0);
+  for (const auto& entry : fs::directory_iterator(path("out"))) {
+    struct stat status {};
+    ASSERT_EQ(stat(entry.path().c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0133, 0U) << entry.path() << ": others may write it, or run it";
+  }
+}
+
+TEST_F(Outputs, AReportReplacesAReportAndNothingElse) {
+  write("out/notes.html", "<!doctype html>\n<html>mine\n");
+  expect_refused({"report", "--out", "out/notes.html"}, "notes.html");
+  expect_refused({"report", "--out", "m.yaml"}, "m.yaml");
+  expect_refused({"report", "--out", "out"}, "out");
+  fs::create_symlink(path("m.yaml"), path("out/link.html"));
+  expect_refused({"report", "--out", "out/link.html"}, "link.html");
+  ASSERT_EQ(mkfifo(path("out/pipe.html").c_str(), 0600), 0);
+  expect_refused({"report", "--out", "out/pipe.html"}, "pipe.html");
+  ASSERT_EQ(run({"report", "--out", "out/r.html"}).code, 0);
+  EXPECT_EQ(run({"report", "--out", "out/r.html"}).code, 0);
+}
+
+TEST_F(Outputs, AnExportIsNeverWrittenOverAnything) {
+  const std::string notes = "mine\n";
+  write("out/notes", notes);
+  fs::create_symlink(path("nowhere"), path("dangling"));
+  for (const char* format : {"h5md", "extxyz", "vtk", "lammps", "ro-crate"}) {
+    for (const char* place : {"out", "out/notes", "dangling", "m.yaml"}) {
+      const auto before = listing();
+      EXPECT_EQ(run({"export", id_, "--to", format, "--out", place}).code, 2) << format << place;
+      EXPECT_EQ(listing(), before);
+    }
+  }
+  EXPECT_EQ(read_bytes(path("out/notes")), notes);
+}
+
+/// A forged store can name its variants as it likes; the names reach gnuplot's script and the CSV.
+TEST_F(Outputs, NamesOfAForgedStoreAreTextToGnuplot) {
+  const std::string evil =
+      "a'`touch owned`\"$(touch owned)\n!touch owned\r;system('touch owned')%s,"
+      "{/:Bold x}\\";
+  {
+    Store store(path("shearcell-store"), Access::write);
+    std::vector<Event> events = store.events();
+    sqlite::Database log(path("shearcell-store/store.sqlite"), sqlite::Open::existing);
+    log.execute("DROP TRIGGER events_are_never_updated");
+    std::string prev(64, '0');
+    for (Event& event : events) {
+      nlohmann::json body = event.body();
+      if (event.type == "RunDeclared") {
+        body["membership"]["variant"] = evil + body["membership"]["variant"].get<std::string>();
+        body["membership"]["labels"] = {{evil, evil}};
+      }
+      event.payload = body.dump();
+      event.prev_hash = prev;
+      prev = event.hash = event_hash(event);
+      sqlite::Statement update(
+          log, "UPDATE events SET payload = ?, prev_hash = ?, hash = ? WHERE seq = ?");
+      update.bind(1, event.payload).bind(2, event.prev_hash).bind(3, event.hash);
+      update.bind(4, event.seq).run();
+    }
+    store.rebuild();
+  }
+  EXPECT_EQ(run({"verify"}).code, 0);
+  const Outcome figures = run({"figures", "S2", "--out", "out"});
+  EXPECT_EQ(figures.code, 0) << figures.err;
+  EXPECT_TRUE(fs::exists(path("out/S2a.svg")));
+  EXPECT_EQ(run({"report", "--out", "r.html", "--drawings"}).code, 0);
+  EXPECT_EQ(run({"export", id_, "--to", "ro-crate", "--out", "crate"}).code, 0);
+  EXPECT_EQ(run({"status"}).out.find('\r'), std::string::npos);
+  for (const std::string& file : listing()) {
+    EXPECT_EQ(file.find("owned"), std::string::npos) << file;
+  }
+}
+
+}  // namespace
+}  // namespace shearcell::test

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every fuzz target over its seeds, over these cut short and changed a little, and over every input
+// that once found a fault.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <random>
+
+#include "tests/fuzz/targets.hpp"
+#include "tests/provenance/samples.hpp"
+
+namespace shearcell::fuzz {
+namespace {
+
+class FuzzTarget : public testing::TestWithParam<const Target*> {
+ protected:
+  static void run(const std::string& input) {
+    GetParam()->run({reinterpret_cast<const std::uint8_t*>(input.data()), input.size()});
+  }
+};
+
+TEST_P(FuzzTarget, TakesItsSeeds) {
+  const std::vector<std::string> seeds = GetParam()->seeds();
+  ASSERT_FALSE(seeds.empty());
+  for (const std::string& seed : seeds) EXPECT_NO_THROW(run(seed));
+  EXPECT_NO_THROW(run(""));
+}
+
+TEST_P(FuzzTarget, TakesDamagedSeeds) {
+  std::mt19937 random(11);
+  const std::vector<std::string> seeds = GetParam()->seeds();
+  for (int round = 0; round < 200; ++round) {
+    std::string input = seeds[random() % seeds.size()];
+    for (unsigned change = 0; change < 1 + random() % 4 && !input.empty(); ++change) {
+      char& byte = input[random() % input.size()];
+      byte = static_cast<char>(byte ^ (1 << random() % 8));
+    }
+    if (random() % 4 == 0) input.resize(random() % (input.size() + 1));
+    EXPECT_NO_THROW(run(input)) << "round " << round;
+  }
+}
+
+TEST_P(FuzzTarget, TakesWhatOnceFoundAFault) {
+  const auto folder = std::filesystem::path(SHEARCELL_FUZZ_REGRESSIONS) / GetParam()->name;
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "nothing was found with this target";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    EXPECT_NO_THROW(run(test::read_bytes(entry.path()))) << entry.path();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FuzzTarget, testing::ValuesIn(all_targets),
+                         [](const auto& target) { return std::string(target.param->name); });
+
+}  // namespace
+}  // namespace shearcell::fuzz

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/fuzz/seeds.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "analysis/crystallite_map.hpp"
+#include "analysis/derived_measures.hpp"
+#include "provenance/hdf5_handle.hpp"
+#include "provenance/sha256.hpp"
+#include "tests/fuzz/targets.hpp"
+#include "tests/provenance/samples.hpp"
+
+namespace shearcell::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kManifest = "experiment: a\nbase: {grains: 600}\nseeds: 2\n";
+const char* const kCsv = "variant,cycle\nfluid=still,1\n";
+
+Checkpoint small_checkpoint(std::uint64_t step) {
+  return test::sample_checkpoint(test::run_id(0), step, 2);
+}
+
+std::string text_of_events(const std::vector<Event>& events, const std::string& stream) {
+  std::string text;
+  for (const Event& event : events) {
+    if (!event.stream.starts_with(stream)) continue;
+    text += event.type + '\t' + event.stream + '\t' + std::to_string(event.schema) + '\t' +
+            event.payload + '\n';
+  }
+  return text;
+}
+
+std::vector<Event> events_of_store() {
+  const test::Folder folder;
+  return Store(make_store(folder.path() / "store"), Access::read).events();
+}
+
+std::string as_string(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+}  // namespace
+
+void require(bool fact, const char* what) {
+  if (fact) return;
+  std::fprintf(stderr, "not so: %s\n", what);
+  std::abort();
+}
+
+fs::path make_store(const fs::path& folder) {
+  Store store(folder, Access::create);
+  const std::string manifest =
+      store.register_manifest(kManifest, "a.yaml", {{"experiment", "a"}, {"figures", {"S2"}}});
+  RunDeclaration prepare = test::sample_run(0), shear = test::sample_run(1);
+  prepare.membership.manifest = shear.membership.manifest = manifest;
+  prepare.kind = "prepare";
+  shear.parent = prepare.id;
+  store.declare_run(prepare);
+  store.declare_run(shear);
+  const nlohmann::json host = {{"host", "h"}, {"build", {{"version", "1"}}}};
+  store.start_run(prepare.id, host);
+  const CheckpointRecord first = store.record_checkpoint(prepare.id, small_checkpoint(0));
+  store.complete_run(prepare.id);
+  store.start_run(shear.id, host, std::nullopt, first.sha256);
+  nlohmann::json inputs = nlohmann::json::array();
+  for (const std::uint64_t step : {0U, 45600U}) {
+    Checkpoint checkpoint = small_checkpoint(step);
+    checkpoint.run = shear.id;
+    inputs.push_back(store.record_checkpoint(shear.id, checkpoint).sha256);
+  }
+  store.interrupt_run(shear.id, "a signal");
+  store.record_figure("S2", {{"figure", "S2"},
+                             {"scale", "smoke"},
+                             {"analysis_version", 1},
+                             {"inputs",
+                              {{{"run", shear.id},
+                                {"parent", prepare.id},
+                                {"experiment", "a"},
+                                {"manifest", manifest},
+                                {"variant", "base"},
+                                {"seed", 1},
+                                {"checkpoints", inputs}}}},
+                             {"outputs", {{"S2a.csv", sha256_hex(kCsv)}}}});
+  return folder;
+}
+
+std::vector<Event> forged_events(std::string_view lines) {
+  std::vector<Event> events;
+  while (!lines.empty()) {
+    std::string_view line = lines.substr(0, lines.find('\n'));
+    lines.remove_prefix(std::min(line.size() + 1, lines.size()));
+    std::vector<std::string> fields;
+    for (int k = 0; k < 3 && line.find('\t') != line.npos; ++k) {
+      fields.emplace_back(line.substr(0, line.find('\t')));
+      line.remove_prefix(fields.back().size() + 1);
+    }
+    if (fields.size() < 3) continue;
+    Event event;
+    event.seq = 100 + events.size();
+    event.version = events.size() + 1;
+    event.type = fields[0];
+    event.stream = fields[1];
+    event.schema = std::strtoull(fields[2].c_str(), nullptr, 10);
+    event.recorded_at = "2026-01-01T00:00:00.000Z";
+    event.payload = line;
+    events.push_back(std::move(event));
+  }
+  return events;
+}
+
+std::vector<std::byte> sealed(std::span<const std::byte> bytes) {
+  const bool framed = as_string(bytes.first(std::min(bytes.size(), hdf5::kFrameSize)))
+                          .starts_with(hdf5::kFrameTitle);
+  if (framed) bytes = bytes.subspan(std::min(bytes.size(), hdf5::kFrameSize));
+  std::vector<std::byte> image(hdf5::kFrameSize);
+  const std::string frame = hdf5::frame_text(sha256_hex(bytes));
+  std::memcpy(image.data(), frame.data(), frame.size());
+  image.insert(image.end(), bytes.begin(), bytes.end());
+  return image;
+}
+
+std::vector<std::string> manifest_seeds() {
+  std::vector<std::string> seeds = {kManifest};
+  const fs::path repository = fs::path(SHEARCELL_TEST_DATA) / ".." / "..";
+  for (const auto& folder :
+       {repository / "experiments", fs::path(SHEARCELL_TEST_DATA) / "manifests" / "bad"}) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      if (entry.path().extension() == ".yaml") seeds.push_back(test::read_bytes(entry.path()));
+    }
+  }
+  return seeds;
+}
+
+std::vector<std::string> event_seeds() {
+  const std::vector<Event> events = events_of_store();
+  std::vector<std::string> seeds;
+  for (const char* stream : {"", "run/", "figure/", "manifest/"}) {
+    seeds.push_back(text_of_events(events, stream));
+  }
+  const std::string run = "run/" + test::run_id(1), sha = std::string(64, 'a');
+  seeds.push_back(seeds[1] + "RunFailed\t" + run + "\t1\t{\"why\":\"x\",\"numbers\":{}}\n" +
+                  "CheckpointPruned\t" + run + "\t1\t{\"sha256\":\"" + sha + "\"}\n" +
+                  "CheckpointRejected\t" + run + "\t1\t{\"sha256\":\"" + sha +
+                  "\",\"step\":1,\"why\":\"x\"}\n" + "RunResumed\t" + run +
+                  "\t1\t{\"attempt\":2,\"host\":{},\"from\":{\"sha256\":\"" + sha + "\"}}\n");
+  return seeds;
+}
+
+std::vector<std::string> checkpoint_seeds() {
+  std::vector<std::string> seeds;
+  Checkpoint bare = small_checkpoint(1);
+  bare.cell.wall_grains.clear();
+  bare.observables.clear();
+  Checkpoint many = small_checkpoint(2);
+  for (int k = 0; k < 12; ++k) many.observables["o" + std::to_string(k)] = k;
+  for (const Checkpoint& checkpoint : {small_checkpoint(0), bare, many}) {
+    seeds.push_back(as_string(encode_checkpoint(checkpoint)));
+  }
+  return seeds;
+}
+
+std::vector<std::string> store_seeds() {
+  std::vector<std::string> seeds = {
+      std::string("\0\x10\0\0\x03"
+                  "abc",
+                  9)};
+  for (const std::string& events : event_seeds()) seeds.push_back('\1' + events);
+  return seeds;
+}
+
+std::vector<std::string> published_seeds() {
+  const std::string csv = kCsv, lineage = R"({"outputs": {"S2a.csv": ")" + sha256_hex(csv) + "\"}}";
+  return {csv + '\0' + lineage, csv + "x" + '\0' + lineage,
+          "method,seconds_per_cycle,error\n\"a \"\"b\"\"\",1,2\nc,3,4e-3\n",
+          "run,time_s,distance_d\n1,2,3\n", "seconds_per_cycle,phi,phi_error\n1,0.64,1e-4\n"};
+}
+
+std::vector<std::string> measure_seeds() {
+  const CrystalliteMap map{{3, 5}, {0, 0}, {2}, {Eigen::Vector3d(1, 2, 3)}, 12, 0, 20};
+  Analysis analysis;
+  return {as_string(encode_result(to_json(map))),
+          as_string(encode_result(scalar_measures().from(analysis)))};
+}
+
+}  // namespace shearcell::fuzz

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sound inputs for each target, made by the program's own code, and what forgers need.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "provenance/event_log.hpp"
+
+namespace shearcell::fuzz {
+
+std::vector<std::string> manifest_seeds();
+std::vector<std::string> event_seeds();
+std::vector<std::string> checkpoint_seeds();
+std::vector<std::string> store_seeds();
+std::vector<std::string> published_seeds();
+std::vector<std::string> measure_seeds();
+
+/// Lines of "TYPE<tab>STREAM<tab>SCHEMA<tab>PAYLOAD" as events, numbered on from those of
+/// make_store. A line with fewer fields is left out.
+std::vector<Event> forged_events(std::string_view lines);
+
+/// The bytes with the frame of a checkpoint and a right SHA-256 before them; a frame that they have
+/// is put right.
+std::vector<std::byte> sealed(std::span<const std::byte> bytes);
+
+/// A store with a manifest, two runs, three checkpoints and a figure; returns its folder.
+std::filesystem::path make_store(const std::filesystem::path& folder);
+
+}  // namespace shearcell::fuzz
