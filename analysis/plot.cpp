@@ -83,7 +83,9 @@ void require_own_files(const FigureTable& table, const std::filesystem::path& fo
   };
   require_ours(base.string() + ".gp", is_script);
   const bool drawn = std::filesystem::exists(base.string() + ".gp");
-  const std::string header = to_csv({.name = table.name, .columns = table.columns});
+  FigureTable headed;
+  headed.columns = table.columns;
+  const std::string header = to_csv(headed);
   require_ours(base.string() + ".csv",
                [&](std::string_view beginning) { return drawn || beginning.starts_with(header); });
   for (const char* kind : {".svg", ".pdf"}) {

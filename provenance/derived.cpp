@@ -81,7 +81,7 @@ void DerivedCache::open() {
   }
   // A trigger or view of a stranger would run whenever something is kept.
   sqlite::Statement odd(database, "SELECT 1 FROM sqlite_schema WHERE instr(?1, sql) = 0");
-  if (odd.bind(1, kTable).step()) throw StoreDamaged(file_.string() + ": another schema");
+  if (odd.bind(1, kDerivedTable).step()) throw StoreDamaged(file_.string() + ": another schema");
 }
 
 void DerivedCache::start_over() {

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kBeginning = 4096;
 
-[[noreturn]] void fail(const fs::path& path, const char* doing) {
+[[noreturn]] void cannot_be(const fs::path& path, const char* doing) {
   throw std::runtime_error(
       fmt::format("{}: cannot be {}: {}", path.string(), doing, std::strerror(errno)));
 }
@@ -51,7 +51,7 @@ void write_all(int number, std::string_view bytes, const fs::path& path) {
   while (!bytes.empty()) {
     const ssize_t written = write(number, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(path, "written");
+    if (written < 0) cannot_be(path, "written");
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
 }
@@ -90,10 +90,10 @@ void write_output(const fs::path& path, std::string_view bytes) {
                 fmt::format(".{}.tmp-{}-{}", path.filename().string(), getpid(), counter++);
     number = create(temporary);
   } while (number < 0 && errno == EEXIST);
-  if (number < 0) fail(path, "written");
+  if (number < 0) cannot_be(path, "written");
   try {
     write_all(number, bytes, path);
-    if (rename(temporary.c_str(), path.c_str()) != 0) fail(path, "written");
+    if (rename(temporary.c_str(), path.c_str()) != 0) cannot_be(path, "written");
   } catch (...) {
     close(number);
     unlink(temporary.c_str());
@@ -103,7 +103,7 @@ void write_output(const fs::path& path, std::string_view bytes) {
 }
 
 NewFile::NewFile(const fs::path& path) : path_(path), number_(create(path)) {
-  if (number_ < 0) fail(path_, "written");
+  if (number_ < 0) cannot_be(path_, "written");
 }
 
 NewFile::~NewFile() {

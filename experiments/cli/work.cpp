@@ -124,7 +124,7 @@ void work(const WorkOptions& options, Context& context) {
     std::vector<StageJob> jobs = unfinished(store, {});
     if (options.leave_failed) failed_before = leave_failed(store, jobs);
     Progress progress(jobs.size());
-    result = run_campaign(store, jobs, options.jobs, progress, options.threads);
+    result = run_campaign(store, jobs, options.jobs, progress, {options.threads, 1});
   }
   tell();
   place.finish();
