@@ -103,11 +103,10 @@ FrameWriter vtk_writer(const std::filesystem::path& folder) {
         "<DataSet timestep=\"{0:.17g}\" part=\"0\" name=\"grains\" file=\"{1}\"/>\n"
         "<DataSet timestep=\"{0:.17g}\" part=\"1\" name=\"cell\" file=\"{2}\"/>\n",
         f.cycle, grains, cell);
-    NewFile(folder / "frames.pvd")
-        .add(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" "
-            "version=\"1.0\">\n<Collection>\n" +
-            *sets + "</Collection>\n</VTKFile>\n");
+    write_output(folder / "frames.pvd",
+                 "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" "
+                 "version=\"1.0\">\n<Collection>\n" +
+                     *sets + "</Collection>\n</VTKFile>\n");
   };
 }
 
