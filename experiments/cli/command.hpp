@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/runner/campaign.hpp"
 #include "experiments/manifest/expand.hpp"
+#include "experiments/runner/campaign.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell::cli {

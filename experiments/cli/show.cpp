@@ -66,11 +66,11 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
     return;
   }
   tell("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {} attempts\n",
-             run.id, run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state), run.cycle,
-             run.target_cycles, run.attempts);
+       run.id, run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state), run.cycle,
+       run.target_cycles, run.attempts);
   if (engine.is_object()) {
-    tell("engine   {} {}, {} processes\n", engine.value("name", ""),
-               engine.value("version", ""), engine.value("processes", 1));
+    tell("engine   {} {}, {} processes\n", engine.value("name", ""), engine.value("version", ""),
+         engine.value("processes", 1));
   }
   if (!run.error.empty()) tell("error    {}\n", run.error);
   for (const Membership& m : run.memberships) {
