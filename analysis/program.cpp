@@ -76,14 +76,14 @@ std::vector<std::string> environment_with(const std::vector<std::string>& variab
   return all;
 }
 
+}  // namespace
+
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
   for (std::string& text : texts) pointers.push_back(text.data());
   pointers.push_back(nullptr);
   return pointers;
 }
-
-}  // namespace
 
 bool ProgramOutcome::succeeded() const {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;

@@ -25,4 +25,8 @@ std::optional<ProgramOutcome> run_program(std::vector<std::string> words,
                                           const std::filesystem::path& folder,
                                           const std::vector<std::string>& variables = {});
 
+/// Pointers to the texts and a null at the end, as exec(3) takes words and variables; they hold as
+/// long as `texts` stays as it is.
+std::vector<char*> pointers_to(std::vector<std::string>& texts);
+
 }  // namespace shearcell

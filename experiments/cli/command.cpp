@@ -12,6 +12,12 @@ void add_common_options(CLI::App& command, Context& context, bool with_json) {
   if (with_json) command.add_flag("--json", context.json, "Print JSON for programs");
 }
 
+void add_expand_options(CLI::App& command, ExpandOptions& options) {
+  command.add_option("--scale", options.scale, "Named size (default: desk)");
+  command.add_option("--cycles", options.cycles, "Cycles instead of the manifest's");
+  command.add_option("--seeds", options.seeds, "Number of seeds instead of the manifest's");
+}
+
 void add_engine_option(CLI::App& command, ExpandOptions& options) {
   command.add_option("--engine", options.engine, "What computes the shear (default: shearcell)")
       ->check(CLI::IsMember({"shearcell", "lammps"}))

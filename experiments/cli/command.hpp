@@ -61,6 +61,9 @@ void report(const CampaignResult& result, Context& context);
 /// --store DIR, and --json where the subcommand prints facts.
 void add_common_options(CLI::App& command, Context& context, bool with_json);
 
+/// --scale, --cycles and --seeds: what of a manifest is meant.
+void add_expand_options(CLI::App& command, ExpandOptions& options);
+
 /// --engine NAME.
 void add_engine_option(CLI::App& command, ExpandOptions& options);
 

@@ -235,10 +235,7 @@ void add_plan(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
       "plan", "Show the runs of a manifest, what is done, and the cost of the rest");
   command->add_option("manifest", options->manifest, "YAML manifest")->required();
-  command->add_option("--scale", options->expand.scale, "Named size (default: desk)");
-  command->add_option("--cycles", options->expand.cycles, "Cycles instead of the manifest's");
-  command->add_option("--seeds", options->expand.seeds,
-                      "Number of seeds instead of the manifest's");
+  add_expand_options(*command, options->expand);
   add_engine_option(*command, options->expand);
   add_common_options(*command, context, true);
   command->footer(

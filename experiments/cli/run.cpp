@@ -117,10 +117,7 @@ void add_run(CLI::App& app, Context& context) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Compute the runs of manifests");
   command->add_option("manifest", options->manifests, "YAML manifests")->required();
-  command->add_option("--scale", options->expand.scale, "Named size (default: desk)");
-  command->add_option("--cycles", options->expand.cycles, "Cycles instead of the manifest's");
-  command->add_option("--seeds", options->expand.seeds,
-                      "Number of seeds instead of the manifest's");
+  add_expand_options(*command, options->expand);
   add_engine_option(*command, options->expand);
   add_worker_options(*command, *options);
   add_common_options(*command, context, true);

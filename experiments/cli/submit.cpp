@@ -334,10 +334,7 @@ void add_submit(CLI::App& app, Context& context) {
   CLI::App* command =
       app.add_subcommand("submit", "Hand the runs of manifests to a cluster as an array job");
   command->add_option("manifest", options->manifests, "YAML manifests")->required();
-  command->add_option("--scale", options->expand.scale, "Named size (default: desk)");
-  command->add_option("--cycles", options->expand.cycles, "Cycles instead of the manifest's");
-  command->add_option("--seeds", options->expand.seeds,
-                      "Number of seeds instead of the manifest's");
+  add_expand_options(*command, options->expand);
   add_job_options(*command, *options);
   add_common_options(*command, context, true);
   command->footer(

@@ -16,6 +16,8 @@
 #include <sstream>
 #include <thread>
 
+#include "analysis/program.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -29,13 +31,6 @@ std::vector<std::string> environment_of(const Command& command) {
     if (std::getenv(name.c_str()) == nullptr) variables.push_back(name + '=' + value);
   }
   return variables;
-}
-
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
 }
 
 // What the child needs, made before the fork: after it, only calls that are safe in a signal
