@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <set>
@@ -15,6 +14,7 @@
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/progress.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/plain_file.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell::cli {
@@ -93,13 +93,6 @@ void print_nothing(const Proposal& proposal, Context& context) {
   }
 }
 
-void write_script(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + file.string());
-}
-
 /// As the tasks name the store, from wherever they run.
 fs::path whole_path(const std::string& store) {
   return fs::weakly_canonical(fs::absolute(store));
@@ -140,8 +133,8 @@ std::string queue_array(const Submission& submission, const Proposal& proposal,
   const std::size_t tasks = proposal.shares.size();
   try {
     const JobPlaces places = places_of(store, folder);
-    write_script(folder / "job.sh", array_script(proposal.job, places, tasks));
-    write_script(folder / "fold.sh", fold_script(proposal.job, places, tasks));
+    write_output(folder / "job.sh", array_script(proposal.job, places, tasks));
+    write_output(folder / "fold.sh", fold_script(proposal.job, places, tasks));
     return queue_job(folder, "job.sh", submission.name(), output_option(folder, "task-%a.log"));
   } catch (...) {
     std::error_code ignored;
