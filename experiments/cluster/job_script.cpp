@@ -15,13 +15,15 @@ namespace {
 // after USR1 the task is queued again, by its own number, because the number of its job may be that
 // of the whole array. A program that was killed, as for lack of memory, is begun again here.
 constexpr std::string_view kTaskBody = R"sh(
-again= signalled= leave=${SLURM_RESTART_COUNT:+--leave-failed}
-trap 'signalled=yes again=yes; kill -USR1 "$program"' USR1
-trap 'signalled=yes again=; kill -TERM "$program"; stopped=yes' TERM
-stopped=
+again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
+pass_on() { signalled=$1; [ -z "$program" ] || kill -"$1" "$program"; }
+trap 'again=yes; pass_on USR1' USR1
+trap 'again= stopped=yes; pass_on TERM' TERM
 for start in 1 2 3 4; do
+  program=
   "$shearcell" work --store "$store" --jobs @JOBS@ --threads @THREADS@@SCRATCH@ $leave &
   program=$!
+  [ -z "$signalled" ] || kill -"$signalled" "$program"  # it came before the number was known
   wait "$program"; code=$?
   while [ -n "$signalled" ]; do signalled=; wait "$program"; code=$?; done
   [ "$code" -gt 128 ] && [ -z "$again$stopped" ] || break

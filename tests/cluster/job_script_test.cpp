@@ -92,11 +92,15 @@ class JobScript : public testing::Test {
 
   /// Runs an array task whose program does this; returns its exit code.
   int run_task(const std::string& program, const std::string& restarts = "") {
+    return run_script(task_of(program), restarts);
+  }
+
+  std::string task_of(const std::string& program) {
     executable("shearcell", "echo \"shearcell $*\" >> \"$SAID\"\n" + program);
     JobOptions options;
     options.cpus = 6;
     options.threads = 2;
-    return run_script(array_script(options, places(), 4), restarts);
+    return array_script(options, places(), 4);
   }
 
   int run_script(const std::string& text, const std::string& restarts = "") {
@@ -117,7 +121,7 @@ class JobScript : public testing::Test {
     return {root_ / "bin" / "shearcell", root_ / "store", root_ / "jobs"};
   }
   fs::path said() const { return folder_.path() / "said"; }
-  std::string calls() const { return read_bytes(said()); }
+  std::string calls() const { return fs::exists(said()) ? read_bytes(said()) : ""; }
   std::string work(const std::string& more = "") const {
     return "shearcell work --store " + (root_ / "jobs" / "task-3").string() +
            " --jobs 3 --threads 2" + more + "\n";
@@ -138,6 +142,20 @@ TEST_F(JobScript, EndsWithTheProgramsCode) {
 TEST_F(JobScript, QueuesItsOwnTaskAgainWhenTheTimeIsOver) {
   EXPECT_EQ(run_task("trap 'exit 85' USR1; kill -USR1 $PPID; while :; do sleep 0.05; done"), 85);
   EXPECT_EQ(calls(), work() + "scontrol requeue 17_3\n") << messages_;
+}
+
+TEST_F(JobScript, PassesOnASignalThatComesWhileTheProgramStarts) {
+  for (const char* signal : {"USR1", "TERM"}) {
+    std::string script = task_of("trap 'exit 85' USR1 TERM; while :; do sleep 0.05; done");
+    const std::string start = "  program=$!\n";
+    ASSERT_NE(script.find(start), script.npos);
+    script.insert(script.find(start), "  kill -" + std::string(signal) + " $$\n");
+    // Killed, where the program had not come to its own trap.
+    EXPECT_GE(run_script(script), 85) << messages_;
+    EXPECT_EQ(calls().find("scontrol requeue 17_3\n") != std::string::npos,
+              signal == std::string("USR1"))
+        << calls();
+  }
 }
 
 TEST_F(JobScript, IsDoneWhenAllWasDoneBeforeTheTimeWasOver) {
