@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <set>
 #include <span>
 #include <utility>
@@ -55,17 +56,37 @@ struct Input {
   std::vector<CheckpointRecord> checkpoints;  // at whole cycles
 };
 
-// At whole cycles; of a figure that measures nothing the last one.
+// At whole cycles, as far as the experiment asks for them: another may have extended the run. Of a
+// figure that measures nothing the last one.
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
-                                             const std::string& run) {
+                                             const Input& input) {
   std::vector<CheckpointRecord> found;
-  for (const CheckpointRecord& record : store.checkpoints(run, true)) {
+  const auto end = static_cast<double>(input.membership.target_cycles);
+  for (const CheckpointRecord& record : store.checkpoints(input.run.id, true)) {
     if (record.state == CheckpointState::rejected) continue;
-    if (record.cycle != std::floor(record.cycle)) continue;
+    if (record.cycle != std::floor(record.cycle) || record.cycle > end) continue;
     if (figure.needs == FigureNeeds::none) found.clear();
     found.push_back(record);
   }
   return found;
+}
+
+// A run that two experiments share is one run, as long as the longer of them asks: counted twice,
+// it would make errors too small. A figure of every experiment tells of each by itself.
+std::vector<Input> each_once(std::vector<Input> inputs, bool in_each_experiment) {
+  std::vector<Input> once;
+  std::map<std::pair<std::string, std::string>, std::size_t> places;
+  for (Input& input : inputs) {
+    const std::string within = in_each_experiment ? input.membership.experiment : "";
+    const auto [place, first] = places.try_emplace({input.run.id, within}, once.size());
+    if (first) {
+      once.push_back(std::move(input));
+    } else {
+      std::uint64_t& target = once[place->second].membership.target_cycles;
+      target = std::max(target, input.membership.target_cycles);
+    }
+  }
+  return once;
 }
 
 std::vector<Input> inputs_of(const Store& store, const Figure& figure,
@@ -94,14 +115,8 @@ std::vector<Input> inputs_of(const Store& store, const Figure& figure,
   inputs.erase(std::remove_if(inputs.begin(), inputs.end(),
                               [&](const Input& i) { return i.membership.scale != scale; }),
                inputs.end());
-  // A run that two experiments share is one run: counted twice, it would make errors too small. A
-  // figure of every experiment tells of each by itself.
-  std::set<std::pair<std::string, std::string>> seen;
-  const auto again = [&](const Input& i) {
-    return !seen.emplace(i.run.id, every ? i.membership.experiment : "").second;
-  };
-  inputs.erase(std::remove_if(inputs.begin(), inputs.end(), again), inputs.end());
-  for (Input& input : inputs) input.checkpoints = checkpoints_of(store, figure, input.run.id);
+  inputs = each_once(std::move(inputs), every);
+  for (Input& input : inputs) input.checkpoints = checkpoints_of(store, figure, input);
   return inputs;
 }
 

@@ -53,6 +53,23 @@ TEST_F(Regenerate, ARunOfTwoExperimentsCountsOnce) {
   EXPECT_EQ(make("one").runs, 2U);
 }
 
+TEST_F(Regenerate, EndsWhereTheExperimentsThatAskForItEnd) {
+  const std::string text = tiny_manifest("", kBothFluids);
+  compute(store_, text);  // 2 cycles
+  make("before");
+  std::string longer = "experiment: other" + text.substr(text.find('\n'));
+  longer.replace(longer.find("cycles: 2"), 9, "cycles: 4");
+  longer.replace(longer.find("[S2]"), 4, "[S3]");
+  compute(store_, longer);
+  EXPECT_EQ(store_.runs().back().cycle, 4);
+  make("after");
+  EXPECT_EQ(contents("after"), contents("before")) << "no other experiment changes a figure";
+
+  longer.replace(longer.find("[S3]"), 4, "[S2]");
+  compute(store_, "# it asks for S2 too\n" + longer);
+  EXPECT_EQ(make("both").checkpoints, 2U * 5U) << "to cycle 4";
+}
+
 TEST_F(Regenerate, VerdictsAreWrittenAndRecorded) {
   compute(store_, tiny_manifest("", kBothFluids));
   const RegeneratedFigure figure = make("one");
