@@ -74,6 +74,7 @@ void create_tables(sqlite::Database& database) {
 void require_own_schema(const sqlite::Database& database) {
   sqlite::Database own = sqlite::Database::in_memory();
   create_tables(own);
+  own.execute("ANALYZE");  // somebody may have; its tables hold estimates alone
   constexpr const char* statements = "SELECT sql, name FROM sqlite_schema WHERE sql IS NOT NULL";
   std::set<std::string> known;
   for (sqlite::Statement row(own, statements); row.step();) known.insert(row.text(0));

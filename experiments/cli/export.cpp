@@ -15,6 +15,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
+#include "experiments/runner/terminal.hpp"
 #include "provenance/ro_crate.hpp"
 
 namespace shearcell::cli {
@@ -168,7 +169,7 @@ void export_run(const ExportOptions& options, Context& context) {
     return print_json(
         {{"run", run.id}, {"format", options.format}, {"out", options.out}, {"files", files}});
   }
-  fmt::print("run {:.12}: {} files in {}\n", run.id, files.size(), options.out);
+  tell("run {:.12}: {} files in {}\n", run.id, files.size(), options.out);
 }
 
 }  // namespace

@@ -40,9 +40,10 @@ void complain(const RegeneratedFigure& result) {
                sha256);
   }
   if (!result.cache_trouble.empty()) {
-    fmt::print(stderr, "measures cannot be kept: {}\n", result.cache_trouble);
+    fmt::print(stderr, "measures cannot be kept: {}\n", for_terminal(result.cache_trouble));
   }
-  if (!result.plot_error.empty()) fmt::print(stderr, "no plot: {}\n", result.plot_error);
+  if (!result.plot_error.empty())
+    fmt::print(stderr, "no plot: {}\n", for_terminal(result.plot_error));
 }
 
 nlohmann::json facts(const RegeneratedFigure& result) {
@@ -56,14 +57,14 @@ nlohmann::json facts(const RegeneratedFigure& result) {
 }
 
 void print_verdicts(const RegeneratedFigure& result) {
-  fmt::print("  verdict: {}\n", name_of(overall(result.verdicts)));
+  tell("  verdict: {}\n", name_of(overall(result.verdicts)));
   for (const Verdict& verdict : result.verdicts) {
     const std::string value =
         verdict.value ? fmt::format("{:.4g}", *verdict.value) : "not measured";
     const std::string limit =
         verdict.limit ? fmt::format(" (limit {:.4g})", *verdict.limit) : std::string();
-    fmt::print("    {}: {}\n      {}: {}{}{}{}\n", name_of(verdict.ruling), verdict.claim,
-               verdict.quantity, value, limit, verdict.note.empty() ? "" : "; ", verdict.note);
+    tell("    {}: {}\n      {}: {}{}{}{}\n", name_of(verdict.ruling), verdict.claim,
+         verdict.quantity, value, limit, verdict.note.empty() ? "" : "; ", verdict.note);
   }
 }
 
@@ -75,10 +76,10 @@ void take(const RegeneratedFigure& result, nlohmann::json& list, Context& contex
   if (incomplete && context.exit_code == kDone) context.exit_code = kOtherError;
   list.push_back(facts(result));
   if (context.json) return;
-  fmt::print("{} ({} scale): {} runs, {} checkpoints, {} of them measured now\n", result.name,
-             result.scale.empty() ? "base" : result.scale, result.runs, result.checkpoints,
-             result.measured);
-  for (const auto& file : result.files) fmt::print("  {}\n", file.string());
+  tell("{} ({} scale): {} runs, {} checkpoints, {} of them measured now\n", result.name,
+       result.scale.empty() ? "base" : result.scale, result.runs, result.checkpoints,
+       result.measured);
+  for (const auto& file : result.files) tell("  {}\n", file.string());
   print_verdicts(result);
 }
 
@@ -111,10 +112,10 @@ void figures(const FigureOptions& options, Context& context) {
       const RegeneratedFigure result = regenerate(store, *figure, how);
       take(result, list, context);
     } catch (const NotFound& missing) {  // the other figures are made all the same
-      fmt::print(stderr, "shearcell: {}\n", missing.what());
+      fmt::print(stderr, "shearcell: {}\n", for_terminal(missing.what()));
       context.exit_code = kUsageError;
     } catch (const NotOurs& refused) {
-      fmt::print(stderr, "shearcell: {}\n", refused.what());
+      fmt::print(stderr, "shearcell: {}\n", for_terminal(refused.what()));
       context.exit_code = kUsageError;
     }
   }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/runner/terminal.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -25,9 +26,8 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     return;
   }
   for (const MergeReport& report : reports) {
-    fmt::print("{}: {} of {} events and {} checkpoints ({}) were new\n", report.source,
-               report.events, report.head.seq, report.checkpoints,
-               format_bytes(static_cast<double>(report.bytes)));
+    tell("{}: {} of {} events and {} checkpoints ({}) were new\n", report.source, report.events,
+         report.head.seq, report.checkpoints, format_bytes(static_cast<double>(report.bytes)));
   }
 }
 

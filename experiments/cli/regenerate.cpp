@@ -9,6 +9,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stop.hpp"
+#include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell::cli {
@@ -40,8 +41,7 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
   const auto say = [&](const std::string& outcome, const std::string& text) {
     facts["outcome"] = outcome;
     if (!context.json) {
-      fmt::print("{:.12} (run {:.8}, cycle {:g}): {}\n", record.sha256, record.run, record.cycle,
-                 text);
+      tell("{:.12} (run {:.8}, cycle {:g}): {}\n", record.sha256, record.run, record.cycle, text);
     }
     return facts;
   };
