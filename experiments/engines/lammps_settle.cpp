@@ -8,7 +8,7 @@ namespace shearcell {
 
 LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protocol,
                               const Scene& scene, const Cell& cell, const State& loose,
-                              std::size_t ranks) {
+                              std::size_t ranks, const std::function<void(const State&)>& seen) {
   LammpsResult settled{loose, 0, 0};
   for (;;) {
     // One step of our own, which is thrown away: the protocol tells before it whether the packing
@@ -26,6 +26,7 @@ LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protoc
     settled.state = std::move(part.state);
     settled.loop_seconds += part.loop_seconds;
     settled.peak_bytes = std::max(settled.peak_bytes, part.peak_bytes);
+    if (seen) seen(settled.state);
   }
 }
 

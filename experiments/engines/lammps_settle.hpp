@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 
 #include "experiments/engines/lammps_run.hpp"
 #include "protocols/settle.hpp"
@@ -12,9 +13,11 @@ namespace shearcell {
 
 /// Loose grains -> at rest, by our criterion. `scene` is the protocol's; the result's step counts
 /// those that LAMMPS took. The watchdog looks where the protocol does. Throws NumericalFailure as
-/// the protocol does, after its time limit above all, and EngineError.
+/// the protocol does, after its time limit above all, and EngineError. `seen` gets what came back
+/// after each look.
 LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protocol,
                               const Scene& scene, const Cell& cell, const State& loose,
-                              std::size_t ranks);
+                              std::size_t ranks,
+                              const std::function<void(const State&)>& seen = {});
 
 }  // namespace shearcell

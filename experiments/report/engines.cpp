@@ -139,6 +139,15 @@ std::string lammps_name(std::size_t ranks) {
   return ranks == 1 ? "LAMMPS" : fmt::format("LAMMPS, {} processes", ranks);
 }
 
+// Says where LAMMPS is, now and then: it may be settling for an hour.
+std::function<void(const State&)> now_and_then(const std::function<void(const std::string&)>& say) {
+  return [&say, last = Clock::now()](const State& state) mutable {
+    if (seconds_since(last) < 30) return;
+    say(fmt::format("LAMMPS at step {}, its wall at {:.2f} d", state.step, state.wall_height));
+    last = Clock::now();
+  };
+}
+
 // Our packings, and what it took either engine to settle them.
 std::vector<Packing> settle_all(const LammpsProgram& program, const EngineCheckOptions& options,
                                 const std::function<void(const std::string&)>& say,
@@ -163,7 +172,7 @@ std::vector<Packing> settle_all(const LammpsProgram& program, const EngineCheckO
     if (options.settle) {
       say(fmt::format("settling seed {} in LAMMPS", seed));
       keep(1, lammps_name(options.ranks),
-           settling_by_lammps(packing, settle, program, options.ranks));
+           settling_by_lammps(packing, settle, program, options.ranks, now_and_then(say)));
     }
     packing.state = std::move(ours);
     packing.state.step = 0;

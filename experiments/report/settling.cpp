@@ -52,11 +52,12 @@ Settling settling_by_us(const Packing& loose, const SettleParameters& settle) {
 }
 
 Settling settling_by_lammps(const Packing& loose, const SettleParameters& settle,
-                            const LammpsProgram& program, std::size_t ranks) {
+                            const LammpsProgram& program, std::size_t ranks,
+                            const std::function<void(const State&)>& seen) {
   const auto start = Clock::now();
   const Scene scene = settle_scene(loose.parameters);
   LammpsResult result =
-      settle_by_lammps(program, Settle(settle, scene), scene, loose.cell, loose.state, ranks);
+      settle_by_lammps(program, Settle(settle, scene), scene, loose.cell, loose.state, ranks, seen);
   const double seconds = seconds_since(start);
   return facts_of(loose, scene, std::move(result.state), seconds, result.loop_seconds,
                   static_cast<double>(result.peak_bytes));

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 #include "experiments/engines/lammps_run.hpp"
 #include "experiments/report/accuracy/sheared.hpp"
@@ -25,9 +26,10 @@ struct Settling {
 accuracy::Packing loose_packing(const Parameters& parameters, std::uint64_t seed);
 
 /// Throw NumericalFailure, above all when a packing is not settled after the time limit, and
-/// EngineError.
+/// EngineError. `seen` gets what LAMMPS has, every 0.1 s of simulated time.
 Settling settling_by_us(const accuracy::Packing& loose, const SettleParameters& settle);
 Settling settling_by_lammps(const accuracy::Packing& loose, const SettleParameters& settle,
-                            const LammpsProgram& program, std::size_t ranks);
+                            const LammpsProgram& program, std::size_t ranks,
+                            const std::function<void(const State&)>& seen = {});
 
 }  // namespace shearcell
