@@ -50,13 +50,12 @@ void require_plain_name(const std::string& name) {
 
 /// Runs a program with the date that it writes into its files fixed.
 std::optional<ProgramOutcome> run_timeless(const std::filesystem::path& folder,
-                                           std::vector<std::string> words) {
-  return run_program(std::move(words), folder, {"SOURCE_DATE_EPOCH=0"});
+                                           const std::vector<std::string>& words) {
+  return run_program(words, folder, {"SOURCE_DATE_EPOCH=0"});
 }
 
 bool made(const ProgramOutcome& outcome, const std::filesystem::path& file) {
-  return outcome.succeeded() && std::filesystem::exists(file) &&
-         std::filesystem::file_size(file) > 0;
+  return outcome.code == 0 && std::filesystem::exists(file) && std::filesystem::file_size(file) > 0;
 }
 
 /// librsvg drops the space at either end of a stretch of text, where gnuplot's markup begins or

@@ -38,6 +38,10 @@ std::uint64_t Settle::press_steps(const Cell& cell, std::size_t grains) const {
   return scene_.gravity == 0 ? 0 : way_steps(cell, grains);
 }
 
+std::uint64_t Settle::next_look(std::uint64_t step) const {
+  return step + look_steps_ - step % look_steps_;
+}
+
 std::uint64_t Settle::way_steps(const Cell& cell, std::size_t grains) const {
   if (scene_.pressure == 0) return 0;
   const double looks =
@@ -88,7 +92,7 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
   Scene scene = scene_;
   if (simulation.step() < pressed) scene.gravity = 0;
   simulation.set_scene(scene);
-  const std::uint64_t to_look = look_steps_ - simulation.step() % look_steps_;
+  const std::uint64_t to_look = next_look(simulation.step()) - simulation.step();
   simulation.advance(drive(), std::min(most_steps, to_look));
 
   progress.finished = finished();

@@ -37,6 +37,9 @@ class Settle final : public Protocol {
   /// grains balance the pressure, and half a second more. 0 without gravity or pressure.
   std::uint64_t press_steps(const Cell& cell, std::size_t grains) const;
 
+  /// The first step after this one at which it looks whether the packing has settled.
+  std::uint64_t next_look(std::uint64_t step) const;
+
  private:
   std::uint64_t way_steps(const Cell& cell, std::size_t grains) const;
   bool settled(const Simulation& simulation) const;

@@ -12,8 +12,8 @@
 #include <memory>
 #include <sstream>
 
+#include "analysis/program.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/engines/child_process.hpp"
 #include "experiments/report/speed.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/store.hpp"

@@ -162,12 +162,14 @@ void plan(const PlanOptions& options, Context& context) {
   const auto known = store ? store->runs() : std::vector<RunRecord>{};
   StageCost left;
   double core_seconds = 0;
-  Rate rate = expected_rate(known);
+  Rate rate{0, true};
   for (const Line& line : lines) {
-    const Rate own = expected_rate(known, engine_of(line.stage->resolved));
+    const Rate own = expected_rate(known, engine_of(line.stage->resolved),
+                                   static_cast<double>(line.run->grains));
     left.particle_steps += line.left.particle_steps;
     left.bytes += line.left.bytes;
     core_seconds += line.left.particle_steps / own.particle_steps_per_second;
+    if (rate.particle_steps_per_second == 0) rate = own;  // where nothing is left to do
     rate.measured = rate.measured && own.measured;
   }
   if (core_seconds > 0) rate.particle_steps_per_second = left.particle_steps / core_seconds;

@@ -48,7 +48,11 @@ Proposal propose(const std::vector<Plan>& plans, const std::vector<RunRecord>& k
     job.cpus = std::max(std::min(kMostCpus, most * job.threads), job.threads);
   }
   made.job = std::move(job);
-  made.rate = expected_rate(known);
+  std::size_t grains = 0;
+  for (const Plan& plan : plans) {
+    for (const PlannedRun& run : plan.runs) grains = std::max(grains, run.grains);
+  }
+  made.rate = expected_rate(known, EngineKind::shearcell, static_cast<double>(grains));
   return made;
 }
 

@@ -24,7 +24,7 @@ std::string trimmed(std::string text) {
 std::string ask(const std::vector<std::string>& words, const std::filesystem::path& folder) {
   const auto outcome = run_program(words, folder);
   if (!outcome) throw ClusterError(fmt::format(fmt::runtime(kNoSlurm), words.front()));
-  if (!outcome->succeeded()) {
+  if (outcome->code != 0) {
     throw ClusterError(fmt::format("{} failed: {}", words.front(), trimmed(outcome->messages)));
   }
   return outcome->output;

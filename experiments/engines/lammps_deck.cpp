@@ -9,7 +9,7 @@
 #include <iterator>
 #include <string_view>
 
-#include "experiments/engines/child_process.hpp"
+#include "experiments/engines/engine_error.hpp"
 
 namespace shearcell {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/engines/lammps_run.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <thread>
+#include <vector>
 
 namespace shearcell {
 namespace {
@@ -43,26 +45,38 @@ std::uint64_t number_in(std::string_view name) {
   return error == std::errc() && stop == end ? number : 0;
 }
 
-Command command_for(const LammpsProgram& program, const fs::path& folder, std::size_t ranks) {
-  Command command;
-  if (ranks > 1) command.words = {"mpirun", "-np", std::to_string(ranks)};
+// What the environment does not set already. Several of these may share a machine: Open MPI would
+// tie them to the same cores, and keep these busy while it waits.
+std::vector<std::string> variables() {
+  std::vector<std::pair<std::string, std::string>> all = {
+      {"OMP_NUM_THREADS", "1"},
+      {"OMPI_MCA_hwloc_base_binding_policy", "none"},
+      {"OMPI_MCA_mpi_yield_when_idle", "1"},
+      {"OMPI_MCA_rmaps_base_oversubscribe", "1"}};
+  if (geteuid() == 0) {
+    all.emplace_back("OMPI_ALLOW_RUN_AS_ROOT", "1");
+    all.emplace_back("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+  }
+  std::vector<std::string> missing;
+  for (const auto& [name, value] : all) {
+    if (std::getenv(name.c_str()) == nullptr) missing.push_back(name + '=' + value);
+  }
+  return missing;
+}
+
+std::unique_ptr<ChildProcess> start(const LammpsProgram& program, const fs::path& folder,
+                                    std::size_t ranks) {
+  std::vector<std::string> words;
+  if (ranks > 1) words = {"mpirun", "-np", std::to_string(ranks)};
   for (const char* word :
        {program.path.c_str(), "-in", "deck.in", "-log", "log", "-screen", "none"}) {
-    command.words.emplace_back(word);
+    words.emplace_back(word);
   }
-  command.folder = folder;
-  command.output = folder / "said";
-  // Several of these may share a machine: Open MPI would tie them to the same cores, and keep these
-  // busy while it waits.
-  command.environment = {{"OMP_NUM_THREADS", "1"},
-                         {"OMPI_MCA_hwloc_base_binding_policy", "none"},
-                         {"OMPI_MCA_mpi_yield_when_idle", "1"},
-                         {"OMPI_MCA_rmaps_base_oversubscribe", "1"}};
-  if (geteuid() == 0) {
-    command.environment.emplace_back("OMPI_ALLOW_RUN_AS_ROOT", "1");
-    command.environment.emplace_back("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
-  }
-  return command;
+  const fs::path file = folder / "said";
+  const Descriptor said(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  if (said.number < 0) throw EngineError("cannot write " + file.string());
+  return std::make_unique<ChildProcess>(
+      Command{words, folder, variables(), said.number, said.number});
 }
 
 }  // namespace
@@ -76,11 +90,10 @@ LammpsProgram find_lammps() {
                       ". Install the Debian package lammps, or name the program in "
                       "SHEARCELL_LAMMPS");
   }
+  remove_abandoned_folders();
   const ScratchFolder folder;
-  const fs::path said = folder.path() / "said";
-  Command command{{path->string(), "-h"}, folder.path(), said, {}};
-  ChildProcess(command).wait();
-  const std::string text = read_text(said);
+  const auto outcome = run_program({path->string(), "-h"}, folder.path());
+  const std::string text = outcome ? outcome->output + outcome->messages : "";
   // "... Massively Parallel Simulator - 29 Sep 2021 - Update 2"
   const std::string_view title = "Massively Parallel Simulator - ";
   const auto at = text.find(title);
@@ -98,19 +111,6 @@ std::uint64_t lammps_look_steps(std::size_t grains, std::size_t ranks) {
   return std::max<std::uint64_t>(1, 3'000'000 * ranks / std::max<std::size_t>(1, grains));
 }
 
-ScratchFolder::ScratchFolder() {
-  std::string pattern = (fs::temp_directory_path() / "shearcell-lammps-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) {
-    throw EngineError("cannot make a temporary folder " + pattern + "; is TMPDIR writable?");
-  }
-  path_ = pattern;
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
 LammpsRun::LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks)
     : grains_(static_cast<std::size_t>(task.state.position.cols())),
       ranks_(ranks),
@@ -120,7 +120,7 @@ LammpsRun::LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::
   }
   write_text(folder_.path() / "scene.data", lammps_data(task));
   write_text(folder_.path() / "deck.in", lammps_deck(task));
-  process_ = std::make_unique<ChildProcess>(command_for(program, folder_.path(), ranks));
+  process_ = start(program, folder_.path(), ranks);
 }
 
 std::optional<State> LammpsRun::take_frame() {
@@ -197,6 +197,13 @@ void LammpsRun::fail(int code) const {
   throw EngineError(fmt::format("LAMMPS{} ended with code {} near step {}: {}",
                                 ranks_ > 1 ? fmt::format(" on {} processes", ranks_) : "", code,
                                 step_, why.empty() ? "it said nothing" : why));
+}
+
+LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks) {
+  LammpsRun run(program, task, ranks);
+  auto frame = run.next_frame(std::chrono::hours(24 * 365));
+  run.finish();
+  return {std::move(*frame), run.loop_seconds(), run.peak_bytes()};
 }
 
 }  // namespace shearcell

@@ -8,8 +8,9 @@
 #include <optional>
 #include <string>
 
-#include "experiments/engines/child_process.hpp"
+#include "experiments/engines/engine_error.hpp"
 #include "experiments/engines/lammps_deck.hpp"
+#include "experiments/engines/scratch_folder.hpp"
 
 namespace shearcell {
 
@@ -19,25 +20,12 @@ struct LammpsProgram {
 };
 
 /// The program `lmp` on PATH, or the one that $SHEARCELL_LAMMPS names. Throws EngineError when
-/// there is none, or it lacks the package GRANULAR.
+/// there is none, or it lacks the package GRANULAR. Removes what killed runs left behind.
 LammpsProgram find_lammps();
 
 /// Steps between two looks of LAMMPS at whether it is to stop, and of us at how far it is: about
 /// half a second of work.
 std::uint64_t lammps_look_steps(std::size_t grains, std::size_t ranks);
-
-/// An empty folder under the system's own for temporary files; it goes away with the object.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 class LammpsRun {
  public:
@@ -72,5 +60,14 @@ class LammpsRun {
   std::uint64_t step_;
   std::unique_ptr<ChildProcess> process_;  // ends before its folder goes
 };
+
+struct LammpsResult {
+  State state;             ///< at the end of the task
+  double loop_seconds;     ///< wall time of its time loop
+  std::size_t peak_bytes;  ///< memory of its largest process
+};
+
+/// Runs a task that asks for one frame, its last, and waits for it. Throws EngineError.
+LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
 
 }  // namespace shearcell

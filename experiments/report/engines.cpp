@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "analysis/agreement.hpp"
-#include "analysis/measures.hpp"
-#include "core/diagnostics.hpp"
+#include "core/drive.hpp"
 #include "experiments/engines/lammps_run.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/report/accuracy/sheared.hpp"
@@ -19,6 +19,8 @@ namespace {
 
 using accuracy::Packing;
 using Clock = std::chrono::steady_clock;
+
+constexpr const char* kOurs = "shearcell";
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -41,19 +43,6 @@ State by_us(const LammpsTask& task) {
   return simulation.state();
 }
 
-struct Computed {
-  State state;
-  double seconds;
-  double bytes;
-};
-
-Computed by_lammps(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks) {
-  LammpsRun run(program, task, ranks);
-  const auto frame = run.next_frame(std::chrono::hours(24 * 365));
-  run.finish();
-  return {*frame, run.loop_seconds(), static_cast<double>(run.peak_bytes())};
-}
-
 double farthest(const State& a, const State& b) {
   return (a.position - b.position).colwise().norm().maxCoeff();
 }
@@ -68,7 +57,7 @@ double effect_of_rounding(const LammpsTask& task, const State& ours) {
 
 TrajectoryCheck compare(const LammpsProgram& program, const std::string& scene,
                         const LammpsTask& task, bool rounding) {
-  const State ours = by_us(task), theirs = by_lammps(program, task, 1).state;
+  const State ours = by_us(task), theirs = run_lammps(program, task, 1).state;
   return {scene, task.end - task.state.step, farthest(ours, theirs),
           std::fabs(ours.wall_height - theirs.wall_height),
           rounding ? effect_of_rounding(task, ours) : 0};
@@ -101,55 +90,36 @@ void check_trajectories(const LammpsProgram& program, const Packing& packing, st
       std::log2(last[last.size() - 2].distance / last[last.size() - 1].distance);
 }
 
-// Numbers of one packing after some cycles.
-struct Numbers {
-  double phi, contacts, overlap, imbalance, height;
-};
-
-Numbers numbers_of(const LammpsTask& task, const State& state) {
-  const WallPose pose = wall_pose(task.cell, tilt(task.drive, state.step).theta, state.wall_height);
-  const Measures measures = analyse(task.cell, pose, state.position).measures;
-  const Diagnostics facts = diagnose(task.cell, task.scene, state, pose);
-  return {measures.phi, measures.contacts_per_grain, measures.mean_overlap,
-          std::fabs(facts.wall_imbalance), pose.top - pose.bottom};
+PackingNumbers sheared_numbers(const LammpsTask& task, const State& state) {
+  return numbers_of(task.cell, task.scene, tilt(task.drive, state.step).theta, state);
 }
 
-EngineMean mean_of(const std::string& name, const std::vector<std::vector<Numbers>>& of_engine,
-                   double Numbers::*member) {
-  EngineMean mean{name, {}, {}};
-  for (const std::vector<Numbers>& runs : of_engine) {
-    std::vector<double> values;
-    for (const Numbers& numbers : runs) values.push_back(numbers.*member);
-    mean.of.push_back(over_runs(values));
-    const RunStatistics &a = mean.of.front(), &b = mean.of.back();
-    const double error = std::hypot(a.standard_error.value_or(0), b.standard_error.value_or(0));
-    mean.apart.push_back(error > 0 ? std::fabs(*b.mean - *a.mean) / error : 0);
-  }
-  return mean;
+EngineMeans compare_means(std::vector<std::string> engines,
+                          const std::vector<std::vector<PackingNumbers>>& of_engine) {
+  EngineMeans result{std::move(engines), engine_means(of_engine), 0};
+  const std::size_t comparisons = result.means.size() * (of_engine.size() - 1);
+  result.limit = limit_of_agreement(2 * (of_engine[0].size() - 1), comparisons);
+  return result;
 }
 
-void check_means(const LammpsProgram& program, const std::vector<Packing>& packings,
-                 const EngineCheckOptions& options, const std::vector<std::size_t>& ranks,
-                 EngineCheck& check) {
-  std::vector<std::vector<Numbers>> of_engine(1 + ranks.size());
+EngineMeans check_means(const LammpsProgram& program, const std::vector<Packing>& packings,
+                        std::uint64_t cycles, const std::vector<std::size_t>& ranks,
+                        const std::vector<std::string>& engines) {
+  std::vector<std::vector<PackingNumbers>> of_engine(engines.size());
   for (const Packing& packing : packings) {
-    const LammpsTask task =
-        task_of(packing, options.cycles * cycle_steps(drive(packing.parameters)));
-    of_engine[0].push_back(numbers_of(task, by_us(task)));
+    const LammpsTask task = task_of(packing, cycles * cycle_steps(drive(packing.parameters)));
+    of_engine[0].push_back(sheared_numbers(task, by_us(task)));
     for (std::size_t r = 0; r < ranks.size(); ++r) {
-      of_engine[r + 1].push_back(numbers_of(task, by_lammps(program, task, ranks[r]).state));
+      const State theirs = run_lammps(program, task, ranks[r]).state;
+      of_engine[r + 1].push_back(sheared_numbers(task, theirs));
     }
   }
-  check.means = {mean_of("phi", of_engine, &Numbers::phi),
-                 mean_of("contacts per grain", of_engine, &Numbers::contacts),
-                 mean_of("mean overlap [d]", of_engine, &Numbers::overlap),
-                 mean_of("force imbalance of the wall", of_engine, &Numbers::imbalance),
-                 mean_of("height [d]", of_engine, &Numbers::height)};
-  check.limit = limit_of_agreement(2 * (packings.size() - 1), check.means.size() * ranks.size());
+  return compare_means(engines, of_engine);
 }
 
 void measure_speeds(const LammpsProgram& program, const Packing& packing, std::uint64_t steps,
-                    const std::vector<std::size_t>& ranks, EngineCheck& check) {
+                    const std::vector<std::size_t>& ranks, const std::vector<std::string>& engines,
+                    EngineCheck& check) {
   const LammpsTask task = task_of(packing, steps);
   const double work = 1e-6 * static_cast<double>(steps * packing.parameters.grains);
   Simulation simulation(task.cell, task.scene, task.state);
@@ -157,14 +127,70 @@ void measure_speeds(const LammpsProgram& program, const Packing& packing, std::u
   const auto start = Clock::now();
   simulation.advance(task.drive, steps);
   check.speeds.push_back(
-      {check.engines[0], work / seconds_since(start), static_cast<double>(simulation.bytes())});
+      {engines[0], work / seconds_since(start), static_cast<double>(simulation.bytes())});
   for (std::size_t r = 0; r < ranks.size(); ++r) {
-    const Computed theirs = by_lammps(program, task, ranks[r]);
-    check.speeds.push_back({check.engines[r + 1], work / theirs.seconds, theirs.bytes});
+    const LammpsResult theirs = run_lammps(program, task, ranks[r]);
+    check.speeds.push_back(
+        {engines[r + 1], work / theirs.loop_seconds, static_cast<double>(theirs.peak_bytes)});
   }
 }
 
+std::string lammps_name(std::size_t ranks) {
+  return ranks == 1 ? "LAMMPS" : fmt::format("LAMMPS, {} processes", ranks);
+}
+
+// Says where LAMMPS is, now and then: it may be settling for an hour.
+std::function<void(const State&)> now_and_then(const std::function<void(const std::string&)>& say) {
+  return [&say, last = Clock::now()](const State& state) mutable {
+    if (seconds_since(last) < 30) return;
+    say(fmt::format("LAMMPS at step {}, its wall at {:.2f} d", state.step, state.wall_height));
+    last = Clock::now();
+  };
+}
+
+// Our packings, and what it took either engine to settle them.
+std::vector<Packing> settle_all(const LammpsProgram& program, const EngineCheckOptions& options,
+                                const std::function<void(const std::string&)>& say,
+                                EngineCheck& check) {
+  Parameters parameters;
+  parameters.grains = options.grains;
+  if (!options.gravity) parameters.gravity_m_per_s2 = 0;
+  SettleParameters settle;
+  settle.time_limit = options.settle_time_limit;
+  std::vector<Packing> packings;
+  std::vector<std::vector<PackingNumbers>> of_engine(options.settle ? 2 : 1);
+  const std::size_t seeds = options.cycles > 0 ? options.seeds : 1;
+  const auto keep = [&](std::size_t engine, const std::string& name, Settling settling) {
+    of_engine[engine].push_back(settling.numbers);
+    check.settlings.push_back({name, packings.size() + 1, std::move(settling)});
+  };
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    say(fmt::format("settling seed {}", seed));
+    Packing packing = loose_packing(parameters, seed);
+    keep(0, kOurs, settling_by_us(packing, settle));
+    State ours = check.settlings.back().result.state;
+    if (options.settle) {
+      say(fmt::format("settling seed {} in LAMMPS", seed));
+      keep(1, lammps_name(options.ranks),
+           settling_by_lammps(packing, settle, program, options.ranks, now_and_then(say)));
+    }
+    packing.state = std::move(ours);
+    packing.state.step = 0;
+    packings.push_back(std::move(packing));
+  }
+  if (options.settle && seeds > 1) {
+    check.settled = compare_means({kOurs, lammps_name(options.ranks)}, of_engine);
+  }
+  return packings;
+}
+
 }  // namespace
+
+bool EngineMeans::agree() const {
+  return std::ranges::all_of(means, [&](const EngineMean& mean) {
+    return std::ranges::all_of(mean.apart, [&](double errors) { return errors <= limit; });
+  });
+}
 
 bool EngineCheck::agree() const {
   // Rounding differs in every sum, not in one number alone.
@@ -172,9 +198,7 @@ bool EngineCheck::agree() const {
   const bool near = std::ranges::all_of(trajectories, [&](const TrajectoryCheck& t) {
     return t.rounding == 0 || t.distance <= std::max(kSmallest, kRoundings * t.rounding);
   });
-  return near && std::ranges::all_of(means, [&](const EngineMean& mean) {
-           return std::ranges::all_of(mean.apart, [&](double errors) { return errors <= limit; });
-         });
+  return near && settled.agree() && sheared.agree();
 }
 
 EngineCheck check_engines(const EngineCheckOptions& options) {
@@ -187,30 +211,17 @@ EngineCheck check_engines(const EngineCheckOptions& options) {
   check.grains = options.grains;
   std::vector<std::size_t> ranks = {1};
   if (options.ranks > 1) ranks.push_back(options.ranks);
-  check.engines = {"shearcell"};
-  for (const std::size_t n : ranks) {
-    check.engines.push_back(n == 1 ? "LAMMPS" : fmt::format("LAMMPS, {} processes", n));
-  }
-  Parameters parameters;
-  parameters.grains = options.grains;
-  if (!options.gravity) parameters.gravity_m_per_s2 = 0;
-  std::vector<Packing> packings;
-  const std::size_t seeds = options.cycles > 0 ? options.seeds : 1;
-  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    say(fmt::format("settling seed {}", seed));
-    const auto start = Clock::now();
-    packings.push_back(accuracy::settled(parameters, seed));
-    if (seed == 1) check.settle_seconds = seconds_since(start);
-  }
-  check.settled_phi = numbers_of(task_of(packings.front(), 0), packings.front().state).phi;
+  std::vector<std::string> engines = {kOurs};
+  for (const std::size_t n : ranks) engines.push_back(lammps_name(n));
+  const std::vector<Packing> packings = settle_all(program, options, say, check);
   say(fmt::format("trajectories of {} steps", options.steps));
   check_trajectories(program, packings.front(), options.steps, check);
   if (options.cycles > 0) {
-    say(fmt::format("means after {} cycles, {} seeds", options.cycles, seeds));
-    check_means(program, packings, options, ranks, check);
+    say(fmt::format("means after {} cycles, {} seeds", options.cycles, packings.size()));
+    check.sheared = check_means(program, packings, options.cycles, ranks, engines);
   }
   say("speed");
-  measure_speeds(program, packings.front(), options.steps, ranks, check);
+  measure_speeds(program, packings.front(), options.steps, ranks, engines, check);
   return check;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Our engine beside LAMMPS in one scene: trajectories from one state, then means over seeds, then
-// speed and memory.
+// Our engine beside LAMMPS in one scene: settling from one loose filling where that is asked for,
+// trajectories from one state, then means over seeds, then speed and memory.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/statistics.hpp"
+#include "experiments/report/settling.hpp"
 
 namespace shearcell {
 
@@ -19,7 +19,9 @@ struct EngineCheckOptions {
   std::uint64_t steps = 1000;  ///< of the trajectories, and of the timing
   std::uint64_t cycles = 3;    ///< before the means; 0 leaves them out
   std::size_t seeds = 3;
-  std::size_t ranks = 1;                           ///< processes of LAMMPS, besides one alone
+  std::size_t ranks = 1;  ///< processes of LAMMPS, besides one alone
+  bool settle = false;    ///< settle in LAMMPS too, by `ranks` processes
+  double settle_time_limit = SettleParameters{}.time_limit;  ///< [s], of either
   std::function<void(const std::string&)> report;  ///< what is being done now; may be empty
 };
 
@@ -34,28 +36,36 @@ struct TrajectoryCheck {
   double rounding = 0;
 };
 
-struct EngineMean {
-  std::string name;
-  std::vector<RunStatistics> of;  ///< in the order of EngineCheck::engines
-  /// Of each engine's mean from ours, in standard errors of that difference; 0 for ours.
-  std::vector<double> apart;
-};
-
 struct EngineSpeed {
   std::string engine;
   double million_particle_steps_per_second = 0;
   double bytes = 0;  ///< ours: of the simulation; LAMMPS: of its largest process
 };
 
+/// Means of several engines, ours first.
+struct EngineMeans {
+  std::vector<std::string> engines;
+  std::vector<EngineMean> means;  ///< none where there was one seed
+  double limit = 0;               ///< of `apart`, by Student's t, shared among all comparisons
+
+  bool agree() const;
+};
+
+/// Loose grains of one seed, settled by one engine.
+struct EngineSettling {
+  std::string engine;
+  std::uint64_t seed = 0;
+  Settling result;
+};
+
 struct EngineCheck {
   std::string lammps_version;
   std::size_t grains = 0;
-  double settle_seconds = 0, settled_phi = 0;  ///< of the first packing, by our engine
+  std::vector<EngineSettling> settlings;  ///< ours, and LAMMPS's where that was asked for
+  EngineMeans settled;                    ///< over the seeds of `settlings`
   std::vector<TrajectoryCheck> trajectories;
   double explicit_drag_order = 0;  ///< log2 of the ratio of errors at dt and dt/2
-  std::vector<std::string> engines;
-  std::vector<EngineMean> means;
-  double limit = 0;  ///< of `apart`, by Student's t, shared among all comparisons
+  EngineMeans sheared;             ///< after some cycles from our packings
   std::vector<EngineSpeed> speeds;
 
   /// Whether trajectories agree as far as rounding lets them, and means within the limit.

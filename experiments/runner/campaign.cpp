@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "core/filling.hpp"
-#include "experiments/engines/child_process.hpp"
+#include "experiments/engines/engine_error.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
 

@@ -2,6 +2,7 @@
 #include "experiments/runner/cost.hpp"
 
 #include <cmath>
+#include <span>
 
 #include "core/drive.hpp"
 #include "core/filling.hpp"
@@ -11,9 +12,26 @@
 namespace shearcell {
 namespace {
 
-// Until the store has measured one: a modern core with AVX-512, in a cell of a few thousand grains.
-constexpr double kAssumedRate = 50e6;
-constexpr double kAssumedLammpsRate = 4e6;  // N = 2000 to 100000, rough walls
+// Particle-steps/s until the store has measured them: rough cells on one core of a Xeon with
+// AVX-512, for LAMMPS of one process (29 Sep 2021). N = 5200 from the shears of scale desk, 100,000
+// from `bench engines`, 1,000,000 from `bench speed` (SCALING.md).
+struct MeasuredRate {
+  double grains, rate;
+};
+constexpr MeasuredRate kOurRates[] = {{5200, 107e6}, {1e5, 61e6}, {1e6, 30e6}};
+constexpr MeasuredRate kLammpsRates[] = {{5200, 7.6e6}, {1e5, 3.0e6}};
+
+// Between two sizes a power of N; beyond the outermost as there.
+double assumed_rate(std::span<const MeasuredRate> rates, double grains) {
+  if (grains <= rates.front().grains) return rates.front().rate;
+  for (std::size_t i = 1; i < rates.size(); ++i) {
+    const MeasuredRate &a = rates[i - 1], &b = rates[i];
+    if (grains > b.grains) continue;
+    const double part = std::log(grains / a.grains) / std::log(b.grains / a.grains);
+    return a.rate * std::pow(b.rate / a.rate, part);
+  }
+  return rates.back().rate;
+}
 
 // Size of a checkpoint file, measured: its grains, its wall grains, and the layout around them.
 constexpr double kBytesPerGrain = 121;
@@ -62,7 +80,7 @@ StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle
   return {grains * steps * cycles, bytes * (files + (cycle == 0 ? 1 : 0))};
 }
 
-Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine) {
+Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine, double grains) {
   double steps = 0, seconds = 0;
   for (const RunRecord& run : runs) {
     if (engine_of(run.resolved) != engine) continue;
@@ -70,7 +88,8 @@ Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine) {
     seconds += run.wall_seconds;
   }
   if (seconds < 1) {
-    return {engine == EngineKind::lammps ? kAssumedLammpsRate : kAssumedRate, false};
+    if (engine == EngineKind::lammps) return {assumed_rate(kLammpsRates, grains), false};
+    return {assumed_rate(kOurRates, grains), false};
   }
   return {steps / seconds, true};
 }

@@ -23,7 +23,8 @@ struct Rate {
   bool measured;                     ///< in the store's own runs, or assumed
 };
 
-/// Of stages of one engine.
-Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine = EngineKind::shearcell);
+/// Of stages of one engine: the mean of those runs, or else what was measured elsewhere with about
+/// so many grains.
+Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine, double grains);
 
 }  // namespace shearcell

@@ -114,7 +114,7 @@ class JobScript : public testing::Test {
     if (!restarts.empty()) variables.push_back("SLURM_RESTART_COUNT=" + restarts);
     const auto outcome = run_program({"bash", script.string()}, "/", variables);
     messages_ = outcome->output + outcome->messages;
-    return WIFEXITED(outcome->status) ? WEXITSTATUS(outcome->status) : -1;
+    return outcome->code;
   }
 
   JobPlaces places() const {

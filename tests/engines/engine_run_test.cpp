@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "experiments/engines/child_process.hpp"
+#include "experiments/engines/engine_error.hpp"
 #include "tests/experiments/program.hpp"
 
 namespace shearcell::test {
@@ -20,14 +20,15 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// $SHEARCELL_LAMMPS while it lives.
-struct NamedLammps {
-  explicit NamedLammps(const std::string& program) {
-    setenv("SHEARCELL_LAMMPS", program.c_str(), 1);
+/// A variable of the environment while it lives; none afterwards.
+struct Variable {
+  Variable(const char* variable, const std::string& value) : name(variable) {
+    setenv(name, value.c_str(), 1);
   }
-  ~NamedLammps() { unsetenv("SHEARCELL_LAMMPS"); }
-  NamedLammps(const NamedLammps&) = delete;
-  NamedLammps& operator=(const NamedLammps&) = delete;
+  ~Variable() { unsetenv(name); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+  const char* name;
 };
 
 class EngineRun : public ProgramTest {
@@ -133,14 +134,24 @@ TEST_F(EngineRun, GoesOnAfterAKill) {
   const std::string manifest = write("m.yaml", tiny_manifest("  cycles: 4\n"));
   ASSERT_EQ(run({"run", manifest, "--cycles", "0", "-q"}).code, 0);
   const std::size_t packing = objects();
+  const TemporaryFolder scratch;
+  const Variable tmpdir("TMPDIR", scratch.path());
   run_until({"run", manifest, "--engine", "lammps", "-q"}, packing + 2, SIGKILL);
+  const auto left = [&] {
+    const fs::directory_iterator all(scratch.path());  // Open MPI has folders there too
+    return std::count_if(begin(all), end(all), [](const fs::directory_entry& entry) {
+      return contains(entry.path().filename(), "shearcell-lammps-");
+    });
+  };
+  EXPECT_EQ(left(), 1) << "nothing could clear it away";
   ASSERT_EQ(run({"resume", "-q"}).code, 0);
+  EXPECT_EQ(left(), 0) << "the next start did";
   EXPECT_EQ(run_of("engine=lammps")["cycle"], 4);
   EXPECT_EQ(run({"verify"}).code, 0);
 }
 
 TEST_F(EngineRun, SaysThatLammpsIsMissing) {
-  const NamedLammps nowhere("/no/such/lmp");
+  const Variable nowhere("SHEARCELL_LAMMPS", "/no/such/lmp");
   const std::string manifest = write("m.yaml", tiny_manifest());
   const Outcome outcome = run({"run", manifest, "--engine", "lammps"});
   EXPECT_EQ(outcome.code, 1);
@@ -156,7 +167,7 @@ TEST_F(EngineRun, TellsWhatLammpsSaidWhenItFails) {
            {"kill -9 $$", "code 137"},
            {"exit 0", "code 0"},
            {"echo garbage > frame.10000; sleep 1", "frame.10000"}}) {
-    const NamedLammps program(fake(body));
+    const Variable program("SHEARCELL_LAMMPS", fake(body));
     const Outcome outcome = run({"run", manifest, "--engine", "lammps", "-q"});
     EXPECT_EQ(outcome.code, 3) << body;
     EXPECT_TRUE(contains(outcome.err, says)) << body << ": " << outcome.err;
