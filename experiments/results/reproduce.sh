@@ -2,8 +2,7 @@
 # Computes a published figure from scratch and compares its numbers with those in desk/, byte for byte:
 #   sh experiments/results/reproduce.sh [FIGURE]
 # Without a name S1, half a minute once the program is built; others take up to an hour
-# (`shearcell plan`). C, S5a and S7 also use what drag.yaml adds to their runs: for these compute the list in
-# README.md. SHEARCELL names a program that is built already. Code 1: a number differs.
+# (`shearcell plan`). SHEARCELL names a program that is built already. Code 1: a number differs.
 set -eu
 cd "$(dirname "$0")/../.."
 figure=${1:-S1}
