@@ -3,6 +3,8 @@
 # or "unknown") and `commit_time` (seconds since 1970, empty where unknown). As a script it puts the
 # first into a source file, which is written only when it changes:
 #   cmake -DSOURCE=FOLDER -DOUT=FILE.cpp -P commit.cmake
+cmake_minimum_required(VERSION 3.25)
+
 # `git archive` fills these two in (.gitattributes beside this file).
 set(commit "$Format:%H$")
 set(commit_time "$Format:%ct$")
@@ -32,7 +34,7 @@ if(OUT)
 "#include \"experiments/runner/build_facts.hpp\"
 
 namespace shearcell {
-const char* const kBuildCommit = \"@commit@\";
+const char* const kBuildCommit = \"${commit}\";
 }  // namespace shearcell
 ")
 endif()
