@@ -15,6 +15,7 @@
 #include "analysis/program.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/report/speed.hpp"
+#include "experiments/runner/cost.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/store.hpp"
 
@@ -66,10 +67,12 @@ Finding memory() {
 
 Finding disk(const fs::path& place) {
   const double free = static_cast<double>(fs::space(place).available);
-  // A checkpoint takes about 98 bytes a grain.
-  return {"disk", fmt::format("{} free in {}", format_bytes(free), place.string()),
-          free > 1e9 ? "ok" : "low",
-          fmt::format("room for {:.1e} checkpoints of 5200 grains", free / (5200 * 98 + 3e4))};
+  Geometry shape;  // rough walls, as by default
+  shape.grains = 5200;
+  return {
+      "disk", fmt::format("{} free in {}", format_bytes(free), place.string()),
+      free > 1e9 ? "ok" : "low",
+      fmt::format("room for {:.1e} checkpoints of 5200 grains", free / checkpoint_bytes(shape))};
 }
 
 Finding filesystem(const fs::path& place) {

@@ -5,7 +5,6 @@
 #include <span>
 
 #include "core/drive.hpp"
-#include "core/filling.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 
@@ -48,7 +47,10 @@ double settling_time(double height) {
 // of B.2: 7e3 to 21e3 measured at N = 600 and 2000.
 constexpr double kMinimization = 15e3;
 
-double checkpoint_bytes(const Geometry& shape, double width) {
+}  // namespace
+
+double checkpoint_bytes(const Geometry& shape) {
+  const double width = cell_width(shape);
   // Two side walls of the fill height, and bottom and top.
   const double grains = static_cast<double>(shape.grains);
   const double fill_height = grains * 0.52 / (shape.fill_packing_fraction * width * width);
@@ -59,12 +61,10 @@ double checkpoint_bytes(const Geometry& shape, double width) {
   return kBytesPerFile + kBytesPerGrain * grains + kBytesPerWallGrain * wall_grains;
 }
 
-}  // namespace
-
 StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle) {
   const Geometry shape = geometry(run.parameters);
   const double width = cell_width(shape);
-  const double bytes = checkpoint_bytes(shape, width);
+  const double bytes = checkpoint_bytes(shape);
   const auto grains = static_cast<double>(run.grains);
   if (stage.stage == Stage::prepare) {
     const double time = settling_time(shape.height_over_width * width);

@@ -4,10 +4,14 @@
 
 #include <vector>
 
+#include "core/filling.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "provenance/records.hpp"
 
 namespace shearcell {
+
+/// Size [bytes] of the file of a checkpoint, estimated from its grains and wall grains.
+double checkpoint_bytes(const Geometry& shape);
 
 struct StageCost {
   double particle_steps = 0;
@@ -15,7 +19,7 @@ struct StageCost {
 };
 
 /// Cost of a planned stage from `cycle` on. Settling is estimated from what it took at N = 600 to
-/// 18200; a checkpoint's size from the number of its grains and wall grains.
+/// 18200; checkpoints by checkpoint_bytes.
 StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle);
 
 struct Rate {

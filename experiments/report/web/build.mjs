@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bundles the front end into report.js and the licences of what it holds into licences.txt:
+// Bundles the front end into report.js, the licences of what it holds into licences.txt, and their names
+// and hashes into packages.json:
 //   node build.mjs FOLDER_WITH_NODE_MODULES OUT_FOLDER
 import {existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync} from "node:fs";
 import {createRequire} from "node:module";
@@ -35,6 +36,13 @@ for (const [path, {bytesInOutput}] of Object.entries(Object.values(result.metafi
   const name = path.match(/node_modules\/((?:@[^/]+\/)?[^/]+)\//)?.[1];
   if (name && bytesInOutput > 0) packages.add(name);
 }
+const locked = JSON.parse(readFileSync(join(modulesParent, "package-lock.json"), "utf8")).packages;
+const list = [...packages].sort().map((name) => {
+  const {version, license, integrity} = locked[`node_modules/${name}`];
+  const [kind, hash] = integrity.split("-");
+  if (kind !== "sha512") throw new Error(`the lock file has no SHA-512 of ${name}`);
+  return {name, version, license, sha512: Buffer.from(hash, "base64").toString("hex")};
+});
 const licences = [...packages].sort().map((name) => {
   const folder = join(modulesParent, "node_modules", name);
   const {version, license} = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
@@ -47,3 +55,4 @@ if (/<\/script|<!--/i.test(script)) throw new Error("the bundle would end its ow
 if (!existsSync(out)) mkdirSync(out, {recursive: true});
 writeFileSync(join(out, "report.js"), script);
 writeFileSync(join(out, "licences.txt"), licences.join("\n" + "-".repeat(72) + "\n\n"));
+writeFileSync(join(out, "packages.json"), JSON.stringify(list, null, 2) + "\n");
