@@ -24,7 +24,7 @@ class EventLogTest : public ::testing::Test {
   }
 
   static std::vector<Event> append(sqlite::Database& database, const std::string& stream,
-                                   std::uint64_t expected, std::vector<NewEvent> events) {
+                                   std::uint64_t expected, const std::vector<NewEvent>& events) {
     EventLog log(database);
     sqlite::WriteTransaction lock(database);
     auto appended = log.append(lock, stream, expected, events);

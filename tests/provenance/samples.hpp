@@ -3,12 +3,13 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,19 +21,20 @@ namespace shearcell::test {
 /// An empty folder that goes away with the test.
 class Folder {
  public:
-  Folder() {
-    static int counter = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("shearcell-test-" + std::to_string(getpid()) + "-" + std::to_string(counter++));
-    std::filesystem::create_directory(path_);
-  }
+  Folder() = default;
   ~Folder() { std::filesystem::remove_all(path_); }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  std::filesystem::path path_;
+  static std::filesystem::path fresh() {
+    std::string name = (std::filesystem::temp_directory_path() / "shearcell-test-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    return name;
+  }
+
+  std::filesystem::path path_ = fresh();
 };
 
 inline Checkpoint sample_checkpoint(const std::string& run, std::uint64_t step = 45600,
