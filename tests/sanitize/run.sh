@@ -1,116 +1,108 @@
 #!/bin/sh
 # What only instruments find: sanitizers, a second compiler, static analysis. One line a part:
-#   sh tests/sanitize/run.sh                      # everything, an hour or two
-#   sh tests/sanitize/run.sh tidy cppcheck        # some parts
-#   SUITES="provenance manifest" sh tests/sanitize/run.sh asan      # some test programs alone
-# Installs nothing. Ends with 1 at the first finding and shows it; with 2 where a tool is missing.
-# The whole of what each part said is in build/sanitize/PART.log. JOBS (all cores) limits what runs at once.
+#   sh tests/sanitize/run.sh                  # every part; without anything cached, an hour or two on two cores
+#   sh tests/sanitize/run.sh tidy cppcheck    # some parts
+#   SUITES="provenance manifest" sh tests/sanitize/run.sh asan     # some test programs alone
+# Installs nothing. Ends with 1 at the first finding and shows it, with 2 where a program is missing.
+# All that a part said is in build/sanitize/PART.log. JOBS: how many at once (all cores).
+# The sanitizers' own options are in CMakePresets.json, what is not looked at in the files beside this one.
 set -eu
 cd "$(dirname "$0")/../.."
 jobs="${JOBS:-$(nproc)}"
-suites="${SUITES:-}"
-folders="core protocols provenance analysis experiments tests"
 logs="$PWD/build/sanitize"
+beside="tests/sanitize"
 mkdir -p "$logs"
 
-# Tests that a sanitized build has, and that are left out, each with its reason. (What starts Slurm, installs,
-# or runs the documentation's commands is no part of a sanitized build: tests/*/CMakeLists.txt.)
-#   report.Browser: says how soon Chromium shows the report, a time; the report itself is made by other tests.
-left_out='report\.Browser'
+# Tests of a sanitized build that are left out. (What starts Slurm, installs, or types the documentation's
+# commands is no part of such a build: tests/*/CMakeLists.txt.)
+#   report.Browser   says how soon Chromium shows the report, a time; other tests make and read the report
+left_out='^report\.Browser$'
 
 need() {  # need PROGRAM PACKAGE
-  command -v "$1" >/dev/null 2>&1 && return
-  echo "$part: cannot run, $1 is missing (Debian: apt install $2)"
+  command -v "$1" >/dev/null && return
+  echo "$part: cannot run, $1 is missing (Debian: apt-get install $2)"
   exit 2
 }
 
-finding() {
-  echo "$part: FOUND, in $logs/$part.log:"
-  grep -E -A 15 -m 3 "${1:-.}" "$logs/$part.log" | head -n 60
+finding() {  # finding PATTERN: what the log says from its first lines of that kind on
+  echo "$part: FOUND (all of it in $logs/$part.log)"
+  grep -E -A 15 -m 2 "$1" "$logs/$part.log" | head -n 50
   exit 1
 }
 
-build() {  # build PRESET: the whole project, or the test programs of SUITES
+build() {  # build PRESET: all of it, or the test programs of SUITES
   cmake --preset "$1" -DSHEARCELL_WERROR=ON >"$logs/$part.log" 2>&1 || finding 'CMake Error'
   targets="all"
-  [ -z "$suites" ] || targets="$(printf 'test_%s ' $suites)"
+  [ -z "$suites" ] || targets="$(echo "$suites" | sed 's/[^ ]*/test_&/g')"
   # shellcheck disable=SC2086  # one word a target
-  cmake --build "build/$1" -j "$jobs" --target $targets >>"$logs/$part.log" 2>&1 ||
+  cmake --build --preset "$1" -j "$jobs" --target $targets >>"$logs/$part.log" 2>&1 ||
     finding 'error:|FAILED:'
 }
 
-run_tests() {  # run_tests PRESET, in a build of the whole project or of SUITES
-  chosen=""
-  [ -z "$suites" ] || chosen="-R ^($(echo $suites | tr ' ' '|'))\."
-  # shellcheck disable=SC2086  # nothing, or an option and its value
-  ctest --test-dir "build/$1" -j "$jobs" --output-on-failure --no-tests=error $chosen -E "$left_out" \
+run_tests() {  # run_tests PRESET
+  chosen="$(echo "$suites" | tr ' ' '|')"
+  ctest --preset "$1" -j "$jobs" --no-tests=error -R "^(${chosen:-.*})\." -E "$left_out" \
     >>"$logs/$part.log" 2>&1 || finding 'ERROR: |runtime error|WARNING: ThreadSanitizer|Failure|\*\*\*'
-  said="$(sed -n 's/.*tests passed, 0 tests failed out of \([0-9]*\)/\1 tests/p' "$logs/$part.log")"
+  said="$(sed -n 's/.* tests failed out of \([0-9]*\)/\1 tests/p' "$logs/$part.log")"
 }
 
-asan() {
-  need g++ g++
-  ASAN_OPTIONS="detect_leaks=1:detect_stack_use_after_return=1:strict_string_checks=1:check_initialization_order=1"
-  UBSAN_OPTIONS="print_stacktrace=1"
-  LSAN_OPTIONS="suppressions=$PWD/tests/sanitize/lsan.supp:print_suppressions=0"
-  export ASAN_OPTIONS UBSAN_OPTIONS LSAN_OPTIONS
+run_asan() {
   build asan
   run_tests asan
 }
 
-tsan() {
-  need g++ g++
-  TSAN_OPTIONS="suppressions=$PWD/tests/sanitize/tsan.supp:second_deadlock_stack=1"
-  export TSAN_OPTIONS
+run_tsan() {
   build tsan
   run_tests tsan
 }
 
-clang() {
+run_clang() {
   need clang++ clang
   build clang
-  said="$(grep -c '"file"' build/clang/compile_commands.json) files compiled, no warning"
+  said="no warning"
 }
 
-tidy() {
+run_tidy() {
   need clang++ clang
   need run-clang-tidy clang-tidy
   cmake --preset clang >"$logs/$part.log" 2>&1 || finding 'CMake Error'
-  run-clang-tidy -quiet -p build/clang -j "$jobs" '\.(cpp|cxx)$' >>"$logs/$part.log" 2>&1 || finding '(error|warning): '
-  ! grep -qE '(error|warning): ' "$logs/$part.log" || finding '(error|warning): '
-  said="no finding"
+  run-clang-tidy -quiet -p build/clang -j "$jobs" '\.c(pp|xx)$' >>"$logs/$part.log" 2>&1 ||
+    finding '(error|warning): '
+  said="nothing found"
 }
 
-cppcheck() {
+run_cppcheck() {
   need cppcheck cppcheck
-  # shellcheck disable=SC2086  # one word a folder
-  command cppcheck --quiet --std=c++20 --language=c++ --library=googletest -I . -j "$jobs" --error-exitcode=1 \
-    --enable=warning,performance,portability --suppressions-list=tests/sanitize/cppcheck.supp $folders \
-    >"$logs/$part.log" 2>&1 || finding
-  said="no finding"
+  cppcheck --quiet --std=c++20 --language=c++ --library=googletest -I . -j "$jobs" --error-exitcode=1 \
+    --enable=warning,performance,portability --suppressions-list="$beside/cppcheck.supp" \
+    core protocols provenance analysis experiments tests >"$logs/$part.log" 2>&1 || finding '.'
+  said="nothing found"
 }
 
-# valgrind knows no AVX-512: it tells programs that the processor has none, and the AVX2 kernel runs.
-valgrind() {
+# valgrind has no AVX-512 and says so to the program, which takes its AVX2 kernel.
+run_valgrind() {
   need valgrind valgrind
   need clang++ clang
-  suites="${SUITES:-core protocols provenance manifest}"
+  suites="${suites:-provenance manifest}"
   build clang
   for suite in $suites; do
-    command valgrind --quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite \
-      --suppressions=tests/sanitize/valgrind.supp "build/clang/tests/$(folder_of "$suite")/test_$suite" \
-      --gtest_brief=1 --gtest_filter="$small" >>"$logs/$part.log" 2>&1 || finding '==[0-9]+== |Failure'
+    program="$(find build/clang/tests -name "test_$suite" -type f)"
+    valgrind --quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite --trace-children=no \
+      "$program" --gtest_brief=1 >>"$logs/$part.log" 2>&1 || finding '^==[0-9]+== |Failure'
   done
   said="$suites"
 }
 
-for part in ${*:-cppcheck clang tidy asan tsan valgrind}; do
+[ $# -gt 0 ] || set -- cppcheck tidy clang asan tsan valgrind
+for part in "$@"; do
   case $part in
     asan | tsan | clang | tidy | cppcheck | valgrind) ;;
-    *) echo "there is no part $part; known are asan tsan clang tidy cppcheck valgrind" >&2; exit 2 ;;
+    *) echo "there is no part $part; there are asan tsan clang tidy cppcheck valgrind" >&2; exit 2 ;;
   esac
   began="$(date +%s)"
-  "$part"
+  suites="${SUITES:-}"
+  need cmake cmake
+  "run_$part"
   took=$(($(date +%s) - began))
   echo "$part: clean, $said, $((took / 60)) min $((took % 60)) s"
 done
