@@ -32,9 +32,8 @@ constexpr std::array<std::array<std::uint8_t, 4>, 4> edge_bit = {
 
 /// Number of the corner that is `vertex`, which must be one of the four.
 std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
-  return static_cast<std::size_t>((t.vertex[1] == vertex ? 1 : 0) +
-                                  (t.vertex[2] == vertex ? 2 : 0) +
-                                  (t.vertex[3] == vertex ? 3 : 0));
+  return (t.vertex[1] == vertex ? 1U : 0U) + (t.vertex[2] == vertex ? 2U : 0U) +
+         (t.vertex[3] == vertex ? 3U : 0U);
 }
 
 }  // namespace
@@ -142,12 +141,12 @@ Eigen::Vector3d Delaunay::circumcentre(const std::array<std::int32_t, 4>& vertic
   const double terms = longest2 * (longest2 + std::sqrt(longest2 * v.squaredNorm()));
   if (32 * unit_roundoff * terms < worst_centre_error * determinant) return origin + v;
 
-  using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+  using Rational = CGAL::Simple_cartesian<CGAL::Exact_rational>;
   const auto exact = [&](std::size_t k) {
     const Eigen::Vector3d& p = point(vertices[k]);
-    return Exact::Point_3(p.x(), p.y(), p.z());
+    return Rational::Point_3(p.x(), p.y(), p.z());
   };
-  const Exact::Point_3 centre = CGAL::circumcenter(exact(0), exact(1), exact(2), exact(3));
+  const Rational::Point_3 centre = CGAL::circumcenter(exact(0), exact(1), exact(2), exact(3));
   return {CGAL::to_double(centre.x()), CGAL::to_double(centre.y()), CGAL::to_double(centre.z())};
 }
 

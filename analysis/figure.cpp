@@ -92,7 +92,7 @@ std::string to_csv(const FigureTable& table) {
 }
 
 std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder) {
-  const std::filesystem::path path = folder / (table.name + ".csv");
+  std::filesystem::path path = folder / (table.name + ".csv");
   write_output(path, to_csv(table));
   return path;
 }

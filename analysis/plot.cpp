@@ -94,7 +94,7 @@ void require_own_files(const FigureTable& table, const std::filesystem::path& fo
 
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder) {
   require_plain_name(table.name);
-  const std::filesystem::path svg = folder / (table.name + ".svg");
+  std::filesystem::path svg = folder / (table.name + ".svg");
   const std::filesystem::path script = folder / (table.name + ".gp");
   if (!std::filesystem::exists(folder / (table.name + ".csv"))) {
     throw AnalysisError("there is no " + table.name + ".csv in " + folder.string() + " to draw");

@@ -84,7 +84,7 @@ void CellOrder::build(const Cell& cell, const WallPose& pose, double reach, cons
 
 std::size_t CellOrder::bytes() const {
   return 4 * (begin_.size() + cell_.size() + cell_of_site_.size() + id_.size() + site_.size()) +
-         4 * 8 * row_[0].size();
+         4 * sizeof(double) * row_[0].size();
 }
 
 }  // namespace shearcell

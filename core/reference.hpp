@@ -31,7 +31,7 @@ class Reference {
   double origin() const { return pose_.top; }
   /// One coordinate of the grains in the untilted frame; single precision, of which `loss` knows.
   const float* data(std::size_t axis) const { return at_[axis].data(); }
-  std::size_t bytes() const { return 3 * 4 * at_[0].size(); }
+  std::size_t bytes() const { return 3 * sizeof(float) * at_[0].size(); }
 
  private:
   std::array<AlignedVector<float>, 3> at_;

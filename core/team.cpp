@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/team.hpp"
 
+#include <algorithm>
+
+#include "core/threads.hpp"
+
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -20,16 +24,14 @@ void relax() {
 
 }  // namespace
 
-Team::Team(std::size_t threads) {
-  for (std::size_t thread = 1; thread < threads; ++thread) {
-    workers_.emplace_back([this, thread] { work_until_stopped(thread); });
-  }
-}
+Team::Team(std::size_t threads)
+    : workers_(start_threads(std::max<std::size_t>(threads, 1) - 1,
+                             [this](std::size_t k) { work_until_stopped(k + 1); })) {}
 
 Team::~Team() {
   stop_ = true;
   start_workers();
-  for (std::thread& worker : workers_) worker.join();
+  for (std::jthread& worker : workers_) worker.join();
 }
 
 void Team::run_part(std::size_t thread) {

@@ -18,7 +18,8 @@ namespace shearcell {
 
 class Team {
  public:
-  /// `threads` counts the caller's; 1 starts none.
+  /// `threads` counts the caller's; 1 starts none. Where the system does not lend so many, the team
+  /// is smaller.
   explicit Team(std::size_t threads);
   ~Team();
   Team(const Team&) = delete;
@@ -57,7 +58,7 @@ class Team {
   // The round that workers may do, and how many have done it.
   alignas(64) std::atomic<std::uint32_t> round_{0};
   alignas(64) std::atomic<std::uint32_t> done_{0};
-  std::vector<std::thread> workers_;
+  std::vector<std::jthread> workers_;  // last, so that they see the rest made
 };
 
 }  // namespace shearcell

@@ -114,7 +114,8 @@ void bound_wall(const WatchTask& task, const Cell& cell, const Scene& scene, con
   };
   double most = 0;
   for (std::size_t g = 0; g < task.id->size(); ++g) {
-    if (near(g)) most += each * (1.0 + task.neighbours.head[g / task.lanes]);
+    const std::size_t block = g / task.lanes;
+    if (near(g)) most += each * (1.0 + task.neighbours.head[block]);
   }
   if (most <= least) return;
   double bound = 0;

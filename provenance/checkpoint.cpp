@@ -83,7 +83,7 @@ void put_particles(const Handle& file, const Checkpoint& checkpoint) {
   Eigen::Matrix3Xd velocity = Eigen::Matrix3Xd::Zero(3, grains + walls);
   velocity.leftCols(grains) = checkpoint.state.velocity * d;
 
-  const auto total = static_cast<hsize_t>(grains + walls);
+  const auto total = static_cast<hsize_t>(position.cols());
   put_element(all, "position", checkpoint, position.data(), {1, total, 3}, "m");
   put_element(all, "velocity", checkpoint, velocity.data(), {1, total, 3}, "m s-1");
   std::vector<std::uint64_t> id(total);

@@ -83,8 +83,7 @@ class Document {
   std::string add_agent(const json& host) {
     const json build = host.value("build", json::object());
     const json libraries = host.value("libraries", json::object());
-    const std::string id =
-        "shearcell:build-" + sha256_hex(build.dump() + libraries.dump()).substr(0, 16);
+    std::string id = "shearcell:build-" + sha256_hex(build.dump() + libraries.dump()).substr(0, 16);
     document_["agent"][id] = {{"prov:type", qualified("prov:SoftwareAgent")},
                               {"prov:label", "shearcell"},
                               {"shearcell:build", build.dump()},

@@ -164,7 +164,7 @@ void Store::append_held(const std::string& id, NewEvent event, bool release) {
 std::string Store::register_manifest(std::string_view text, std::string_view path,
                                      const json& info) {
   must_write();
-  const std::string sha256 = sha256_hex(text);
+  std::string sha256 = sha256_hex(text);
   const std::string stream = "manifest/" + sha256;
   const std::scoped_lock guard(mutex_);
   sqlite::WriteTransaction lock(database_);

@@ -85,7 +85,7 @@ std::size_t cycles_between_marks(std::span<const Curve> curves) {
   std::size_t points = 1;
   for (const Curve& curve : curves) points = std::max(points, curve.points.size());
   std::size_t spacing = 1;
-  for (const std::size_t step : {2, 5, 10, 20, 50, 100, 200, 500, 1000}) {
+  for (const std::size_t step : {2U, 5U, 10U, 20U, 50U, 100U, 200U, 500U, 1000U}) {
     if (points / spacing > most_marks) spacing = step;
   }
   return spacing;

@@ -68,7 +68,9 @@ void add_bench(CLI::App& app, Context& context) {
   CLI::App* rate = command->add_subcommand(
       "speed", "Particle-steps per second in the sheared rough cell, and where the time goes");
   rate->add_option("--size", options->sizes, "Numbers of grains")->type_name("N");
-  rate->add_option("--threads", options->threads, "Threads inside one run")->type_name("T");
+  rate->add_option("--threads", options->threads, "Threads inside one run")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("T");
   rate->add_option("--repeats", options->repeats, "Timings of which the median is told")
       ->check(CLI::Range(1, 1000));
   rate->add_option("--seconds", options->seconds_per_repeat, "Length of one timing")

@@ -21,7 +21,7 @@ constexpr std::size_t kWidth = 80;
 // A recorded text, fit for a terminal and for what is left of the line.
 std::string cut(const std::string& text, std::size_t used) {
   std::string shown = printable(text, kWidth);
-  if (shown.size() > kWidth - used) shown = shown.substr(0, kWidth - used - 3) + "...";
+  if (shown.size() > kWidth - used) shown.replace(kWidth - used - 3, shown.npos, "...");
   return shown;
 }
 

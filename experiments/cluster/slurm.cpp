@@ -46,7 +46,7 @@ std::string queue_job(const std::filesystem::path& folder, const std::string& sc
   words.insert(words.end(), options.begin(), options.end());
   words.push_back(script);
   const std::string answer = ask(words, folder);
-  const std::string job = trimmed(answer.substr(0, answer.find(';')));  // then the cluster's name
+  std::string job = trimmed(answer.substr(0, answer.find(';')));  // then the cluster's name
   if (!is_number(job)) {
     throw ClusterError(fmt::format("sbatch gave no job number but '{}'", trimmed(answer)));
   }

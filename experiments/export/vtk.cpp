@@ -20,7 +20,7 @@ class PolyData {
   template <typename Number>
   std::string array(const std::string& name, const char* type, int components,
                     const std::vector<Number>& values) {
-    const std::string element = fmt::format(
+    std::string element = fmt::format(
         "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
         "offset=\"{}\"/>\n",
         type, name, components, data_.size());

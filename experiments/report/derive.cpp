@@ -6,9 +6,9 @@
 #include <exception>
 #include <map>
 #include <mutex>
-#include <thread>
 
 #include "analysis/error.hpp"
+#include "core/threads.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 
@@ -41,10 +41,11 @@ class Deriving {
       if (options_.fresh || !results_[i]) todo_.push_back(i);
     }
     outcome_.kept = distinct_.size() - todo_.size();
-    std::vector<std::thread> threads;
-    const std::size_t workers = std::clamp<std::size_t>(options_.workers, 1, todo_.size() + 1);
-    for (std::size_t w = 0; w < workers; ++w) threads.emplace_back([this] { compute_some(); });
-    for (std::thread& thread : threads) thread.join();
+    {
+      const std::size_t workers = std::clamp<std::size_t>(options_.workers, 1, todo_.size() + 1);
+      const auto threads = start_threads(workers - 1, [this](std::size_t) { compute_some(); });
+      compute_some();
+    }
     keep();
     if (error_) std::rethrow_exception(error_);
     std::sort(outcome_.damage.begin(), outcome_.damage.end());

@@ -82,7 +82,7 @@ void check_trajectories(const LammpsProgram& program, const Packing& packing, st
   check.trajectories.push_back(compare(program, "drag, moving fluid", task, true));
   task.scene.drag_rate = 0;
   check.trajectories.push_back(compare(program, "no drag", task, true));
-  for (const std::uint64_t finer : {1, 2}) {
+  for (const std::uint64_t finer : {1U, 2U}) {
     check.trajectories.push_back(explicit_drag(program, packing, finer));
   }
   const auto& last = check.trajectories;

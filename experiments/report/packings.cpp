@@ -8,9 +8,9 @@
 #include <exception>
 #include <mutex>
 #include <set>
-#include <thread>
 
 #include "analysis/measures.hpp"
+#include "core/threads.hpp"
 #include "experiments/report/frames.hpp"
 #include "experiments/report/html.hpp"
 #include "provenance/errors.hpp"
@@ -189,7 +189,7 @@ std::vector<Frame> make_frames(const Store& store, const std::vector<CheckpointR
   std::size_t done = 0;
   std::mutex mutex;  // guards `done`, `error` and the notes
   std::exception_ptr error;
-  const auto work = [&] {
+  const auto work = [&](std::size_t) {
     for (std::size_t i = next++; i < records.size(); i = next++) {
       try {
         frames[i] = make_frame(store, records[i]);
@@ -208,11 +208,11 @@ std::vector<Frame> make_frames(const Store& store, const std::vector<CheckpointR
       if (report) report(++done, records.size());
     }
   };
-  std::vector<std::thread> threads;
-  for (std::size_t w = 0; w < std::clamp<std::size_t>(workers, 1, records.size() + 1); ++w) {
-    threads.emplace_back(work);
+  {
+    const auto threads =
+        start_threads(std::clamp<std::size_t>(workers, 1, records.size() + 1) - 1, work);
+    work(0);
   }
-  for (std::thread& thread : threads) thread.join();
   if (error) std::rethrow_exception(error);
   return frames;
 }

@@ -303,7 +303,7 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
       write_text(options.folder / (result.name + ".lineage.json"), lineage_text(facts)));
 
   record(store, result.name, facts);
-  return std::move(result);
+  return std::move(computed.about);
 }
 
 }  // namespace shearcell

@@ -100,7 +100,7 @@ std::optional<FigureRecord> record_of(const std::vector<FigureRecord>& records,
 std::vector<std::vector<std::string>> texts_of(const FigureTable& table) {
   std::vector<std::vector<std::string>> texts = {table.columns};
   for (const std::vector<TableValue>& row : table.rows) {
-    std::vector<std::string>& line = texts.emplace_back();
+    std::vector<std::string> line;
     for (const TableValue& value : row) {
       const auto* text = std::get_if<std::string>(&value);
       const auto* whole = std::get_if<std::int64_t>(&value);
@@ -110,6 +110,7 @@ std::vector<std::vector<std::string>> texts_of(const FigureTable& table) {
                      : real != nullptr && std::isfinite(*real) ? fmt::format("{:.9g}", *real)
                                                                : "");
     }
+    texts.push_back(std::move(line));
   }
   return texts;
 }

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "core/filling.hpp"
+#include "core/threads.hpp"
 #include "experiments/engines/engine_error.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
@@ -65,11 +66,11 @@ class Campaign {
 
   CampaignResult run(std::size_t workers) {
     const Heartbeat heartbeat(store_);
-    std::vector<std::thread> threads;
-    for (std::size_t w = 0; w < std::max<std::size_t>(1, workers); ++w) {
-      threads.emplace_back([this] { work(); });
+    {
+      const auto threads =
+          start_threads(std::max<std::size_t>(workers, 1) - 1, [this](std::size_t) { work(); });
+      work();
     }
-    for (std::thread& thread : threads) thread.join();
     if (error_) std::rethrow_exception(error_);
     return result_;
   }

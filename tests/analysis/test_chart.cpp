@@ -43,7 +43,7 @@ TEST(Chart, HasTheDigitsOfTheCsv) {
 
 TEST(Chart, EveryPanelOfEveryFigureHasOne) {
   std::vector<FigureRun> runs;
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     runs.push_back(testing::made_up_run("fluid", "still", seed, 4, [](int n, Measures& m) {
       m.phi = 0.63 + 0.01 * n;
       m.phi_uncorrected = 0.64 + 0.01 * n;

@@ -56,7 +56,7 @@ class EngineRun : public ProgramTest {
 
   /// A program that passes for LAMMPS and then does as it is told.
   std::string fake(const std::string& body) {
-    const std::string file = path("fake").string();
+    std::string file = path("fake").string();
     write("fake",
           "#!/bin/sh\nif [ \"$1\" = -h ]; then echo 'Massively Parallel Simulator - "
           "1 Jan 2000'; echo gran/hooke; exit 0; fi\n" +

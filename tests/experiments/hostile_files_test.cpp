@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hostile manifests through the program, hostile names that reach gnuplot, and what stands in the
-// way of the files that the program writes.
+// way of the files that the program writes; and a machine that lends little.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <sstream>
@@ -162,6 +163,45 @@ TEST_F(Outputs, NamesOfAForgedStoreAreTextToGnuplot) {
   for (const std::string& file : listing()) {
     EXPECT_EQ(file.find("owned"), std::string::npos) << file;
   }
+}
+
+/// A limit on this process and those it starts, until it goes.
+class Limit {
+ public:
+  using Resource = decltype(RLIMIT_AS);
+
+  Limit(Resource resource, rlim_t value) : resource_(resource) {
+    getrlimit(resource_, &before_);
+    const rlimit now{value, before_.rlim_max};
+    set_ = value <= before_.rlim_max && setrlimit(resource_, &now) == 0;
+  }
+  ~Limit() { setrlimit(resource_, &before_); }
+  Limit(const Limit&) = delete;
+  Limit& operator=(const Limit&) = delete;
+  bool set() const { return set_; }
+
+ private:
+  Resource resource_;
+  rlimit before_{};
+  bool set_ = false;
+};
+
+class HostileMachine : public ProgramTest {};
+
+TEST_F(HostileMachine, ThatLendsFewThreadsGivesTheSameBits) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer needs more addresses than this limit leaves";
+#endif
+  write("m.yaml", tiny_manifest("  grains: 100\n", kBothFluids));
+  ASSERT_EQ(run({"run", "m.yaml", "-q", "-j", "1", "--store", "many"}).code, 0);
+  {
+    const Limit stack(RLIMIT_STACK, rlim_t{1} << 30);  // of a thread, unless it asks for another
+    const Limit addresses(RLIMIT_AS, rlim_t{6} << 30);
+    if (!stack.set() || !addresses.set()) GTEST_SKIP() << "this user's limits are lower";
+    const Outcome outcome = run({"run", "m.yaml", "-q", "-j", "64", "-t", "64", "--store", "few"});
+    EXPECT_EQ(outcome.code, 0) << "signal " << outcome.signal << ": " << outcome.err;
+  }
+  EXPECT_EQ(hashes("few"), hashes("many"));
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ class BadFile : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   fs::path write(const std::string& text) const {
-    const fs::path path = folder_ / "m.yaml";
+    fs::path path = folder_ / "m.yaml";
     std::ofstream(path, std::ios::binary) << text;
     return path;
   }

@@ -32,7 +32,7 @@ bool settling_feels(const Field& field) {
 
 // Some other value that the field may take.
 json another_value(const Field& field) {
-  const json value = get_value(field, Parameters{});
+  json value = get_value(field, Parameters{});
   if (value.is_string()) {
     for (const std::string_view name : std::get<ChoiceMember>(field.member).names) {
       if (name != value) return name;

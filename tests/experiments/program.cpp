@@ -84,7 +84,7 @@ Outcome ProgramTest::run_until(const Arguments& arguments, std::size_t files, in
 nlohmann::json ProgramTest::json(const Arguments& arguments) {
   const Outcome outcome = run(arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  const nlohmann::json facts = nlohmann::json::parse(outcome.out, nullptr, false);
+  nlohmann::json facts = nlohmann::json::parse(outcome.out, nullptr, false);
   EXPECT_FALSE(facts.is_discarded()) << outcome.out;
   return facts;
 }

@@ -29,16 +29,16 @@ const Packing& settled() {
   return packing;
 }
 
-struct Stop {
+struct Reached {
   Scene scene;
   State state;
   StageProgress progress;
 };
 
-std::vector<Stop> stiffen(const State& from, std::uint64_t most_steps = test::kAtOnce) {
+std::vector<Reached> stiffen(const State& from, std::uint64_t most_steps = test::kAtOnce) {
   const Stiffen protocol(kNine, settled().scene);
   Simulation simulation(settled().cell, settled().scene, from);
-  std::vector<Stop> stops;
+  std::vector<Reached> stops;
   do {
     const StageProgress progress = protocol.advance(simulation, most_steps);
     stops.push_back({simulation.scene(), simulation.state(), progress});
@@ -46,8 +46,8 @@ std::vector<Stop> stiffen(const State& from, std::uint64_t most_steps = test::kA
   return stops;
 }
 
-const std::vector<Stop>& nine() {
-  static const std::vector<Stop> stops = stiffen(settled().state);
+const std::vector<Reached>& nine() {
+  static const std::vector<Reached> stops = stiffen(settled().state);
   return stops;
 }
 

@@ -14,8 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<std::byte> bytes(const std::string& text) {
-  const auto* first = reinterpret_cast<const std::byte*>(text.data());
-  return {first, first + text.size()};
+  const auto view = std::as_bytes(std::span(text));
+  return {view.begin(), view.end()};
 }
 
 class DerivedCacheTest : public testing::Test {

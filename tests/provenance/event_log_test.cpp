@@ -24,7 +24,7 @@ class EventLogTest : public ::testing::Test {
   }
 
   static std::vector<Event> append(sqlite::Database& database, const std::string& stream,
-                                   std::uint64_t expected, std::vector<NewEvent> events) {
+                                   std::uint64_t expected, const std::vector<NewEvent>& events) {
     EventLog log(database);
     sqlite::WriteTransaction lock(database);
     auto appended = log.append(lock, stream, expected, events);
@@ -101,7 +101,7 @@ TEST_F(EventLogTest, HashesNetstringsThatNeedNoProgramToCheck) {
 
 TEST_F(EventLogTest, RefusesAnAppendThatExpectsAnotherVersion) {
   sqlite::Database database = open();
-  for (const std::uint64_t wrong : {0, 2, 4}) {
+  for (const std::uint64_t wrong : {0U, 2U, 4U}) {
     EXPECT_THROW(append(database, "test/a", wrong, {{"Late", {}}}), ConcurrencyConflict);
   }
   EXPECT_EQ(EventLog(database).head().seq, 4u);

@@ -14,15 +14,9 @@
 namespace shearcell {
 namespace {
 
-constexpr std::size_t kFrame = 512;
+using test::kFrame;
+using test::seal;
 using Change = std::function<void(hid_t file)>;
-
-/// Puts the right digest into the frame.
-void seal(std::vector<std::byte>& image) {
-  const std::string title = "shearcell checkpoint 1\nsha256 of all bytes after the first 512: ";
-  const std::string digest = sha256_hex(std::span(image).subspan(kFrame));
-  std::memcpy(image.data() + title.size(), digest.data(), digest.size());
-}
 
 /// A sound checkpoint, changed through HDF5 itself and sealed again.
 std::vector<std::byte> forge(const Change& change) {

@@ -15,13 +15,8 @@
 namespace shearcell {
 namespace {
 
-constexpr std::size_t kFrame = 512;
-
-void seal(std::vector<std::byte>& image) {
-  const std::string title = "shearcell checkpoint 1\nsha256 of all bytes after the first 512: ";
-  const std::string digest = sha256_hex(std::span(image).subspan(kFrame));
-  std::memcpy(image.data() + title.size(), digest.data(), digest.size());
-}
+using test::kFrame;
+using test::seal;
 
 /// A file image opened by the library.
 class Library {

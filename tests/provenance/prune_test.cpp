@@ -8,12 +8,11 @@ namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
+using test::kCycle;
 using test::message_of;
 using test::run_id;
 using test::sample_checkpoint;
 using test::sample_run;
-
-constexpr std::uint64_t kCycle = 45600;
 
 class PruneTest : public ::testing::Test {
  protected:

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,22 +23,33 @@ namespace shearcell::test {
 /// An empty folder that goes away with the test.
 class Folder {
  public:
-  Folder() {
-    static int counter = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("shearcell-test-" + std::to_string(getpid()) + "-" + std::to_string(counter++));
-    std::filesystem::create_directory(path_);
-  }
+  Folder() = default;
   ~Folder() { std::filesystem::remove_all(path_); }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  std::filesystem::path path_;
+  static std::filesystem::path fresh() {
+    std::string name = (std::filesystem::temp_directory_path() / "shearcell-test-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    return name;
+  }
+
+  std::filesystem::path path_ = fresh();
 };
 
-inline Checkpoint sample_checkpoint(const std::string& run, std::uint64_t step = 45600,
+constexpr std::uint64_t kCycle = 45600;  ///< steps
+constexpr std::size_t kFrame = 512;      ///< bytes before a checkpoint's HDF5
+
+/// Puts the right digest into the frame.
+inline void seal(std::vector<std::byte>& image) {
+  const std::string title = "shearcell checkpoint 1\nsha256 of all bytes after the first 512: ";
+  const std::string digest = sha256_hex(std::span(image).subspan(kFrame));
+  std::memcpy(image.data() + title.size(), digest.data(), digest.size());
+}
+
+inline Checkpoint sample_checkpoint(const std::string& run, std::uint64_t step = kCycle,
                                     Eigen::Index grains = 20) {
   std::mt19937_64 random(step + 1);
   const auto number = [&random] { return static_cast<double>(random() >> 11) * 0x1p-50 - 4.0; };

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
-#include <thread>
+
+#include "core/threads.hpp"
 
 namespace shearcell::accuracy {
 
@@ -31,18 +32,18 @@ void in_parallel(std::size_t count, std::size_t jobs,
   std::exception_ptr failure;
   std::mutex mutex;
   {
-    std::vector<std::jthread> workers;
-    for (std::size_t j = 0; j < std::clamp<std::size_t>(jobs, 1, count); ++j) {
-      workers.emplace_back([&] {
-        try {
-          for (std::size_t n = next++; n < count; n = next++) work(n);
-        } catch (...) {
-          next = count;
-          const std::lock_guard lock(mutex);
-          if (!failure) failure = std::current_exception();
-        }
-      });
-    }
+    const auto some = [&](std::size_t) {
+      try {
+        for (std::size_t n = next++; n < count; n = next++) work(n);
+      } catch (...) {
+        next = count;
+        const std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+      }
+    };
+    const std::size_t most = std::max<std::size_t>(count, 1);
+    const auto threads = start_threads(std::clamp<std::size_t>(jobs, 1, most) - 1, some);
+    some(0);
   }
   if (failure) std::rethrow_exception(failure);
 }
