@@ -2,6 +2,7 @@
 #include "experiments/engines/child_process.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -28,7 +29,8 @@ std::vector<std::string> environment_of(const Command& command) {
   for (char** variable = environ; *variable != nullptr; ++variable)
     variables.emplace_back(*variable);
   for (const auto& [name, value] : command.environment) {
-    if (std::getenv(name.c_str()) == nullptr) variables.push_back(name + '=' + value);
+    if (std::getenv(name.c_str()) == nullptr)
+      variables.push_back(fmt::format("{}={}", name, value));
   }
   return variables;
 }
