@@ -89,11 +89,12 @@ Section order_section(const Options& options) {
     add("Voronoi faces",
         time_per_1000(sample, repeats, [&] { analyse(sample.cell, sample.pose, sample.grains); }),
         0, exact.crystalline_percent);
-    for (const auto& [name, rule] : rules) {
+    for (const auto& named : rules) {
+      const auto& rule = named.second;  // clang 14 lends no part of a binding to a lambda
       const OrderError error = order_error(sample.cell, sample.pose, sample.grains, rule);
       const double seconds = time_per_1000(
           sample, repeats, [&] { q6_of_near(sample.cell, sample.pose, sample.grains, rule); });
-      add(name, seconds, error.q6, exact.crystalline_percent + error.percent);
+      add(named.first, seconds, error.q6, exact.crystalline_percent + error.percent);
     }
   }
   section.findings = {

@@ -23,7 +23,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-constexpr std::uint64_t kFinest = 32 * 45600;  // steps per cycle of the reference
+constexpr std::uint64_t kFinest = 32U * 45600U;  // steps per cycle of the reference
 
 Parameters with_steps(Parameters parameters, std::uint64_t steps_per_cycle) {
   parameters.steps_per_cycle = steps_per_cycle;

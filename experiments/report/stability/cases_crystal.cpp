@@ -106,8 +106,10 @@ Outcome subnormal(bool quick) {
   Scene scene = only_springs();
   scene.drag_rate = 64;
   std::vector<Eigen::Vector3d> positions;
-  for (int i = 0; i < 100; ++i)
-    positions.emplace_back(1.5 + 1.7 * (i % 10), 1.5 + 1.7 * (i / 10), 5);
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 10; ++column)
+      positions.emplace_back(1.5 + 1.7 * column, 1.5 + 1.7 * row, 5);
+  }
   const auto timed = [&](double speed, std::uint64_t steps_before) {
     State state = at_rest(cell, positions);
     state.velocity.setConstant(speed);
