@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grains at any places of a cell of any shape, as a property draws them (tests/property.hpp).
+#pragma once
+
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "tests/analysis/packings.hpp"
+#include "tests/property.hpp"
+
+namespace shearcell::testing {
+
+/// Moves the grains to a lattice of a quarter d, where many sites share a sphere; of several that
+/// meet at a place the first stays.
+inline void snap(Packing& p) {
+  std::set<std::tuple<double, double, double>> taken;
+  Eigen::Index kept = 0;
+  for (Eigen::Index i = 0; i < p.grains.cols(); ++i) {
+    Eigen::Vector3d at = (4 * p.grains.col(i)).array().round() / 4;
+    const double wrapped = at.z() - p.cell.depth * std::floor(at.z() / p.cell.depth);
+    if (taken.emplace(at.x(), at.y(), wrapped).second) p.grains.col(kept++) = at;
+  }
+  p.grains.conservativeResize(Eigen::NoChange, kept);
+}
+
+/// Up to 200 grains, some of them overlapping, in a smooth or rough, upright or tilted cell.
+inline Packing any_points() {
+  const auto quarters = [](int low, int high) { return *rc::gen::inRange(low, high) / 4.0; };
+  const double width = quarters(8, 32), height = quarters(8, 48), depth = quarters(6, 32);
+  const bool on_lattice = *rc::gen::inRange(0, 3).as("on a lattice if 2") == 2;
+  const double theta = on_lattice ? 0 : *rc::gen::inRange(-30, 31).as("100 theta") / 100.0;
+  const auto seed = *rc::gen::inRange<std::uint64_t>(0, 100000).as("seed");
+  Packing p = empty_cell(width, height, depth, theta);
+  if (*rc::gen::arbitrary<bool>().as("rough")) roughen(p, seed + 1);
+  const int grains = *rc::gen::inRange(1, 200).as("grains");
+  fill(p, grains, on_lattice ? 0 : *rc::gen::inRange(0, 10).as("steps apart"), seed);
+  if (on_lattice) snap(p);
+  return p;
+}
+
+}  // namespace shearcell::testing
