@@ -6,20 +6,26 @@
 #include <set>
 #include <tuple>
 
+#include "analysis/voronoi.hpp"
 #include "tests/analysis/packings.hpp"
 #include "tests/property.hpp"
 
 namespace shearcell::testing {
 
-/// Moves the grains to a lattice of a quarter d, where many sites share a sphere; of several that
-/// meet at a place the first stays.
+/// Moves the grains to a lattice of a quarter d, where many sites share a sphere.
 inline void snap(Packing& p) {
+  p.grains = (4 * p.grains).array().round() / 4;
+}
+
+/// Leaves out grains that were pushed through a wall, and all but the first at one place.
+inline void drop_unfit(Packing& p) {
   std::set<std::tuple<double, double, double>> taken;
   Eigen::Index kept = 0;
   for (Eigen::Index i = 0; i < p.grains.cols(); ++i) {
-    Eigen::Vector3d at = (4 * p.grains.col(i)).array().round() / 4;
+    const Eigen::Vector3d at = p.grains.col(i);
     const double wrapped = at.z() - p.cell.depth * std::floor(at.z() / p.cell.depth);
-    if (taken.emplace(at.x(), at.y(), wrapped).second) p.grains.col(kept++) = at;
+    const bool inside = wall_distances(p.cell, p.pose, at).minCoeff() > 0.01;
+    if (inside && taken.emplace(at.x(), at.y(), wrapped).second) p.grains.col(kept++) = at;
   }
   p.grains.conservativeResize(Eigen::NoChange, kept);
 }
@@ -36,6 +42,8 @@ inline Packing any_points() {
   const int grains = *rc::gen::inRange(1, 200).as("grains");
   fill(p, grains, on_lattice ? 0 : *rc::gen::inRange(0, 10).as("steps apart"), seed);
   if (on_lattice) snap(p);
+  drop_unfit(p);
+  RC_PRE(p.grains.cols() > 0);
   return p;
 }
 

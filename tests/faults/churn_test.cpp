@@ -101,10 +101,14 @@ class Churn : public testing::Test {
     EXPECT_TRUE(codes.contains(code))
         << command.name << " ended with " << code << " (" << ending << "):\n"
         << said(command.folder);
-    const std::string end = code == 0          ? "to its end"
-                            : code == -SIGKILL ? "killed"
-                            : code == 85       ? "stopped"
-                                               : std::to_string(code);
+    if (code == 1) {
+      EXPECT_NE(said(command.folder).find("merge when it has ended"), std::string::npos)
+          << said(command.folder);
+    }
+    const std::string end = code == 0    ? "to its end"
+                            : code == 1  ? "refused"
+                            : code == 85 ? "stopped"
+                                         : "ended by it";
     ++counts_[command.name][ending + ", " + end];
   }
 
@@ -124,8 +128,14 @@ class Churn : public testing::Test {
     if (ending < 8) return expect_exit(command, start(command), "alone", {0});
     const Command second = any_command();
     const pid_t programs[2] = {start(command), start(second)};
-    expect_exit(command, programs[0], "with another", {0});
-    expect_exit(second, programs[1], "with another", {0});
+    expect_exit(command, programs[0], "with another", codes_beside_another(command));
+    expect_exit(second, programs[1], "with another", codes_beside_another(second));
+  }
+
+  /// A merge is refused while a program is at work on a run that it would change.
+  static std::set<int> codes_beside_another(const Command& command) {
+    if (command.name == "merge") return {0, 1};
+    return {0};
   }
 
   /// No event, no checkpoint of a run and no step of it stands twice in the store.
@@ -203,7 +213,7 @@ class Churn : public testing::Test {
   TemporaryFolder folder_;
   std::mt19937 random_;
   std::size_t seeds_ = 2;
-  std::size_t latest_us_ = 150000;  ///< after the start, of a signal
+  std::size_t latest_us_ = 300000;  ///< after the start, of a signal
   std::set<std::string> manifests_;
   std::map<std::string, std::map<std::string, std::size_t>> counts_;
 };

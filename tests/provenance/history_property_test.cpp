@@ -178,7 +178,8 @@ PROPERTY(History, GivesTheTablesThatItsEventsTell, 40) {
   const auto acts = *rc::gen::container<std::vector<Act>>(rc::gen::construct<Act>(
       rc::gen::inRange(0, 13), rc::gen::inRange(0, 3), rc::gen::inRange<std::uint64_t>(0, 6)));
   const test::Folder folder;
-  std::optional<Store> store(std::in_place, folder.path() / "store", Access::create);
+  const std::filesystem::path path = folder.path() / "store";
+  std::optional<Store> store(std::in_place, path, Access::create);
   for (const Act& act : acts) {
     const Head before = store->head();
     try {
@@ -190,12 +191,11 @@ PROPERTY(History, GivesTheTablesThatItsEventsTell, 40) {
     } catch (const std::invalid_argument&) {
       RC_ASSERT(store->head().hash == before.hash);
     }
-    if (std::string(kActs[act.what]) == "reopen") store.emplace(store->folder(), Access::write);
+    if (std::string(kActs[act.what]) == "reopen") store.emplace(path, Access::write);
   }
   expect_told(*store);
   const auto rows = [&] {
-    return projection_rows(
-        sqlite::Database(store->folder() / "store.sqlite", sqlite::Open::existing));
+    return projection_rows(sqlite::Database(path / "store.sqlite", sqlite::Open::existing));
   };
   const auto step_by_step = rows();
   RC_ASSERT(rows_of_old_events(folder.path() / "old.sqlite", store->events()) == step_by_step);
