@@ -181,7 +181,7 @@ PROPERTY(Expand, DoesNotDependOnTheOrderOfWriting, 150) {
 // digits x 10^exponent in one of the ways to write it.
 std::string notation(std::int64_t digits, int exponent) {
   std::string text = std::to_string(digits);
-  switch (*rc::gen::inRange(0, 5).as("notation")) {
+  switch (*rc::gen::element(0, 1, 2, 3, 4).as("notation")) {
     case 0:
       return fmt::format("{}e{}", text, exponent);
     case 1:
@@ -218,8 +218,8 @@ std::vector<Stated> any_base() {
   std::vector<Stated> all;
   const auto number = [&all](const char* key, std::int64_t low, std::int64_t high, int exponent,
                              std::int64_t usual) {
-    const bool keep = *rc::gen::arbitrary<bool>().as("the default");
-    const std::int64_t digits = keep ? usual : *rc::gen::inRange(low, high);
+    const std::int64_t digits =
+        *rc::gen::oneOf(rc::gen::element(usual, low), rc::gen::inRange(low, high));
     const auto plain =
         fmt::format("{}{}", digits, exponent == 0 ? "" : fmt::format("e{}", exponent));
     all.push_back({key, plain, digits, exponent, digits == usual});
@@ -252,7 +252,7 @@ PROPERTY(Identity, IgnoresHowAManifestIsWrittenAndHowLongARunIs, 250) {
   for (const Stated& stated : all) plain.push_back(stated.key + ": " + stated.plain);
   shuffle(all);
   for (const Stated& stated : all) {
-    const int where = *rc::gen::inRange(0, 5).as("where it is written");
+    const int where = *rc::gen::element(0, 1, 2, 3).as("where it is written");
     const std::string line = stated.key + ": " + stated.any_form();
     if (where == 0 && stated.is_default) continue;
     if (where == 1) {

@@ -37,9 +37,9 @@ class Churn : public testing::Test {
   }
 
   fs::path at(const std::string& name) const { return folder_.path() / name; }
-  static std::string said(const fs::path& folder) {
-    const std::string text = read_bytes(folder / "said");
-    return text.substr(text.size() < 2000 ? 0 : text.size() - 2000);
+  /// What programs have said in the folder since the operation began.
+  std::string said(const fs::path& folder) {
+    return read_bytes(folder / "said").substr(said_before_[folder]);
   }
   std::size_t below(std::size_t n) { return random_() % n; }
 
@@ -95,18 +95,24 @@ class Churn : public testing::Test {
     return start_program(command.folder, command.words, {});
   }
 
+  /// What a program says when it ends with 1, where that is sound: a merge is refused while another
+  /// program is at work on a run that it would change; figures leave out what is pruned.
+  static std::string excuse(const std::string& name, bool beside_another) {
+    if (name == "merge" && beside_another) return "merge when it has ended";
+    return name == "figures" ? "was pruned" : "";
+  }
+
   void expect_exit(const Command& command, pid_t program, const std::string& ending,
-                   const std::set<int>& codes) {
+                   std::set<int> codes) {
+    const std::string excused = excuse(command.name, ending == "with another");
     const int code = wait_for_exit(program);
+    const std::string text = said(command.folder);
+    if (!excused.empty() && text.find(excused) != std::string::npos) codes.insert(1);
     EXPECT_TRUE(codes.contains(code))
         << command.name << " ended with " << code << " (" << ending << "):\n"
-        << said(command.folder);
-    if (code == 1) {
-      EXPECT_NE(said(command.folder).find("merge when it has ended"), std::string::npos)
-          << said(command.folder);
-    }
+        << text;
     const std::string end = code == 0    ? "to its end"
-                            : code == 1  ? "refused"
+                            : code == 1  ? "with a reason"
                             : code == 85 ? "stopped"
                                          : "ended by it";
     ++counts_[command.name][ending + ", " + end];
@@ -120,6 +126,8 @@ class Churn : public testing::Test {
   }
 
   void operate() {
+    for (const char* name : {"one", "other"})
+      said_before_[at(name)] = fs::file_size(at(name) / "said");
     const Command command = any_command();
     const std::size_t ending = below(10);
     if (ending < 3) return disturb(command, SIGKILL, {0, -SIGKILL});
@@ -128,14 +136,8 @@ class Churn : public testing::Test {
     if (ending < 8) return expect_exit(command, start(command), "alone", {0});
     const Command second = any_command();
     const pid_t programs[2] = {start(command), start(second)};
-    expect_exit(command, programs[0], "with another", codes_beside_another(command));
-    expect_exit(second, programs[1], "with another", codes_beside_another(second));
-  }
-
-  /// A merge is refused while a program is at work on a run that it would change.
-  static std::set<int> codes_beside_another(const Command& command) {
-    if (command.name == "merge") return {0, 1};
-    return {0};
+    expect_exit(command, programs[0], "with another", {0});
+    expect_exit(second, programs[1], "with another", {0});
   }
 
   /// No event, no checkpoint of a run and no step of it stands twice in the store.
@@ -187,12 +189,18 @@ class Churn : public testing::Test {
     const Store store(one / "store", Access::read);
     EXPECT_EQ(final_hashes(store), final_hashes(golden));
     for (const RunRecord& run : store.runs()) EXPECT_EQ(run.state, RunState::completed) << run.id;
-    EXPECT_TRUE(store.verify().findings.empty());
+    const VerifyReport report = store.verify();
+    for (const Finding& finding : report.findings) {  // a kill may leave a file without an event
+      EXPECT_EQ(finding.severity, Finding::Severity::note) << finding.message;
+    }
     expect_nothing_twice(store);
     const std::size_t compared = expect_states_of(golden, store);
-    std::printf("%zu manifests, %zu runs, %zu events; %zu states as in an undisturbed store\n",
-                manifests_.size(), store.runs().size(), static_cast<std::size_t>(store.head().seq),
-                compared);
+    std::printf(
+        "%zu manifests, %zu runs, %zu events, %zu checkpoints, %zu orphans; %zu states as in an "
+        "undisturbed store\n",
+        manifests_.size(), store.runs().size(), static_cast<std::size_t>(report.events),
+        static_cast<std::size_t>(report.checkpoints), static_cast<std::size_t>(report.orphans),
+        compared);
   }
 
   void churn(std::size_t operations) {
@@ -215,6 +223,7 @@ class Churn : public testing::Test {
   std::size_t seeds_ = 2;
   std::size_t latest_us_ = 300000;  ///< after the start, of a signal
   std::set<std::string> manifests_;
+  std::map<fs::path, std::size_t> said_before_;
   std::map<std::string, std::map<std::string, std::size_t>> counts_;
 };
 
