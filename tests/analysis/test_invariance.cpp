@@ -27,7 +27,7 @@ void move_along_z(Packing& p) {
   }
 }
 
-PROPERTY(Measures, DoNotSeeThePeriodicSeam, 120) {
+PROPERTY(Measures, DoNotSeeThePeriodicSeam, 250) {
   Packing p = any_points();
   const Analysis a = analyse(p.cell, p.pose, p.grains);
   move_along_z(p);

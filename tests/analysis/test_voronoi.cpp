@@ -78,7 +78,7 @@ double worst_opening(const VoronoiDiagram& d) {
   return worst;
 }
 
-PROPERTY(Voronoi, CellsOfAnyPointsFillTheCellAndShareTheirFaces, 150) {
+PROPERTY(Voronoi, CellsOfAnyPointsFillTheCellAndShareTheirFaces, 300) {
   const Packing p = any_points();
   const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains, WallGrainCells::measure);
   const double filled = (sum(d.volume) + sum(d.wall_grain_volume)) / volume_of(p);

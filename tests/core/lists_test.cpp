@@ -109,7 +109,7 @@ std::vector<std::int32_t> found_row(const NeighbourLists& lists, const Walls& wa
   return row;
 }
 
-PROPERTY(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId, 150) {
+PROPERTY(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId, 300) {
   const Cell cell = any_cell();
   const ListSettings settings = test::any_engine().lists;
   Walls walls(cell);

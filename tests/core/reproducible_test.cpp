@@ -116,7 +116,7 @@ void brute_step(const Cell& cell, const Scene& scene, const Drive& drive, State&
   ++state.step;
 }
 
-PROPERTY(Reproducible, EqualsBruteForceOverAllPairs, 40) {
+PROPERTY(Reproducible, EqualsBruteForceOverAllPairs, 60) {
   const Sheared start = test::any_packing(200);
   const Scene scene = test::any_scene();
   const Drive drive = test::any_drive();

@@ -139,7 +139,7 @@ std::string told(const PlannedRun& run) {
   return fmt::format("{}", fmt::join(parts, " "));
 }
 
-PROPERTY(Expand, GivesEveryCombinationAndSeedOnce, 200) {
+PROPERTY(Expand, GivesEveryCombinationAndSeedOnce, 400) {
   const Written written = any_sweep();
   const Plan plan = expand(parse_manifest(written.text(), "any.yaml"));
   Strings expected = combinations(written), found;
@@ -154,7 +154,7 @@ PROPERTY(Expand, GivesEveryCombinationAndSeedOnce, 200) {
   RC_ASSERT(ids.size() == plan.runs.size());
 }
 
-PROPERTY(Expand, DoesNotDependOnTheOrderOfWriting, 150) {
+PROPERTY(Expand, DoesNotDependOnTheOrderOfWriting, 300) {
   const auto ids = [](const Written& written) {
     std::multiset<std::string> found;
     for (const PlannedRun& run : expand(parse_manifest(written.text(), "any.yaml")).runs) {
@@ -245,7 +245,7 @@ std::vector<Stated> any_base() {
   return all;
 }
 
-PROPERTY(Identity, IgnoresHowAManifestIsWrittenAndHowLongARunIs, 250) {
+PROPERTY(Identity, IgnoresHowAManifestIsWrittenAndHowLongARunIs, 500) {
   std::vector<Stated> all = any_base();
   const std::string steps = "steps_per_cycle: 100000";
   Strings plain = {steps}, other = {steps}, in_scale, in_sweep;
@@ -307,7 +307,7 @@ bool felt(const Field& field, const Parameters& before, const Parameters& after)
   return field.identity == Identity::shear || field.identity == Identity::shear_if_set;
 }
 
-PROPERTY(Identity, ChangesWithEachValueAsTheSchemaSays, 60) {
+PROPERTY(Identity, ChangesWithEachValueAsTheSchemaSays, 100) {
   const Parameters before = any_parameters();
   const StageSpec prepare = prepare_stage(before, 1);
   const StageSpec last = last_stage(before, 1, prepare);
@@ -330,7 +330,7 @@ PROPERTY(Identity, ChangesWithEachValueAsTheSchemaSays, 60) {
   }
 }
 
-PROPERTY(Identity, OfARecordReadBackIsTheSame, 150) {
+PROPERTY(Identity, OfARecordReadBackIsTheSame, 300) {
   const Parameters parameters = any_parameters();
   const auto seed = *rc::gen::inRange<std::uint64_t>(1, 1ULL << 53);
   const StageSpec prepare = prepare_stage(parameters, seed);

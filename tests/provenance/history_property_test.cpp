@@ -174,7 +174,7 @@ auto rows_of_old_events(const std::filesystem::path& file, const std::vector<Eve
   return projection_rows(database);
 }
 
-PROPERTY(History, GivesTheTablesThatItsEventsTell, 40) {
+PROPERTY(History, GivesTheTablesThatItsEventsTell, 100) {
   const auto any_act = rc::gen::construct<Act>(rc::gen::inRange(0, 13), rc::gen::inRange(0, 3),
                                                rc::gen::inRange<std::uint64_t>(0, 6));
   const auto acts = *rc::gen::container<std::vector<Act>>(rc::gen::resize(100, any_act));

@@ -20,7 +20,7 @@ Checkpoint advanced(Checkpoint at, const Scene& scene, const Drive& drive, std::
   return at;
 }
 
-PROPERTY(Restart, AtAnyStepFromACheckpointLeavesNoTrace, 40) {
+PROPERTY(Restart, AtAnyStepFromACheckpointLeavesNoTrace, 80) {
   test::Sheared packing = test::any_packing(300);
   Checkpoint start;
   start.run = "any";
