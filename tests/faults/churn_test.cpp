@@ -59,6 +59,7 @@ class Churn : public testing::Test {
 
   /// Of a checkpoint that is pruned now; without one, of what is unfinished instead.
   Command regenerate_any() {
+    const std::size_t choice = below(1000000);  // drawn in any case: what is drawn next stays so
     const Store store(at("one") / "store", Access::read);
     std::vector<std::string> pruned;
     for (const RunRecord& run : store.runs()) {
@@ -67,7 +68,7 @@ class Churn : public testing::Test {
       }
     }
     if (pruned.empty()) return {"resume", {"resume", "-q"}, at("one")};
-    return {"regenerate", {"regenerate", pruned[below(pruned.size())]}, at("one")};
+    return {"regenerate", {"regenerate", pruned[choice % pruned.size()]}, at("one")};
   }
 
   Command any_command() {
@@ -119,8 +120,9 @@ class Churn : public testing::Test {
   }
 
   void disturb(const Command& command, int signal, const std::set<int>& codes) {
+    const std::size_t usual = usual_.try_emplace(command.name, 300000).first->second;
     const pid_t program = start(command);
-    std::this_thread::sleep_for(std::chrono::microseconds(1000 + below(latest_us_)));
+    std::this_thread::sleep_for(std::chrono::microseconds(1000 + below(usual)));
     kill(program, signal);
     expect_exit(command, program, signal == SIGKILL ? "SIGKILL" : "SIGTERM", codes);
   }
@@ -133,7 +135,14 @@ class Churn : public testing::Test {
     if (ending < 3) return disturb(command, SIGKILL, {0, -SIGKILL});
     // Before the program listens, SIGTERM ends it as the system does.
     if (ending < 5) return disturb(command, SIGTERM, {0, 85, -SIGTERM});
-    if (ending < 8) return expect_exit(command, start(command), "alone", {0});
+    if (ending < 8) {
+      const auto began = std::chrono::steady_clock::now();
+      expect_exit(command, start(command), "alone", {0});
+      const auto took = std::chrono::steady_clock::now() - began;
+      usual_[command.name] = static_cast<std::size_t>(
+          std::chrono::duration_cast<std::chrono::microseconds>(took).count() + 1);
+      return;
+    }
     const Command second = any_command();
     const pid_t programs[2] = {start(command), start(second)};
     expect_exit(command, programs[0], "with another", {0});
@@ -188,7 +197,11 @@ class Churn : public testing::Test {
     for (const std::string& file : manifests_) compute(golden, read_bytes(file));
     const Store store(one / "store", Access::read);
     EXPECT_EQ(final_hashes(store), final_hashes(golden));
-    for (const RunRecord& run : store.runs()) EXPECT_EQ(run.state, RunState::completed) << run.id;
+    std::size_t again = 0;
+    for (const RunRecord& run : store.runs()) {
+      EXPECT_EQ(run.state, RunState::completed) << run.id;
+      again += run.attempts - 1;
+    }
     const VerifyReport report = store.verify();
     for (const Finding& finding : report.findings) {  // a kill may leave a file without an event
       EXPECT_EQ(finding.severity, Finding::Severity::note) << finding.message;
@@ -196,9 +209,10 @@ class Churn : public testing::Test {
     expect_nothing_twice(store);
     const std::size_t compared = expect_states_of(golden, store);
     std::printf(
-        "%zu manifests, %zu runs, %zu events, %zu checkpoints, %zu orphans; %zu states as in an "
+        "%zu manifests, %zu runs begun again %zu times, %zu events, %zu checkpoints, %zu orphans; "
+        "%zu states as in an "
         "undisturbed store\n",
-        manifests_.size(), store.runs().size(), static_cast<std::size_t>(report.events),
+        manifests_.size(), store.runs().size(), again, static_cast<std::size_t>(report.events),
         static_cast<std::size_t>(report.checkpoints), static_cast<std::size_t>(report.orphans),
         compared);
   }
@@ -221,7 +235,7 @@ class Churn : public testing::Test {
   TemporaryFolder folder_;
   std::mt19937 random_;
   std::size_t seeds_ = 2;
-  std::size_t latest_us_ = 300000;  ///< after the start, of a signal
+  std::map<std::string, std::size_t> usual_;  ///< how long a command took when it was alone [us]
   std::set<std::string> manifests_;
   std::map<fs::path, std::size_t> said_before_;
   std::map<std::string, std::map<std::string, std::size_t>> counts_;
