@@ -32,8 +32,11 @@ inline void drop_unfit(Packing& p) {
 
 /// Up to 200 grains, some of them overlapping, in a smooth or rough, upright or tilted cell.
 inline Packing any_points() {
-  const auto quarters = [](int low, int high) { return *rc::gen::inRange(low, high) / 4.0; };
-  const double width = quarters(8, 32), height = quarters(8, 48), depth = quarters(6, 32);
+  const auto quarters = [](const char* name, int low, int high) {
+    return *rc::gen::inRange(low, high).as(std::string("4 ") + name) / 4.0;
+  };
+  const double width = quarters("width", 8, 32), height = quarters("height", 8, 48),
+               depth = quarters("depth", 6, 32);
   const bool on_lattice = *rc::gen::inRange(0, 3).as("on a lattice if 2") == 2;
   const double theta = on_lattice ? 0 : *rc::gen::inRange(-30, 31).as("100 theta") / 100.0;
   const auto seed = *rc::gen::inRange<std::uint64_t>(0, 100000).as("seed");

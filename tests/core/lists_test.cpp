@@ -45,10 +45,10 @@ Points random_points(std::size_t grains, const Cell& cell, const WallPose& pose,
 // Of any shape, with wall grains on all walls in mixed order.
 Cell any_cell() {
   Cell cell;
-  cell.width = test::any_number(1.5, 9);
-  cell.depth = test::any_number(3, 7);
-  cell.top = test::any_number(2, 12);
-  cell.moving = *rc::gen::element(MovingWall::bottom, MovingWall::top);
+  cell.width = test::any_number("width", 1.5, 9);
+  cell.depth = test::any_number("depth", 3, 7);
+  cell.top = test::any_number("height", 2, 12);
+  cell.moving = test::any_bool("top moves") ? MovingWall::top : MovingWall::bottom;
   const auto wall_grains = *rc::gen::inRange<std::uint32_t>(0, 100).as("wall grains");
   for (std::uint32_t i = 0; i < wall_grains; ++i) {
     const auto u = uniform_pair({i, 2, 0, 0}, 5);
@@ -113,12 +113,13 @@ PROPERTY(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId, 300
   const Cell cell = any_cell();
   const ListSettings settings = test::any_engine().lists;
   Walls walls(cell);
-  const double moved = test::any_number(0, 0.3) * cell.top;
+  const double moved = test::any_number("wall moved", 0, 0.3) * cell.top;
   const WallPose pose =
-      wall_pose(cell, test::any_number(-0.4, 0.4),
+      wall_pose(cell, test::any_number("theta", -0.4, 0.4),
                 cell.moving == MovingWall::bottom ? cell.bottom + moved : cell.top - moved);
   const auto grains = *rc::gen::inRange<std::size_t>(1, 400).as("grains");
-  Points points = random_points(grains, cell, pose, *rc::gen::inRange<std::uint64_t>(0, 1000));
+  Points points =
+      random_points(grains, cell, pose, *rc::gen::inRange<std::uint64_t>(0, 1000).as("seed"));
   const Snapshot now = snapshot_of(points, pose);
   for (const Simd simd : {Simd::scalar, Simd::avx2, Simd::avx512}) {
     const Kernels* kernels = find_kernels(simd);
