@@ -149,13 +149,22 @@ class Churn : public testing::Test {
     expect_exit(second, programs[1], "with another", {0});
   }
 
-  /// No event, no checkpoint of a run and no step of it stands twice in the store.
+  /// What a merge may write again: the store's own newest word on a run, after older ones of the
+  /// source that would have changed its state.
+  static bool may_be_repeated(const std::string& type) {
+    const std::set<std::string> claims = {"RunStarted", "RunResumed", "RunInterrupted", "RunFailed",
+                                          "RunCompleted"};
+    return claims.contains(type);
+  }
+
+  /// No checkpoint of a run, no step of it and no other event stands twice in the store.
   static void expect_nothing_twice(const Store& store) {
     std::set<std::string> facts, recorded;
     for (const Event& event : store.events()) {
-      EXPECT_TRUE(
-          facts.insert(event.stream + event.type + event.recorded_at + event.payload).second)
-          << "event " << event.seq << " repeats another";
+      const bool news =
+          facts.insert(event.stream + event.type + event.recorded_at + event.payload).second;
+      EXPECT_TRUE(news || may_be_repeated(event.type))
+          << "event " << event.seq << " (" << event.type << ") repeats another";
       if (event.type != "CheckpointRecorded") continue;
       EXPECT_TRUE(recorded.insert(event.stream + event.body().at("sha256").dump()).second)
           << "event " << event.seq << " records a checkpoint again";
