@@ -87,8 +87,8 @@ void compare_tables(const Rows& stored, const Rows& derived, VerifyReport& repor
   }
 }
 
-/// Whether another program has pruned it since the records were read. A table that was forged to say
-/// so differs from the events, and that is an error of its own.
+/// Whether another program has pruned it since the records were read. A table that was forged to
+/// say so differs from the events, and that is an error of its own.
 bool pruned_meanwhile(const sqlite::Database& database, const CheckpointRecord& record) {
   try {
     const auto now = query_checkpoint(database, record.run, record.sha256);
