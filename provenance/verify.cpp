@@ -87,8 +87,19 @@ void compare_tables(const Rows& stored, const Rows& derived, VerifyReport& repor
   }
 }
 
-void check_objects(const std::vector<CheckpointRecord>& records, const ObjectStore& objects,
-                   VerifyReport& report) {
+/// Whether another program has pruned it since the records were read. A table that was forged to
+/// say so differs from the events, and that is an error of its own.
+bool pruned_meanwhile(const sqlite::Database& database, const CheckpointRecord& record) {
+  try {
+    const auto now = query_checkpoint(database, record.run, record.sha256);
+    return now && now->state == CheckpointState::pruned;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+void check_objects(const std::vector<CheckpointRecord>& records, const sqlite::Database& database,
+                   const ObjectStore& objects, VerifyReport& report) {
   std::set<std::string> known;
   for (const CheckpointRecord& record : records) {
     const bool rejected = record.state == CheckpointState::rejected;
@@ -106,6 +117,7 @@ void check_objects(const std::vector<CheckpointRecord>& records, const ObjectSto
       ++report.checkpoints;
       report.bytes += record.size;
     } catch (const std::exception& problem) {
+      if (pruned_meanwhile(database, record)) continue;
       report.findings.push_back(
           {rejected ? Severity::note : Severity::error, record.file, record.run,
            rejected ? std::string(problem.what()) + " (rejected already)" : problem.what()});
@@ -158,7 +170,7 @@ VerifyReport verify(sqlite::Database& database, const EventLog& log, const Objec
     report.findings.push_back({Severity::error, database.name(), "", damage.what()});
   }
   check_reproduced(records, report);
-  check_objects(records, objects, report);
+  check_objects(records, database, objects, report);
   return report;
 }
 

@@ -2,7 +2,6 @@
 // q6 of perfect crystals, and what it must not depend on.
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <vector>
 
@@ -78,17 +77,6 @@ TEST(BondOrder, SlightJitterMovesItSlightly) {
     EXPECT_NEAR(inside.q6.low, 0.574524, 10 * amplitude + 1e-6);
     EXPECT_NEAR(inside.q6.high, 0.574524, 10 * amplitude + 1e-6);
   }
-}
-
-TEST(BondOrder, UnchangedByRotation) {
-  const Packing p = jammed(300, true, 0.1, 43);
-  VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains);
-  const std::vector<double> before = bond_order_q6(d);
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
-  for (VoronoiFace& face : d.faces) face.to_neighbour = turn * face.to_neighbour;
-  const std::vector<double> after = bond_order_q6(d);
-  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(before[i], after[i], 1e-13);
 }
 
 TEST(BondOrder, EqualsTheAdditionTheorem) {

@@ -14,6 +14,7 @@
 #include "analysis/voronoi.hpp"
 #include "tests/analysis/oracles.hpp"
 #include "tests/analysis/packings.hpp"
+#include "tests/analysis/random_points.hpp"
 
 namespace shearcell::testing {
 namespace {
@@ -77,15 +78,18 @@ double worst_opening(const VoronoiDiagram& d) {
   return worst;
 }
 
-TEST(Voronoi, RandomPointsFillSmoothAndRoughCells) {
-  for (const double theta : {0.0, 0.1, -0.1}) {
-    for (const bool rough : {false, true}) {
-      SCOPED_TRACE("theta " + std::to_string(theta) + (rough ? " rough" : " smooth"));
-      Packing p = empty_cell(7, 11, 6, theta);
-      if (rough) roughen(p, 3);
-      fill(p, 500, 0, 4);
-      expect_fills_the_cell(p);
-    }
+PROPERTY(Voronoi, CellsOfAnyPointsFillTheCellAndShareTheirFaces, 300) {
+  const Packing p = any_points();
+  const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains, WallGrainCells::measure);
+  const double filled = (sum(d.volume) + sum(d.wall_grain_volume)) / volume_of(p);
+  RC_ASSERT(std::abs(filled - 1) < 1e-11);
+  RC_ASSERT(worst_reciprocity(d) < 1e-10);
+  RC_ASSERT(worst_opening(d) < 1e-10);
+  for (std::size_t i = 0; i < d.volume.size(); ++i) {
+    double surface = 0;
+    for (const VoronoiFace& face : d.faces_of(i)) surface += face.area;
+    RC_ASSERT(d.volume[i] > 0);
+    RC_ASSERT(std::abs(surface - d.surface[i]) < 1e-10);
   }
 }
 
@@ -197,16 +201,6 @@ TEST(Voronoi, AShallowCellSeesItsOwnImages) {
     fill(p, 30, 0, 23);
     expect_fills_the_cell(p);
   }
-}
-
-TEST(Voronoi, DoesNotDependOnWrappingInZ) {
-  Packing p = jammed(300, true, 0.1, 29);
-  const std::vector<double> before = voronoi(p.cell, p.pose, p.grains).volume;
-  for (Eigen::Index i = 0; i < p.grains.cols(); ++i) {
-    p.grains(2, i) += static_cast<double>(i % 5 - 2) * p.cell.depth;
-  }
-  const std::vector<double> after = voronoi(p.cell, p.pose, p.grains).volume;
-  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(before[i], after[i], 1e-12);
 }
 
 TEST(Voronoi, SameInputSameBits) {

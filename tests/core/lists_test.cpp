@@ -10,6 +10,7 @@
 #include "core/linked_cells.hpp"
 #include "core/neighbour_lists.hpp"
 #include "core/random.hpp"
+#include "tests/core/random_scenes.hpp"
 
 namespace shearcell {
 namespace {
@@ -41,15 +42,20 @@ Points random_points(std::size_t grains, const Cell& cell, const WallPose& pose,
   return points;
 }
 
-// Wall grains on the moving and on another wall, in mixed order.
-Cell cell_with_wall_grains() {
+// Of any shape, with wall grains on all walls in mixed order.
+Cell any_cell() {
   Cell cell;
-  cell.width = 6;
-  cell.depth = 5;
-  cell.top = 9;
-  for (int i = 0; i < 24; ++i) {
-    cell.wall_grains.push_back({WallSide::left, {-0.1, 0.3 * i + 1, 0.2 * i}});
-    cell.wall_grains.push_back({WallSide::bottom, {0.25 * i, -0.1, 0.2 * i}});
+  cell.width = test::any_number("width", 1.5, 9);
+  cell.depth = test::any_number("depth", 3, 7);
+  cell.top = test::any_number("height", 2, 12);
+  cell.moving = test::any_bool("top moves") ? MovingWall::top : MovingWall::bottom;
+  const auto wall_grains = *rc::gen::inRange<std::uint32_t>(0, 100).as("wall grains");
+  for (std::uint32_t i = 0; i < wall_grains; ++i) {
+    const auto u = uniform_pair({i, 2, 0, 0}, 5);
+    const double x = cell.width * u[0], y = cell.top * u[0], z = cell.depth * u[1];
+    const Eigen::Vector3d centres[4] = {
+        {-0.1, y, z}, {cell.width + 0.1, y, z}, {x, -0.1, z}, {x, cell.top + 0.1, z}};
+    cell.wall_grains.push_back({static_cast<WallSide>(i % 4), centres[i % 4]});
   }
   return cell;
 }
@@ -85,55 +91,57 @@ std::vector<std::int32_t> expected_row(const Points& points, const Walls& walls,
   return row;
 }
 
-TEST(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId) {
-  const Cell cell = cell_with_wall_grains();
+// The sites in the inner list of grain g, as the kernel would walk it.
+std::vector<std::int32_t> found_row(const NeighbourLists& lists, const Walls& walls,
+                                    std::size_t grains, std::size_t lanes, std::size_t g) {
+  const NeighbourRows inner = lists.rows();
+  const auto moving_end = wall_offset(grains) + static_cast<std::int32_t>(4 * walls.moving_size());
+  const std::size_t block = g / lanes;
+  std::vector<std::int32_t> row;
+  for (std::size_t k = 0; k < inner.head[block] + std::size_t{inner.slots[block]}; ++k) {
+    const std::int32_t offset = inner.list[inner.begin[block] + k * lanes + g % lanes];
+    if (offset == padding_offset(grains)) continue;
+    const bool of_moving = offset >= wall_offset(grains) && offset < moving_end;
+    RC_ASSERT(of_moving == (k < inner.head[block]));
+    RC_ASSERT(!of_moving || (lists.near()[g] & kNearMovingWall) != 0);
+    row.push_back(offset);
+  }
+  return row;
+}
+
+PROPERTY(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId, 300) {
+  const Cell cell = any_cell();
+  const ListSettings settings = test::any_engine().lists;
   Walls walls(cell);
-  const auto moving_end = [&](std::size_t grains) {
-    return wall_offset(grains) + static_cast<std::int32_t>(4 * walls.moving_size());
-  };
-  std::size_t at_wall = 0;
-  for (const double theta : {0.0, 0.1, -0.3}) {
-    const std::size_t grains = 301;
-    const WallPose pose = wall_pose(cell, theta, 1.5);
-    Points points = random_points(grains, cell, pose, 11);
-    const Snapshot now = snapshot_of(points, pose);
-    const ListSettings settings;
-    for (const Simd simd : {Simd::scalar, Simd::avx2, Simd::avx512}) {
-      const Kernels* kernels = find_kernels(simd);
-      if (kernels == nullptr) continue;
-      const std::size_t lanes = kernels->lanes;
-      Team team(1);
-      NeighbourLists lists(*kernels, settings, cell.depth, walls, team);
-      lists.set_outer_margins(now);
-      walls.choose_active(pose, 3);
-      std::vector<Site> sites;
-      for (const std::int32_t w : walls.active()) sites.push_back({wall_offset(grains) + 4 * w, w});
-      for (std::size_t g = 0; g < grains; ++g) {
-        sites.push_back({static_cast<std::int32_t>(4 * g),
-                         static_cast<std::int32_t>(walls.size()) + points.id[g]});
-      }
-      CellOrder order;
-      order.build(cell, pose, 1 + 2 * settings.widest_margin(), points.rows.data(), sites);
-      lists.build(now, points.id, order);
-      const NeighbourRows inner = lists.rows();
-      for (std::size_t g = 0; g < grains; ++g) {
-        const std::size_t block = g / lanes;
-        std::vector<std::int32_t> found;
-        for (std::size_t k = 0; k < inner.head[block] + std::size_t{inner.slots[block]}; ++k) {
-          const std::int32_t offset = inner.list[inner.begin[block] + k * lanes + g % lanes];
-          if (offset == padding_offset(grains)) continue;
-          const bool of_moving = offset >= wall_offset(grains) && offset < moving_end(grains);
-          EXPECT_EQ(of_moving, k < inner.head[block]);
-          EXPECT_LE(int{of_moving}, (lists.near()[g] & kNearMovingWall) / kNearMovingWall);
-          at_wall += offset > padding_offset(grains) ? 1 : 0;
-          found.push_back(offset);
-        }
-        ASSERT_EQ(found, expected_row(points, walls, cell.depth, g))
-            << kernels->name << " grain " << g << " theta " << theta;
-      }
+  const double moved = test::any_number("wall moved", 0, 0.3) * cell.top;
+  const WallPose pose =
+      wall_pose(cell, test::any_number("theta", -0.4, 0.4),
+                cell.moving == MovingWall::bottom ? cell.bottom + moved : cell.top - moved);
+  const auto grains = *rc::gen::inRange<std::size_t>(1, 400).as("grains");
+  Points points =
+      random_points(grains, cell, pose, *rc::gen::inRange<std::uint64_t>(0, 1000).as("seed"));
+  const Snapshot now = snapshot_of(points, pose);
+  for (const Simd simd : {Simd::scalar, Simd::avx2, Simd::avx512}) {
+    const Kernels* kernels = find_kernels(simd);
+    if (kernels == nullptr) continue;
+    Team team(1);
+    NeighbourLists lists(*kernels, settings, cell.depth, walls, team);
+    lists.set_outer_margins(now);
+    walls.choose_active(pose, 3);
+    std::vector<Site> sites;
+    for (const std::int32_t w : walls.active()) sites.push_back({wall_offset(grains) + 4 * w, w});
+    for (std::size_t g = 0; g < grains; ++g) {
+      sites.push_back({static_cast<std::int32_t>(4 * g),
+                       static_cast<std::int32_t>(walls.size()) + points.id[g]});
+    }
+    CellOrder order;
+    order.build(cell, pose, 1 + 2 * settings.widest_margin(), points.rows.data(), sites);
+    lists.build(now, points.id, order);
+    for (std::size_t g = 0; g < grains; ++g) {
+      RC_ASSERT(found_row(lists, walls, grains, kernels->lanes, g) ==
+                expected_row(points, walls, cell.depth, g));
     }
   }
-  EXPECT_GT(at_wall, 100U);
 }
 
 TEST(Reference, AnAffineShearAloneMovesNothing) {

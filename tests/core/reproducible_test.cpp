@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
+#include <numbers>
 
 #include "core/contact.hpp"
-#include "core/random.hpp"
 #include "core/simulation.hpp"
-#include "tests/core/scenes.hpp"
+#include "tests/core/random_scenes.hpp"
 
 namespace shearcell {
 namespace {
@@ -21,9 +20,9 @@ using test::table_1;
 const Drive kDrive{0.0833, 2000, 0};
 
 State advanced(const Sheared& start, std::uint64_t steps, const EngineSettings& settings = {},
-               const Scene& scene = table_1()) {
+               const Scene& scene = table_1(), const Drive& drive = kDrive) {
   Simulation simulation(start.cell, scene, start.state, settings);
-  simulation.advance(kDrive, steps);
+  simulation.advance(drive, steps);
   return simulation.state();
 }
 
@@ -64,9 +63,19 @@ void add_wall_grains(Sum& sum, const Cell& cell, const WallPose& pose, const Eig
   }
 }
 
+// What the fluid that follows the walls adds to vx for each d below the top wall in one step.
+double flow_of(const Scene& scene, const Drive& drive, const WallPose& pose, std::uint64_t step) {
+  if (scene.fluid == Fluid::still || drive.amplitude == 0) return 0;
+  const double omega =
+      2 * std::numbers::pi / (static_cast<double>(drive.steps_per_cycle) * scene.time_step);
+  const double rate = tilt(drive, step).rate * omega / (pose.cos_theta * pose.cos_theta);
+  return scene.time_step * scene.drag_rate * rate / (1 + 0.5 * scene.drag_rate * scene.time_step);
+}
+
 // One time step by brute force over all pairs, in the order that the engine promises.
-void brute_step(const Cell& cell, const Scene& scene, State& state) {
-  const WallPose pose = wall_pose(cell, tilt(kDrive, state.step).theta, state.wall_height);
+void brute_step(const Cell& cell, const Scene& scene, const Drive& drive, State& state) {
+  const WallPose pose = wall_pose(cell, tilt(drive, state.step).theta, state.wall_height);
+  const double flow = flow_of(scene, drive, pose, state.step);
   const double half = 0.5 * scene.drag_rate * scene.time_step;
   const double implicit = 1 / (1 + half);
   const double keep = (1 - half) * implicit;
@@ -89,6 +98,7 @@ void brute_step(const Cell& cell, const Scene& scene, State& state) {
     }
     auto v = state.velocity.col(i);
     v.x() = std::fma(kick, sum.x, keep * v.x());
+    if (flow != 0) v.x() = std::fma(flow, p.y() - pose.top, v.x());
     v.y() = std::fma(kick, sum.y, keep * v.y()) - scene.time_step * scene.gravity * implicit;
     v.z() = std::fma(kick, sum.z, keep * v.z());
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -106,13 +116,15 @@ void brute_step(const Cell& cell, const Scene& scene, State& state) {
   ++state.step;
 }
 
-TEST(Reproducible, EqualsBruteForceOverAllPairs) {
-  for (const MovingWall moving : {MovingWall::bottom, MovingWall::top}) {
-    const Sheared start = pressed(203, 12000, WallTexture::rough, moving);
-    State brute = start.state;
-    for (int n = 0; n < 150; ++n) brute_step(start.cell, table_1(), brute);
-    EXPECT_TRUE(same_bits(brute, advanced(start, 150)));
-  }
+PROPERTY(Reproducible, EqualsBruteForceOverAllPairs, 60) {
+  const Sheared start = test::any_packing(200);
+  const Scene scene = test::any_scene();
+  const Drive drive = test::any_drive();
+  const auto steps = *rc::gen::inRange<std::uint64_t>(1, 120).as("steps");
+  const EngineSettings engine = test::any_engine();
+  State brute = start.state;
+  for (std::uint64_t n = 0; n < steps; ++n) brute_step(start.cell, scene, drive, brute);
+  RC_ASSERT(same_bits(brute, advanced(start, steps, engine, scene, drive)));
 }
 
 TEST(Reproducible, AnyInstructionsAndAnyLists) {
@@ -140,35 +152,6 @@ TEST(Reproducible, AnyInstructionsAndAnyLists) {
   settings = {};
   settings.lists.sort_memory = false;
   EXPECT_TRUE(same_bits(golden, advanced(start, 700, settings))) << "memory not sorted";
-}
-
-TEST(Reproducible, EveryFeatureOnEveryKernel) {
-  for (const WallTexture walls : {WallTexture::rough, WallTexture::smooth}) {
-    const Sheared start = pressed(300, 9000, walls);
-    for (const Fluid fluid : {Fluid::still, Fluid::cell}) {
-      for (const double gravity : {0.0, 3270.0}) {
-        Scene scene = table_1();
-        scene.fluid = fluid;
-        scene.gravity = gravity;
-        const State golden = advanced(start, 300, {}, scene);
-        EngineSettings settings;
-        settings.kernels = &scalar_kernels();
-        EXPECT_TRUE(same_bits(golden, advanced(start, 300, settings, scene)));
-      }
-    }
-  }
-}
-
-TEST(Reproducible, InterruptedAnywhere) {
-  const Sheared start = pressed(400, 9000);
-  const State golden = advanced(start, 1500);
-  Sheared cut = start;
-  for (std::uint32_t n = 0; cut.state.step < 1500; ++n) {
-    const double share = uniform_pair({n, 0, 0, 0}, 17)[0];
-    const auto steps = static_cast<std::uint64_t>(1 + std::pow(800.0, share));
-    cut.state = advanced(cut, std::min(steps, 1500 - cut.state.step));
-  }
-  EXPECT_TRUE(same_bits(golden, cut.state));
 }
 
 // The same number from every build: g++ and clang++, optimized or not.

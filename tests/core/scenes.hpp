@@ -65,7 +65,9 @@ inline Sheared pressed(std::size_t grains, std::uint64_t steps,
   scene.state = fill_cell(scene.cell, geometry, 7);
   Scene forces = table_1();
   forces.gravity = 0;
-  Simulation simulation(scene.cell, forces, scene.state);
+  EngineSettings settings;
+  settings.limits.overlap = 1;  // the wall comes down on loose grains
+  Simulation simulation(scene.cell, forces, scene.state, settings);
   simulation.advance(Drive{}, steps);
   scene.state = simulation.state();
   scene.state.step = 0;

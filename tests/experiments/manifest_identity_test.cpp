@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <string>
 #include <variant>
@@ -16,15 +15,6 @@ namespace shearcell {
 namespace {
 
 using nlohmann::json;
-
-PlannedRun first_run(const std::string& text) {
-  return expand(parse_manifest(text, "test.yaml")).runs.front();
-}
-
-void expect_same_keys(const PlannedRun& a, const PlannedRun& b) {
-  EXPECT_EQ(a.prepare.key, b.prepare.key);
-  EXPECT_EQ(a.last.key, b.last.key);
-}
 
 bool settling_feels(const Field& field) {
   return field.identity == Identity::prepare || field.identity == Identity::prepare_if_set;
@@ -43,27 +33,6 @@ json another_value(const Field& field) {
   return value.get<std::uint64_t>() + 1;
 }
 
-TEST(Identity, DependsOnEachFieldAsTheSchemaSays) {
-  const StageSpec prepare = prepare_stage({}, 1);
-  const StageSpec shear = shear_stage({}, 1, prepare);
-  int changed = 0;
-  for (const Field& field : schema()) {
-    SCOPED_TRACE(field.name);
-    const json value = another_value(field);
-    if (value == get_value(field, Parameters{})) continue;  // one choice only
-    ++changed;
-    Parameters parameters;
-    set_value(field, value, parameters);
-    const StageSpec other_prepare = prepare_stage(parameters, 1);
-    const StageSpec other_shear = shear_stage(parameters, 1, other_prepare);
-    EXPECT_EQ(other_prepare.key != prepare.key, settling_feels(field));
-    EXPECT_EQ(other_shear.key != shear.key, settling_feels(field) ||
-                                                field.identity == Identity::shear ||
-                                                field.identity == Identity::shear_if_set);
-  }
-  EXPECT_GE(changed, 26);
-}
-
 TEST(Identity, DependsOnTheSeed) {
   EXPECT_NE(prepare_stage({}, 1).key, prepare_stage({}, 2).key);
   const StageSpec parent = prepare_stage({}, 1);
@@ -75,29 +44,6 @@ TEST(Identity, DependsOnTheParent) {
   const std::string key = shear_stage({}, 1, parent).key;
   parent.key[0] = parent.key[0] == '0' ? '1' : '0';
   EXPECT_NE(shear_stage({}, 1, parent).key, key);
-}
-
-TEST(Identity, IgnoresHowTheManifestIsWritten) {
-  const PlannedRun plain = first_run("experiment: a\nbase: {grains: 600, period_s: 2}\n");
-  expect_same_keys(plain, first_run("base: {period_s: 2.0, grains: 600}\nexperiment: b\n"));
-  expect_same_keys(plain, first_run("experiment: a\nbase: {grains: 600, mass_kg: 0.00002}\n"));
-  expect_same_keys(plain, first_run("experiment: a\nbase: {grains: 600, mass_kg: +2e-5}\n"));
-  expect_same_keys(plain, first_run("experiment: a\nbase: {grains: 600, walls: 'rough'}\n"));
-}
-
-TEST(Identity, IgnoresLengthCadenceScaleAndLabels) {
-  const PlannedRun plain = first_run("experiment: a\nbase: {grains: 600}\n");
-  expect_same_keys(plain, first_run("experiment: a\nbase: {grains: 600, cycles: 7}\n"));
-  expect_same_keys(plain, first_run("experiment: a\nbase: {grains: 600}\n"
-                                    "checkpoints: {every_cycles: 9}\n"));
-  expect_same_keys(plain, first_run("experiment: a\nbase: {}\nscales: {desk: {grains: 600}}\n"));
-  expect_same_keys(plain,
-                   first_run("experiment: a\nbase: {}\nsweep: {grid: {grains: [600, 700]}}\n"));
-}
-
-TEST(Identity, ZeroHasOneSign) {
-  expect_same_keys(first_run("experiment: a\nbase: {gravity_m_per_s2: 0}\n"),
-                   first_run("experiment: a\nbase: {gravity_m_per_s2: -0.0}\n"));
 }
 
 TEST(Identity, StagesReadBackFromTheirRecord) {
@@ -274,13 +220,6 @@ TEST(CanonicalJson, WritesOneTextForOneValue) {
   EXPECT_EQ(canonical_json(value),
             R"({"a":{"y":"x\"\n","é":0},"b":[1,2.5,true,null],"c":[],"d":{},)"
             R"("e":4.385964912280702e-05,"f":2})");
-}
-
-TEST(CanonicalJson, ShortestDigitsReadBackToTheSameDouble) {
-  for (const double number : {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, 9007199254740993.0,
-                              123456.789e-12, 2.0 / 45600}) {
-    EXPECT_EQ(std::strtod(canonical_json(number).c_str(), nullptr), number);
-  }
 }
 
 TEST(CanonicalJson, RefusesWhatIsNoNumber) {

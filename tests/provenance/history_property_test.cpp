@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whatever happens to a store, its tables are what its events tell: derived step by step, derived
+// anew, from events of older layouts, and told by a fold that shares no code with them.
+#include <algorithm>
+#include <optional>
+
+#include "provenance/projections.hpp"
+#include "provenance/schema.hpp"
+#include "tests/property.hpp"
+#include "tests/provenance/samples.hpp"
+
+namespace shearcell {
+namespace {
+
+using test::run_id;
+
+// Something that is done to a store; where it does not fit it is refused.
+struct Act {
+  int what;
+  int run;
+  std::uint64_t amount;
+};
+
+constexpr const char* kActs[] = {"declare",  "start",    "record", "interrupt", "fail",
+                                 "complete", "reject",   "prune",  "restore",   "figure",
+                                 "replay",   "manifest", "reopen"};
+
+std::ostream& operator<<(std::ostream& out, const Act& act) {
+  return out << kActs[act.what] << " run " << act.run << ", " << act.amount;
+}
+
+Checkpoint sample(const std::string& id, std::uint64_t step) {
+  return test::sample_checkpoint(id, step, 4);
+}
+
+void declare(Store& store, const Act& act) {
+  RunDeclaration d = test::sample_run(act.run, act.amount);
+  if (act.run > 0) d.parent = run_id(0);
+  if (act.amount % 3 == 0) d.membership.experiment = "another";
+  d.membership.checkpoint_every = 1 + act.amount % 2;
+  store.declare_run(d);
+}
+
+void change_checkpoint(Store& store, const Act& act) {
+  const std::string id = run_id(act.run);
+  if (std::string(kActs[act.what]) == "prune") {
+    store.prune(store.prunable({.runs = {id}, .state = {}, .keep_every = act.amount}));
+  }
+  for (const CheckpointRecord& record : store.checkpoints(id, true)) {
+    if (record.step != act.amount) continue;
+    if (std::string(kActs[act.what]) == "reject") store.reject_checkpoint(id, record.sha256, "why");
+    if (std::string(kActs[act.what]) == "restore" && record.state == CheckpointState::pruned) {
+      store.restore_checkpoint(record, sample(id, record.step));
+    }
+  }
+}
+
+void perform(Store& store, const Act& act) {
+  const std::string id = run_id(act.run);
+  const auto known = store.checkpoints(id);
+  switch (act.what) {
+    case 0:
+      return declare(store, act);
+    case 1:
+      store.start_run(id, {}, known.empty() ? std::nullopt : std::optional(known.back().sha256));
+      return;
+    case 2:
+      store.record_checkpoint(id, sample(id, act.amount),
+                              {.wall_seconds = 0.5, .particle_steps = 100});
+      return;
+    case 3:
+      return store.interrupt_run(id, "SIGTERM");
+    case 4:
+      return store.fail_run(id, "an overlap");
+    case 5:
+      return store.complete_run(id, {},
+                                act.amount % 2 == 0 ? std::nullopt : std::optional(act.amount));
+    case 9:
+      return store.record_figure("S" + std::to_string(act.run), {{"inputs", {act.amount}}});
+    case 10:
+      return store.record_replay(id, true, {{"step", act.amount}});
+    case 11:
+      store.register_manifest("a: " + std::to_string(act.amount), "a.yaml", {});
+      return;
+    default:
+      return change_checkpoint(store, act);
+  }
+}
+
+struct Told {
+  std::string state = "declared";
+  std::uint64_t target = 0, attempts = 0;
+  double particle_steps = 0;
+  std::map<std::string, std::pair<std::uint64_t, std::string>> checkpoints;  // step and state
+
+  std::uint64_t step() const {
+    std::uint64_t furthest = 0;
+    for (const auto& [sha256, known] : checkpoints) {
+      if (known.second == "recorded") furthest = std::max(furthest, known.first);
+    }
+    return furthest;
+  }
+
+  void hear(const Event& event) {
+    const nlohmann::json body = event.body();
+    const std::string sha256 = body.value("sha256", "");
+    if (event.type == "RunDeclared") {
+      const auto asked = body.at("target_cycles").get<std::uint64_t>();
+      if (state == "completed" && asked > target) state = "declared";
+      target = std::max(target, asked);
+    } else if (event.type == "RunStarted" || event.type == "RunResumed") {
+      state = "running";
+      ++attempts;
+    } else if (event.type == "RunInterrupted" || event.type == "RunFailed") {
+      state = event.type == "RunFailed" ? "failed" : "interrupted";
+    } else if (event.type == "RunCompleted") {
+      const nlohmann::json& reached = body.at("target_cycles");
+      const bool all = reached.is_null() || reached.get<std::uint64_t>() >= target;
+      state = all ? "completed" : "declared";
+    } else if (event.type == "CheckpointRecorded") {
+      checkpoints[sha256] = {body.at("step").get<std::uint64_t>(), "recorded"};
+      particle_steps += body.at("particle_steps").get<double>();
+    } else if (event.type == "CheckpointRejected") {
+      if (state == "completed" && checkpoints[sha256].first == step()) state = "declared";
+      checkpoints[sha256].second = "rejected";
+    } else if (event.type == "CheckpointPruned") {
+      checkpoints[sha256].second = "pruned";
+    } else if (event.type == "CheckpointRegenerated") {
+      checkpoints[sha256].second = "recorded";
+    }
+  }
+};
+
+void expect_told(const Store& store) {
+  std::map<std::string, Told> runs;
+  for (const Event& event : store.events()) {
+    if (event.stream.starts_with("run/")) runs[event.stream.substr(4)].hear(event);
+  }
+  RC_ASSERT(store.runs().size() == runs.size());
+  for (const RunRecord& run : store.runs()) {
+    const Told& told = runs.at(run.id);
+    RC_ASSERT(name_of(run.state) == told.state);
+    RC_ASSERT(run.target_cycles == told.target);
+    RC_ASSERT(run.attempts == told.attempts);
+    RC_ASSERT(run.step == told.step());
+    RC_ASSERT(run.particle_steps == told.particle_steps);
+    const auto checkpoints = store.checkpoints(run.id, true);
+    RC_ASSERT(checkpoints.size() == told.checkpoints.size());
+    for (const CheckpointRecord& record : checkpoints) {
+      RC_ASSERT(name_of(record.state) == told.checkpoints.at(record.sha256).second);
+    }
+  }
+}
+
+// The event as the first program would have written it, where that loses nothing.
+Event in_first_layout(Event event) {
+  if (event.schema == 1) return event;
+  nlohmann::json body = nlohmann::json::parse(event.payload);
+  if (event.type == "RunCompleted" && !body.at("target_cycles").is_null()) return event;
+  for (const char* younger : {"process", "parent_checkpoint", "target_cycles"}) body.erase(younger);
+  event.payload = body.dump();
+  event.schema = 1;
+  return event;
+}
+
+auto rows_of_old_events(const std::filesystem::path& file, const std::vector<Event>& events) {
+  sqlite::Database database = open_database(file, sqlite::Open::create, false);
+  EventLog log(database);
+  sqlite::WriteTransaction lock(database);
+  for (const Event& event : events) {
+    apply(database, log.append_copy(lock, in_first_layout(event)));
+  }
+  lock.commit();
+  return projection_rows(database);
+}
+
+PROPERTY(History, GivesTheTablesThatItsEventsTell, 100) {
+  const auto what = rc::gen::weightedElement<int>({{2, 0},
+                                                   {5, 1},
+                                                   {6, 2},
+                                                   {1, 3},
+                                                   {1, 4},
+                                                   {3, 5},
+                                                   {2, 6},
+                                                   {2, 7},
+                                                   {2, 8},
+                                                   {1, 9},
+                                                   {1, 10},
+                                                   {1, 11},
+                                                   {2, 12}});
+  const auto any_act =
+      rc::gen::construct<Act>(what, rc::gen::weightedElement<int>({{3, 0}, {1, 1}}),
+                              rc::gen::resize(100, rc::gen::inRange<std::uint64_t>(0, 6)));
+  const auto acts = *rc::gen::container<std::vector<Act>>(any_act);
+  const test::Folder folder;
+  const std::filesystem::path path = folder.path() / "store";
+  std::optional<Store> store(std::in_place, path, Access::create);
+  declare(*store, {0, 0, 1});
+  for (const Act& act : acts) {
+    const Head before = store->head();
+    try {
+      perform(*store, act);
+    } catch (const ConcurrencyConflict&) {
+      RC_ASSERT(store->head().hash == before.hash);
+    } catch (const NotFound&) {
+      RC_ASSERT(store->head().hash == before.hash);
+    } catch (const std::invalid_argument&) {
+      RC_ASSERT(store->head().hash == before.hash);
+    }
+    if (std::string(kActs[act.what]) == "reopen") store.emplace(path, Access::write);
+  }
+  expect_told(*store);
+  const auto rows = [&] {
+    return projection_rows(sqlite::Database(path / "store.sqlite", sqlite::Open::existing));
+  };
+  const auto step_by_step = rows();
+  RC_ASSERT(rows_of_old_events(folder.path() / "old.sqlite", store->events()) == step_by_step);
+  store->rebuild();
+  RC_ASSERT(rows() == step_by_step);
+  RC_ASSERT(store->verify().ok());
+}
+
+}  // namespace
+}  // namespace shearcell

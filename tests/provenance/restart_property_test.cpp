@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A run that is cut anywhere, kept as a checkpoint and read back ends in the bits of one that was
+// left alone, whatever it computes and on whatever it goes on.
+#include <algorithm>
+
+#include "provenance/checkpoint.hpp"
+#include "tests/core/random_scenes.hpp"
+
+namespace shearcell {
+namespace {
+
+Checkpoint advanced(Checkpoint at, const Scene& scene, const Drive& drive, std::uint64_t until,
+                    const EngineSettings& engine) {
+  Simulation simulation(at.cell, scene, at.state, engine);
+  simulation.advance(drive, until - at.state.step);
+  at.state = simulation.state();
+  at.theta = tilt(drive, until).theta;
+  at.time_s = static_cast<double>(until) * scene.time_step;
+  at.cycle = static_cast<double>(until) / static_cast<double>(cycle_steps(drive));
+  return at;
+}
+
+PROPERTY(Restart, AtAnyStepFromACheckpointLeavesNoTrace, 80) {
+  test::Sheared packing = test::any_packing(300);
+  Checkpoint start;
+  start.run = "any";
+  start.cell = std::move(packing.cell);
+  start.state = std::move(packing.state);
+  const Scene scene = test::any_scene();
+  const Drive drive = test::any_drive();
+  const auto last = *rc::gen::inRange<std::uint64_t>(1, 1500).as("last step");
+  auto cuts =
+      *rc::gen::container<std::vector<std::uint64_t>>(rc::gen::inRange<std::uint64_t>(0, last + 1))
+           .as("cuts");
+  cuts.resize(std::min<std::size_t>(cuts.size(), 8));
+  std::sort(cuts.begin(), cuts.end());
+  Checkpoint cut = start;
+  for (const std::uint64_t step : cuts) {
+    cut =
+        decode_checkpoint(encode_checkpoint(advanced(cut, scene, drive, step, test::any_engine())));
+  }
+  cut = advanced(cut, scene, drive, last, test::any_engine());
+  const Checkpoint whole = advanced(start, scene, drive, last, test::any_engine());
+  RC_ASSERT(test::same_bits(cut.state, whole.state));
+  RC_ASSERT(state_hash(cut) == state_hash(whole));
+  RC_ASSERT(encode_checkpoint(cut) == encode_checkpoint(whole));
+}
+
+}  // namespace
+}  // namespace shearcell
