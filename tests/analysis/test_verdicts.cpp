@@ -149,7 +149,9 @@ TEST(FigureWalls, RoughOnesCrystallizeInTheBulkLater) {
       m.interior_grains = 3436;
     });
   };
-  const auto ruling = [](const std::vector<FigureRun>& runs) { return rulings("walls", runs).at(2); };
+  const auto ruling = [](const std::vector<FigureRun>& runs) {
+    return rulings("walls", runs).at(2);
+  };
   EXPECT_EQ(ruling({rough(1, 30, 0.641, 120), rough(2, 119, 0.651, 119)}), pass);
   EXPECT_EQ(ruling({rough(1, 30, 0.641, 120), rough(2, 130, 0.651, 119)}), pass) << "censored";
   EXPECT_EQ(ruling({rough(2, 130, 0.651, 119)}), too_few);
