@@ -16,14 +16,19 @@ namespace {
 // of the whole array. A program that was killed, as for lack of memory, is begun again here.
 constexpr std::string_view kTaskBody = R"sh(
 again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
-pass_on() { signalled=$1; [ -z "$program" ] || kill -"$1" "$program"; }
+pass_on() {
+  signalled=$1
+  [ -n "$program" ] || return 0
+  # More than once: one that is just beginning is still a copy of this shell, which does not heed it.
+  for pause in 1 2 4; do kill -"$1" "$program" 2>/dev/null || break; sleep "$pause"; done
+}
 trap 'again=yes; pass_on USR1' USR1
 trap 'again= stopped=yes; pass_on TERM' TERM
 for start in 1 2 3 4; do
   program=
   "$shearcell" work --store "$store" --jobs @JOBS@ --threads @THREADS@@SCRATCH@ $leave &
   program=$!
-  [ -z "$signalled" ] || kill -"$signalled" "$program"  # it came before the number was known
+  [ -z "$signalled" ] || pass_on "$signalled"  # it came before the number was known
   wait "$program"; code=$?
   while [ -n "$signalled" ]; do signalled=; wait "$program"; code=$?; done
   [ "$code" -gt 128 ] && [ -z "$again$stopped" ] || break
