@@ -87,7 +87,8 @@ double q6_by_definition(voro::voronoicell_neighbor& cell) {
       if (neighbours[f] < 0) continue;
       const double polar = std::acos(std::clamp(normals[3 * f + 2], -1.0, 1.0));
       const double azimuth = std::atan2(normals[3 * f + 1], normals[3 * f]);
-      moment += areas[f] / surface * std::polar(std::sph_legendre(6, m, polar), m * azimuth);
+      moment += areas[f] / surface * std::sph_legendre(6, m, polar) *
+                std::polar(1.0, m * azimuth);  // whose first argument may not be negative
     }
     sum += (m == 0 ? 1 : 2) * std::norm(moment);
   }

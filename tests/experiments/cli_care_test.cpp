@@ -137,7 +137,8 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
     return {};
   };
   // The same again: done. Longer: to extend. More seeds: new, and only because of the seed.
-  for (const auto& line : json({"plan", "m.yaml", "--cycles", "1", "--json"}).at("stages")) {
+  const auto again = json({"plan", "m.yaml", "--cycles", "1", "--json"});
+  for (const auto& line : again.at("stages")) {
     EXPECT_EQ(line.at("state"), "done");
     EXPECT_TRUE(line.at("new").is_null());
     EXPECT_TRUE(line.at("shared_with").empty());
