@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/team.hpp"
 
-#include <algorithm>
-
 #include "core/threads.hpp"
 
 #if defined(__x86_64__)
@@ -25,8 +23,7 @@ void relax() {
 }  // namespace
 
 Team::Team(std::size_t threads)
-    : workers_(start_threads(std::max<std::size_t>(threads, 1) - 1,
-                             [this](std::size_t k) { work_until_stopped(k + 1); })) {}
+    : workers_(start_threads(threads, [this](std::size_t k) { work_until_stopped(k); })) {}
 
 Team::~Team() {
   stop_ = true;

@@ -99,11 +99,12 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
   progress.checkpoint_due =
       progress.finished || simulation.step() % (kLooksPerCheckpoint * look_steps_) == 0;
   if (!progress.finished && simulation.step() >= limit_steps_) {
-    throw NumericalFailure("the time [s] that the packing takes to settle",
-                           static_cast<double>(simulation.step()) * scene_.time_step,
-                           parameters_.time_limit, -1, simulation.step(),
-                           "Raise settle_time_limit_s or the settling tolerances, or check that "
-                           "the pressure can lift the grains");
+    throw NumericalFailure(
+        "the time [s] that the packing takes to settle",
+        static_cast<double>(simulation.step()) * scene_.time_step, parameters_.time_limit, -1,
+        simulation.step(),
+        "Raise that limit (settle_time_limit_s) or the settling tolerances, or check that "
+        "the pressure can lift the grains");
   }
   return progress;
 }

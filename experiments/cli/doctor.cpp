@@ -58,9 +58,8 @@ Finding memory() {
     std::istringstream words(line);
     words >> key >> kib >> unit;
     if (key != "MemAvailable:") continue;
-    // 405 to 460 bytes a grain while it runs (`bench speed`).
     return {"memory", format_bytes(kib * 1024) + " free", "ok",
-            fmt::format("enough for {:.1e} grains at once", kib * 1024 / 460)};
+            fmt::format("enough for {:.1e} grains at once", kib * 1024 / kRunBytesPerGrain)};
   }
   return {"memory", "not told", "ok", ""};
 }

@@ -21,6 +21,15 @@ namespace fs = std::filesystem;
 constexpr std::string_view kPrefix = "shearcell-lammps-";
 constexpr std::string_view kPlaces = "XXXXXX";
 constexpr const char* kLock = "lock";
+constexpr const char* kNewLock = "lock.new";
+
+fs::path make_folder() {
+  std::string pattern = fs::temp_directory_path() / (std::string(kPrefix) += kPlaces);
+  if (mkdtemp(pattern.data()) == nullptr) {
+    throw EngineError("cannot make a temporary folder " + pattern + "; is TMPDIR writable?");
+  }
+  return pattern;
+}
 
 // Nobody can exchange the folder for another one meanwhile: that of temporary files is sticky, and
 // this user owns it. Its lock is asked for through the folder that was looked at.
@@ -36,24 +45,18 @@ bool abandoned(const fs::path& path) {
 
 }  // namespace
 
-ScratchFolder::ScratchFolder() {
-  std::string pattern = fs::temp_directory_path() / (std::string(kPrefix) += kPlaces);
-  if (mkdtemp(pattern.data()) == nullptr) {
-    throw EngineError("cannot make a temporary folder " + pattern + "; is TMPDIR writable?");
-  }
-  path_ = pattern;
+ScratchFolder::ScratchFolder()
+    : path_(make_folder()),
+      lock_(open((path_ / kNewLock).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)) {
   // It has its name when it is locked, so that no other process can take it before.
-  const fs::path making = path_ / "lock.new";
-  lock_ = open(making.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   std::error_code failure;
-  if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) == 0)
-    fs::rename(making, path_ / kLock, failure);
+  if (lock_.number >= 0 && flock(lock_.number, LOCK_EX | LOCK_NB) == 0)
+    fs::rename(path_ / kNewLock, path_ / kLock, failure);
 }
 
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
-  if (lock_ >= 0) close(lock_);
 }
 
 void remove_abandoned_folders() {

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "analysis/program.hpp"
+
 namespace shearcell {
 
 /// An empty folder `shearcell-lammps-XXXXXX` under the system's own for temporary files; it goes
@@ -20,7 +22,7 @@ class ScratchFolder {
 
  private:
   std::filesystem::path path_;
-  int lock_ = -1;
+  Descriptor lock_;
 };
 
 /// Removes such folders of this user whose owners are gone: those whose lock can be taken. Links,

@@ -42,8 +42,8 @@ class Deriving {
     }
     outcome_.kept = distinct_.size() - todo_.size();
     {
-      const std::size_t workers = std::clamp<std::size_t>(options_.workers, 1, todo_.size() + 1);
-      const auto threads = start_threads(workers - 1, [this](std::size_t) { compute_some(); });
+      const auto threads = start_threads(std::min<std::size_t>(options_.workers, todo_.size()),
+                                         [this](std::size_t) { compute_some(); });
       compute_some();
     }
     keep();

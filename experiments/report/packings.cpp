@@ -209,8 +209,7 @@ std::vector<Frame> make_frames(const Store& store, const std::vector<CheckpointR
     }
   };
   {
-    const auto threads =
-        start_threads(std::clamp<std::size_t>(workers, 1, records.size() + 1) - 1, work);
+    const auto threads = start_threads(std::min<std::size_t>(workers, records.size()), work);
     work(0);
   }
   if (error) std::rethrow_exception(error);

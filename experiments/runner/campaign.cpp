@@ -67,8 +67,7 @@ class Campaign {
   CampaignResult run(std::size_t workers) {
     const Heartbeat heartbeat(store_);
     {
-      const auto threads =
-          start_threads(std::max<std::size_t>(workers, 1) - 1, [this](std::size_t) { work(); });
+      const auto threads = start_threads(workers, [this](std::size_t) { work(); });
       work();
     }
     if (error_) std::rethrow_exception(error_);

@@ -11,6 +11,7 @@
 #include "core/filling.hpp"
 #include "core/memory.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "experiments/runner/cost.hpp"
 #include "protocols/cyclic_shear.hpp"
 #include "protocols/settle.hpp"
 #include "protocols/stiffen.hpp"
@@ -31,11 +32,8 @@ Scene make_scene(const StageRecord& stage) {
   return settle_scene(stage.parameters);
 }
 
-// Grains, lists, wall grains, and a checkpoint on its way to the store: 405 to 460 bytes a grain
-// were measured while a cell is sheared.
 void require_memory(const StageRecord& stage) {
-  constexpr double bytes_per_grain = 700;
-  const double needed = bytes_per_grain * static_cast<double>(stage.parameters.grains);
+  const double needed = kRunBytesPerGrain * static_cast<double>(stage.parameters.grains);
   if (needed <= machine_memory()) return;
   throw GeometryError(fmt::format(
       "{} grains take about {:.3g} GB, and this machine has {:.3g} GB; use fewer grains",

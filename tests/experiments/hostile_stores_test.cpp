@@ -428,11 +428,11 @@ TEST_P(HostileStore, IsToldWithItsExitCode) {
   EXPECT_EQ(said.find('\x1b'), std::string::npos);
 }
 
-const auto named = [](const auto& damaged) { return std::string(damaged.param.name); };
-INSTANTIATE_TEST_SUITE_P(Logs, HostileStore, testing::ValuesIn(damaged_logs()), named);
-INSTANTIATE_TEST_SUITE_P(Events, HostileStore, testing::ValuesIn(damaged_events()), named);
-INSTANTIATE_TEST_SUITE_P(Tables, HostileStore, testing::ValuesIn(damaged_tables()), named);
-INSTANTIATE_TEST_SUITE_P(Objects, HostileStore, testing::ValuesIn(damaged_objects()), named);
+const auto case_name = [](const auto& damaged) { return std::string(damaged.param.name); };
+INSTANTIATE_TEST_SUITE_P(Logs, HostileStore, testing::ValuesIn(damaged_logs()), case_name);
+INSTANTIATE_TEST_SUITE_P(Events, HostileStore, testing::ValuesIn(damaged_events()), case_name);
+INSTANTIATE_TEST_SUITE_P(Tables, HostileStore, testing::ValuesIn(damaged_tables()), case_name);
+INSTANTIATE_TEST_SUITE_P(Objects, HostileStore, testing::ValuesIn(damaged_objects()), case_name);
 
 }  // namespace
 }  // namespace shearcell::test

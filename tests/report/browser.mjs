@@ -82,7 +82,7 @@ const checks = {
     expect(size < limits.bytes, `size: ${size} bytes`);
   },
 
-  // browser.sh puts an experiment into the store whose texts are markup.
+  // campaign.sh puts an experiment into the store whose texts are markup.
   async hostile() {
     const page = await open("hostile");
     const found = await page.evaluate(() => ({

@@ -11,7 +11,7 @@
 namespace shearcell {
 namespace {
 
-constexpr int kGrains = 500;
+constexpr int kFrameGrains = 500;
 
 /// Grains anywhere in a tilted cell, some beyond the period, and a wall grain on each side.
 Checkpoint tilted_checkpoint() {
@@ -25,10 +25,10 @@ Checkpoint tilted_checkpoint() {
     checkpoint.cell.wall_grains.push_back({side, {3.25, 5.5, 11.75}});
   }
   checkpoint.state.wall_height = 1.5;
-  checkpoint.state.position.resize(3, kGrains);
+  checkpoint.state.position.resize(3, kFrameGrains);
   std::mt19937 random(7);  // NOLINT: the same in each run
   std::uniform_real_distribution<double> unit(0, 1);
-  for (int i = 0; i < kGrains; ++i) {
+  for (int i = 0; i < kFrameGrains; ++i) {
     checkpoint.state.position.col(i) << 17 * unit(random) - 1.5, 1.5 + 28.5 * unit(random),
         12 * (3 * unit(random) - 1);
   }
@@ -37,9 +37,9 @@ Checkpoint tilted_checkpoint() {
 
 GrainMeasures measures_of_each() {
   GrainMeasures grains;
-  for (int i = 0; i < kGrains; ++i) {
-    grains.phi_local.push_back(0.5 + 0.24 * i / kGrains);
-    grains.q6.push_back(0.6 - 0.4 * i / kGrains);
+  for (int i = 0; i < kFrameGrains; ++i) {
+    grains.phi_local.push_back(0.5 + 0.24 * i / kFrameGrains);
+    grains.q6.push_back(0.6 - 0.4 * i / kFrameGrains);
     grains.structure.push_back(static_cast<Structure>(i % 3));
     grains.interior.push_back(i % 2 == 0 ? 1 : 0);
     grains.crystallites.label.push_back(i % 5 - 1);
@@ -59,7 +59,7 @@ class Frames : public testing::Test {
       wall_pose(checkpoint_.cell, checkpoint_.theta, checkpoint_.state.wall_height);
   const GrainMeasures grains_ = measures_of_each();
   const PackedFrame frame_ = pack_frame(checkpoint_, pose_, grains_);
-  static constexpr std::size_t kAll = kGrains + 4;
+  static constexpr std::size_t kAll = kFrameGrains + 4;
 
   double coordinate(std::size_t sphere, Eigen::Index axis) const {
     return frame_.origin[axis] +
@@ -72,8 +72,8 @@ TEST_F(Frames, RoundPositionsToHalfAStep) {
   double worst = 0;
   for (std::size_t i = 0; i < kAll; ++i) {
     Eigen::Vector3d exact =
-        i < kGrains ? checkpoint_.state.position.col(static_cast<Eigen::Index>(i)).eval()
-                    : walls.col(static_cast<Eigen::Index>(i) - kGrains).eval();
+        i < kFrameGrains ? checkpoint_.state.position.col(static_cast<Eigen::Index>(i)).eval()
+                         : walls.col(static_cast<Eigen::Index>(i) - kFrameGrains).eval();
     exact.z() -= 12 * std::floor(exact.z() / 12);
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const double error = std::abs(coordinate(i, axis) - exact[axis]);
@@ -88,25 +88,25 @@ TEST_F(Frames, RoundPositionsToHalfAStep) {
 TEST_F(Frames, KeepWallGrainsOnTheirTiltedWalls) {
   // Left and right walls are displaced by (y - top) tan(theta).
   const double displaced = 3.25 + (5.5 - 30) * std::tan(0.0833);
-  EXPECT_NEAR(coordinate(kGrains, 0), displaced, frame_.step.x());
-  EXPECT_NEAR(coordinate(kGrains + 2, 1), 5.5 + 1.5, frame_.step.y());
+  EXPECT_NEAR(coordinate(kFrameGrains, 0), displaced, frame_.step.x());
+  EXPECT_NEAR(coordinate(kFrameGrains + 2, 1), 5.5 + 1.5, frame_.step.y());
 }
 
 TEST_F(Frames, KeepTheMeasuresOfEachGrain) {
   const std::size_t phi = 3 * kAll;
-  for (std::size_t i = 0; i < kGrains; ++i) {
+  for (std::size_t i = 0; i < kFrameGrains; ++i) {
     EXPECT_NEAR(word(frame_, phi + i) / 65535, grains_.phi_local[i], 0.5 / 65535 * 1.001);
-    EXPECT_NEAR(word(frame_, phi + kGrains + i) / 65535, grains_.q6[i], 0.5 / 65535 * 1.001);
-    EXPECT_EQ(word(frame_, phi + 2 * kGrains + i), grains_.crystallites.label[i] + 1);
-    const int flags = std::to_integer<int>(frame_.bytes[2 * (phi + 3 * kGrains) + i]);
+    EXPECT_NEAR(word(frame_, phi + kFrameGrains + i) / 65535, grains_.q6[i], 0.5 / 65535 * 1.001);
+    EXPECT_EQ(word(frame_, phi + 2 * kFrameGrains + i), grains_.crystallites.label[i] + 1);
+    const int flags = std::to_integer<int>(frame_.bytes[2 * (phi + 3 * kFrameGrains) + i]);
     EXPECT_EQ(flags & 3, static_cast<int>(grains_.structure[i]));
     EXPECT_EQ(flags >> 2, grains_.interior[i]);
   }
 }
 
 TEST_F(Frames, HaveTheSizeThatIsReckonedWith) {
-  EXPECT_EQ(frame_.bytes.size(), 6 * kAll + 7 * kGrains);
-  EXPECT_EQ(frame_size_in_page(kGrains, 4), (frame_.bytes.size() + 2) / 3 * 4);
+  EXPECT_EQ(frame_.bytes.size(), 6 * kAll + 7 * kFrameGrains);
+  EXPECT_EQ(frame_size_in_page(kFrameGrains, 4), (frame_.bytes.size() + 2) / 3 * 4);
 }
 
 }  // namespace

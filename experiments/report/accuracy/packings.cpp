@@ -41,8 +41,7 @@ void in_parallel(std::size_t count, std::size_t jobs,
         if (!failure) failure = std::current_exception();
       }
     };
-    const std::size_t most = std::max<std::size_t>(count, 1);
-    const auto threads = start_threads(std::clamp<std::size_t>(jobs, 1, most) - 1, some);
+    const auto threads = start_threads(std::min<std::size_t>(jobs, count), some);
     some(0);
   }
   if (failure) std::rethrow_exception(failure);

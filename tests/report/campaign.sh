@@ -1,0 +1,24 @@
+#!/bin/sh
+# Runs every manifest at scale smoke, and one whose texts are hostile, and writes the report of all:
+#   sh tests/report/campaign.sh PROGRAM FOLDER
+# The store, the log and report.html stay in FOLDER, where browser.sh looks at them.
+set -eu
+program=$1 folder=$2
+cd "$(dirname "$0")/../.."
+
+rm -rf "$folder"
+mkdir -p "$folder"
+"$program" run experiments/*.yaml --scale smoke --store "$folder/store" >/dev/null 2>"$folder/run.log"
+
+# Texts that would be markup if they were let.
+hostile="$folder/<img src=x onerror=spoiled=true>.yaml"
+cat >"$hostile" <<'MANIFEST'
+# </pre></script><script>spoiled = true</script><!-- <script>
+experiment: hostile
+question: "</script><img src=x onerror='spoiled=true'>&lt;!-- <script>spoiled=true</script>"
+figures: [S2]
+base: {grains: 300, period_s: 1, steps_per_cycle: 10000, settle_time_step_s: 1.0e-4, cycles: 1}
+MANIFEST
+"$program" run "$hostile" --store "$folder/store" >/dev/null 2>>"$folder/run.log"
+
+"$program" report --scale smoke --store "$folder/store" --out "$folder/report.html"
