@@ -11,8 +11,9 @@
 namespace shearcell {
 
 /// Memory [bytes] a grain that a run may take: grains, lists, wall grains, and a checkpoint on its
-/// way to the store. While a cell is sheared 405 to 460 were measured (`bench speed`).
-inline constexpr double kRunBytesPerGrain = 700;
+/// way to the store. While a cell is sheared 405 to 460 were measured (`bench speed`), while
+/// 100,000 grains settled 710 (`bench engines --settle`).
+inline constexpr double kRunBytesPerGrain = 750;
 
 /// Size [bytes] of the file of a checkpoint, estimated from its grains and wall grains.
 double checkpoint_bytes(const Geometry& shape);
