@@ -24,7 +24,9 @@ struct Place {
 
 /// Three bytes say where, one how many follow.
 std::string patched(std::string bytes, std::string_view patches) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(patches[i]); };
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return static_cast<unsigned char>(patches[i]);
+  };
   while (patches.size() > 4) {
     const std::size_t at = (byte(0) | byte(1) << 8U | byte(2) << 16U) % bytes.size();
     const std::size_t count =

@@ -89,7 +89,8 @@ run_valgrind() {
   build clang
   for suite in $suites; do
     program="$(find build/clang/tests -name "test_$suite" -type f)"
-    valgrind --quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite --trace-children=no \
+    valgrind --quiet --error-exitcode=9 --leak-check=full --show-leak-kinds=definite \
+      --errors-for-leak-kinds=definite --trace-children=no \
       "$program" --gtest_brief=1 >>"$logs/$part.log" 2>&1 || finding '^==[0-9]+== |Failure'
   done
   said="$suites"
