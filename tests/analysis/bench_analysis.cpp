@@ -51,19 +51,20 @@ void print_order(const shearcell::testing::Packing& p,
   print("Voronoi cells", exact.grains.q6, own);
   const struct {
     const char* name;
-    accuracy::NeighbourRule rule;
+    accuracy::NeighbourRule neighbours;
   } rules[] = {{"within 1.2 d", {1.2, 0}},
                {"within 1.3 d", {1.3, 0}},
                {"within 1.4 d", {1.4, 0}},
                {"12 nearest", {1.6, 12}}};
-  for (const auto& [name, rule] : rules) {
+  for (const auto& rule : rules) {
     std::vector<double> q6;
     double best = 1e9;
     for (int k = 0; k < 5; ++k) {
-      best = std::min(best,
-                      seconds([&] { q6 = accuracy::q6_of_near(p.cell, p.pose, p.grains, rule); }));
+      best = std::min(best, seconds([&] {
+                        q6 = accuracy::q6_of_near(p.cell, p.pose, p.grains, rule.neighbours);
+                      }));
     }
-    print(name, q6, best);
+    print(rule.name, q6, best);
   }
 }
 

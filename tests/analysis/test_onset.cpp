@@ -25,7 +25,7 @@ FigureRun logistic(double onset, int cycles = 100) {
 TEST(OnsetBySize, IsInterpolatedBetweenCycles) {
   const FigureRun run = made_up_run("fluid", "still", 1, 4, [](int n, Measures& m) {
     m.phi = 0.64 + 0.001 * n;
-    m.largest_crystallite = static_cast<std::size_t>(4 * n);
+    m.largest_crystallite = 4 * static_cast<std::size_t>(n);
   });
   const RunOnset found = onset_by_size(run, 10);
   ASSERT_EQ(found.observed, Observed::yes);

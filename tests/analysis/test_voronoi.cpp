@@ -170,7 +170,10 @@ TEST(Voronoi, AffinelyShearedLattice) {
 TEST(Voronoi, CoplanarAndCollinearSites) {
   Packing p = empty_cell(8, 8, 2);
   p.grains.resize(3, 49);
-  for (int i = 0; i < 49; ++i) p.grains.col(i) << 1 + i % 7, 1 + i / 7, 0.25;
+  for (int i = 0; i < 49; ++i) {
+    const int column = i % 7, row = i / 7;
+    p.grains.col(i) << 1 + column, 1 + row, 0.25;
+  }
   expect_fills_the_cell(p);
   p.grains.conservativeResize(3, 7);
   expect_fills_the_cell(p);

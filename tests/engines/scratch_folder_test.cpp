@@ -30,7 +30,7 @@ class Scratch : public testing::Test {
 
   /// A folder of that name as a killed owner leaves it.
   fs::path left_behind(const std::string& name, const std::string& lock = "lock") {
-    const fs::path folder = place_.path() / name;
+    fs::path folder = place_.path() / name;
     fs::create_directory(folder);
     fs::permissions(folder, fs::perms::owner_all);
     std::ofstream(folder / "scene.data") << "grains";
