@@ -51,7 +51,7 @@ TEST(Crystallites, SliversDoNotConnect) {
   jitter(p, 1e-3, 5);
   const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains);
   std::vector<std::uint8_t> crystalline(d.volume.size());
-  const auto id = [](int x, int y, int z) { return static_cast<std::size_t>((x * 6 + y) * 6 + z); };
+  const auto id = [](std::size_t x, std::size_t y, std::size_t z) { return (x * 6 + y) * 6 + z; };
   crystalline[id(2, 2, 2)] = 1;
   crystalline[id(3, 3, 2)] = 1;
   crystalline[id(3, 3, 3)] = 1;

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
+#include "analysis/figures/figures.hpp"
+#include "core/random.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 
 namespace shearcell::testing {
@@ -51,6 +54,44 @@ TEST(Density, IntegratesToOneAndHasErrorsOverRuns) {
   EXPECT_NEAR(integral, 1, 1e-15);
   EXPECT_FALSE(density(std::span(runs).first(1), 4)[0].error.has_value());
   EXPECT_TRUE(density({}, 4).empty());
+}
+
+/// Six runs of so many crystallites each, at x/w and y/h as two functions of random numbers in [0,
+/// 1) say.
+std::vector<FigureRun> runs_with_places(int count, const std::function<double(double)>& x,
+                                        const std::function<double(double)>& y) {
+  std::vector<FigureRun> runs;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    std::vector<CrystalliteMap> maps;
+    for (std::uint32_t n = 0; n < static_cast<std::uint32_t>(count); ++n) {
+      const auto random = uniform_pair({n, 0, 0, 0}, seed);
+      maps.push_back(one_crystallite(20, 20 * x(random[0]) - 1, 5 + 20 * y(random[1])));
+    }
+    runs.push_back(run_with(maps));
+  }
+  return runs;
+}
+
+std::vector<Ruling> rulings(std::span<const FigureRun> runs) {
+  std::vector<Ruling> all;
+  for (const Verdict& verdict : figure_s7(runs).verdicts) all.push_back(verdict.ruling);
+  return all;
+}
+
+TEST(FigureS7, JudgesPlacesWhoseTruthIsKnown) {
+  const auto even = [](double u) { return u; };
+  const auto in_one_spot = [](double u) { return 0.45 + 0.1 * u; };
+  const auto near_the_top = [](double u) { return std::sqrt(u); };
+  const auto left_in_the_middle = [](double u) { return 0.25 + 0.5 * u * u; };
+  const auto near_the_bottom = [](double u) { return u * u; };
+  using R = Ruling;
+  EXPECT_EQ(rulings(runs_with_places(100, even, near_the_top)), (std::vector{R::pass, R::pass}));
+  EXPECT_EQ(rulings(runs_with_places(100, in_one_spot, near_the_bottom)),
+            (std::vector{R::too_few_runs, R::fail}));
+  EXPECT_EQ(rulings(runs_with_places(100, left_in_the_middle, even)),
+            (std::vector{R::fail, R::too_few_runs}));
+  EXPECT_EQ(rulings(runs_with_places(10, even, near_the_top)),
+            (std::vector{R::too_few_runs, R::too_few_runs}));
 }
 
 }  // namespace

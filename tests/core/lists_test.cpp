@@ -32,7 +32,7 @@ Points random_points(std::size_t grains, const Cell& cell, const WallPose& pose,
   for (std::uint32_t g = 0; g < grains; ++g) {
     const auto a = uniform_pair({g, 0, 0, 0}, seed);
     const auto b = uniform_pair({g, 1, 0, 0}, seed);
-    double* row = points.rows.data() + 4 * g;
+    double* row = points.rows.data() + std::size_t{4} * g;
     row[1] = pose.bottom - 0.2 + a[1] * (pose.top - pose.bottom + 0.4);
     row[0] = -0.2 + a[0] * (cell.width + 0.4) + pose.tan_theta * (row[1] - pose.top);
     row[2] = b[0] * cell.depth + std::floor(5 * b[1] - 2) * cell.depth;

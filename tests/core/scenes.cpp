@@ -7,6 +7,8 @@
 namespace shearcell::test {
 namespace {
 
+std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+
 bool same(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   return a.cols() == b.cols() &&
          std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
@@ -16,16 +18,15 @@ bool same(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
 
 bool same_bits(const State& a, const State& b) {
   return a.step == b.step && same(a.position, b.position) && same(a.velocity, b.velocity) &&
-         std::memcmp(&a.wall_height, &b.wall_height, sizeof(double)) == 0 &&
-         std::memcmp(&a.wall_velocity, &b.wall_velocity, sizeof(double)) == 0;
+         bits(a.wall_height) == bits(b.wall_height) &&
+         bits(a.wall_velocity) == bits(b.wall_velocity);
 }
 
 std::uint64_t fingerprint(const State& state) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   const auto add = [&hash](double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
     for (int byte = 0; byte < 8; ++byte) {
-      hash = (hash ^ (bits >> 8 * byte & 0xFF)) * 0x100000001b3U;
+      hash = (hash ^ (bits(value) >> 8 * byte & 0xFF)) * 0x100000001b3U;
     }
   };
   for (const double value : state.position.reshaped()) add(value);

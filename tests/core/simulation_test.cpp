@@ -160,8 +160,9 @@ TEST(Contacts, BalanceMomentumAndEnergy) {
     const auto a = uniform_pair({i, 0, 0, 0}, 1);
     const auto b = uniform_pair({i, 1, 0, 0}, 1);
     // A jittered simple cubic block at 0.96 d, straddling the seam.
-    positions.emplace_back(18 + 0.96 * (i % 4) + 0.02 * a[0], 18 + 0.96 * (i / 4 % 4) + 0.02 * a[1],
-                           38.5 + 0.96 * (i / 16) + 0.02 * b[0]);
+    const std::uint32_t x = i % 4, y = i / 4 % 4, z = i / 16;
+    positions.emplace_back(18 + 0.96 * x + 0.02 * a[0], 18 + 0.96 * y + 0.02 * a[1],
+                           38.5 + 0.96 * z + 0.02 * b[0]);
   }
   const State state = at_rest(positions, cell);
   const WallPose pose = wall_pose(cell, 0, 0);

@@ -166,7 +166,7 @@ std::vector<std::string> checkpoint_seeds() {
 std::vector<std::string> store_seeds() {
   std::vector<std::string> seeds = {
       std::string("\0\x10\0\0\x03"
-                  "abc",
+                  "abc\0",
                   9)};
   for (const std::string& events : event_seeds()) seeds.push_back('\1' + events);
   return seeds;

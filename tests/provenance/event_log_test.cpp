@@ -173,7 +173,7 @@ TEST_F(EventLogTest, FindsAnEventThatWasRehashed) {
 
 TEST_F(EventLogTest, KeepsEveryByteOfAPayload) {
   sqlite::Database database = open();
-  const nlohmann::json payload = {{"text", std::string("a\0b\n\"\\\u00e9\U0001F600", 13)},
+  const nlohmann::json payload = {{"text", std::string("a\0b\n\"\\\u00e9\U0001F600\0", 13)},
                                   {"x", 0.1},
                                   {"tiny", 5e-324},
                                   {"seed", 0xffffffffffffffffu}};
