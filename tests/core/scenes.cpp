@@ -7,7 +7,9 @@
 namespace shearcell::test {
 namespace {
 
-std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+std::uint64_t bits(double value) {
+  return std::bit_cast<std::uint64_t>(value);
+}
 
 bool same(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   return a.cols() == b.cols() &&
