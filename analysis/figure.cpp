@@ -9,7 +9,7 @@
 
 #include "analysis/error.hpp"
 #include "analysis/figures/figures.hpp"
-#include "provenance/plain_file.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell {
 namespace {

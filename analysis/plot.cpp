@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "analysis/error.hpp"
-#include "analysis/program.hpp"
-#include "provenance/plain_file.hpp"
+#include "provenance/io/child_process.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell {
 namespace {

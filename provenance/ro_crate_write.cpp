@@ -8,7 +8,7 @@
 
 #include "core/limits.hpp"
 #include "provenance/json_text.hpp"
-#include "provenance/plain_file.hpp"
+#include "provenance/io/plain_file.hpp"
 #include "provenance/prov_json.hpp"
 #include "provenance/ro_crate.hpp"
 #include "provenance/sha256.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/report/speed.hpp"
+#include "experiments/bench/speed.hpp"
 
 namespace shearcell::cli {
 namespace {

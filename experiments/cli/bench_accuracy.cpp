@@ -8,7 +8,7 @@
 
 #include "analysis/plot.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/report/accuracy/accuracy.hpp"
+#include "experiments/bench/accuracy/accuracy.hpp"
 
 namespace shearcell::cli {
 namespace {

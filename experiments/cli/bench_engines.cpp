@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/report/engines.hpp"
+#include "experiments/bench/engines.hpp"
 
 namespace shearcell::cli {
 namespace {

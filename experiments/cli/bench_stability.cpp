@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/report/stability/stability.hpp"
+#include "experiments/bench/stability/stability.hpp"
 
 namespace shearcell::cli {
 namespace {

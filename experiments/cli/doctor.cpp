@@ -12,9 +12,9 @@
 #include <memory>
 #include <sstream>
 
-#include "analysis/program.hpp"
+#include "provenance/io/child_process.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/report/speed.hpp"
+#include "experiments/bench/speed.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/store.hpp"

@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/report/regenerate.hpp"
+#include "experiments/figures/regenerate.hpp"
 #include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/plain_file.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {

@@ -13,7 +13,7 @@
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/plain_file.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {

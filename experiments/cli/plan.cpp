@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/engines/engine.hpp"
-#include "experiments/engines/lammps_run.hpp"
+#include "experiments/runner/engine.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/numerics.hpp"
 #include "experiments/runner/cost.hpp"

@@ -11,7 +11,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/terminal.hpp"
-#include "provenance/plain_file.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {

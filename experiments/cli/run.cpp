@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/engines/lammps_run.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/campaign.hpp"
 #include "experiments/runner/stop.hpp"

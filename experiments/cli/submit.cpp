@@ -14,7 +14,7 @@
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/progress.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/plain_file.hpp"
+#include "provenance/io/plain_file.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell::cli {

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <sstream>
 
-#include "analysis/program.hpp"
+#include "provenance/io/child_process.hpp"
 
 namespace shearcell {
 namespace {

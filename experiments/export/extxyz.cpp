@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "experiments/export/formats.hpp"
-#include "provenance/plain_file.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell {
 namespace {

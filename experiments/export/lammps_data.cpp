@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "experiments/export/formats.hpp"
-#include "provenance/plain_file.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell {
 namespace {

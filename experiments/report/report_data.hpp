@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/figure_lineage.hpp"
+#include "experiments/figures/figure_lineage.hpp"
 #include "experiments/report/packings.hpp"
-#include "experiments/report/regenerate.hpp"
+#include "experiments/figures/regenerate.hpp"
 #include "experiments/report/report.hpp"
 #include "provenance/lineage.hpp"
 

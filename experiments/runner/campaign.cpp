@@ -14,7 +14,7 @@
 
 #include "core/filling.hpp"
 #include "core/threads.hpp"
-#include "experiments/engines/engine_error.hpp"
+#include "experiments/runner/engine_error.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
 

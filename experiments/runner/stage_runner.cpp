@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "experiments/engines/engine.hpp"
-#include "experiments/engines/engine_error.hpp"
+#include "experiments/runner/engine.hpp"
+#include "experiments/runner/engine_error.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"

@@ -18,7 +18,7 @@
 
 #include "analysis/measures.hpp"
 #include "analysis/voronoi.hpp"
-#include "experiments/report/accuracy/near_neighbours.hpp"
+#include "experiments/bench/accuracy/near_neighbours.hpp"
 #include "tests/analysis/oracles.hpp"
 #include "tests/analysis/packings.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "analysis/program.hpp"
+#include "provenance/io/child_process.hpp"
 #include "experiments/cluster/job_script.hpp"
 #include "tests/experiments/temporary_store.hpp"
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "experiments/engines/engine_error.hpp"
+#include "experiments/runner/engine_error.hpp"
 #include "tests/experiments/program.hpp"
 
 namespace shearcell::test {

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "core/filling.hpp"
-#include "experiments/engines/lammps_deck.hpp"
+#include "experiments/runner/lammps/lammps_deck.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "tests/experiments/temporary_store.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a killed run left in the folder for temporary files goes at the next start, and nothing
 // else.
-#include "experiments/engines/scratch_folder.hpp"
+#include "experiments/runner/lammps/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "experiments/engines/lammps_settle.hpp"
+#include "experiments/runner/lammps/lammps_settle.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/report/settling.hpp"
+#include "experiments/bench/settling.hpp"
 #include "tests/experiments/program.hpp"
 
 namespace shearcell::test {

@@ -8,7 +8,7 @@
 
 #include "core/filling.hpp"
 #include "core/simulation.hpp"
-#include "experiments/engines/lammps_run.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "protocols/settle.hpp"
 

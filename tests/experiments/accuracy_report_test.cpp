@@ -9,8 +9,8 @@
 #include "analysis/measures.hpp"
 #include "analysis/plot.hpp"
 #include "experiments/manifest/numerics.hpp"
-#include "experiments/report/accuracy/accuracy.hpp"
-#include "experiments/report/accuracy/sheared.hpp"
+#include "experiments/bench/accuracy/accuracy.hpp"
+#include "experiments/bench/accuracy/sheared.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
 namespace shearcell::accuracy {

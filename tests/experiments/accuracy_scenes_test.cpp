@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/report/accuracy/closed_forms.hpp"
-#include "experiments/report/accuracy/crystal.hpp"
-#include "experiments/report/accuracy/fit.hpp"
-#include "experiments/report/accuracy/near_neighbours.hpp"
+#include "experiments/bench/accuracy/closed_forms.hpp"
+#include "experiments/bench/accuracy/crystal.hpp"
+#include "experiments/bench/accuracy/fit.hpp"
+#include "experiments/bench/accuracy/near_neighbours.hpp"
 
 namespace shearcell::accuracy {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is measured on a checkpoint is kept, and a figure is the same whether it was kept or not.
-#include "experiments/report/derive.hpp"
+#include "experiments/figures/derive.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
 #include "analysis/error.hpp"
-#include "experiments/report/regenerate.hpp"
+#include "experiments/figures/regenerate.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/sqlite.hpp"
 #include "tests/experiments/temporary_store.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A published figure leads back to every checkpoint, run, manifest line, seed, build and host.
-#include "experiments/report/figure_lineage.hpp"
+#include "experiments/figures/figure_lineage.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
-#include "experiments/report/regenerate.hpp"
+#include "experiments/figures/regenerate.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"

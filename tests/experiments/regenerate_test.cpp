@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A figure is a pure function of the checkpoints: made again it has the same bytes, and nothing is
 // simulated for it.
-#include "experiments/report/regenerate.hpp"
+#include "experiments/figures/regenerate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <set>
 
-#include "experiments/report/regenerate.hpp"
+#include "experiments/figures/regenerate.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/sha256.hpp"
 #include "tests/experiments/temporary_store.hpp"

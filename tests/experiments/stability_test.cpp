@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "experiments/report/stability/stability.hpp"
+#include "experiments/bench/stability/stability.hpp"
 
 namespace shearcell {
 

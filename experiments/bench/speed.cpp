@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/bench/speed.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/filling.hpp"
+#include "core/simulation.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "protocols/settle.hpp"
+#include "provenance/checkpoint.hpp"
+
+namespace shearcell {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The engine holds no clock, so its kernels are timed from outside: a table of functions that take
+// the time around those of the kernel in use. One simulation at a time, one thread.
+struct Stopwatch {
+  const Kernels* inner = nullptr;
+  std::size_t calls = 0;
+  double step = 0, search = 0, prune = 0;
+  // Every so many steps the same step is done again to nowhere: whole, without looking at walls,
+  // and without any neighbours.
+  double sampled = 0, whole = 0, without_walls = 0, without_neighbours = 0;
+  std::vector<double> nowhere;
+};
+Stopwatch stopwatch;
+
+template <class Call>
+auto timed(double& total, Call&& call) {
+  const auto start = Clock::now();
+  const auto result = call();
+  total += seconds_since(start);
+  return result;
+}
+
+template <int kGravity, int kFlow>
+void sample_parts(StepTask task, std::size_t first, std::size_t last) {
+  constexpr std::size_t kInterval = 16;
+  if (++stopwatch.calls % kInterval != 0) return;
+  const auto start = Clock::now();
+  const std::size_t room = padded(task.grains);
+  stopwatch.nowhere.resize(8 * room);
+  task.next_rows = stopwatch.nowhere.data();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double* velocity = stopwatch.nowhere.data() + (4 + axis) * room;
+    std::copy_n(task.velocity[axis], room, velocity);
+    task.velocity[axis] = velocity;
+  }
+  task.push = stopwatch.nowhere.data() + 7 * room;
+  const auto step = [&] { return stopwatch.inner->step[kGravity][kFlow](task, first, last); };
+  timed(stopwatch.whole, step);
+  std::vector<std::uint8_t> near(task.neighbours.near + first, task.neighbours.near + last);
+  for (std::uint8_t& bits : near) bits &= static_cast<std::uint8_t>(~kNearWall);
+  task.neighbours.near = near.data() - first;
+  timed(stopwatch.without_walls, step);
+  const std::vector<std::uint16_t> none(last - first, 0);
+  task.neighbours.slots = none.data() - first;
+  timed(stopwatch.without_neighbours, step);
+  stopwatch.sampled += seconds_since(start);
+}
+
+template <int kGravity, int kFlow>
+double timed_step(const StepTask& task, std::size_t first, std::size_t last) {
+  sample_parts<kGravity, kFlow>(task, first, last);
+  return timed(stopwatch.step,
+               [&] { return stopwatch.inner->step[kGravity][kFlow](task, first, last); });
+}
+
+Kernels timed_kernels(const Kernels& inner) {
+  stopwatch = {};
+  stopwatch.inner = &inner;
+  return {
+      inner.name,
+      inner.lanes,
+      {{timed_step<0, 0>, timed_step<0, 1>}, {timed_step<1, 0>, timed_step<1, 1>}},
+      [](const SearchTask& task, std::size_t first, std::size_t last) {
+        return timed(stopwatch.search, [&] { return stopwatch.inner->search(task, first, last); });
+      },
+      [](const PruneTask& task, std::size_t first, std::size_t last) {
+        return timed(stopwatch.prune, [&] { return stopwatch.inner->prune(task, first, last); });
+      }};
+}
+
+struct Prepared {
+  Cell cell;
+  State state;
+  Scene scene;
+  Drive drive;
+};
+
+// The pressure of Table I can lift no higher column than this many grains make.
+constexpr std::size_t kHighest = 18200;
+
+// Into how many equal parts along the depth a larger packing is cut: the fewest that divide it.
+std::size_t parts_of(std::size_t grains) {
+  std::size_t parts = (grains + kHighest - 1) / kHighest;
+  while (grains % parts != 0) ++parts;
+  return parts;
+}
+
+// The same packing behind itself, `copies` times along the periodic depth.
+Prepared repeated(const Prepared& one, std::size_t copies) {
+  Prepared made = one;
+  made.cell.depth *= static_cast<double>(copies);
+  const Eigen::Index grains = one.state.position.cols();
+  made.state.position = one.state.position.replicate(1, static_cast<Eigen::Index>(copies));
+  made.state.velocity = one.state.velocity.replicate(1, static_cast<Eigen::Index>(copies));
+  for (std::size_t c = 1; c < copies; ++c) {
+    const double shift = static_cast<double>(c) * one.cell.depth;
+    made.state.position.block(2, static_cast<Eigen::Index>(c) * grains, 1, grains).array() += shift;
+    for (WallGrain grain : one.cell.wall_grains) {
+      grain.position.z() += shift;
+      made.cell.wall_grains.push_back(grain);
+    }
+  }
+  return made;
+}
+
+Prepared prepare(std::size_t grains) {
+  const std::size_t parts = parts_of(grains);
+  Parameters parameters;
+  parameters.grains = grains / parts;
+  Prepared made;
+  made.cell = make_cell(geometry(parameters), 1);
+  made.state = fill_cell(made.cell, geometry(parameters), 1);
+  made.scene = shear_scene(parameters);
+  made.drive = drive(parameters);
+  made.state = pressed(made.cell, made.state, settle_scene(parameters), {});
+  Simulation simulation(made.cell, made.scene, made.state);
+  simulation.advance(Drive{}, 2000);  // the weight
+  made.state = simulation.state();
+  made.state.step = 0;
+  return parts == 1 ? made : repeated(made, parts);
+}
+
+std::string hash_after(const Prepared& made, const EngineSettings& settings, std::uint64_t steps) {
+  Simulation simulation(made.cell, made.scene, made.state, settings);
+  simulation.advance(made.drive, steps);
+  Checkpoint checkpoint;
+  checkpoint.cell = simulation.cell();
+  checkpoint.state = simulation.state();
+  return state_hash(checkpoint);
+}
+
+void measure_shares(const Prepared& made, const Kernels& kernels, std::uint64_t steps,
+                    SpeedResult& result) {
+  const Kernels table = timed_kernels(kernels);
+  EngineSettings settings;
+  settings.kernels = &table;
+  Simulation simulation(made.cell, made.scene, made.state, settings);
+  const auto start = Clock::now();
+  simulation.advance(made.drive, steps);
+  const double total = seconds_since(start) - stopwatch.sampled;
+  const double step_share = stopwatch.step / total;
+  result.integration_share = step_share * stopwatch.without_neighbours / stopwatch.whole;
+  result.wall_share = step_share * std::max(0.0, 1 - stopwatch.without_walls / stopwatch.whole);
+  result.force_share = step_share - result.integration_share - result.wall_share;
+  result.search_share = stopwatch.search / total;
+  result.prune_share = stopwatch.prune / total;
+  const ListCounts& counts = simulation.list_counts();
+  result.steps_per_search = static_cast<double>(steps) / static_cast<double>(counts.builds);
+  result.steps_per_prune = static_cast<double>(steps) / static_cast<double>(counts.prunes);
+  result.bytes_per_grain =
+      static_cast<double>(simulation.bytes()) / static_cast<double>(simulation.grains());
+}
+
+void measure_rate(const Prepared& made, const EngineSettings& settings, const SpeedOptions& options,
+                  SpeedResult& result) {
+  Simulation simulation(made.cell, made.scene, made.state, settings);
+  const auto warm_up = Clock::now();
+  std::uint64_t steps = 0;
+  for (; seconds_since(warm_up) < options.seconds_per_repeat || steps == 0; steps += 20) {
+    simulation.advance(made.drive, 20);
+  }
+  std::vector<double> rates;
+  for (std::size_t repeat = 0; repeat < options.repeats; ++repeat) {
+    const auto start = Clock::now();
+    simulation.advance(made.drive, steps);
+    rates.push_back(1e-6 * static_cast<double>(steps * result.grains) / seconds_since(start));
+  }
+  std::sort(rates.begin(), rates.end());
+  result.median_rate = rates[rates.size() / 2];
+  result.slowest_rate = rates.front();
+  result.fastest_rate = rates.back();
+}
+
+std::vector<SpeedResult> measure_size(std::size_t grains, const SpeedOptions& options) {
+  const auto say = [&](const std::string& what) {
+    if (options.report) options.report(fmt::format("N = {}: {}", grains, what));
+  };
+  say("pressing a packing");
+  const Prepared made = prepare(grains);
+  std::vector<SpeedResult> results;
+  for (const Simd simd : {Simd::avx512, Simd::avx2, Simd::scalar}) {
+    const Kernels* kernels = find_kernels(simd);
+    if (kernels == nullptr) continue;
+    for (const std::size_t threads : options.threads) {
+      SpeedResult result;
+      result.grains = grains;
+      result.simd = kernels->name;
+      result.threads = threads;
+      say(fmt::format("{}, {} thread{}", kernels->name, threads, threads == 1 ? "" : "s"));
+      EngineSettings settings;
+      settings.kernels = kernels;
+      settings.threads = threads;
+      result.state_hash = hash_after(made, settings, 200);
+      if (!results.empty() && result.state_hash != results.front().state_hash) {
+        throw std::runtime_error(fmt::format(
+            "{} with {} threads gives another state than {} after 200 steps at N = {}; no rate is "
+            "worth reporting",
+            result.simd, threads, results.front().simd, grains));
+      }
+      measure_rate(made, settings, options, result);
+      const double steps = 1e6 * result.median_rate * options.seconds_per_repeat /
+                           static_cast<double>(grains * threads);
+      measure_shares(made, *kernels,
+                     std::max<std::uint64_t>(400, static_cast<std::uint64_t>(steps)), result);
+      results.push_back(result);
+    }
+  }
+  return results;
+}
+
+}  // namespace
+
+std::vector<SpeedResult> measure_speed(const SpeedOptions& options) {
+  std::vector<SpeedResult> all;
+  for (const std::size_t grains : options.sizes) {
+    const std::vector<SpeedResult> results = measure_size(grains, options);
+    all.insert(all.end(), results.begin(), results.end());
+  }
+  return all;
+}
+
+}  // namespace shearcell

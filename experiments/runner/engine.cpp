@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/runner/engine.hpp"
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "core/drive.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
+#include "experiments/manifest/conversion.hpp"
+
+namespace shearcell {
+namespace {
+
+class OwnEngine final : public Engine {
+ public:
+  OwnEngine(const StagePlan& plan, Beginning&& beginning, std::size_t threads)
+      : plan_(plan), simulation_(make_simulation(plan, std::move(beginning), threads)) {}
+
+  StageProgress advance() override {
+    return progress_ = plan_.protocol->advance(simulation_, chunk_steps(simulation_.grains()));
+  }
+  StageProgress halt() override { return progress_; }
+  Checkpoint checkpoint(double cycle) const override {
+    return make_checkpoint(plan_, simulation_, cycle);
+  }
+  std::size_t grains() const override { return simulation_.grains(); }
+  std::uint64_t step() const override { return simulation_.step(); }
+  std::uint64_t evaluations() const override { return simulation_.evaluations(); }
+
+ private:
+  const StagePlan& plan_;
+  Simulation simulation_;
+  StageProgress progress_;
+};
+
+class LammpsEngine final : public Engine {
+ public:
+  LammpsEngine(const StagePlan& plan, Beginning&& beginning, const EngineOptions& options)
+      : plan_(plan),
+        stride_(options.checkpoint_every * cycle_steps(plan.protocol->drive())),
+        cell_(std::move(beginning.cell)),
+        state_(std::move(beginning.state)),
+        first_(state_.step),
+        step_(first_) {
+    const std::uint64_t end = plan.protocol->expected_steps();
+    if (first_ >= end) return;
+    LammpsTask task;
+    task.cell = cell_;
+    task.scene = plan.scene;
+    task.drive = plan.protocol->drive();
+    task.state = state_;
+    task.end = end;
+    task.stride = stride_;
+    task.look = lammps_look_steps(grains(), options.ranks);
+    run_.emplace(find_lammps(), task, options.ranks);
+  }
+
+  StageProgress advance() override {
+    constexpr std::chrono::milliseconds patience{50};
+    const bool moved = run_ && take(run_->next_frame(patience));
+    if (run_ && !moved) step_ = run_->step();
+    return progress(moved);
+  }
+
+  StageProgress halt() override {
+    run_->ask_to_stop();
+    take(run_->next_frame(std::chrono::hours(24)));
+    return progress(true);
+  }
+
+  Checkpoint checkpoint(double cycle) const override {
+    return make_checkpoint(plan_, cell_, plan_.scene, state_, cycle);
+  }
+  std::size_t grains() const override { return static_cast<std::size_t>(state_.position.cols()); }
+  std::uint64_t step() const override { return step_; }
+  std::uint64_t evaluations() const override { return step_ - first_; }
+
+ private:
+  // Our watchdog looks at what LAMMPS computed when it takes the first step from there.
+  bool take(std::optional<State> frame) {
+    if (!frame) return false;
+    state_ = std::move(*frame);
+    make_simulation(plan_, {cell_, state_, std::nullopt, ""}, 1)
+        .advance(plan_.protocol->drive(), 1);
+    step_ = state_.step;
+    return true;
+  }
+
+  StageProgress progress(bool at_frame) const {
+    StageProgress progress;
+    const auto per_cycle = static_cast<double>(cycle_steps(plan_.protocol->drive()));
+    progress.cycle = static_cast<double>(step_) / per_cycle;
+    progress.finished = state_.step >= plan_.protocol->expected_steps();
+    progress.checkpoint_due = progress.finished || (at_frame && step_ % stride_ == 0);
+    return progress;
+  }
+
+  const StagePlan& plan_;
+  std::uint64_t stride_;
+  Cell cell_;
+  State state_;  ///< of the last frame
+  std::uint64_t first_;
+  std::uint64_t step_;  ///< where LAMMPS is
+  std::optional<LammpsRun> run_;
+};
+
+bool by_lammps(const StagePlan& plan) {
+  return plan.stage.parameters.engine == EngineKind::lammps;
+}
+
+}  // namespace
+
+std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,
+                                    const EngineOptions& options) {
+  if (by_lammps(plan)) return std::make_unique<LammpsEngine>(plan, std::move(beginning), options);
+  return std::make_unique<OwnEngine>(plan, std::move(beginning), options.threads);
+}
+
+std::vector<std::string> lammps_caveats() {
+  return {
+      "LAMMPS computes the shear alone; packings are placed and settled by this program, and "
+      "shared. bench engines --settle has LAMMPS settle the same grains.",
+      "Same scene, same scheme, equal up to rounding: not the same bits, and other ones for "
+      "another number of processes.",
+      "These runs have ids of their own. verify --replay, regenerate and prune leave them out.",
+      "The watchdog sees their checkpoints, not every 1024th step; a grain whose centre reaches a "
+      "wall's plane ends a run."};
+}
+
+nlohmann::json engine_facts(const StagePlan& plan, const EngineOptions& options) {
+  if (!by_lammps(plan)) return nullptr;
+  const LammpsProgram program = find_lammps();
+  return {{"name", "LAMMPS"},
+          {"version", program.version},
+          {"program", program.path},
+          {"processes", options.ranks}};
+}
+
+}  // namespace shearcell

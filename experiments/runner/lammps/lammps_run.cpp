@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/runner/lammps/lammps_run.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <thread>
+#include <vector>
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds kLook{20};
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  if (!out) throw EngineError("cannot write " + file.string() + ": is the disk full?");
+}
+
+std::string last_line(std::string_view text) {
+  while (text.ends_with('\n')) text.remove_suffix(1);
+  const auto newline = text.rfind('\n');
+  return std::string(newline == text.npos ? text : text.substr(newline + 1));
+}
+
+std::uint64_t number_in(std::string_view name) {
+  std::uint64_t number = 0;
+  const char* end = name.data() + name.size();
+  const auto [stop, error] = std::from_chars(name.data(), end, number);
+  return error == std::errc() && stop == end ? number : 0;
+}
+
+// What the environment does not set already. Several of these may share a machine: Open MPI would
+// tie them to the same cores, and keep these busy while it waits.
+std::vector<std::string> variables() {
+  std::vector<std::pair<std::string, std::string>> all = {
+      {"OMP_NUM_THREADS", "1"},
+      {"OMPI_MCA_hwloc_base_binding_policy", "none"},
+      {"OMPI_MCA_mpi_yield_when_idle", "1"},
+      {"OMPI_MCA_rmaps_base_oversubscribe", "1"}};
+  if (geteuid() == 0) {
+    all.emplace_back("OMPI_ALLOW_RUN_AS_ROOT", "1");
+    all.emplace_back("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+  }
+  std::vector<std::string> missing;
+  for (const auto& [name, value] : all) {
+    if (std::getenv(name.c_str()) == nullptr) missing.push_back(name + '=' + value);
+  }
+  return missing;
+}
+
+std::unique_ptr<ChildProcess> start(const LammpsProgram& program, const fs::path& folder,
+                                    std::size_t ranks) {
+  std::vector<std::string> words;
+  if (ranks > 1) words = {"mpirun", "-np", std::to_string(ranks)};
+  for (const char* word :
+       {program.path.c_str(), "-in", "deck.in", "-log", "log", "-screen", "none"}) {
+    words.emplace_back(word);
+  }
+  const fs::path file = folder / "said";
+  const Descriptor said(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  if (said.number < 0) throw EngineError("cannot write " + file.string());
+  return std::make_unique<ChildProcess>(
+      Command{words, folder, variables(), said.number, said.number});
+}
+
+}  // namespace
+
+LammpsProgram find_lammps() {
+  const char* named = std::getenv("SHEARCELL_LAMMPS");
+  const std::string name = named == nullptr || *named == '\0' ? "lmp" : named;
+  const auto path = find_program(name);
+  if (!path) {
+    throw EngineError("LAMMPS is not here: there is no program " + name +
+                      ". Install the Debian package lammps, or name the program in "
+                      "SHEARCELL_LAMMPS");
+  }
+  remove_abandoned_folders();
+  const ScratchFolder folder;
+  const auto outcome = run_program({path->string(), "-h"}, folder.path());
+  const std::string text = outcome ? outcome->output + outcome->messages : "";
+  // "... Massively Parallel Simulator - 29 Sep 2021 - Update 2"
+  const std::string_view title = "Massively Parallel Simulator - ";
+  const auto at = text.find(title);
+  const auto version = at == text.npos ? at : at + title.size();
+  if (version == text.npos) {
+    throw EngineError(path->string() + " is not LAMMPS: its help does not say so");
+  }
+  if (text.find("gran/hooke") == text.npos) {
+    throw EngineError(path->string() + " was built without the package GRANULAR of LAMMPS");
+  }
+  return {path->string(), text.substr(version, text.find('\n', version) - version)};
+}
+
+std::uint64_t lammps_look_steps(std::size_t grains, std::size_t ranks) {
+  return std::max<std::uint64_t>(1, 3'000'000 * ranks / std::max<std::size_t>(1, grains));
+}
+
+LammpsRun::LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks)
+    : grains_(static_cast<std::size_t>(task.state.position.cols())),
+      ranks_(ranks),
+      step_(task.state.step) {
+  if (ranks > 1 && !find_program("mpirun")) {
+    throw EngineError("there is no program mpirun; install the Debian package openmpi-bin");
+  }
+  write_text(folder_.path() / "scene.data", lammps_data(task));
+  write_text(folder_.path() / "deck.in", lammps_deck(task));
+  process_ = start(program, folder_.path(), ranks);
+}
+
+std::optional<State> LammpsRun::take_frame() {
+  constexpr std::string_view prefix = "frame.";
+  std::uint64_t first = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path())) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(prefix)) continue;
+    const std::uint64_t step = number_in(std::string_view(name).substr(prefix.size()));
+    if (step != 0 && (first == 0 || step < first)) first = step;
+  }
+  if (first == 0) return std::nullopt;
+  const fs::path file = folder_.path() / fmt::format("{}{}", prefix, first);
+  State state = read_lammps_frame(file, grains_);
+  if (state.step != first) throw EngineError(file.string() + " is of another step");
+  fs::remove(file);
+  step_ = std::max(step_, first);
+  return state;
+}
+
+std::optional<State> LammpsRun::next_frame(std::chrono::milliseconds patience) {
+  const auto until = std::chrono::steady_clock::now() + patience;
+  for (;;) {
+    const auto code = process_->exit_code();  // before the look, or a last frame would be missed
+    if (auto state = take_frame()) return state;
+    if (code) fail(*code);
+    if (std::chrono::steady_clock::now() >= until) return std::nullopt;
+    std::this_thread::sleep_for(kLook);
+  }
+}
+
+void LammpsRun::ask_to_stop() {
+  write_text(folder_.path() / "stop", "");
+}
+
+std::uint64_t LammpsRun::step() {
+  std::ifstream log(folder_.path() / "log", std::ios::binary);
+  if (!log.seekg(-64, std::ios::end)) return step_;
+  // Between the last two line ends stands a step, or words.
+  std::string tail{std::istreambuf_iterator<char>(log), {}};
+  tail.resize(tail.rfind('\n') == tail.npos ? 0 : tail.rfind('\n'));
+  std::string line = last_line(tail);
+  line.erase(std::remove(line.begin(), line.end(), ' '), line.end());
+  step_ = std::max(step_, number_in(line));
+  return step_;
+}
+
+void LammpsRun::finish() {
+  if (const int code = process_->wait(); code != 0) fail(code);
+}
+
+double LammpsRun::loop_seconds() const {
+  // "Loop time of T on P procs for S steps with A atoms", once for each run.
+  const std::string log = read_text(folder_.path() / "log");
+  const std::string_view title = "Loop time of ";
+  double sum = 0;
+  for (auto at = log.find(title); at != log.npos; at = log.find(title, at + 1)) {
+    double seconds = 0;
+    std::from_chars(log.data() + at + title.size(), log.data() + log.size(), seconds);
+    sum += seconds;
+  }
+  return sum;
+}
+
+void LammpsRun::fail(int code) const {
+  const std::string log = read_text(folder_.path() / "log");
+  const std::string said = read_text(folder_.path() / "said");
+  std::string why;
+  for (const std::string* text : {&log, &said}) {
+    const auto at = text->find("ERROR");
+    if (at != text->npos && why.empty()) why = text->substr(at, text->find('\n', at) - at);
+  }
+  if (why.empty()) why = last_line(said.empty() ? log : said);
+  throw EngineError(fmt::format("LAMMPS{} ended with code {} near step {}: {}",
+                                ranks_ > 1 ? fmt::format(" on {} processes", ranks_) : "", code,
+                                step_, why.empty() ? "it said nothing" : why));
+}
+
+LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks) {
+  LammpsRun run(program, task, ranks);
+  auto frame = run.next_frame(std::chrono::hours(24 * 365));
+  run.finish();
+  return {std::move(*frame), run.loop_seconds(), run.peak_bytes()};
+}
+
+}  // namespace shearcell

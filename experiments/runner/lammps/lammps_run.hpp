@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// LAMMPS at work on one task: in a temporary folder of its own, alone or under mpirun.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "experiments/runner/engine_error.hpp"
+#include "experiments/runner/lammps/lammps_deck.hpp"
+#include "experiments/runner/lammps/scratch_folder.hpp"
+
+namespace shearcell {
+
+struct LammpsProgram {
+  std::string path;
+  std::string version;  ///< "29 Sep 2021 - Update 2"
+};
+
+/// The program `lmp` on PATH, or the one that $SHEARCELL_LAMMPS names. Throws EngineError when
+/// there is none, or it lacks the package GRANULAR. Removes what killed runs left behind.
+LammpsProgram find_lammps();
+
+/// Steps between two looks of LAMMPS at whether it is to stop, and of us at how far it is: about
+/// half a second of work.
+std::uint64_t lammps_look_steps(std::size_t grains, std::size_t ranks);
+
+class LammpsRun {
+ public:
+  /// Starts it, with `ranks` processes under mpirun when that is more than one. Throws EngineError.
+  LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
+
+  /// The next frame, waited for at most so long. Throws EngineError, with LAMMPS's own words, when
+  /// it ended without one.
+  std::optional<State> next_frame(std::chrono::milliseconds patience);
+
+  /// Asks it to write one frame more, soon, and end.
+  void ask_to_stop();
+
+  /// The step where it was last seen.
+  std::uint64_t step();
+
+  /// Waits for its end. Throws EngineError when that was not a good one.
+  void finish();
+
+  /// Wall seconds of its time loop, as it told itself, and memory [bytes] of its largest process;
+  /// after `finish`.
+  double loop_seconds() const;
+  std::size_t peak_bytes() const { return process_->peak_bytes(); }
+
+ private:
+  std::optional<State> take_frame();
+  [[noreturn]] void fail(int code) const;
+
+  ScratchFolder folder_;
+  std::size_t grains_;
+  std::size_t ranks_;
+  std::uint64_t step_;
+  std::unique_ptr<ChildProcess> process_;  // ends before its folder goes
+};
+
+struct LammpsResult {
+  State state;             ///< at the end of the task
+  double loop_seconds;     ///< wall time of its time loop
+  std::size_t peak_bytes;  ///< memory of its largest process
+};
+
+/// Runs a task that asks for one frame, its last, and waits for it. Throws EngineError.
+LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
+
+}  // namespace shearcell

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// LAMMPS settles loose grains as protocols/settle does: it takes the steps between two looks, and
+// what our protocol sees in the state that it left decides whether there are more.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include "experiments/runner/lammps/lammps_run.hpp"
+#include "protocols/settle.hpp"
+
+namespace shearcell {
+
+/// Loose grains -> at rest, by our criterion. `scene` is the protocol's; the result's step counts
+/// those that LAMMPS took. The watchdog looks where the protocol does. Throws NumericalFailure as
+/// the protocol does, after its time limit above all, and EngineError. `seen` gets what came back
+/// after each look.
+LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protocol,
+                              const Scene& scene, const Cell& cell, const State& loose,
+                              std::size_t ranks,
+                              const std::function<void(const State&)>& seen = {});
+
+}  // namespace shearcell

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance/io/child_process.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+#include <string_view>
+#include <thread>
+
+namespace shearcell {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string_view name_of_variable(std::string_view text) {
+  return text.substr(0, text.find('='));
+}
+
+std::vector<std::string> environment_with(const std::vector<std::string>& variables) {
+  std::vector<std::string> all = variables;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const bool replaced = std::any_of(variables.begin(), variables.end(), [&](const auto& other) {
+      return name_of_variable(other) == name_of_variable(*variable);
+    });
+    if (!replaced) all.emplace_back(*variable);
+  }
+  return all;
+}
+
+// As exec(3) takes words and variables; they hold as long as `texts` stays as it is.
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+// What the child needs, made before the fork: after it, only calls that are safe in a signal
+// handler.
+struct Prepared {
+  const char* program;
+  char* const* words;
+  char* const* variables;
+  const char* folder;
+  int output, messages;
+  pid_t parent;
+};
+
+[[noreturn]] void become(const Prepared& p, int errors) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != p.parent) _exit(127);
+  const int in = open("/dev/null", O_RDONLY);
+  if (in >= 0 && dup2(in, STDIN_FILENO) >= 0 && dup2(p.output, STDOUT_FILENO) >= 0 &&
+      dup2(p.messages, STDERR_FILENO) >= 0 && chdir(p.folder) == 0) {
+    execve(p.program, p.words, p.variables);
+  }
+  const int why = errno;
+  (void)!write(errors, &why, sizeof why);
+  _exit(127);
+}
+
+// A file in memory takes what a program says, however much that is.
+int memory_file() {
+  const int file = memfd_create("output", MFD_CLOEXEC);
+  if (file < 0) throw ProgramError(std::string("no room for output: ") + std::strerror(errno));
+  return file;
+}
+
+std::string text_of(const Descriptor& file) {
+  std::string text;
+  std::array<char, 4096> part;
+  for (;;) {
+    const ssize_t got =
+        pread(file.number, part.data(), part.size(), static_cast<off_t>(text.size()));
+    if (got <= 0) return text;
+    text.append(part.data(), static_cast<std::size_t>(got));
+  }
+}
+
+}  // namespace
+
+Descriptor::~Descriptor() {
+  if (number >= 0) close(number);
+}
+
+std::optional<fs::path> find_program(const std::string& name) {
+  const auto usable = [](const fs::path& file) {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0;
+  };
+  if (name.find('/') != name.npos) {
+    return usable(name) ? std::optional<fs::path>(fs::absolute(name)) : std::nullopt;
+  }
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "/usr/bin:/bin" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path file = fs::path(folder.empty() ? "." : folder) / name;
+    if (usable(file)) return fs::absolute(file);
+  }
+  return std::nullopt;
+}
+
+ChildProcess::ChildProcess(const Command& command) {
+  const std::string& name = command.words.at(0);
+  const auto program = find_program(name);
+  if (!program) throw ProgramError("there is no program " + name + " on PATH");
+  std::vector<std::string> words = command.words;
+  std::vector<std::string> variables = environment_with(command.variables);
+  const std::vector<char*> word_pointers = pointers_to(words);
+  const std::vector<char*> variable_pointers = pointers_to(variables);
+  const Prepared prepared = {program->c_str(),
+                             word_pointers.data(),
+                             variable_pointers.data(),
+                             command.folder.c_str(),
+                             command.output,
+                             command.messages,
+                             getpid()};
+  std::array<int, 2> errors{};
+  if (pipe2(errors.data(), O_CLOEXEC) != 0) {
+    throw ProgramError("cannot start " + name + ": " + std::strerror(errno));
+  }
+  pid_ = fork();
+  if (pid_ == 0) become(prepared, errors[1]);
+  int why = errno;
+  close(errors[1]);
+  const bool failed =
+      pid_ < 0 || read(errors[0], &why, sizeof why) == static_cast<ssize_t>(sizeof why);
+  close(errors[0]);
+  if (!failed) return;
+  if (pid_ > 0) waitpid(pid_, nullptr, 0);
+  throw ProgramError("cannot start " + name + ": " + std::strerror(why));
+}
+
+ChildProcess::~ChildProcess() {
+  using namespace std::chrono_literals;
+  if (exit_code()) return;
+  kill(-pid_, SIGTERM);
+  for (int look = 0; look < 100; ++look) {
+    if (exit_code()) return;
+    std::this_thread::sleep_for(50ms);
+  }
+  kill(-pid_, SIGKILL);
+  reap(0);
+}
+
+bool ChildProcess::reap(int options) {
+  int status = 0;
+  rusage used{};
+  pid_t ended = 0;
+  while ((ended = wait4(pid_, &status, options, &used)) < 0 && errno == EINTR) {
+  }
+  if (ended == 0) return false;
+  exit_code_ = ended < 0 ? 127 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  peak_bytes_ = static_cast<std::size_t>(used.ru_maxrss) * 1024;
+  return true;
+}
+
+std::optional<int> ChildProcess::exit_code() {
+  if (!exit_code_) reap(WNOHANG);
+  return exit_code_;
+}
+
+int ChildProcess::wait() {
+  if (!exit_code_) reap(0);
+  return *exit_code_;
+}
+
+std::optional<ProgramOutcome> run_program(const std::vector<std::string>& words,
+                                          const fs::path& folder,
+                                          const std::vector<std::string>& variables) {
+  if (!find_program(words.front())) return std::nullopt;
+  const Descriptor output(memory_file()), messages(memory_file());
+  ChildProcess program({words, folder, variables, output.number, messages.number});
+  const int code = program.wait();
+  return ProgramOutcome{code, text_of(output), text_of(messages)};
+}
+
+}  // namespace shearcell
