@@ -6,11 +6,17 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/named.hpp"
+
 namespace shearcell {
 
 enum class WallSide : std::uint8_t { left = 0, right = 1, bottom = 2, top = 3 };
 enum class WallTexture : std::uint8_t { rough, smooth };
 enum class MovingWall : std::uint8_t { bottom, top };
+template <>
+inline constexpr auto kNames<WallTexture> = names_in_order<WallTexture>("rough", "smooth");
+template <>
+inline constexpr auto kNames<MovingWall> = names_in_order<MovingWall>("bottom", "top");
 
 /// A fixed sphere of diameter d set into a rough wall. It never moves relative to its wall.
 struct WallGrain {

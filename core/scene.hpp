@@ -4,10 +4,14 @@
 
 #include <cstdint>
 
+#include "core/named.hpp"
+
 namespace shearcell {
 
 /// The fluid's velocity in the Stokes drag -b (v - v_fluid). Supplement B.3.
 enum class Fluid : std::uint8_t { still, cell };
+template <>
+inline constexpr auto kNames<Fluid> = names_in_order<Fluid>("still", "cell");
 
 struct Scene {
   double stiffness = 0;     ///< k/m [1/s^2]
