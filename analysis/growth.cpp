@@ -13,6 +13,7 @@ void add(const GrowthBySize& from, GrowthBySize& to) {
     GrowthCount& sum = to[size];
     sum.grew += count.grew;
     sum.shrank += count.shrank;
+    sum.vanished += count.vanished;
     sum.same += count.same;
     sum.undecided += count.undecided;
   }
@@ -50,6 +51,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
   struct Fate {
     std::int32_t larger = 0;
     std::int32_t same = 0;
+    std::int32_t smaller = 0;
   };
   std::vector<Fate> fates(now.size.size());
   std::size_t l = 0;  // both lists of grains ascend
@@ -62,15 +64,17 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     const std::int32_t after = later.size[static_cast<std::size_t>(later.label[l])];
     if (after > before) ++fates[label].larger;
     if (after == before) ++fates[label].same;
+    if (after < before) ++fates[label].smaller;
   }
   for (std::size_t c = 0; c < fates.size(); ++c) {
     const std::int32_t size = now.size[c];
-    const std::int32_t smaller = size - fates[c].larger - fates[c].same;
+    const std::int32_t smaller_or_none = size - fates[c].larger - fates[c].same;
     GrowthCount& count = counts[size];
     if (2 * fates[c].larger > size) {
       ++count.grew;
-    } else if (2 * smaller > size) {
+    } else if (2 * smaller_or_none > size) {
       ++count.shrank;
+      if (2 * fates[c].smaller <= size) ++count.vanished;
     } else if (2 * fates[c].same > size) {
       ++count.same;
     } else {

@@ -20,6 +20,7 @@ struct GrowthCount {
   std::size_t shrank = 0;     ///< more than half are in smaller ones, or in none
   std::size_t same = 0;       ///< more than half are in crystallites of the same size
   std::size_t undecided = 0;  ///< none of these, as when half went up and half down
+  std::size_t vanished = 0;   ///< of those that shrank: no more than half are in smaller ones
 };
 
 /// By size in grains.

@@ -2,6 +2,8 @@
 #include "analysis/nucleation_sites.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <set>
 
 #include "analysis/published.hpp"
 #include "analysis/statistics.hpp"
@@ -46,6 +48,31 @@ std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis) {
     for (std::size_t c = 0; c < map.size.size(); ++c) {
       if (map.size[c] < nucleus_smallest || map.size[c] > nucleus_largest) continue;
       places.push_back(place(map, map.centre[c], axis));
+    }
+  }
+  return places;
+}
+
+std::vector<double> nucleus_births(const FigureRun& run, CellAxis axis) {
+  std::vector<double> places;
+  std::set<std::int32_t> known;  // grains that have been in a nucleus
+  for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+    if (!checkpoint.crystallites) continue;
+    const CrystalliteMap& map = *checkpoint.crystallites;
+    std::vector<std::int32_t> seen(map.size.size());
+    for (std::size_t k = 0; k < map.grain.size(); ++k) {
+      if (known.contains(map.grain[k])) ++seen[static_cast<std::size_t>(map.label[k])];
+    }
+    for (std::size_t k = 0; k < map.grain.size(); ++k) {
+      if (map.size[static_cast<std::size_t>(map.label[k])] >= nucleus_smallest) {
+        known.insert(map.grain[k]);
+      }
+    }
+    for (std::size_t c = 0; c < map.size.size(); ++c) {
+      const bool is_new = map.size[c] >= nucleus_smallest && 2 * seen[c] < map.size[c];
+      if (is_new && map.size[c] <= nucleus_largest) {
+        places.push_back(place(map, map.centre[c], axis));
+      }
     }
   }
   return places;

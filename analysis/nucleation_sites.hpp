@@ -18,6 +18,12 @@ enum class CellAxis { x, y };
 /// height h that the cell has at that moment, so that both lie in [0, 1]. [choice]
 std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis);
 
+/// The same with one place for each nucleus, where it first has 15 to 25 grains, so that one that
+/// is seen in many cycles counts once. A crystallite of 15 grains or more continues a nucleus if at
+/// least half of its grains have been in that nucleus before, at any cycle; else it is a new
+/// one. A nucleus that is first seen with more than 25 grains has no place. [choice]
+std::vector<double> nucleus_births(const FigureRun& run, CellAxis axis);
+
 struct DensityBin {
   double low = 0;
   double high = 0;

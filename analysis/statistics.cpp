@@ -30,14 +30,10 @@ RunStatistics over_runs(std::span<const double> values) {
   return result;
 }
 
-std::optional<double> bootstrap_error(
-    std::size_t runs,
-    const std::function<std::optional<double>(std::span<const std::size_t>)>& statistic) {
-  constexpr std::uint32_t selections = 1000;
-  if (runs < 2) return std::nullopt;
+std::vector<double> bootstrap_values(std::size_t runs, const RunStatistic& statistic) {
   std::vector<std::size_t> selection(runs);
   std::vector<double> values;
-  for (std::uint32_t s = 0; s < selections; ++s) {
+  for (std::uint32_t s = 0; s < bootstrap_selections; ++s) {
     for (std::size_t k = 0; k < runs; ++k) {
       const double u = uniform_pair({s, static_cast<std::uint32_t>(k), 0, 0}, 0)[0];
       selection[k] = static_cast<std::size_t>(u * static_cast<double>(runs));
@@ -45,7 +41,13 @@ std::optional<double> bootstrap_error(
     const std::optional<double> value = statistic(selection);
     if (value && std::isfinite(*value)) values.push_back(*value);
   }
-  if (values.size() < selections / 2) return std::nullopt;
+  return values;
+}
+
+std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic) {
+  if (runs < 2) return std::nullopt;
+  const std::vector<double> values = bootstrap_values(runs, statistic);
+  if (values.size() < bootstrap_selections / 2) return std::nullopt;
   const RunStatistics found = over_runs(values);
   const auto n = static_cast<double>(runs);
   return found.standard_error.value() * std::sqrt(static_cast<double>(found.runs) * n / (n - 1));

@@ -34,7 +34,9 @@ TEST(Follow, TheMajorityDecides) {
 
 TEST(Follow, VanishingIsShrinking) {
   EXPECT_EQ(fate({4, 5}, map_of({})).shrank, 1U);
-  EXPECT_EQ(fate({4}, map_of({{3, 5}})).shrank, 1U);
+  EXPECT_EQ(fate({4}, map_of({{3, 5}})).vanished, 1U);
+  EXPECT_EQ(fate({1, 2, 3, 4}, map_of({{1, 2}, {8}})).vanished, 1U) << "half in a smaller one";
+  EXPECT_EQ(fate({1, 2, 3}, map_of({{1, 2}})).vanished, 0U) << "most are in a smaller one";
 }
 
 TEST(Follow, HalfIsNoMajority) {

@@ -40,6 +40,25 @@ TEST(NucleusPlaces, AreSharesOfTheCell) {
   EXPECT_EQ(nucleus_places(run, CellAxis::y), (std::vector<double>{0.25, 1}));
 }
 
+TEST(NucleusBirths, OneThatIsFollowedCountsOnce) {
+  CrystalliteMap two = map_of(  // 20 grains that were seen, and 15 others
+      {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19},
+       {30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44}});
+  two.centre[1] = {0, 20, 0};
+  two.width = 18;
+  two.bottom = 5;
+  two.top = 25;
+  const FigureRun run =
+      run_with(std::vector{one_crystallite(15, 9, 10), one_crystallite(3, 9, 10),
+                           one_crystallite(29, 9, 11), one_crystallite(20, 9, 11), two, two});
+  EXPECT_EQ(nucleus_births(run, CellAxis::y), (std::vector<double>{0.25, 0.75}));
+  EXPECT_TRUE(
+      nucleus_births(run_with(std::vector{one_crystallite(40, 9, 10), one_crystallite(20, 9, 10)}),
+                     CellAxis::x)
+          .empty())
+      << "first seen with more than 25 grains";
+}
+
 TEST(Density, IntegratesToOneAndHasErrorsOverRuns) {
   const std::vector<std::vector<double>> runs = {{0.1, 0.2, 0.9}, {0.6, 1.0}, {0.3}};
   const std::vector<DensityBin> bins = density(runs, 4);

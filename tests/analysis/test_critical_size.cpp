@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Logistic regression where it has a closed form, and on counts that follow a logistic curve.
+#include "analysis/critical_size.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace shearcell {
+namespace {
+
+/// P(grow) is logistic in ln(size), with counts that fall as sizes do.
+GrowthBySize logistic_growth(double critical, double slope, double scale = 1e6) {
+  GrowthBySize counts;
+  for (std::int32_t size = 1; size <= 60; ++size) {
+    const double n = scale / (size * size);
+    const double grow = 1 / (1 + std::pow(critical / size, slope));
+    counts[size].grew = static_cast<std::size_t>(std::lround(n * grow));
+    counts[size].shrank = static_cast<std::size_t>(std::lround(n * (1 - grow)));
+  }
+  return counts;
+}
+
+TEST(GrowthFit, TwoSizesAreFittedExactly) {
+  GrowthBySize counts;
+  counts[4] = {1, 3, 9, 9, 0};
+  counts[16] = {3, 1, 9, 9, 0};
+  const GrowthFit fit = fit_growth(std::vector{counts}).value();
+  EXPECT_NEAR(fit.critical_size().value(), 8, 1e-9);
+  EXPECT_NEAR(fit.slope, 2 * std::log(3.0) / std::log(4.0), 1e-9);
+  EXPECT_NEAR(fit.delta_rho(4), -0.5, 1e-9);
+  EXPECT_NEAR(fit.delta_rho(8), 0, 1e-9);
+}
+
+TEST(GrowthFit, FindsTheCurveThatMadeTheCounts) {
+  for (const double critical : {10.0, 13.4, 16.0, 20.0}) {
+    const GrowthFit fit = fit_growth(std::vector{logistic_growth(critical, 1.5)}).value();
+    EXPECT_NEAR(fit.critical_size().value(), critical, 0.02 * critical);
+    EXPECT_NEAR(fit.slope, 1.5, 0.01);
+  }
+}
+
+TEST(GrowthFit, NoneWithoutATurn) {
+  GrowthBySize counts;
+  counts[3] = {0, 9, 0, 0, 0};
+  EXPECT_FALSE(fit_growth(std::vector{counts}).has_value()) << "all shrink";
+  counts[3] = {4, 9, 0, 0, 0};
+  EXPECT_FALSE(fit_growth(std::vector{counts}).has_value()) << "one size";
+  counts[9] = {1, 9, 0, 0, 0};
+  EXPECT_FALSE(fit_growth(std::vector{counts})->critical_size().has_value()) << "falls with size";
+  EXPECT_FALSE(fit_growth({}).has_value());
+  counts[3] = {0, 9, 0, 0, 0};
+  counts[9] = {9, 0, 0, 0, 0};
+  const double between = fit_growth(std::vector{counts})->critical_size().value();
+  EXPECT_GT(between, 3) << "sizes that do not mix";
+  EXPECT_LT(between, 9);
+}
+
+TEST(GrowthFit, VanishedOnesMayBeLeftOut) {
+  GrowthBySize counts;
+  counts[4] = {1, 6, 0, 0, 3};
+  counts[16] = {3, 1, 0, 0, 0};
+  EXPECT_NEAR(fit_growth(std::vector{counts}, Vanished::left_out)->critical_size().value(), 8,
+              1e-9);
+  EXPECT_GT(fit_growth(std::vector{counts})->critical_size().value(), 8);
+}
+
+TEST(CriticalSize, IntervalComesFromTheRuns) {
+  std::vector<GrowthBySize> runs;
+  for (const double size : {14, 15, 16, 14, 15, 16}) runs.push_back(logistic_growth(size, 2));
+  const Estimate found = critical_size(runs).value();
+  EXPECT_NEAR(found.value, 15, 0.3);
+  // Student's interval of the mean of these six: +- 2.015 sqrt(0.8 / 6).
+  EXPECT_NEAR(found.interval.high - found.interval.low, 2 * 2.015 * std::sqrt(0.8 / 6), 0.4);
+  EXPECT_EQ(found.runs, 6U);
+  EXPECT_FALSE(critical_size(std::span(runs).first(2)).has_value());
+  const Estimate band = fitted_delta_rho(runs, 15).value();
+  EXPECT_LT(band.interval.low, 0);
+  EXPECT_GT(band.interval.high, 0);
+}
+
+TEST(BinnedGrowth, LeavesOutWhatIsRarelySeen) {
+  GrowthBySize counts;
+  counts[1] = {1, 9, 0, 0, 0};
+  counts[2] = {2, 4, 5, 5, 0};
+  counts[8] = {4, 2, 0, 0, 0};
+  counts[50] = {1, 0, 0, 0, 0};
+  const std::vector<GrowthBin> bins = binned_growth(std::vector{counts}, 10);
+  ASSERT_EQ(bins.size(), 2U);
+  EXPECT_DOUBLE_EQ(bins[0].delta, -0.8);
+  EXPECT_EQ(bins[1].low, 2);
+  EXPECT_EQ(bins[1].high, 8);
+  EXPECT_NEAR(bins[1].size, 4, 1e-12);
+  EXPECT_DOUBLE_EQ(bins[1].delta, 0);
+  EXPECT_DOUBLE_EQ(bins[1].delta_error, 2 * std::sqrt(7.0 * 7 / 15) / 14);
+}
+
+}  // namespace
+}  // namespace shearcell
