@@ -91,9 +91,11 @@ Diagnostics diagnose(const Cell& cell, const Scene& scene, const State& state,
   d.contacts_per_grain = static_cast<double>(touches) / grains;
   d.kinetic_energy = 0.5 * state.velocity.squaredNorm() / grains;
   const double inwards = cell.moving == MovingWall::bottom ? 1 : -1;
-  const double load = scene.pressure * cell.width * cell.depth;
+  const double pressure = scene.pressure * cell.width * cell.depth;
+  const double load =
+      pressure + carried_weight(scene, cell, static_cast<std::size_t>(state.position.cols()));
   d.wall_imbalance =
-      (load - inwards * scene.stiffness * push) / (scene.pressure > 0 ? load : scene.stiffness);
+      (load - inwards * scene.stiffness * push) / (scene.pressure > 0 ? pressure : scene.stiffness);
   return d;
 }
 

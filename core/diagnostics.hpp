@@ -33,7 +33,7 @@ struct Diagnostics {
   double mean_overlap = 0;        ///< Eq. S3 over pairs of grains [d]
   double largest_overlap = 0;     ///< of two spheres [d]
   double contacts_per_grain = 0;  ///< touches of a grain with grains, wall grains and planes
-  double wall_imbalance = 0;      ///< (P A_w - contact force on the moving wall) / (P A_w)
+  double wall_imbalance = 0;      ///< (load - contact force on the moving wall) / (P A_w)
 };
 
 /// Facts about a state. With P = 0 the imbalance is relative to k d^2 instead.

@@ -145,7 +145,10 @@ Minimum minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settin
 
 double enthalpy(const Cell& cell, const Scene& scene, const State& state) {
   const WallPose pose = wall_pose(cell, 0, state.wall_height);
-  double sum = scene.pressure * cell.width * cell.depth * (pose.top - pose.bottom);
+  const auto grains = static_cast<std::size_t>(state.position.cols());
+  const double load =
+      scene.pressure * cell.width * cell.depth + carried_weight(scene, cell, grains);
+  double sum = load * (pose.top - pose.bottom);
   for_each_contact(cell, state.position, pose,
                    [&](const Contact& c) { sum += 0.5 * scene.stiffness * c.overlap * c.overlap; });
   for (Eigen::Index i = 0; i < state.position.cols(); ++i) {
@@ -161,7 +164,9 @@ double force_residual(const Cell& cell, const Scene& scene, const State& state) 
   Forces forces;
   forces.on_grain = Eigen::Matrix3Xd::Zero(3, state.position.cols());
   forces.on_grain.row(1).setConstant(-scene.gravity);
-  forces.on_wall = inwards * scene.pressure * cell.width * cell.depth;
+  const auto grains = static_cast<std::size_t>(state.position.cols());
+  forces.on_wall =
+      inwards * (scene.pressure * cell.width * cell.depth + carried_weight(scene, cell, grains));
   for_each_contact(cell, state.position, pose, [&](const Contact& c) {
     const Eigen::Vector3d force = scene.stiffness * c.overlap * c.normal;
     forces.on_grain.col(c.grain) += force;

@@ -2,8 +2,10 @@
 // What acts on the grains, in units of the grain diameter d, the grain mass m and the second.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
+#include "core/cell.hpp"
 #include "core/named.hpp"
 
 namespace shearcell {
@@ -13,16 +15,32 @@ enum class Fluid : std::uint8_t { still, cell };
 template <>
 inline constexpr auto kNames<Fluid> = names_in_order<Fluid>("still", "cell");
 
+/// Where the pressure P holds. `moving_wall`: the load on the moving wall is P A_w, so a moving
+/// bottom wall, which also carries the grains, leaves less than P for the top. `top`: a moving
+/// bottom wall is loaded with P A_w and the grains' weight, so that the top feels P whichever wall
+/// moves.
+enum class PressureAt : std::uint8_t { moving_wall, top };
+template <>
+inline constexpr auto kNames<PressureAt> = names_in_order<PressureAt>("moving_wall", "top");
+
 struct Scene {
-  double stiffness = 0;     ///< k/m [1/s^2]
-  double drag_rate = 0;     ///< b/m [1/s]
-  double gravity = 0;       ///< g/d [1/s^2]; 0 is off
-  double pressure = 0;      ///< P d/m [1/s^2]: force on one d^2 of the moving wall
+  double stiffness = 0;  ///< k/m [1/s^2]
+  double drag_rate = 0;  ///< b/m [1/s]
+  double gravity = 0;    ///< g/d [1/s^2]; 0 is off
+  double pressure = 0;   ///< P d/m [1/s^2]: force on one d^2 of wall
+  PressureAt pressure_at = PressureAt::moving_wall;
   double wall_mass = 10;    ///< M_w per d^2 of wall [m]
   double wall_drag = 1000;  ///< B_w per d^2 of wall [m/s]
   double time_step = 0;     ///< [s]
   Fluid fluid = Fluid::still;
 };
+
+/// The part of the grains' weight that adds to the load P A_w on the moving wall [m d/s^2]: all of
+/// it for a moving bottom wall under PressureAt::top, otherwise 0.
+inline double carried_weight(const Scene& scene, const Cell& cell, std::size_t grains) {
+  const bool carries = scene.pressure_at == PressureAt::top && cell.moving == MovingWall::bottom;
+  return carries ? scene.gravity * static_cast<double>(grains) : 0.0;
+}
 
 /// The tilt theta(t) = A sin(omega t), by whole steps so that a cycle ends at theta = 0 exactly.
 /// After each cycle the walls may rest for `pause_steps` (periodically paused shear, B.5).

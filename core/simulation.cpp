@@ -246,10 +246,11 @@ void Simulation::look(double time_step) const {
 }
 
 double Simulation::force_on_wall(double push) const {
-  // Contacts push the wall by minus what they push the grains by. The pressure points inwards.
+  // Contacts push the wall by minus what they push the grains by. The load points inwards.
   const double area = cell_.width * cell_.depth;
   const double inwards = cell_.moving == MovingWall::bottom ? 1.0 : -1.0;
-  return inwards * scene_.pressure * area - scene_.stiffness * push;
+  const double load = scene_.pressure * area + carried_weight(scene_, cell_, id_.size());
+  return inwards * load - scene_.stiffness * push;
 }
 
 void Simulation::move_wall(double push) {

@@ -14,6 +14,7 @@ Scene shear_scene(const Parameters& p) {
           .drag_rate = p.drag_kg_per_s / p.mass_kg,
           .gravity = p.gravity_m_per_s2 / p.diameter_m,
           .pressure = p.pressure_Pa * p.diameter_m / p.mass_kg,
+          .pressure_at = p.pressure_at,
           .wall_mass = p.wall_mass_grains_per_d2,
           .wall_drag = p.wall_drag_grains_per_d2_s,
           .time_step = shear_time_step_s(p),
@@ -75,8 +76,12 @@ bool asks_lammps_to_stiffen(const Parameters& p) {
   return p.engine == EngineKind::lammps && p.protocol == "stiffen";
 }
 
+bool feels_pressure_at(const Parameters& p) {
+  return p.gravity_m_per_s2 != 0 && p.moving_wall == MovingWall::bottom;
+}
+
 bool pressure_lifts_column(const Parameters& p) {
-  if (p.gravity_m_per_s2 == 0 || p.moving_wall == MovingWall::top) return true;
+  if (!feels_pressure_at(p) || p.pressure_at == PressureAt::top) return true;
   constexpr double grains_per_d3 = 1.2;
   const double height = p.height_over_width * cell_width(geometry(p));
   const Scene scene = shear_scene(p);

@@ -42,8 +42,12 @@ double shear_time_step_s(const Parameters& parameters);
 /// boundary X, longitudinal); looser or disordered packings vibrate more slowly.
 double stability_limit_s(const Parameters& parameters);
 
+/// Whether it matters where the pressure acts: a moving bottom wall lifts grains that have weight.
+bool feels_pressure_at(const Parameters& parameters);
+
 /// Whether the pressure under a moving bottom wall can carry the grains' weight:
-/// P d^2 > 1.2 (h/d) m g, with 1.2 grains per d^3. A moving top wall has nothing to lift.
+/// P d^2 > 1.2 (h/d) m g, with 1.2 grains per d^3. A moving top wall lifts nothing, and under
+/// `pressure_at: top` the load includes the weight.
 bool pressure_lifts_column(const Parameters& parameters);
 
 /// Stiffening has no time steps that LAMMPS could take.

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "provenance/sha256.hpp"
 
@@ -46,7 +47,14 @@ bool enters(const Field& field, Stage stage, std::string_view protocol, const js
   return false;
 }
 
-json resolve(Stage stage, const Parameters& parameters, std::uint64_t seed) {
+// One value for all that make the same run.
+Parameters without_what_is_not_felt(Parameters parameters) {
+  if (!feels_pressure_at(parameters)) parameters.pressure_at = PressureAt::moving_wall;
+  return parameters;
+}
+
+json resolve(Stage stage, const Parameters& given, std::uint64_t seed) {
+  const Parameters parameters = without_what_is_not_felt(given);
   json values = json::object();
   for (const Field& field : schema()) {
     json value = get_value(field, parameters);
@@ -179,6 +187,9 @@ StageRecord read_stage(const json& resolved) {
   record.seed = seed.get<std::uint64_t>();
   const bool prepares = record.stage == Stage::prepare;
   record.parameters = read_parameters_of(record.stage, member(resolved, "parameters"));
+  if (record.parameters != without_what_is_not_felt(record.parameters)) {
+    throw damaged("pressure_at", "has no effect on such a run, so it cannot be part of its record");
+  }
   if (record.stage == Stage::stiffen) record.parameters.protocol = name;
   // A record of a shear that says it stiffens is one that this program never wrote.
   if (record.stage == Stage::shear && record.parameters.protocol == stage_name(Stage::stiffen)) {

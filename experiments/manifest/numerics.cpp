@@ -32,7 +32,9 @@ double expected_overlap(const Parameters& p) {
   const Scene scene = shear_scene(p);
   const double height = p.height_over_width * cell_width(geometry(p));
   const double half_weight = grains_per_d3 * height * scene.gravity / 2;
-  const double sign = p.moving_wall == MovingWall::bottom ? -1 : 1;
+  const bool hangs =
+      p.moving_wall == MovingWall::bottom && p.pressure_at == PressureAt::moving_wall;
+  const double sign = hangs ? -1 : 1;
   return of_pressure * std::max(scene.pressure + sign * half_weight, 0.0) / scene.stiffness;
 }
 

@@ -24,9 +24,9 @@ TimeStep settle_time_step(const Parameters& parameters);
 /// the mean pressure of a packing with n grains per volume and z contacts of each is p = n z k
 /// <overlap> d/6, so <overlap>/d = 6/(n d^3 z) p d/k, which is 0.78 for n d^3 = 1.22 and z = 6.36
 /// (found at N = 2000); 0.75 fits five settled packings within 7 % (core/ACCURACY.md), as
-/// rough side walls bear a part. The pressure
-/// p is that at half the height: P less half the grains' weight per area above a moving bottom
-/// wall, and P plus as much under a moving top wall.
+/// rough side walls bear a part. The pressure p is that at half the height: P less half the grains'
+/// weight per area where P acts on a moving bottom wall, and P plus as much where it acts at the
+/// top.
 double expected_overlap(const Parameters& parameters);
 
 /// Below this part of the stability limit a smaller time step changes nothing that seeds would

@@ -80,6 +80,11 @@ std::vector<Field> grain_fields() {
                 "gravitational acceleration (Table I); 0 turns it off (D)"),
       above_zero("pressure_Pa", "P", "Pa", &P::pressure_Pa, 1e12, prepare,
                  "pressure on the moving wall (Table I)"),
+      names("pressure_at", "", choice<&P::pressure_at>(kNameList<PressureAt>),
+            Identity::prepare_if_set,
+            "where the pressure acts: `moving_wall`, whose load is P A_w, or `top`, for which a "
+            "moving bottom wall is loaded with P A_w and the grains' weight; the same without "
+            "gravity and for a moving top wall"),
   };
 }
 
@@ -189,7 +194,7 @@ string_view identity_markdown(Identity identity) {
     case Identity::prepare:
       return "prepare";
     case Identity::prepare_if_set:
-      return "prepare, if not 0";
+      return "prepare, if not the default";
     case Identity::shear:
       return "shear";
     case Identity::shear_if_set:

@@ -107,7 +107,9 @@ void brute_step(const Cell& cell, const Scene& scene, const Drive& drive, State&
   }
   const double area = cell.width * cell.depth;
   const double inwards = moving == 2 ? 1 : -1;
-  const double force = inwards * scene.pressure * area - scene.stiffness * push;
+  const bool lifts = scene.pressure_at == PressureAt::top && moving == 2;
+  const double weight = lifts ? scene.gravity * static_cast<double>(at.cols()) : 0;
+  const double force = inwards * (scene.pressure * area + weight) - scene.stiffness * push;
   const double wall_half = 0.5 * scene.time_step * scene.wall_drag / scene.wall_mass;
   state.wall_velocity = ((1 - wall_half) * state.wall_velocity +
                          scene.time_step * (force / (scene.wall_mass * area))) /

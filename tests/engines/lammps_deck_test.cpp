@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "core/filling.hpp"
-#include "experiments/runner/lammps/lammps_deck.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "experiments/runner/lammps/lammps_deck.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
 namespace shearcell::test {
@@ -53,6 +53,10 @@ TEST(LammpsDeck, RaisesMassesByTheDragAndKeepsWeight) {
   EXPECT_DOUBLE_EQ(number_after(deck, "fix weight grains gravity ") * mass, task.scene.gravity);
   EXPECT_DOUBLE_EQ(number_after(deck, "fix drag grains viscous "), b);
   EXPECT_DOUBLE_EQ(number_after(deck, "variable push equal "), task.scene.pressure * area);
+  Parameters p = small();
+  p.pressure_at = PressureAt::top;
+  EXPECT_DOUBLE_EQ(number_after(lammps_deck(loose_task(p)), "variable push equal "),
+                   task.scene.pressure * area + 100 * task.scene.gravity);
 }
 
 TEST(LammpsDeck, HoldsNothingThatTheSceneLacks) {

@@ -8,8 +8,8 @@
 
 #include "core/filling.hpp"
 #include "core/simulation.hpp"
-#include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "protocols/settle.hpp"
 
 namespace shearcell::test {
@@ -89,6 +89,7 @@ void top(Parameters& p) {
 INSTANTIATE_TEST_SUITE_P(
     Scenes, LammpsTrajectory,
     testing::Values(Case{"TableI", [](Parameters&) {}}, Case{"TopMoves", top},
+                    Case{"PressureAtTop", [](Parameters& p) { p.pressure_at = PressureAt::top; }},
                     Case{"Smooth", [](Parameters& p) { p.walls = WallTexture::smooth; }},
                     Case{"SmoothTop",
                          [](Parameters& p) {

@@ -194,6 +194,25 @@ TEST(Identity, ADrawOfWallGrainsEntersOnlyWhereItIsNotTheFirst) {
   }
 }
 
+// Younger than the stores as well, and felt only where a moving bottom wall lifts grains.
+TEST(Identity, WhereThePressureActsEntersOnlyWhereItIsFelt) {
+  Parameters at_top;
+  at_top.pressure_at = PressureAt::top;
+  const StageSpec stage = prepare_stage(at_top, 1);
+  EXPECT_NE(stage.key, prepare_stage({}, 1).key);
+  EXPECT_EQ(read_stage(stage.resolved).parameters, at_top);
+  for (const auto change : {+[](Parameters& p) { p.moving_wall = MovingWall::top; },
+                            +[](Parameters& p) { p.gravity_m_per_s2 = 0; }}) {
+    Parameters unfelt = at_top, other;
+    change(unfelt);
+    change(other);
+    EXPECT_EQ(prepare_stage(unfelt, 1).key, prepare_stage(other, 1).key);
+    json record = prepare_stage(other, 1).resolved;
+    record["parameters"]["pressure_at"] = "top";
+    EXPECT_THROW(read_stage(record), std::runtime_error);
+  }
+}
+
 TEST(Identity, AnEngineEntersOnlyTheShearAndOnlyWhereItIsAnother) {
   const StageSpec packing = prepare_stage({}, 1);
   const StageSpec ours = shear_stage({}, 1, packing);

@@ -159,6 +159,26 @@ TEST(Settle, WithoutGravityTheTopAndSidesCarryThePressureAlone) {
   EXPECT_GT(f.touches_per_grain, 5.5);
 }
 
+// Whichever wall moves, the top feels P and the side walls carry little.
+TEST(Settle, LoadsABottomWallWithTheWeightWhereThePressureIsThatAtTheTop) {
+  Scene scene = table_1();
+  scene.pressure_at = PressureAt::top;
+  Packing packing = loose(rough_geometry(600), scene);
+  settle(packing);
+  const Forces f = forces(packing);
+  const double bottom = f.of_wall.at(WallSide::bottom).y() / load(packing);
+  const double weight = 600 * scene.gravity / load(packing);
+  const double rest = (f.of_wall.at(WallSide::top).y() + f.of_wall.at(WallSide::left).y() +
+                       f.of_wall.at(WallSide::right).y()) /
+                      load(packing);
+  std::printf("P at the top: bottom %.5f, weight %.4f, top and sides %.5f of P A\n", bottom, weight,
+              rest);
+  EXPECT_NEAR(bottom, 1 + weight, 1e-3);
+  EXPECT_NEAR(rest, -1, 2e-3);
+  const Diagnostics facts = diagnose(packing.cell, scene, packing.state, test::upright(packing));
+  EXPECT_LT(std::fabs(facts.wall_imbalance), 1e-3);
+}
+
 TEST(Settle, LowersAMovingTopWall) {
   Packing packing = loose(rough_geometry(600, MovingWall::top), table_1());
   settle(packing);

@@ -140,8 +140,10 @@ class Deck {
       if (shears_ && scene_.fluid == Fluid::cell) add(text_, "fix flow grains addforce v_flow 0 0");
     }
     const char* moving = bottom_moves_ ? "bottom" : "top";
-    add(text_, "variable push equal {:.17g}+f_{}_plane[1]{}",
-        (bottom_moves_ ? 1 : -1) * scene_.pressure * area_, moving,
+    const auto grains = static_cast<std::size_t>(task_.state.position.cols());
+    const double load = scene_.pressure * area_ + carried_weight(scene_, cell_, grains);
+    add(text_, "variable push equal {:.17g}+f_{}_plane[1]{}", (bottom_moves_ ? 1 : -1) * load,
+        moving,
         has(bottom_moves_ ? WallSide::bottom : WallSide::top) ? fmt::format("+fcm({},y)", moving)
                                                               : "");
     add(text_, "fix push wall addforce 0 v_push 0");
