@@ -37,22 +37,19 @@ std::string wrapped(const std::string& text, std::size_t width, const std::strin
   return line.empty() ? lines : lines + before + line + "\n";
 }
 
-/// One key with its meaning above it, commented out: what it says is the default.
-std::string entry(const Field& field, const nlohmann::json& defaults) {
+/// One key, commented out, with its meaning above it; it shows the default.
+std::string entry(const Field& field) {
   std::string about(field.doc);
-  if (!field.symbol.empty()) about += fmt::format(" [{}]", field.symbol);
+  if (!field.symbol.empty()) about += fmt::format("; {} in the supplement", field.symbol);
   about += fmt::format("; {}", expected_values(field));
-  const nlohmann::json& value = defaults.at(field.name);
   return wrapped(about, 90, "  # ") +
-         fmt::format("  # {}: {}\n", field.name,
-                     value.is_string() ? value.get<std::string>() : value.dump());
+         fmt::format("  # {}: {}\n", field.name, value_text(get_value(field, {})));
 }
 
 std::string text_of(const std::string& experiment) {
-  const nlohmann::json defaults = to_json(Parameters{});
   std::string text = fmt::format(
-      "# Every key that is commented out has the value that it would have if it were not stated.\n"
-      "# `shearcell plan FILE --scale smoke` checks this file and says what it expands to.\n"
+      "# Keys that are commented out show their default.\n"
+      "# `shearcell plan FILE --scale smoke` checks this file and lists its runs.\n"
       "experiment: {}\n"
       "question: What is to be found out?\n"
       "figures: [S2]                  # `shearcell figures --help` lists them\n"
@@ -60,9 +57,9 @@ std::string text_of(const std::string& experiment) {
       "base:\n"
       "  grains: {}\n"
       "  amplitude_rad: {}\n\n",
-      experiment, defaults.at("grains").dump(), defaults.at("amplitude_rad").dump());
+      experiment, Parameters{}.grains, Parameters{}.amplitude_rad);
   for (const Field& field : schema()) {
-    if (field.name != "grains" && field.name != "amplitude_rad") text += entry(field, defaults);
+    if (field.name != "grains" && field.name != "amplitude_rad") text += entry(field);
   }
   return text +
          "\n"

@@ -92,7 +92,7 @@ void print_numerics(const std::vector<Line>& lines) {
   for (const Line& line : lines) {
     const std::optional<TimeStep> step = time_step_of(line);
     const bool prepare = line.stage->stage == Stage::prepare;
-    std::vector<std::string> row = {std::string(stage_name(line.stage->stage)),
+    std::vector<std::string> row = {std::string(name_of(line.stage->stage)),
                                     prepare ? "" : line.run->variant,
                                     "",
                                     "",
@@ -182,7 +182,7 @@ void plan(const PlanOptions& options, Context& context) {
     for (const Line& line : lines) {
       list.push_back({{"id", line.stage->key},
                       {"parent", line.stage->parent},
-                      {"stage", stage_name(line.stage->stage)},
+                      {"stage", name_of(line.stage->stage)},
                       {"variant", line.run->variant},
                       {"seed", line.run->seed},
                       {"N", line.run->grains},
@@ -213,7 +213,7 @@ void plan(const PlanOptions& options, Context& context) {
   std::vector<std::vector<std::string>> rows;
   for (const Line& line : lines) {
     const bool prepare = line.stage->stage == Stage::prepare;
-    rows.push_back({line.stage->key.substr(0, 8), std::string(stage_name(line.stage->stage)),
+    rows.push_back({line.stage->key.substr(0, 8), std::string(name_of(line.stage->stage)),
                     prepare ? "" : line.run->variant, std::to_string(line.run->seed),
                     std::to_string(line.run->grains),
                     prepare ? "" : fmt::format("{:.4g}/{}", line.cycle, line.run->cycles),

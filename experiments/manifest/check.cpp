@@ -106,7 +106,7 @@ class VariantChecker {
 
   template <class Where>
   void check_pause(const Parameters& p, const Where& where) {
-    if (p.protocol != "paused" || pause_time_steps(p) <= kMostPauseSteps) return;
+    if (p.protocol != ProtocolKind::paused || pause_time_steps(p) <= kMostPauseSteps) return;
     report("pause_s", where("pause_s"),
            fmt::format("the pause takes {:.3g} time steps", pause_time_steps(p)),
            fmt::format("Use a pause of at most {:g} steps of period_s/steps_per_cycle.",

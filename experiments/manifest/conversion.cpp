@@ -35,13 +35,13 @@ Scene stiffen_scene(const Parameters& p) {
 }
 
 std::uint64_t target_cycles(const Parameters& p) {
-  if (p.protocol != "stiffen") return p.cycles;
+  if (p.protocol != ProtocolKind::stiffen) return p.cycles;
   return 1 + p.stiffness_decades * p.stiffness_steps_per_decade;
 }
 
 Drive drive(const Parameters& p) {
   Drive drive{.amplitude = p.amplitude_rad, .steps_per_cycle = p.steps_per_cycle, .pause_steps = 0};
-  if (p.protocol == "paused") {
+  if (p.protocol == ProtocolKind::paused) {
     const double steps = std::clamp(std::nearbyint(pause_time_steps(p)), 1.0, kMostPauseSteps);
     drive.pause_steps = static_cast<std::uint64_t>(steps);
   }
@@ -73,7 +73,7 @@ double stability_limit_s(const Parameters& p) {
 }
 
 bool asks_lammps_to_stiffen(const Parameters& p) {
-  return p.engine == EngineKind::lammps && p.protocol == "stiffen";
+  return p.engine == EngineKind::lammps && p.protocol == ProtocolKind::stiffen;
 }
 
 bool feels_pressure_at(const Parameters& p) {

@@ -94,7 +94,8 @@ void set_engine(const Manifest& manifest, const AtScale& scale, const std::strin
 void warn_of_time_steps(const Variant& variant, Plan& plan) {
   const Parameters& p = variant.parameters;
   std::optional<std::string> of_shear;
-  if (p.protocol != "stiffen") of_shear = time_step_advice(shear_time_step(p), "steps_per_cycle");
+  if (p.protocol != ProtocolKind::stiffen)
+    of_shear = time_step_advice(shear_time_step(p), "steps_per_cycle");
   for (const auto& advice :
        {of_shear, time_step_advice(settle_time_step(p), "settle_time_step_s")}) {
     if (!advice) continue;
@@ -147,7 +148,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", *options.engine,
              "Leave the option out.");
     }
-    if (options.cycles && variant.parameters.protocol == "stiffen") {
+    if (options.cycles && variant.parameters.protocol == ProtocolKind::stiffen) {
       plan.warnings.push_back(fmt::format(
           "{}: variant {}: a number of cycles has no effect on stiffening, whose length is "
           "stiffness_decades",

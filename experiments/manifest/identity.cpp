@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -21,32 +22,6 @@ using nlohmann::json;
 // Changes with the meaning of a key, so that keys of different meanings never meet.
 constexpr std::string_view kDomain = "shearcell stage 1\n";
 
-bool is_default(const Field& field, const json& value) {
-  return value == get_value(field, Parameters{});
-}
-
-// Whether the record of a stage holds the parameter with that value. A sheared cell feels what it
-// settled under as well.
-bool enters(const Field& field, Stage stage, std::string_view protocol, const json& value) {
-  switch (field.identity) {
-    case Identity::prepare:
-      return true;
-    case Identity::prepare_if_set:
-      return !is_default(field, value);
-    case Identity::shear_if_set:
-      return stage == Stage::shear && !is_default(field, value);
-    case Identity::shear:
-      return stage == Stage::shear;
-    case Identity::paused_shear:
-      return stage == Stage::shear && protocol == "paused";
-    case Identity::stiffen:
-      return stage == Stage::stiffen;
-    case Identity::none:
-      break;
-  }
-  return false;
-}
-
 // One value for all that make the same run.
 Parameters without_what_is_not_felt(Parameters parameters) {
   if (!feels_pressure_at(parameters)) parameters.pressure_at = PressureAt::moving_wall;
@@ -58,10 +33,11 @@ json resolve(Stage stage, const Parameters& given, std::uint64_t seed) {
   json values = json::object();
   for (const Field& field : schema()) {
     json value = get_value(field, parameters);
-    if (enters(field, stage, parameters.protocol, value))
+    if (enters(field.identity, stage, parameters.protocol, value)) {
       values[std::string(field.name)] = std::move(value);
+    }
   }
-  return {{"stage", stage_name(stage)}, {"seed", seed}, {"parameters", std::move(values)}};
+  return {{"stage", name_of(stage)}, {"seed", seed}, {"parameters", std::move(values)}};
 }
 
 void append_canonical(const json& value, std::string& text) {
@@ -109,42 +85,44 @@ std::string text_member(const json& object, const char* key) {
   return value.get<std::string>();
 }
 
-StageSpec following(Stage stage, const Parameters& parameters, std::uint64_t seed,
-                    const StageSpec& parent) {
-  json resolved = resolve(stage, parameters, seed);
-  resolved["parent"] = parent.key;
-  std::string key = stage_key(resolved);
-  return {stage, std::move(key), parent.key, std::move(resolved)};
+std::optional<ProtocolKind> protocol_in(const json& values) {
+  const auto found = values.find("protocol");
+  if (found == values.end() || !found->is_string()) return std::nullopt;
+  return value_of<ProtocolKind>(found->get_ref<const std::string&>());
 }
 
-// Values decide which parameters the record must hold; read_parameters refuses what is no value.
-json value_in(const json& values, std::string_view key, json otherwise) {
-  if (!values.is_object()) return otherwise;
-  const auto found = values.find(key);
-  return found != values.end() ? *found : std::move(otherwise);
+void read_parameter(const Field& field, const json& value, Parameters& parameters) {
+  if (const auto wrong = check_value(field, value)) {
+    throw damaged(field.name, fmt::format("{}. {}", wrong->problem, wrong->remedy));
+  }
+  set_value(field, value, parameters);
 }
 
-Parameters read_parameters_of(Stage stage, const json& values) {
-  const json protocol = value_in(values, "protocol", "");
-  const std::string name = protocol.is_string() ? protocol.get<std::string>() : "";
-  return read_parameters(values, [&](const Field& field) {
-    return enters(field, stage, name, value_in(values, field.name, get_value(field, Parameters{})));
-  });
+// What the stage does not feel keeps its default; what it feels and the record leaves out has the
+// value at which it is left out.
+Parameters read_parameters(Stage stage, const json& values) {
+  if (!values.is_object()) throw damaged("parameters", "is not a JSON object");
+  const auto protocol = protocol_in(values);
+  Parameters parameters;
+  for (const Field& field : schema()) {
+    const auto found = values.find(field.name);
+    if (found != values.end() && enters(field.identity, stage, protocol, *found)) {
+      read_parameter(field, *found, parameters);
+    } else if (found == values.end() && enters(field.identity, stage, protocol, nullptr)) {
+      if (field.identity.omitted_at.empty()) throw damaged(field.name, "is missing");
+      set_value(field, std::get<json>(read_value(field, field.identity.omitted_at, false)),
+                parameters);
+    } else if (found != values.end()) {
+      throw damaged(field.name, "does not belong there");
+    }
+  }
+  for (const auto& [key, value] : values.items()) {
+    if (find_field(key) == nullptr) throw damaged(key.substr(0, 64), "is unknown");
+  }
+  return parameters;
 }
 
 }  // namespace
-
-std::string_view stage_name(Stage stage) {
-  switch (stage) {
-    case Stage::shear:
-      return "shear";
-    case Stage::stiffen:
-      return "stiffen";
-    case Stage::prepare:
-      break;
-  }
-  return "prepare";
-}
 
 StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed) {
   json resolved = resolve(Stage::prepare, parameters, seed);
@@ -152,17 +130,12 @@ StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed) {
   return {Stage::prepare, std::move(key), "", std::move(resolved)};
 }
 
-StageSpec shear_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent) {
-  return following(Stage::shear, parameters, seed, parent);
-}
-
-StageSpec stiffen_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent) {
-  return following(Stage::stiffen, parameters, seed, parent);
-}
-
 StageSpec last_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent) {
-  const bool stiffens = parameters.protocol == stage_name(Stage::stiffen);
-  return following(stiffens ? Stage::stiffen : Stage::shear, parameters, seed, parent);
+  const Stage stage = last_stage(parameters.protocol);
+  json resolved = resolve(stage, parameters, seed);
+  resolved["parent"] = parent.key;
+  std::string key = stage_key(resolved);
+  return {stage, std::move(key), parent.key, std::move(resolved)};
 }
 
 std::string stage_key(const json& resolved) {
@@ -172,27 +145,25 @@ std::string stage_key(const json& resolved) {
 StageRecord read_stage(const json& resolved) {
   if (!resolved.is_object()) throw std::runtime_error("record of a stage: not a JSON object");
   const std::string name = text_member(resolved, "stage");
+  const std::optional<Stage> stage = value_of<Stage>(name);
+  if (!stage) throw damaged("stage", "is not one of prepare, shear, stiffen");
   StageRecord record;
-  for (const Stage stage : {Stage::shear, Stage::stiffen}) {
-    if (name == stage_name(stage)) record.stage = stage;
-  }
-  if (record.stage != Stage::prepare) {
+  record.stage = *stage;
+  const bool prepares = record.stage == Stage::prepare;
+  if (!prepares) {
     record.parent = text_member(resolved, "parent");
     if (!is_sha256_hex(record.parent)) throw damaged("parent", "is not a run's id");
-  } else if (name != stage_name(Stage::prepare)) {
-    throw damaged("stage", "is none of prepare, shear, stiffen");
   }
   const json& seed = member(resolved, "seed");
   if (!seed.is_number_unsigned()) throw damaged("seed", "is not a whole number >= 0");
   record.seed = seed.get<std::uint64_t>();
-  const bool prepares = record.stage == Stage::prepare;
-  record.parameters = read_parameters_of(record.stage, member(resolved, "parameters"));
+  record.parameters = read_parameters(record.stage, member(resolved, "parameters"));
   if (record.parameters != without_what_is_not_felt(record.parameters)) {
     throw damaged("pressure_at", "has no effect on such a run, so it cannot be part of its record");
   }
-  if (record.stage == Stage::stiffen) record.parameters.protocol = name;
+  if (record.stage == Stage::stiffen) record.parameters.protocol = ProtocolKind::stiffen;
   // A record of a shear that says it stiffens is one that this program never wrote.
-  if (record.stage == Stage::shear && record.parameters.protocol == stage_name(Stage::stiffen)) {
+  if (record.stage == Stage::shear && last_stage(record.parameters.protocol) != Stage::shear) {
     throw damaged("protocol", "is not one that shears");
   }
   const std::set<std::string> known =
@@ -205,9 +176,10 @@ StageRecord read_stage(const json& resolved) {
 }
 
 EngineKind engine_of(const json& resolved) {
-  const json none = json::object();
-  const json values = value_in(resolved, "parameters", none);
-  return value_in(values, "engine", "") == "lammps" ? EngineKind::lammps : EngineKind::shearcell;
+  const json::json_pointer engine("/parameters/engine");
+  const bool lammps = resolved.is_object() && resolved.contains(engine) &&
+                      resolved.at(engine) == name_of(EngineKind::lammps);
+  return lammps ? EngineKind::lammps : EngineKind::shearcell;
 }
 
 std::string canonical_json(const json& value) {

@@ -11,9 +11,6 @@
 
 namespace shearcell {
 
-enum class Stage : std::uint8_t { prepare, shear, stiffen };
-std::string_view stage_name(Stage stage);
-
 /// One link in a run's chain. Equal keys mean equal trajectories, so a stage is computed once.
 struct StageSpec {
   Stage stage = Stage::prepare;
@@ -34,13 +31,7 @@ struct StageRecord {
 /// Seeded preparation: everything that settling feels.
 StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed);
 
-/// Shear of the packing that `parent` prepared.
-StageSpec shear_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent);
-
-/// Stiffening of the packing that `parent` prepared.
-StageSpec stiffen_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent);
-
-/// Whichever of the two the protocol asks for.
+/// Shear or stiffening, as the protocol asks for, of the packing that `parent` prepared.
 StageSpec last_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent);
 
 /// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. A reader recomputes it to

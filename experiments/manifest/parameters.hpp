@@ -4,16 +4,41 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
-#include <string>
 
 #include "core/cell.hpp"
+#include "core/named.hpp"
 #include "core/scene.hpp"
 
 namespace shearcell {
 
-/// What computes a shear: our own simulation, or LAMMPS.
+/// A link in a run's chain.
+enum class Stage : std::uint8_t { prepare, shear, stiffen };
+
+template <>
+inline constexpr auto kNames<Stage> = names_in_order<Stage>("prepare", "shear", "stiffen");
+
+/// What is done to the settled packing: shear without or with pauses (B.5), or stiffening (B.2).
+enum class ProtocolKind : std::uint8_t { continuous, paused, stiffen };
+template <>
+inline constexpr auto kNames<ProtocolKind> = names_in_order<ProtocolKind>("continuous", "paused",
+                                                                          "stiffen");
+
+/// What computes a shear: this program, or LAMMPS.
 enum class EngineKind : std::uint8_t { shearcell, lammps };
+template <>
+inline constexpr auto kNames<EngineKind> = names_in_order<EngineKind>("shearcell", "lammps");
+
+/// The stage that a protocol adds to the settled packing.
+constexpr Stage last_stage(ProtocolKind protocol) {
+  switch (protocol) {
+    case ProtocolKind::continuous:
+    case ProtocolKind::paused:
+      return Stage::shear;
+    case ProtocolKind::stiffen:
+      return Stage::stiffen;
+  }
+  return Stage::shear;
+}
 
 struct Parameters {
   // Grains and what acts on them (Table I).
@@ -49,7 +74,7 @@ struct Parameters {
   double max_overlap_diameters = 0.1;
 
   // Shear.
-  std::string protocol = "continuous";
+  ProtocolKind protocol = ProtocolKind::continuous;
   double amplitude_rad = 0.0833;
   double period_s = 2;
   std::uint64_t steps_per_cycle = 45600;
@@ -66,12 +91,5 @@ struct Parameters {
 
   bool operator==(const Parameters&) const = default;
 };
-
-/// All keys of the schema with their values, SI units.
-nlohmann::json to_json(const Parameters& parameters);
-
-/// The inverse. The JSON is not trusted: throws std::runtime_error that names the key when one is
-/// missing, unknown, of the wrong type or out of range.
-Parameters parameters_from_json(const nlohmann::json& json);
 
 }  // namespace shearcell

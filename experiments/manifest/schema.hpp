@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one table of manifest parameters: name, unit, type, range, default, part in a run's
-// identity, and meaning. Validation, suggestions, identity and the reference all read it.
+// The table of manifest parameters: name, unit, type, range, part in a run's identity, meaning.
+// Validation, suggestions, identity and the reference in README.md use it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -18,26 +17,21 @@
 
 namespace shearcell {
 
-/// The stage whose key a parameter enters. Settling comes first, so what settling feels enters the
-/// key of `prepare` and, through its parent's key, that of `shear` as well. `paused_shear` enters
-/// that of `shear` where the protocol is `paused`, and `stiffen` that of the stage of that name.
-/// `prepare_if_set` and `shear_if_set` are as `prepare` and `shear` where the value is not the
-/// default: for a parameter that is younger than the stores, whose runs it must not rename.
-enum class Identity : std::uint8_t {
-  prepare,
-  prepare_if_set,
-  shear,
-  shear_if_set,
-  paused_shear,
-  stiffen,
-  none
+/// Where a parameter enters the identity of a run. Settling comes first, so a parameter of
+/// `prepare` enters the records of all stages; the others enter the record of their own stage only.
+struct Identity {
+  std::optional<Stage> stage = {};         ///< first stage that feels it; nothing: part of no key
+  std::optional<ProtocolKind> under = {};  ///< only under this protocol
+  /// The record leaves the parameter out at this value (as in a manifest): for a parameter younger
+  /// than the stores, the value that all older runs have. It may differ from the default.
+  std::string_view omitted_at = {};
 };
 
-/// A parameter that takes one of a few names; the index of the name stands for its value.
+/// A parameter that is an enumeration with names (core/named.hpp).
 struct ChoiceMember {
   std::span<const std::string_view> names;
-  std::size_t (*get)(const Parameters&);
-  void (*set)(Parameters&, std::size_t);
+  std::string_view (*get)(const Parameters&);
+  void (*set)(Parameters&, std::string_view);
 };
 
 struct Field {
@@ -48,7 +42,7 @@ struct Field {
   double min = 0;             ///< smallest value allowed, numbers only
   double max = 0;             ///< largest value allowed
   bool min_excluded = false;  ///< the value must be greater than `min`
-  Identity identity = Identity::none;
+  Identity identity = {};
   std::string_view doc;
 };
 
@@ -76,10 +70,12 @@ std::optional<ValueProblem> check_value(const Field& field, const nlohmann::json
 nlohmann::json get_value(const Field& field, const Parameters& parameters);
 void set_value(const Field& field, const nlohmann::json& value, Parameters& parameters);
 
-/// Reads exactly the parameters for which `expected` holds; the others keep their defaults. The
-/// JSON is not trusted: throws std::runtime_error that names the key.
-Parameters read_parameters(const nlohmann::json& json,
-                           const std::function<bool(const Field&)>& expected);
+/// Whether the record of a stage holds the parameter at that value.
+bool enters(const Identity& identity, Stage stage, std::optional<ProtocolKind> protocol,
+            const nlohmann::json& value);
+
+/// A value as a manifest writes it: "still", "0.1".
+std::string value_text(const nlohmann::json& value);
 
 /// "a number > 0 and <= 1e+06", "one of still, cell".
 std::string expected_values(const Field& field);

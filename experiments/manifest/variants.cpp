@@ -10,12 +10,6 @@
 namespace shearcell {
 namespace {
 
-std::string value_text(const nlohmann::json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
-  return value.dump();
-}
-
 void apply(const std::string& key, const Setting& setting, Parameters& parameters) {
   set_value(*find_field(key), setting.value, parameters);
 }

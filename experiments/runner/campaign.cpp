@@ -290,7 +290,7 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
       RunDeclaration declaration;
       declaration.id = stage->key;
       declaration.parent = stage->parent;
-      declaration.kind = stage_name(stage->stage);
+      declaration.kind = name_of(stage->stage);
       declaration.resolved = stage->resolved;
       declaration.grains = run.grains;
       declaration.target_cycles = prepare ? 0 : run.cycles;

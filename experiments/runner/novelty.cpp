@@ -31,7 +31,7 @@ std::optional<Novelty> novelty(const StageSpec& stage, const std::vector<RunReco
   std::optional<Novelty> nearest;
   for (const RunRecord& run : known) {
     if (run.id == stage.key) return std::nullopt;
-    if (run.kind != stage_name(stage.stage)) continue;
+    if (run.kind != name_of(stage.stage)) continue;
     auto found = differences(stage.resolved, run.resolved);
     if (nearest && nearest->differences.size() <= found.size()) continue;
     nearest = Novelty{run.id, std::move(found)};

@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"EndOfAPause",
                          [](Parameters& p) {
                            p.fluid = Fluid::cell;
-                           p.protocol = "paused";
+                           p.protocol = ProtocolKind::paused;
                            p.pause_s = 0.01;
                          },
                          1, true},

@@ -68,7 +68,7 @@ TEST(Cost, OfDiskAndSettlingAreNearWhatTheyTurnOutToBe) {
       const double bytes = bytes_of(store, stage->key);
       const double steps = store.run(stage->key).particle_steps;
       std::printf("%s %s: %.4g bytes, expected %.4g; %.4g particle-steps, expected %.4g\n", texture,
-                  std::string(stage_name(stage->stage)).c_str(), bytes, expected.bytes, steps,
+                  std::string(name_of(stage->stage)).c_str(), bytes, expected.bytes, steps,
                   expected.particle_steps);
       EXPECT_NEAR(expected.bytes / bytes, 1, 0.3);
       EXPECT_NEAR(expected.particle_steps / steps, 1, 0.4);

@@ -303,9 +303,9 @@ Parameters any_parameters() {
 // Whether the last stage feels the field, beside what its packing feels.
 bool felt(const Field& field, const Parameters& before, const Parameters& after) {
   if (field.name == "protocol") return true;
-  if (before.protocol == "stiffen") return field.identity == Identity::stiffen;
-  if (field.identity == Identity::paused_shear) return after.protocol == "paused";
-  return field.identity == Identity::shear || field.identity == Identity::shear_if_set;
+  if (before.protocol == ProtocolKind::stiffen) return field.identity.stage == Stage::stiffen;
+  return field.identity.stage == Stage::shear &&
+         (!field.identity.under || field.identity.under == after.protocol);
 }
 
 PROPERTY(Identity, ChangesWithEachValueAsTheSchemaSays, 100) {
@@ -322,9 +322,8 @@ PROPERTY(Identity, ChangesWithEachValueAsTheSchemaSays, 100) {
     Parameters after = before;
     set_value(field, other, after);
     const StageSpec other_prepare = prepare_stage(after, 1);
-    const bool settling = field.identity == Identity::prepare ||
-                          (field.identity == Identity::prepare_if_set &&
-                           (field.name != "pressure_at" || feels_pressure_at(before)));
+    const bool settling = field.identity.stage == Stage::prepare &&
+                          (field.name != "pressure_at" || feels_pressure_at(before));
     RC_LOG() << field.name << " " << value << " " << other << "\n";
     RC_ASSERT((other_prepare.key != prepare.key) == settling);
     RC_ASSERT((last_stage(after, 1, other_prepare).key != last.key) ==

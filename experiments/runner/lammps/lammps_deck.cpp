@@ -72,6 +72,16 @@ class Deck {
     add(text_, "neigh_modify exclude group planted planted\nneigh_modify exclude group wall all");
   }
 
+  bool fluid_moves() const {
+    switch (scene_.fluid) {
+      case Fluid::still:
+        return false;
+      case Fluid::cell:
+        return shears_;
+    }
+    return false;
+  }
+
   // Tilt and heights at the present step, from the integer step and the moving wall's atom.
   void pose() {
     const auto cycle = task_.drive.steps_per_cycle + task_.drive.pause_steps;
@@ -89,7 +99,7 @@ class Deck {
     add(text_, "variable turn equal -v_theta\nvariable shear equal tan(v_theta)");
     add(text_, "variable side_x atom (y-v_top)*v_shear");
     add(text_, "variable bottom_x equal (v_bottom-v_top)*v_shear");
-    if (scene_.fluid != Fluid::cell) return;
+    if (!fluid_moves()) return;
     add(text_, "variable rate equal {:.17g}*2*PI/{:.17g}*cos(2*PI*v_phase/{})*(v_phase<{})",
         task_.drive.amplitude, turn * scene_.time_step, turn, turn);
     add(text_, "variable flow atom {:.17g}*(y-v_top)*v_rate/cos(v_theta)^2", scene_.drag_rate);
@@ -137,7 +147,7 @@ class Deck {
     }
     if (scene_.drag_rate != 0) {
       add(text_, "fix drag grains viscous {:.17g}", scene_.drag_rate);
-      if (shears_ && scene_.fluid == Fluid::cell) add(text_, "fix flow grains addforce v_flow 0 0");
+      if (fluid_moves()) add(text_, "fix flow grains addforce v_flow 0 0");
     }
     const char* moving = bottom_moves_ ? "bottom" : "top";
     const auto grains = static_cast<std::size_t>(task_.state.position.cols());
