@@ -7,8 +7,8 @@
 
 namespace shearcell {
 
-std::vector<PhiBin> binned_by_phi(std::span<const FigureRun* const> runs,
-                                  double Measures::*quantity, double width) {
+std::vector<PhiBin> binned_by_phi(std::span<const FigureRun* const> runs, const Quantity& quantity,
+                                  double width) {
   struct OverRuns {
     std::vector<double> phi;
     std::vector<double> value;
@@ -21,7 +21,7 @@ std::vector<PhiBin> binned_by_phi(std::span<const FigureRun* const> runs,
       if (!std::isfinite(phi)) continue;
       OverRuns& bin = own[static_cast<std::int64_t>(std::floor(phi / width))];
       bin.phi.push_back(phi);
-      bin.value.push_back(checkpoint.measures.*quantity);
+      bin.value.push_back(quantity(checkpoint.measures));
     }
     for (const auto& [bin, checkpoints] : own) {
       const RunStatistics value = over_runs(checkpoints.value);

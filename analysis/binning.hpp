@@ -3,6 +3,7 @@
 // where they have the same phi.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "analysis/statistics.hpp"
 
 namespace shearcell {
+
+/// A scalar of one checkpoint: a member of Measures, or computed from several.
+using Quantity = std::function<double(const Measures&)>;
 
 /// Width of the bins in phi. [choice]
 inline constexpr double phi_bin = 0.002;
@@ -25,7 +29,7 @@ struct PhiBin {
 
 /// Bins at whole multiples of `width`, ascending, those that some run visits. Checkpoints without a
 /// finite phi are left out.
-std::vector<PhiBin> binned_by_phi(std::span<const FigureRun* const> runs,
-                                  double Measures::*quantity, double width = phi_bin);
+std::vector<PhiBin> binned_by_phi(std::span<const FigureRun* const> runs, const Quantity& quantity,
+                                  double width = phi_bin);
 
 }  // namespace shearcell

@@ -3,17 +3,38 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+
+#include "analysis/error.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell {
 namespace {
 
 using nlohmann::json;
 
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c;
+  }
+  return result + '"';
+}
+
+struct FieldText {
+  std::string operator()(std::monostate) const { return {}; }
+  std::string operator()(double value) const { return std::isfinite(value) ? digits(value) : ""; }
+  std::string operator()(std::int64_t value) const { return std::to_string(value); }
+  std::string operator()(const std::string& value) const { return quoted(value); }
+};
+
 std::optional<double> number_in(const std::vector<TableValue>& row, int column) {
-  if (column < 1 || static_cast<std::size_t>(column) > row.size()) return std::nullopt;
-  const TableValue& value = row[static_cast<std::size_t>(column) - 1];
+  if (column == 0) return std::nullopt;
+  const TableValue& value = row.at(static_cast<std::size_t>(column) - 1);
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
   const auto* real = std::get_if<double>(&value);
   if (real == nullptr || !std::isfinite(*real)) return std::nullopt;
@@ -21,56 +42,130 @@ std::optional<double> number_in(const std::vector<TableValue>& row, int column) 
 }
 
 double rounded(double value) {
-  return std::strtod(fmt::format("{:.9g}", value).c_str(), nullptr);
+  return std::strtod(digits(value).c_str(), nullptr);
 }
 
 json to_json(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? json(rounded(*value)) : json();
 }
 
-json to_json(const ChartAxis& axis) {
-  return {{"label", axis.label},
+json to_json(const Axis& axis) {
+  const bool spaced = !axis.name.empty() && !axis.symbol.empty();
+  return {{"label", to_json(axis.name + (spaced ? Text("  ") : Text()) + axis.symbol)},
+          {"unit", to_json(axis.unit)},
           {"log", axis.log},
+          {"whole", axis.whole},
           {"low", to_json(axis.low)},
-          {"high", to_json(axis.high)}};
+          {"high", to_json(axis.high)},
+          {"clip", axis.clip}};
 }
 
-json to_json(const ChartSeries& series) {
+json to_json(const FigureTable& table, const Series& series) {
   json points = json::array();
-  for (const ChartPoint& p : series.points) {
-    points.push_back({rounded(p.x), rounded(p.y), to_json(p.x_error), to_json(p.y_error)});
+  for (const ChartPoint& p : points_of(table, series)) {
+    points.push_back(
+        {rounded(p.x + series.shift), rounded(p.y), to_json(p.x_error), to_json(p.y_error)});
   }
-  return {{"title", series.title},
+  return {{"title", to_json(series.title)},
           {"colour", series.colour},
           {"point", series.point},
-          {"line", series.line},
+          {"line", series.join != Join::none},
+          {"dashed", series.join == Join::dashes},
+          {"band", series.band},
+          {"shift", series.shift},
           {"points", std::move(points)}};
 }
 
 }  // namespace
 
-std::vector<ChartPoint> chart_points(const TableRows& rows, const CurveColumns& columns, int column,
-                                     const TableValue& value) {
+Text operator+(Text first, const Text& second) {
+  first.runs.insert(first.runs.end(), second.runs.begin(), second.runs.end());
+  return first;
+}
+
+TableValue table_value(const std::optional<double>& value) {
+  if (value) return *value;
+  return std::monostate{};
+}
+
+std::string digits(double value) {
+  return fmt::format("{:.9g}", value == 0 ? 0.0 : value);  // no "-0"
+}
+
+std::string to_csv(const FigureTable& table) {
+  std::string text;
+  const auto end_field = [&](std::size_t k, std::size_t count) {
+    text += k + 1 < count ? ',' : '\n';
+  };
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    text += quoted(table.columns[k]);
+    end_field(k, table.columns.size());
+  }
+  for (const std::vector<TableValue>& row : table.rows) {
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      text += std::visit(FieldText{}, row[k]);
+      end_field(k, row.size());
+    }
+  }
+  return text;
+}
+
+std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder) {
+  std::filesystem::path path = folder / (table.name + ".csv");
+  write_output(path, to_csv(table));
+  return path;
+}
+
+int column_number(const FigureTable& table, const std::string& name) {
+  const auto found = std::find(table.columns.begin(), table.columns.end(), name);
+  if (found == table.columns.end()) {
+    throw AnalysisError("table " + table.name + " has no column '" + name + "' to draw");
+  }
+  return static_cast<int>(found - table.columns.begin()) + 1;
+}
+
+std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series) {
+  const SeriesColumns& from = series.columns;
+  if (from.x.empty()) return series.points;
+  const auto number = [&](const std::string& name) {
+    return name.empty() ? 0 : column_number(table, name);
+  };
+  const int filter = number(series.filter.column);
+  const int x = number(from.x), y = number(from.y), x_high = number(from.x_high);
+  const int x_error = number(from.x_error), y_error = number(from.y_error);
   std::vector<ChartPoint> points;
-  for (const std::vector<TableValue>& row : rows) {
-    if (column > 0 && row.at(static_cast<std::size_t>(column) - 1) != value) continue;
-    const auto x = number_in(row, columns.x);
-    const auto y = number_in(row, columns.y);
-    if (!x || !y) continue;
-    points.push_back({*x, *y, number_in(row, columns.x_error), number_in(row, columns.y_error)});
+  for (const std::vector<TableValue>& row : table.rows) {
+    if (filter > 0 && row.at(static_cast<std::size_t>(filter) - 1) != series.filter.value) continue;
+    const auto at = number_in(row, x), value = number_in(row, y);
+    if (!at || !value) continue;
+    const double middle = (*at + number_in(row, x_high).value_or(*at)) / 2;
+    points.push_back({middle, *value, number_in(row, x_error), number_in(row, y_error)});
   }
   return points;
 }
 
-json to_json(const Chart& chart) {
+json to_json(const Text& text) {
+  json runs = json::array();
+  for (const TextRun& run : text.runs) runs.push_back({run.text, run.style});
+  return runs;
+}
+
+json chart_json(const FigureTable& table) {
+  const Chart& chart = table.chart;
   json series = json::array();
-  for (const ChartSeries& one : chart.series) series.push_back(to_json(one));
-  json levels = json::array();
-  for (const double level : chart.levels) levels.push_back(rounded(level));
+  for (const Series& one : chart.series) series.push_back(to_json(table, one));
+  json lines = json::array();
+  for (const ReferenceLine& line : chart.lines) {
+    lines.push_back({{"at", rounded(line.at)},
+                     {"vertical", line.vertical},
+                     {"stub", line.stub},
+                     {"colour", line.colour}});
+  }
   return {{"x", to_json(chart.x)},
           {"y", to_json(chart.y)},
+          {"title", to_json(chart.title)},
           {"series", std::move(series)},
-          {"levels", std::move(levels)}};
+          {"lines", std::move(lines)}};
 }
 
 }  // namespace shearcell

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A panel as a program may draw it with axes that a reader can zoom: what gnuplot draws from a
-// table, as plain values.
+// A table and how it is drawn. The gnuplot script (analysis/gnuplot_script) and the report's
+// interactive plot (to_json) are both made from this one description.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -11,55 +13,147 @@
 
 namespace shearcell {
 
+/// Text in runs of one style each. A style is the HTML element that shows it: "" (plain), "i",
+/// "sub" or "sup".
+struct TextRun {
+  std::string text;
+  std::string style;
+};
+struct Text {
+  std::vector<TextRun> runs;
+
+  Text() = default;
+  Text(const char* plain) : Text(std::string(plain)) {}  // NOLINT: a label is often plain
+  Text(std::string plain) { runs.push_back({std::move(plain), ""}); }  // NOLINT
+  Text(std::string text, std::string style) { runs.push_back({std::move(text), std::move(style)}); }
+  bool empty() const { return runs.empty(); }
+};
+Text operator+(Text first, const Text& second);
+inline Text italic(std::string text) {
+  return {std::move(text), "i"};
+}
+inline Text subscript(std::string text) {
+  return {std::move(text), "sub"};
+}
+inline Text superscript(std::string text) {
+  return {std::move(text), "sup"};
+}
+
 /// Empty (not measured, or no error from one run), a number, a whole number, or text.
 using TableValue = std::variant<std::monostate, double, std::int64_t, std::string>;
 using TableRows = std::vector<std::vector<TableValue>>;
+TableValue table_value(const std::optional<double>& value);
 
-/// Labels and titles are gnuplot enhanced text, as in the plot scripts.
-struct ChartAxis {
-  std::string label;
+struct Axis {
+  Text name = {};    ///< "volume fraction"
+  Text symbol = {};  ///< "ϕ"
+  Text unit = {};    ///< empty where there is none
   bool log = false;
-  std::optional<double> low =
-      std::nullopt;  ///< where it begins unless data lie below; where the data do if empty
+  bool whole = false;                        ///< only whole numbers have a meaning: cycles
+  std::optional<double> low = std::nullopt;  ///< the axis ends here unless data lie beyond
   std::optional<double> high = std::nullopt;
+  bool clip = false;  ///< the axis ends there even if data lie beyond
 };
 
 struct ChartPoint {
   double x = 0;
   double y = 0;
-  std::optional<double> x_error;  ///< standard error, one sided
-  std::optional<double> y_error;
+  std::optional<double> x_error = std::nullopt;  ///< standard error, one sided
+  std::optional<double> y_error = std::nullopt;
 };
 
-struct ChartSeries {
-  std::string title;
-  std::string colour;  ///< "#rrggbb"
-  int point = 7;       ///< gnuplot point type
-  bool line = false;   ///< points are joined in their order
-  std::vector<ChartPoint> points;
+/// Names of columns; an empty name of an error means that there is none. With `x_high`, x is the
+/// middle of both.
+struct SeriesColumns {
+  std::string x = {};
+  std::string y = {};
+  std::string x_error = {};
+  std::string y_error = {};
+  std::string x_high = {};
+};
+
+/// The rows that have `value` in that column; every row when `column` is empty.
+struct RowFilter {
+  std::string column;
+  TableValue value;
+};
+
+enum class Join { none, line, dashes };
+
+struct Series {
+  Text title = {};          ///< in the key; no entry if empty
+  std::string colour = {};  ///< "#rrggbb"
+  int point = 7;  ///< 0 none, 4 square, 6 circle, 8 triangle, 10 triangle down, 12 diamond;
+                  ///< + 1 filled
+  Join join = Join::none;  ///< points are joined in their order
+  bool band = false;       ///< errors of y are drawn as a band, not as bars
+  SeriesColumns columns = {};
+  RowFilter filter = {};
+  std::vector<ChartPoint> points = {};  ///< used where `columns` names no x
+  double shift = 0;  ///< added to x in the drawing, so that equal x do not hide each other
+};
+
+/// A dashed line across the frame; `stub` is a short mark at the lower end of a vertical one.
+struct ReferenceLine {
+  double at = 0;
+  bool vertical = false;
+  bool stub = false;
+  std::string colour = "#888888";
 };
 
 struct Chart {
-  ChartAxis x;
-  ChartAxis y;
-  std::vector<ChartSeries> series;
-  std::vector<double> levels;  ///< y of dashed horizontal lines
+  Axis x = {};
+  Axis y = {};
+  std::vector<Series> series = {};
+  std::vector<ReferenceLine> lines = {};
+  Text title = {};  ///< above the frame; figures have none
+  int width = 600;  ///< of the gnuplot drawing [px]
+  int height = 430;
 };
 
-/// Columns of a table, counted from 1; 0 for an error means that there is none.
-struct CurveColumns {
-  int x;
-  int x_error;
-  int y;
-  int y_error;
+/// A table that is drawn as text: the first row is the heading.
+struct TextTable {
+  struct Cell {
+    Text text;
+    std::string colour = "#000000";
+  };
+  std::vector<int> widths = {};  ///< of the columns [px]
+  std::vector<std::vector<Cell>> rows = {};
+  Text note = {};
 };
 
-/// Of the rows that have `value` in column `column` (of all when it is 0). Rows in which x or y is
-/// no finite number are left out.
-std::vector<ChartPoint> chart_points(const TableRows& rows, const CurveColumns& columns,
-                                     int column = 0, const TableValue& value = {});
+/// One panel: its data and one way to draw them. With neither chart nor text it is not drawn.
+struct FigureTable {
+  std::string name;                  ///< "S2a": letters, digits, '-' and '_'
+  std::vector<std::string> columns;  ///< with the unit at the end where there is one
+  TableRows rows;
+  Chart chart = {};
+  TextTable text = {};
+  std::string plot = {};  ///< gnuplot commands that replace those of the chart
+};
 
-/// Nine significant digits, as in the CSV. The same chart gives the same bytes.
-nlohmann::json to_json(const Chart& chart);
+/// RFC 4180 with a header row and "\n" line ends. Numbers carry nine significant digits; a number
+/// that is not finite leaves its field empty.
+std::string to_csv(const FigureTable& table);
+
+/// Writes FOLDER/NAME.csv and returns its path. Throws std::runtime_error when it cannot.
+std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder);
+
+/// Number of a column, counted from 1. Throws AnalysisError for a name that the table lacks.
+int column_number(const FigureTable& table, const std::string& name);
+
+/// The points of one series, without its shift. Rows in which x or y is not a finite number are
+/// left out.
+std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series);
+
+/// Nine significant digits, as in the CSV.
+std::string digits(double value);
+
+/// [[text, style], ...].
+nlohmann::json to_json(const Text& text);
+
+/// The chart with the points of its series, for the front end of the report. The same table gives
+/// the same bytes.
+nlohmann::json chart_json(const FigureTable& table);
 
 }  // namespace shearcell

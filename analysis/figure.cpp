@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/figure.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "analysis/error.hpp"
 #include "analysis/figures/figures.hpp"
-#include "provenance/io/plain_file.hpp"
 
 namespace shearcell {
 namespace {
@@ -34,32 +30,7 @@ constexpr std::array figures = {
            figure_choices},
 };
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + '"';
-}
-
-struct FieldText {
-  std::string operator()(std::monostate) const { return {}; }
-  std::string operator()(double value) const {
-    if (!std::isfinite(value)) return {};
-    return fmt::format("{:.9g}", value == 0 ? 0.0 : value);  // -0 is 0 to a reader
-  }
-  std::string operator()(std::int64_t value) const { return std::to_string(value); }
-  std::string operator()(const std::string& value) const { return quoted(value); }
-};
-
 }  // namespace
-
-TableValue table_value(const std::optional<double>& value) {
-  if (value) return *value;
-  return std::monostate{};
-}
 
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
   for (const nlohmann::json* values : {&run.labels, &run.parameters}) {
@@ -71,30 +42,6 @@ nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
 double number_of(const FigureRun& run, const std::string& key) {
   const nlohmann::json value = parameter_of(run, key);
   return value.is_number() ? value.get<double>() : std::nan("");
-}
-
-std::string to_csv(const FigureTable& table) {
-  std::string text;
-  const auto end_field = [&](std::size_t k, std::size_t count) {
-    text += k + 1 < count ? ',' : '\n';
-  };
-  for (std::size_t k = 0; k < table.columns.size(); ++k) {
-    text += quoted(table.columns[k]);
-    end_field(k, table.columns.size());
-  }
-  for (const std::vector<TableValue>& row : table.rows) {
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      text += std::visit(FieldText{}, row[k]);
-      end_field(k, row.size());
-    }
-  }
-  return text;
-}
-
-std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder) {
-  std::filesystem::path path = folder / (table.name + ".csv");
-  write_output(path, to_csv(table));
-  return path;
 }
 
 std::span<const Figure> all_figures() {

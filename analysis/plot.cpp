@@ -3,43 +3,21 @@
 
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "analysis/error.hpp"
+#include "analysis/gnuplot_script.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/plain_file.hpp"
 
 namespace shearcell {
 namespace {
 
-constexpr const char* script_beginning = "set terminal svg size ";
-
-constexpr const char* style =
-    "set encoding utf8\n"
-    "set datafile separator ','\n"
-    "set border 15 lw 1.2\n"
-    "set xtics in mirror scale 0.9,0.5\n"
-    "set ytics in mirror scale 0.9,0.5\n"
-    "set format '%h'\n"
-    "set mxtics 2\n"
-    "set mytics 2\n"
-    // Ranges end a little outside the data, not at the next tick, so that no point or bar is cut.
-    "set autoscale noextend\n"
-    "set offsets graph 0.03, graph 0.03, graph 0.05, graph 0.05\n"
-    // Above the frame, the one place where no data can be.
-    "set key above horizontal center noautotitle Left reverse samplen 1.5 width 2\n"
-    "set bars 0.5\n";
-
-// Without data there is nothing that gnuplot could draw; the axes still say what is missing.
-constexpr const char* empty_plot =
-    "set label 'no data' at graph 0.5, graph 0.5 center\n"
-    "plot [0:1] [0:1] NaN notitle\n";
-
-/// A name goes into a script and into file names, so it may hold only what means nothing to either.
+/// A name is part of a script and of file names, so it may hold no character that is special in
+/// either.
 void require_plain_name(const std::string& name) {
   const bool plain = !name.empty() && name.front() != '-' &&
                      name.find_first_not_of(
@@ -58,8 +36,8 @@ bool made(const ProgramOutcome& outcome, const std::filesystem::path& file) {
   return outcome.code == 0 && std::filesystem::exists(file) && std::filesystem::file_size(file) > 0;
 }
 
-/// librsvg drops the space at either end of a stretch of text, where gnuplot's markup begins or
-/// ends, unless it is told not to; gnuplot tells it only of two spaces together.
+/// librsvg drops spaces next to a change of style unless xml:space says "preserve", which gnuplot
+/// sets only for two spaces in a row.
 void keep_spaces(const std::filesystem::path& svg) {
   std::ifstream in(svg, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
@@ -78,7 +56,7 @@ void require_own_files(const FigureTable& table, const std::filesystem::path& fo
   require_plain_name(table.name);
   const std::filesystem::path base = folder / table.name;
   const auto is_script = [](std::string_view beginning) {
-    return beginning.starts_with(script_beginning);
+    return beginning.starts_with(gnuplot_script_beginning);
   };
   require_ours(base.string() + ".gp", is_script);
   const bool drawn = std::filesystem::exists(base.string() + ".gp");
@@ -99,13 +77,7 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
   if (!std::filesystem::exists(folder / (table.name + ".csv"))) {
     throw AnalysisError("there is no " + table.name + ".csv in " + folder.string() + " to draw");
   }
-  std::ostringstream text;
-  text << script_beginning << table.width << ',' << table.height
-       << " enhanced font 'Helvetica,14' background '#ffffff'\n"
-       << style << "set output '" << table.name << ".svg'\n"
-       << "data = '" << table.name << ".csv'\n"
-       << table.plot << (table.rows.empty() ? empty_plot : "") << "set output\n";
-  write_output(script, text.str());
+  write_output(script, gnuplot_script(table));
   std::filesystem::remove(svg);  // gnuplot would follow a link
 
   // -d keeps a user's own defaults out of the figure.

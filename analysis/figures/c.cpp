@@ -43,45 +43,26 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
 const std::array<const char*, 5> amplitude_colours = {"#6a3d9a", "#000000", "#2ca02c", "#1f4fd8",
                                                       "#d62728"};
 
-Chart chart_of(std::span<const AmplitudeGrowth> all, const TableRows& rows) {
+Chart chart_of(std::span<const AmplitudeGrowth> all) {
   Chart chart{
-      {.label = "crystallite size  [grains]", .low = 0, .high = 60},
-      {.label = "{/:Italic Δρ} = {/:Italic ρ}_{g} − {/:Italic ρ}_{s}", .low = -1.05, .high = 1.05},
-      {},
-      {0}};
+      .x = {.name = "crystallite size", .unit = "grains", .low = 0, .high = 60, .clip = true},
+      .y = {.symbol = italic("Δρ") + " = " + italic("ρ") + subscript("g") + " − " + italic("ρ") +
+                      subscript("s"),
+            .low = -1.05,
+            .high = 1.05,
+            .clip = true},
+      .lines = {{0}}};
   for (std::size_t k = 0; k < all.size(); ++k) {
+    const char* colour = amplitude_colours[k % amplitude_colours.size()];
     chart.series.push_back(
-        {fmt::format("{{/:Italic A}} = {}", all[k].amplitude),
-         amplitude_colours[k % amplitude_colours.size()], 5 + 2 * static_cast<int>(k % 5), false,
-         chart_points(rows, {.x = 2, .x_error = 0, .y = 6, .y_error = 7}, 1, all[k].amplitude)});
+        {.title = italic("A") + fmt::format(" = {}", all[k].amplitude),
+         .colour = colour,
+         .point = 5 + 2 * static_cast<int>(k % 5),
+         .columns = {.x = "size_grains", .y = "delta_rho", .y_error = "delta_rho_error"},
+         .filter = {"amplitude_rad", all[k].amplitude}});
+    chart.lines.push_back({all[k].published->critical_size, true, true, colour});
   }
   return chart;
-}
-
-std::string plot(std::span<const AmplitudeGrowth> all) {
-  std::string text =
-      "set xlabel 'crystallite size  [grains]'\n"
-      "set ylabel '{/:Italic Δρ} = {/:Italic ρ}_{g} − {/:Italic ρ}_{s}'\n"
-      "set xrange [0:60]\nset yrange [-1.05:1.05]\nset offsets 0,0,0,0\n"
-      "set arrow from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#888888'\n";
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    text += fmt::format("set arrow from {0}, graph 0 to {0}, graph 0.06 nohead lw 2 lc rgb '{1}'\n",
-                        all[k].published->critical_size,
-                        amplitude_colours[k % amplitude_colours.size()]);
-  }
-  const bool any = std::any_of(all.begin(), all.end(),
-                               [](const AmplitudeGrowth& one) { return !one.rates.empty(); });
-  if (!any) return text;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    text += fmt::format(
-        "{}{}", k == 0 ? "plot " : ", \
-     ",
-        points_with_errors(
-            "2", fmt::format("(column(1) == {} ? column(6) : NaN)", all[k].amplitude), 7,
-            amplitude_colours[k % amplitude_colours.size()], 5 + 2 * static_cast<int>(k % 5),
-            fmt::format("{{/:Italic A}} = {}", all[k].amplitude)));
-  }
-  return text + "\n";
 }
 
 FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
@@ -98,8 +79,7 @@ FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
                             static_cast<std::int64_t>(one.runs.size())});
     }
   }
-  table.plot = plot(all);
-  table.chart = chart_of(all, table.rows);
+  table.chart = chart_of(all);
   return table;
 }
 
@@ -109,30 +89,24 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
   table.columns = {"amplitude_rad",        "cycles_followed",
                    "critical_size_grains", "critical_size_standard_error_grains",
                    "supplement_grains",    "runs"};
-  bool any = false;
   for (const AmplitudeGrowth& one : all) {
     table.rows.push_back({one.amplitude, one.published->n_bin, table_value(one.critical.size),
                           table_value(one.critical.error), one.published->critical_size,
                           static_cast<std::int64_t>(one.runs.size())});
-    any = any || one.critical.size.has_value();
   }
-  table.chart = {{.label = "amplitude  {/:Italic A}  [rad]", .low = 0, .high = 0.12},
-                 {.label = "critical size  [grains]", .low = 0},
-                 {{"supplement", "#888888", 6, true,
-                   chart_points(table.rows, {.x = 1, .x_error = 0, .y = 5, .y_error = 0})},
-                  {"simulated", "#000000", 5, false,
-                   chart_points(table.rows, {.x = 1, .x_error = 0, .y = 3, .y_error = 4})}},
-                 {}};
-  table.plot =
-      "set xlabel 'amplitude  {/:Italic A}  [rad]'\n"
-      "set ylabel 'critical size  [grains]'\nset xrange [0:0.12]\nset yrange [0:*]\n";
-  if (all.empty()) return table;
-  table.plot +=
-      "plot data using 1:5 with linespoints lc rgb '#888888' dt 2 pt 6 title 'supplement'";
-  if (any) {
-    table.plot += ", \\\n     " + points_with_errors("1", "3", 4, "#000000", 5, "simulated");
-  }
-  table.plot += "\n";
+  table.chart = {.x = amplitude_axis(),
+                 .y = {.name = "critical size", .unit = "grains", .low = 0},
+                 .series = {{.title = "supplement",
+                             .colour = "#888888",
+                             .point = 6,
+                             .join = Join::dashes,
+                             .columns = {.x = "amplitude_rad", .y = "supplement_grains"}},
+                            {.title = "simulated",
+                             .colour = "#000000",
+                             .point = 5,
+                             .columns = {.x = "amplitude_rad",
+                                         .y = "critical_size_grains",
+                                         .y_error = "critical_size_standard_error_grains"}}}};
   return table;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -11,6 +12,9 @@
 
 #include "analysis/agreement.hpp"
 #include "analysis/binning.hpp"
+#include "analysis/figures/groups.hpp"
+#include "analysis/onset.hpp"
+#include "analysis/published.hpp"
 
 namespace shearcell {
 namespace {
@@ -102,6 +106,102 @@ std::optional<CurveDifference> compare_crystallinity(const Curve& a, const Curve
   return found;
 }
 
+/// Mean over the cycles after the first of phi in one run.
+double mean_phi(const FigureRun& run, double last) {
+  std::vector<double> phi;
+  for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+    if (checkpoint.cycle >= 1 && checkpoint.cycle <= last) phi.push_back(checkpoint.measures.phi);
+  }
+  return over_runs(phi).mean.value_or(std::nan(""));
+}
+
+/// Seeds are compared one by one: both relaxations begin with the same packing.
+std::vector<double> paired_gains(const Curve& continuous, const Curve& paused) {
+  std::map<std::uint64_t, const FigureRun*> by_seed;
+  for (const FigureRun* run : continuous.runs) by_seed[run->seed] = run;
+  std::vector<double> gains;
+  for (const FigureRun* run : paused.runs) {
+    const auto partner = by_seed.find(run->seed);
+    if (partner == by_seed.end() || run->checkpoints.empty() ||
+        partner->second->checkpoints.empty()) {
+      continue;
+    }
+    const double last =
+        std::min(run->checkpoints.back().cycle, partner->second->checkpoints.back().cycle);
+    gains.push_back(mean_phi(*run, last) - mean_phi(*partner->second, last));
+  }
+  return gains;
+}
+
+constexpr std::int64_t early = 20;
+constexpr double much_percent = 20;
+// Where rough walls let the grains crystallize. The bounds are wide enough for one run of 5200
+// grains, whose onsets scatter about 0.646.
+constexpr double bulk_before_cycle = 120;
+constexpr double bulk_phi_least = 0.640;
+constexpr double bulk_phi_most = 0.652;
+
+/// The largest percentage of each run up to cycle `early`; only runs that get there.
+std::vector<double> early_percentages(const Curve& curve) {
+  std::vector<double> found;
+  for (const FigureRun* run : curve.runs) {
+    double most = std::nan("");
+    bool reached = false;
+    for (const CheckpointMeasures& checkpoint : run->checkpoints) {
+      if (checkpoint.cycle > early) continue;
+      most = std::fmax(most, checkpoint.measures.crystalline_percent);
+      reached = reached || checkpoint.cycle == early;
+    }
+    if (reached || most > much_percent) found.push_back(most);
+  }
+  return found;
+}
+
+Verdict early_verdict(const Curve* curve, bool much, std::string claim) {
+  const std::vector<double> values =
+      curve == nullptr ? std::vector<double>() : early_percentages(*curve);
+  Verdict verdict{
+      std::move(claim),       "largest percentage crystalline by cycle 20, mean over runs [%]",
+      over_runs(values).mean, much_percent,
+      Ruling::too_few_runs,   fmt::format("{} runs reach that cycle", values.size())};
+  if (verdict.value) {
+    verdict.ruling = (*verdict.value > much_percent) == much ? Ruling::pass : Ruling::fail;
+  }
+  return verdict;
+}
+
+/// What becomes of the rough runs. One that ends early, without a crystallite, tells nothing.
+Verdict bulk_verdict(const Curve* curve) {
+  std::size_t so = 0, otherwise = 0, censored = 0;
+  std::string onsets;
+  const std::vector<const FigureRun*> none;
+  for (const FigureRun* run : curve == nullptr ? none : curve->runs) {
+    const double critical = published_nearest(number_of(*run, "amplitude_rad")).critical_size;
+    const RunOnset onset = onset_by_size(*run, critical);
+    if (onset.observed == Observed::never) {
+      const bool whole =
+          !run->checkpoints.empty() && run->checkpoints.back().cycle >= bulk_before_cycle;
+      ++(whole ? otherwise : censored);
+      continue;
+    }
+    const bool within = onset.observed == Observed::yes && onset.cycle < bulk_before_cycle &&
+                        onset.phi >= bulk_phi_least && onset.phi <= bulk_phi_most;
+    ++(within ? so : otherwise);
+    if (onset.observed == Observed::yes)
+      onsets += fmt::format("; phi = {:.4f} at cycle {:.1f}", onset.phi, onset.cycle);
+  }
+  std::optional<double> value;
+  if (so + otherwise > 0) value = static_cast<double>(otherwise);
+  return below(fmt::format("rough walls: a crystallite of the critical size (16 grains at A = "
+                           "0.0833 rad) before cycle {}, at phi between {} and {}",
+                           bulk_before_cycle, bulk_phi_least, bulk_phi_most),
+               "runs that do otherwise", value, 1,
+               fmt::format("{} of {} runs do{}; {} end before that cycle without one", so,
+                           so + otherwise, onsets, censored));
+}
+
+constexpr double step_of_main_text = 45600;  // steps per cycle: 4.4e-5 s
+
 }  // namespace
 
 Verdict phi_agrees_until(std::span<const Curve> curves, std::int64_t until, std::string claim,
@@ -120,16 +220,54 @@ Verdict crystallinity_agrees(std::span<const Curve> curves, std::string claim) {
                     1, compare_crystallinity);
 }
 
-FigureResult two_panels(std::span<const Curve> curves, const Comparison& comparison) {
-  const std::string& what = comparison.what;
-  return {{phi_against_cycle(comparison.name + "a", curves),
-           crystallinity_against_phi(comparison.name + "b", curves)},
-          {phi_agrees_until(curves, comparison.similar_until,
-                            fmt::format("{}: phi against cycle is similar for {} until cycle {}",
-                                        comparison.section, what, comparison.similar_until)),
-           crystallinity_agrees(
-               curves, fmt::format("{}: percentage crystalline against phi is one curve for {}",
-                                   comparison.section, what))}};
+Verdict pauses_compact_faster(std::span<const Curve> curves) {
+  Verdict verdict{"B.5: phi grows more rapidly with cycle number for paused shear",
+                  "phi(paused) - phi(continuous), mean over cycles and seeds, in standard errors",
+                  std::nullopt,
+                  std::nullopt,
+                  Ruling::too_few_runs,
+                  ""};
+  const Curve* continuous = curve_with(curves, "continuous");
+  const Curve* paused = curve_with(curves, "paused");
+  if (continuous == nullptr || paused == nullptr) {
+    verdict.note = "one of the relaxations has no run";
+    return verdict;
+  }
+  const RunStatistics gain = over_runs(paired_gains(*continuous, *paused));
+  verdict.note = fmt::format("{} pairs of runs", gain.runs);
+  if (gain.mean) verdict.note += fmt::format(", difference {:.3g}", *gain.mean);
+  if (!gain.standard_error || *gain.standard_error <= 0) return verdict;
+  verdict.value = *gain.mean / *gain.standard_error;
+  verdict.limit = limit_of_agreement(gain.runs - 1);
+  if (gain.runs < runs_to_tell) return verdict;
+  if (*verdict.value > *verdict.limit) verdict.ruling = Ruling::pass;
+  if (*verdict.value < -*verdict.limit) verdict.ruling = Ruling::fail;
+  return verdict;
+}
+
+Verdict overlap_is_small(std::span<const Curve> curves) {
+  const Curve* curve = curve_with(curves, step_of_main_text);
+  std::optional<double> overlap;
+  if (curve != nullptr) overlap = over(curve->points.back(), &Measures::mean_overlap).mean;
+  return below("B.4: at 4.4e-5 s the average overlap is less than 1e-3",
+               "mean overlap at the last cycle [d]", overlap, 1e-3,
+               curve == nullptr ? "no run has that time step" : "");
+}
+
+std::vector<Verdict> wall_verdicts(std::span<const Curve> curves) {
+  const Curve* rough = curve_with(curves, "rough");
+  std::vector<Verdict> verdicts = {
+      early_verdict(curve_with(curves, "smooth"), true,
+                    "smooth walls: more than 20 % crystalline by cycle 20"),
+      early_verdict(rough, false, "rough walls: less than 20 % crystalline by cycle 20"),
+      bulk_verdict(rough)};
+  if (rough != nullptr) {
+    const double grains = number_of(*rough->runs.front(), "grains");
+    if (published_interior(grains)) {
+      verdicts.push_back(interior_is_published(grains, rough->runs));
+    }
+  }
+  return verdicts;
 }
 
 }  // namespace shearcell

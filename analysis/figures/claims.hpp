@@ -21,13 +21,12 @@ Verdict phi_agrees_until(std::span<const Curve> curves, std::int64_t until, std:
 /// than 1 % of crystalline grains; fewer than three such bins tell nothing.
 Verdict crystallinity_agrees(std::span<const Curve> curves, std::string claim);
 
-/// A figure that compares variants of one parameter: phi against cycle, percentage against phi.
-struct Comparison {
-  std::string name;     ///< "S2": its panels are S2a and S2b
-  std::string section;  ///< of the supplement
-  std::string what;     ///< "drags", for the claims
-  std::int64_t similar_until;
-};
-FigureResult two_panels(std::span<const Curve> curves, const Comparison& comparison);
+/// B5: phi of paused shear above that of continuous shear, seed by seed.
+Verdict pauses_compact_faster(std::span<const Curve> curves);
+
+/// S3: the mean overlap at the time step of the main text.
+Verdict overlap_is_small(std::span<const Curve> curves);
+
+std::vector<Verdict> wall_verdicts(std::span<const Curve> curves);
 
 }  // namespace shearcell

@@ -63,22 +63,23 @@ FigureTable table_of(const std::map<int, Stiffness>& found) {
                           table_value(phi_u.standard_error), table_value(phi.mean),
                           table_value(phi.standard_error), static_cast<std::int64_t>(phi.runs)});
   }
-  table.chart = {{.label = "mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]", .log = true},
-                 {.label = "volume fraction  {/:Italic ϕ}"},
-                 {{"{/:Italic ϕ}_u, uncorrected", "#000000", 6, false,
-                   chart_points(table.rows, {.x = 2, .x_error = 3, .y = 4, .y_error = 5})},
-                  {"{/:Italic ϕ}", "#000000", 7, false,
-                   chart_points(table.rows, {.x = 2, .x_error = 3, .y = 6, .y_error = 7})}},
-                 {}};
-  table.plot =
-      "set xlabel 'mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]'\n"
-      "set ylabel 'volume fraction  {/:Italic ϕ}'\n";
-  if (table.rows.empty()) return table;
-  // Equal factors of k are equal steps.
-  table.plot += "set logscale x\nset format x '10^{%L}'\nset mxtics 10\n";
-  table.plot +=
-      "plot " + points_with_errors("2", "4", 5, "#000000", 6, "{/:Italic ϕ}_u, uncorrected") +
-      ", \\\n     " + points_with_errors("2", "6", 7, "#000000", 7, "{/:Italic ϕ}") + "\n";
+  const auto phi_series = [](const Text& title, int point, const char* name) {
+    const std::string column(name);
+    return Series{.title = title,
+                  .colour = "#000000",
+                  .point = point,
+                  .columns = {.x = "overlap_mean_d",
+                              .y = column + "_mean",
+                              .x_error = "overlap_standard_error_d",
+                              .y_error = column + "_standard_error"}};
+  };
+  table.chart = {.x = {.name = "mean overlap",
+                       .symbol = Text("⟨") + italic("δ") + "⟩",
+                       .unit = italic("d"),
+                       .log = true},
+                 .y = phi_axis(),
+                 .series = {phi_series(italic("ϕ") + subscript("u") + ", uncorrected", 6, "phi_u"),
+                            phi_series(italic("ϕ"), 7, "phi")}};
   return table;
 }
 

@@ -35,34 +35,25 @@ FigureTable amplitude_table(std::span<const AmplitudeOnset> onsets) {
   for (const AmplitudeOnset& o : onsets) {
     table.rows.push_back(onset_row({std::int64_t{2}, o.amplitude, o.critical_size}, o.by_slope));
   }
-  const CurveColumns columns{.x = 2, .x_error = 0, .y = 4, .y_error = 5};
-  table.chart = {{.label = "amplitude  {/:Italic A}  [rad]", .low = 0, .high = 0.12},
-                 {.label = "onset  {/:Italic ϕ}"},
-                 {{"experiment",
-                   "#ff7f0e",
-                   7,
-                   false,
-                   {{experiment_amplitude_rad, experiment_onset_phi, std::nullopt, std::nullopt}}},
-                  {"largest crystallite is critical", "#1f4fd8", 9, false,
-                   chart_points(table.rows, columns, 1, std::int64_t{1})},
-                  {"steepest growth", "#2ca02c", 13, false,
-                   chart_points(table.rows, columns, 1, std::int64_t{2})}},
-                 onset_levels()};
-  table.plot =
-      "set xlabel 'amplitude  {/:Italic A}  [rad]'\n"
-      "set ylabel 'onset  {/:Italic ϕ}'\nset xrange [0:0.12]\n" +
-      onset_lines();
-  if (onsets.empty()) return table;
-  table.plot +=
-      "$experiment << EOD\n0.01,0.645\nEOD\n"
-      "plot $experiment using 1:2 with points lc rgb '#ff7f0e' pt 7 ps 0.8 title 'experiment', \\\n"
-      "     " +
-      points_with_errors("2", "(column(1) == 1 ? column(4) : NaN)", 5, "#1f4fd8", 9,
-                         "largest crystallite is critical") +
-      ", \\\n     " +
-      points_with_errors("($2 + 0.001)", "(column(1) == 2 ? column(4) : NaN)", 5, "#2ca02c", 13,
-                         "steepest growth") +
-      "\n";
+  const auto by_method = [](const char* title, const char* colour, int point, std::int64_t method,
+                            double shift) {
+    return Series{.title = title,
+                  .colour = colour,
+                  .point = point,
+                  .columns = {.x = "amplitude_rad",
+                              .y = "onset_phi_mean",
+                              .y_error = "onset_phi_standard_error"},
+                  .filter = {"method", method},
+                  .shift = shift};
+  };
+  table.chart = {.x = amplitude_axis(),
+                 .y = onset_axis(),
+                 .series = {{.title = "experiment",
+                             .colour = "#ff7f0e",
+                             .points = {{experiment_amplitude_rad, experiment_onset_phi}}},
+                            by_method("largest crystallite is critical", "#1f4fd8", 9, 1, 0),
+                            by_method("steepest growth", "#2ca02c", 13, 2, 0.001)},
+                 .lines = onset_lines()};
   return table;
 }
 
@@ -125,21 +116,22 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
   if (!groups.contains(smallest_size)) {
     result.verdicts.push_back(interior_is_published(smallest_size, {}));
   }
-  table.chart = {{.label = "grains  {/:Italic N}", .low = 0, .high = 20000},
-                 {.label = "onset  {/:Italic ϕ}"},
-                 {{"simulated", "#000000", 5, false,
-                   chart_points(table.rows, {.x = 1, .x_error = 0, .y = 4, .y_error = 5})}},
-                 onset_levels()};
-  table.plot =
-      "set xlabel 'grains  {/:Italic N}'\n"
-      "set ylabel 'onset  {/:Italic ϕ}'\nset xrange [0:20000]\nset xtics 5000\n" +
-      onset_lines();
-  if (!table.rows.empty()) {
-    table.plot +=
-        "plot " + points_with_errors("1", "4", 5, "#000000", 5, "simulated") +
-        ", \\\n"
-        "     0.645 with lines lc rgb '#ff7f0e' title 'experiment, {/:Italic A} = 0.01'\n";
-  }
+  constexpr double most_grains = 20000;
+  table.chart = {
+      .x = {.name = "grains", .symbol = italic("N"), .low = 0, .high = most_grains},
+      .y = onset_axis(),
+      .series = {{.title = "simulated",
+                  .colour = "#000000",
+                  .point = 5,
+                  .columns = {.x = "grains",
+                              .y = "onset_phi_mean",
+                              .y_error = "onset_phi_standard_error"}},
+                 {.title = Text("experiment, ") + italic("A") + " = 0.01",
+                  .colour = "#ff7f0e",
+                  .point = 0,
+                  .join = Join::line,
+                  .points = {{0, experiment_onset_phi}, {most_grains, experiment_onset_phi}}}},
+      .lines = onset_lines()};
   result.tables.push_back(std::move(table));
   return result;
 }

@@ -15,8 +15,13 @@
 namespace shearcell {
 namespace {
 
-std::string title_of(double amplitude, bool gravity) {
-  return fmt::format("{{/:Italic A}} = {}, {}", amplitude, gravity ? "gravity" : "no gravity");
+/// What tells the curves apart.
+nlohmann::json group_of(double amplitude, bool gravity) {
+  return nlohmann::json::array({amplitude, gravity});
+}
+
+Text title_of(double amplitude, bool gravity) {
+  return italic("A") + fmt::format(" = {}, {}", amplitude, gravity ? "gravity" : "no gravity");
 }
 
 bool has_gravity(const FigureRun& run) {
@@ -32,8 +37,8 @@ std::vector<CurveStyle> styles_for(std::span<const FigureRun> runs) {
     const char* colour = colours[k % colours.size()];
     const int open = 4 + 2 * static_cast<int>(k % 4);
     for (const bool gravity : {true, false}) {
-      const std::string title = title_of(amplitude, gravity);
-      styles.push_back({title, title, colour, gravity ? open + 1 : open});
+      styles.push_back({group_of(amplitude, gravity), title_of(amplitude, gravity), colour,
+                        gravity ? open + 1 : open});
     }
     ++k;
   }
@@ -59,22 +64,11 @@ std::vector<CurveOnset> onsets_of(std::span<const Curve> curves) {
 }
 
 /// A black point on each curve, as in the supplement.
-std::string onset_points(std::span<const CurveOnset> onsets) {
-  std::string text;
+Series onset_series(std::span<const CurveOnset> onsets) {
+  Series series{.title = "onset", .colour = "#000000"};
   for (const CurveOnset& o : onsets) {
     if (!o.onset.phi.mean) continue;
-    text += fmt::format("set label '' at {:.9g},{:.9g} point pt 7 ps 1 lc rgb '#000000' front\n",
-                        *o.onset.cycle.mean, *o.onset.phi.mean);
-  }
-  return text;
-}
-
-ChartSeries onset_series(std::span<const CurveOnset> onsets) {
-  ChartSeries series{"onset", "#000000", 7, false, {}};
-  for (const CurveOnset& o : onsets) {
-    if (!o.onset.phi.mean) continue;
-    series.points.push_back(
-        {*o.onset.cycle.mean, *o.onset.phi.mean, std::nullopt, o.onset.phi_error});
+    series.points.push_back({*o.onset.cycle.mean, *o.onset.phi.mean, {}, o.onset.phi_error});
   }
   return series;
 }
@@ -89,27 +83,20 @@ FigureTable onset_table(std::span<const CurveOnset> onsets) {
                    table_value(o.onset.cycle.mean)},
                   o.onset));
   }
-  const CurveColumns columns{.x = 2, .x_error = 0, .y = 5, .y_error = 6};
-  table.chart = {{.label = "amplitude  {/:Italic A}  [rad]", .low = 0, .high = 0.12},
-                 {.label = "onset  {/:Italic ϕ}"},
-                 {{"gravity", "#000000", 5, false, chart_points(table.rows, columns, 3, "on")},
-                  {"no gravity", "#d62728", 7, false, chart_points(table.rows, columns, 3, "off")}},
-                 onset_levels()};
-  table.plot =
-      "set xlabel 'amplitude  {/:Italic A}  [rad]'\nset ylabel 'onset  {/:Italic ϕ}'\n"
-      "set xrange [0:0.12]\n" +
-      onset_lines();
-  if (!onsets.empty()) {
-    table.plot +=
-        "plot 0.646 with lines dt 3 lc rgb '#888888' notitle, \\\n"
-        "     " +
-        points_with_errors("2", "(strcol(3) eq 'on' ? column(5) : NaN)", 6, "#000000", 5,
-                           "gravity") +
-        ", \\\n     " +
-        points_with_errors("2", "(strcol(3) eq 'off' ? column(5) : NaN)", 6, "#d62728", 7,
-                           "no gravity") +
-        "\n";
-  }
+  const auto with = [](const char* title, const char* colour, int point, const char* gravity) {
+    return Series{.title = title,
+                  .colour = colour,
+                  .point = point,
+                  .columns = {.x = "amplitude_rad",
+                              .y = "onset_phi_mean",
+                              .y_error = "onset_phi_standard_error"},
+                  .filter = {"gravity", std::string(gravity)}};
+  };
+  table.chart = {
+      .x = amplitude_axis(),
+      .y = onset_axis(),
+      .series = {with("gravity", "#000000", 5, "on"), with("no gravity", "#d62728", 7, "off")},
+      .lines = onset_lines()};
   return table;
 }
 
@@ -127,13 +114,12 @@ FigureResult figure_s6(std::span<const FigureRun> runs) {
   const std::vector<Curve> curves = curves_by(
       runs,
       [](const FigureRun& run) {
-        return title_of(number_of(run, "amplitude_rad"), has_gravity(run));
+        return group_of(number_of(run, "amplitude_rad"), has_gravity(run));
       },
       styles_for(runs));
   const std::vector<CurveOnset> onsets = onsets_of(curves);
   FigureTable phi = phi_against_cycle("S6", curves);
-  phi.plot = onset_lines() + onset_points(onsets) + phi.plot;
-  phi.chart.levels = onset_levels();
+  phi.chart.lines = onset_lines();
   phi.chart.series.push_back(onset_series(onsets));
   FigureResult result{{std::move(phi), onset_table(onsets)}, {}};
   for (const CurveOnset& o : onsets) {

@@ -59,14 +59,6 @@ void add_rows(const char* axis, std::span<const DensityBin> density, const Place
   }
 }
 
-std::vector<ChartPoint> chart_points(std::span<const DensityBin> density) {
-  std::vector<ChartPoint> points;
-  for (const DensityBin& bin : density) {
-    points.push_back({(bin.low + bin.high) / 2, bin.density, std::nullopt, bin.error});
-  }
-  return points;
-}
-
 std::string enough_in_words(const Places& places) {
   return fmt::format("{} crystallites of 15 to 25 grains in {} runs", places.count,
                      places.runs.size());
@@ -152,24 +144,22 @@ FigureResult figure_s7(std::span<const FigureRun> runs) {
                    "standard_error", "crystallites", "runs"};
   add_rows("x/w", density_x, x, table);
   add_rows("y/h", density_y, y, table);
+  const auto along = [](const char* axis, const char* length, const char* colour, int point) {
+    return Series{.title = italic("P") + "(" + italic(axis) + "/" + italic(length) + ")",
+                  .colour = colour,
+                  .point = point,
+                  .columns = {.x = "low",
+                              .y = "probability_density",
+                              .y_error = "standard_error",
+                              .x_high = "high"},
+                  .filter = {"axis", std::string(axis) + "/" + length}};
+  };
   table.chart = {
-      {.label = "{/:Italic x}/{/:Italic w},  {/:Italic y}/{/:Italic h}", .low = 0, .high = 1},
-      {.label = "probability density  {/:Italic P}", .low = 0},
-      {{"{/:Italic P}({/:Italic x}/{/:Italic w})", "#000000", 4, false, chart_points(density_x)},
-       {"{/:Italic P}({/:Italic y}/{/:Italic h})", "#d62728", 6, false, chart_points(density_y)}},
-      {}};
-  table.plot =
-      "set xlabel '{/:Italic x}/{/:Italic w},  {/:Italic y}/{/:Italic h}'\n"
-      "set ylabel 'probability density  {/:Italic P}'\nset xrange [0:1]\nset yrange [0:*]\n";
-  if (!table.rows.empty()) {
-    table.plot += "plot " +
-                  points_with_errors("(($2+$3)/2)", "(strcol(1) eq 'x/w' ? column(4) : NaN)", 5,
-                                     "#000000", 4, "{/:Italic P}({/:Italic x}/{/:Italic w})") +
-                  ", \\\n     " +
-                  points_with_errors("(($2+$3)/2)", "(strcol(1) eq 'y/h' ? column(4) : NaN)", 5,
-                                     "#d62728", 6, "{/:Italic P}({/:Italic y}/{/:Italic h})") +
-                  "\n";
-  }
+      .x = {.symbol = italic("x") + "/" + italic("w") + ",  " + italic("y") + "/" + italic("h"),
+            .low = 0,
+            .high = 1},
+      .y = {.name = "probability density", .symbol = italic("P"), .low = 0},
+      .series = {along("x", "w", "#000000", 4), along("y", "h", "#d62728", 6)}};
   return {{std::move(table)},
           {uniform_in_the_middle(density_x, x, smallest_width(runs)), more_near_the_top(y)}};
 }

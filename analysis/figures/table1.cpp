@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Table I beside the parameters that the runs of every experiment had. Supplement B.1.
+// Table I and the parameters of the runs of every experiment. Supplement B.1.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -17,79 +16,55 @@
 namespace shearcell {
 namespace {
 
-/// One row of Table I, and the time step, which follows from two of them.
-struct Quantity {
-  const char* name;     ///< with its unit
-  const char* heading;  ///< gnuplot enhanced text
+/// One row of Table I, or the time step, which follows from two of them.
+struct Parameter {
+  const char* name;  ///< with its unit
+  Text symbol;
+  const char* unit;
   double published;
-  std::array<std::string_view, 2> keys;  ///< of a manifest; sweeping one of them varies it
-  double (*of)(const FigureRun& run);    ///< NaN where the run has no such thing
+  std::vector<std::string> keys;                 ///< of a manifest; sweeping one of them varies it
+  double (*of)(const FigureRun& run) = nullptr;  ///< null: the value of the first key
 };
+
+constexpr double pi = std::numbers::pi;
+
+double omega(const FigureRun& run) {
+  return 2 * pi / number_of(run, "period_s");
+}
 
 double time_step(const FigureRun& run) {
   return number_of(run, "period_s") / number_of(run, "steps_per_cycle");
 }
 
-constexpr double pi = std::numbers::pi;
-
-const std::array<Quantity, 9>& quantities() {
-  using Run = const FigureRun&;
-  static const std::array<Quantity, 9> all = {{
-      {"mass_kg",
-       "{/:Italic m} [kg]",
-       published_mass_kg,
-       {"mass_kg"},
-       [](Run run) { return number_of(run, "mass_kg"); }},
-      {"diameter_m",
-       "{/:Italic d} [m]",
-       published_diameter_m,
-       {"diameter_m"},
-       [](Run run) { return number_of(run, "diameter_m"); }},
-      {"stiffness_N_per_m",
-       "{/:Italic k} [N/m]",
-       published_stiffness_N_per_m,
-       {"stiffness_N_per_m"},
-       [](Run run) { return number_of(run, "stiffness_N_per_m"); }},
-      {"drag_kg_per_s",
-       "{/:Italic b} [kg/s]",
-       published_drag_kg_per_s,
-       {"drag_kg_per_s"},
-       [](Run run) { return number_of(run, "drag_kg_per_s"); }},
-      {"pressure_Pa",
-       "{/:Italic P} [Pa]",
-       published_pressure_Pa,
-       {"pressure_Pa"},
-       [](Run run) { return number_of(run, "pressure_Pa"); }},
-      {"omega_rad_per_s",
-       "{/:Italic ω} [rad/s]",
-       2 * pi / published_period_s,
-       {"period_s"},
-       [](Run run) { return 2 * pi / number_of(run, "period_s"); }},
-      {"steps_per_cycle",
-       "steps/cycle",
-       published_steps_per_cycle,
-       {"steps_per_cycle"},
-       [](Run run) { return number_of(run, "steps_per_cycle"); }},
+const std::vector<Parameter>& parameters() {
+  constexpr double published_time_step = published_period_s / published_steps_per_cycle;
+  const auto plain = [](const char* name, const char* symbol, const char* unit, double published) {
+    return Parameter{name, italic(symbol), unit, published, {name}};
+  };
+  static const std::vector<Parameter> all = {
+      plain("mass_kg", "m", "kg", published_mass_kg),
+      plain("diameter_m", "d", "m", published_diameter_m),
+      plain("stiffness_N_per_m", "k", "N/m", published_stiffness_N_per_m),
+      plain("drag_kg_per_s", "b", "kg/s", published_drag_kg_per_s),
+      plain("pressure_Pa", "P", "Pa", published_pressure_Pa),
+      {"omega_rad_per_s", italic("ω"), "rad/s", 2 * pi / published_period_s, {"period_s"}, omega},
+      {"steps_per_cycle", "steps/cycle", "", published_steps_per_cycle, {"steps_per_cycle"}},
       {"time_step_s",
-       "{/:Italic Δt} [s]",
-       published_period_s / published_steps_per_cycle,
+       italic("Δt"),
+       "s",
+       published_time_step,
        {"period_s", "steps_per_cycle"},
        time_step},
-      {"gravity_m_per_s2",
-       "{/:Italic g} [m/s^2]",
-       published_gravity_m_per_s2,
-       {"gravity_m_per_s2"},
-       [](Run run) { return number_of(run, "gravity_m_per_s2"); }},
-  }};
+      plain("gravity_m_per_s2", "g", "m/s²", published_gravity_m_per_s2)};
   return all;
 }
 
-/// What the runs of one experiment had of one quantity.
+/// The values of one parameter in the runs of one experiment.
 struct Found {
   double smallest = std::numeric_limits<double>::infinity();
   double largest = -std::numeric_limits<double>::infinity();
-  std::size_t runs = 0;  ///< that have it
-  bool varied = false;   ///< on purpose
+  std::size_t runs = 0;  ///< that have the parameter
+  bool varied = false;   ///< by a sweep or a stiffening
 
   void take(double value) {
     smallest = std::min(smallest, value);
@@ -109,19 +84,20 @@ struct Found {
 
 using Runs = std::vector<const FigureRun*>;
 
-Found found_in(const Runs& runs, const Quantity& quantity) {
+Found found_in(const Runs& runs, const Parameter& parameter) {
   Found found;
   for (const FigureRun* run : runs) {
-    const double value = quantity.of(*run);
+    const double value =
+        parameter.of == nullptr ? number_of(*run, parameter.keys.front()) : parameter.of(*run);
     if (!std::isfinite(value)) continue;
     ++found.runs;
     found.take(value);
-    for (const std::string_view key : quantity.keys) {
+    for (const std::string& key : parameter.keys) {
       found.varied = found.varied || (run->labels.is_object() && run->labels.contains(key));
     }
-    // A stiffening says at each checkpoint how far it came.
+    // A stiffening records the stiffness at each checkpoint.
     const double stiffness = run->checkpoints.back().stiffness_N_per_m;
-    if (quantity.keys.front() == "stiffness_N_per_m" && std::isfinite(stiffness)) {
+    if (parameter.keys.front() == "stiffness_N_per_m" && std::isfinite(stiffness)) {
       found.take(stiffness);
       found.varied = true;
     }
@@ -129,113 +105,39 @@ Found found_in(const Runs& runs, const Quantity& quantity) {
   return found;
 }
 
-std::string number_text(double value) {
-  if (value == pi) return "{/:Italic π}";
+Text number_text(double value) {
+  if (value == pi) return italic("π");
   const double size = std::abs(value);
   if (size == 0 || (size >= 0.01 && size < 1e5)) return fmt::format("{:.6g}", value);
   const auto exponent = static_cast<int>(std::floor(std::log10(size)));
-  return fmt::format("{:.4g}×10^{{{}}}", value / std::pow(10, exponent), exponent);
+  return fmt::format("{:.4g}×10", value / std::pow(10, exponent)) +
+         superscript((exponent < 0 ? "−" : "") + std::to_string(std::abs(exponent)));
 }
 
-std::string range_text(const Found& found) {
+Text range_text(const Found& found) {
   if (found.runs == 0) return "–";
-  const std::string low = number_text(found.smallest);
-  const std::string high = number_text(found.largest);
-  return low == high ? low : low + " – " + high;
+  if (found.smallest == found.largest) return number_text(found.smallest);
+  return number_text(found.smallest) + " – " + number_text(found.largest);
 }
 
-/// Texts at places of the drawing [px], with a row for the supplement and one for each experiment.
-class Drawing {
- public:
-  explicit Drawing(FigureTable& table, std::size_t experiments) : table_(table) {
-    table_.width = first_column;
-    for (const Quantity& quantity : quantities()) table_.width += width_of(quantity);
-    table_.height = row_height * (static_cast<int>(experiments) + 3);
-    table_.plot = "unset border\nunset tics\nunset key\nset margins 0,0,0,0\n";
-    text("experiment", margin, "left noenhanced", "#000000");
-    cells([](const Quantity& q) { return std::pair(std::string(q.heading), "#000000"); });
-    next_row();
-    rule();
-    text("supplement, Table I", margin, "left", "#000000");
-    cells([](const Quantity& q) { return std::pair(number_text(q.published), "#000000"); });
-    next_row();
-    rule();
+/// A heading and the row of the supplement; a row for each experiment follows.
+TextTable heading() {
+  TextTable text{.widths = {170},
+                 .rows = {{{"experiment"}}, {{"supplement, Table I"}}},
+                 .note = "blue: varied by the experiment; red: differs from Table I"};
+  for (const Parameter& parameter : parameters()) {
+    const std::string_view name = parameter.name;
+    text.widths.push_back(name == "time_step_s" || name == "stiffness_N_per_m" ? 185 : 112);
+    const std::string unit =
+        std::string_view(parameter.unit).empty() ? "" : fmt::format(" [{}]", parameter.unit);
+    text.rows[0].push_back({parameter.symbol + unit});
+    text.rows[1].push_back({number_text(parameter.published)});
   }
+  return text;
+}
 
-  void add(const std::string& experiment, std::span<const Found> found) {
-    text(experiment, margin, "left noenhanced", "#000000");
-    std::size_t k = 0;
-    cells([&](const Quantity& quantity) {
-      const Found& here = found[k++];
-      const std::string_view verdict = here.beside(quantity.published);
-      return std::pair(range_text(here), verdict == "differs"  ? "#d62728"
-                                         : verdict == "varied" ? "#1f4fd8"
-                                                               : "#555555");
-    });
-    next_row();
-  }
-
-  void finish() {
-    rule();
-    text("blue: varied by the experiment; red: not as in Table I", margin, "left", "#555555");
-    table_.plot += "plot [0:1] [0:1] NaN\n";
-  }
-
- private:
-  static constexpr int first_column = 170;
-  static constexpr int margin = 10;
-  static constexpr int row_height = 26;
-
-  static int width_of(const Quantity& quantity) {
-    return std::string_view(quantity.name) == "time_step_s" ||
-                   std::string_view(quantity.name) == "stiffness_N_per_m"
-               ? 185
-               : 112;
-  }
-
-  template <class TextAndColour>
-  void cells(TextAndColour&& cell) {
-    int left = first_column;
-    for (const Quantity& quantity : quantities()) {
-      const auto [words, colour] = cell(quantity);
-      text(words, left + width_of(quantity) / 2, "center", colour);
-      left += width_of(quantity);
-    }
-  }
-
-  void text(const std::string& words, int x, const char* how, const char* colour) {
-    table_.plot +=
-        fmt::format("set label {} at screen {:.5f}, screen {:.5f} {} tc rgb '{}'\n", literal(words),
-                    share(x, table_.width), 1 - share(y_, table_.height), how, colour);
-  }
-  void rule() {
-    const double y = 1 - share(y_ - row_height / 2, table_.height);
-    table_.plot += fmt::format(
-        "set arrow from screen 0, screen {0:.5f} to screen 1, screen {0:.5f} nohead lw 0.8\n", y);
-  }
-  void next_row() { y_ += row_height; }
-  static double share(int part, int whole) { return static_cast<double>(part) / whole; }
-
-  FigureTable& table_;
-  int y_ = row_height / 2 + 3;
-};
-
-Verdict verdict_on(const std::string& experiment, std::span<const Found> found, std::size_t runs) {
-  std::size_t compared = 0, different = 0;
-  std::string note = fmt::format("{} runs", runs);
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const Quantity& quantity = quantities()[k];
-    const std::string_view beside = found[k].beside(quantity.published);
-    compared += beside == "none" ? 0 : 1;
-    different += beside == "differs" ? 1 : 0;
-    if (beside == "none" || beside == "equal") continue;
-    note += fmt::format("; {} {}", beside == "varied" ? "varies" : "differs in", quantity.name);
-    note += fmt::format(" ({:.6g} .. {:.6g})", found[k].smallest, found[k].largest);
-  }
-  return below_if(
-      compared > 0,
-      fmt::format("B.1: {} has the numbers of Table I, but for what it varies", experiment),
-      "numbers that differ", static_cast<double>(different), 1, note);
+const char* colour_of(std::string_view comparison) {
+  return comparison == "differs" ? "#d62728" : comparison == "varied" ? "#1f4fd8" : "#555555";
 }
 
 }  // namespace
@@ -245,26 +147,24 @@ FigureResult figure_table1(std::span<const FigureRun> runs) {
   for (const FigureRun& run : runs) {
     if (!run.checkpoints.empty()) experiments[run.experiment].push_back(&run);
   }
-  FigureResult result;
-  FigureTable table;
-  table.name = "table1";
-  table.columns = {"experiment", "parameter", "supplement", "smallest",
-                   "largest",    "runs",      "comparison"};
-  Drawing drawing(table, experiments.size());
+  FigureTable table{.name = "table1",
+                    .columns = {"experiment", "parameter", "supplement", "smallest", "largest",
+                                "runs", "comparison"},
+                    .rows = {}};
+  if (!experiments.empty()) table.text = heading();
   for (const auto& [experiment, members] : experiments) {
-    std::vector<Found> row;
-    for (const Quantity& quantity : quantities()) {
-      const Found& found = row.emplace_back(found_in(members, quantity));
-      table.rows.push_back({experiment, std::string(quantity.name), quantity.published,
+    auto& row = table.text.rows.emplace_back();
+    row.push_back({experiment});
+    for (const Parameter& parameter : parameters()) {
+      const Found found = found_in(members, parameter);
+      const std::string comparison = found.beside(parameter.published);
+      table.rows.push_back({experiment, std::string(parameter.name), parameter.published,
                             found.smallest, found.largest, static_cast<std::int64_t>(found.runs),
-                            std::string(found.beside(quantity.published))});
+                            comparison});
+      row.push_back({range_text(found), colour_of(comparison)});
     }
-    drawing.add(experiment, row);
-    result.verdicts.push_back(verdict_on(experiment, row, members.size()));
   }
-  if (!experiments.empty()) drawing.finish();
-  result.tables.push_back(std::move(table));
-  return result;
+  return {{std::move(table)}, {}};
 }
 
 }  // namespace shearcell

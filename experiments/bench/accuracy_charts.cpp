@@ -8,7 +8,7 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
-#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -24,11 +24,6 @@ constexpr std::size_t most_columns = 64;
 struct CsvTable {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
-
-  int column(std::string_view name) const {  // from 1; 0 when there is none
-    const auto found = std::find(columns.begin(), columns.end(), name);
-    return found == columns.end() ? 0 : static_cast<int>(found - columns.begin()) + 1;
-  }
 };
 
 /// RFC 4180: fields may be quoted and a quote in them doubled.
@@ -104,112 +99,98 @@ TableValue value_of(const std::string& field) {
   return field;
 }
 
-/// The first column as text, so that curves can be told apart by it whatever it holds.
-TableRows rows_of(const CsvTable& table) {
-  TableRows rows;
-  for (const auto& fields : table.rows) {
-    auto& row = rows.emplace_back();
+/// The first column is text, whatever it holds, so that it can name curves.
+FigureTable table_of(std::string name, CsvTable&& csv) {
+  FigureTable table{.name = std::move(name), .columns = std::move(csv.columns), .rows = {}};
+  for (const auto& fields : csv.rows) {
+    auto& row = table.rows.emplace_back();
     for (const std::string& field : fields) row.push_back(value_of(field));
     row.front() = fields.front();
   }
-  return rows;
+  return table;
 }
 
-/// gnuplot's markup means nothing in names from a file.
-std::string plain(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (std::string_view("_^@&{}\\~").find(c) != std::string_view::npos) result += '\\';
-    result += c;
-  }
-  return result;
+bool has(const FigureTable& table, std::string_view column) {
+  return std::find(table.columns.begin(), table.columns.end(), column) != table.columns.end();
 }
 
 constexpr std::array colours = {"#000000", "#d62728", "#1f77b4", "#2ca02c",
                                 "#9467bd", "#ff7f0e", "#8c564b", "#17becf"};
 
-ChartSeries series_of(std::size_t index, const std::string& title) {
-  return {
-      plain(title), colours[index % colours.size()], 4 + static_cast<int>(index % 10), true, {}};
+Series series_of(std::size_t index, const Text& title, SeriesColumns columns) {
+  return {.title = title,
+          .colour = colours[index % colours.size()],
+          .point = 4 + static_cast<int>(index % 10),
+          .join = Join::line,
+          .columns = std::move(columns)};
 }
 
 /// A curve for each text of the first column.
-std::vector<ChartSeries> curves_by_first_column(const CsvTable& table,
-                                                const CurveColumns& columns) {
-  const TableRows rows = rows_of(table);
-  std::vector<ChartSeries> curves;
-  std::vector<std::string> names;
-  for (const auto& fields : table.rows) {
-    const std::string& name = fields.front();
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    names.push_back(name);
-    ChartSeries curve = series_of(curves.size(), name);
-    curve.points = chart_points(rows, columns, 1, name);
-    curves.push_back(std::move(curve));
+std::vector<Series> curves_by_first_column(const FigureTable& table, const SeriesColumns& columns) {
+  std::vector<Series> curves;
+  std::set<std::string> names;
+  for (const auto& row : table.rows) {
+    const auto& name = std::get<std::string>(row.front());
+    if (!names.insert(name).second) continue;
+    curves.push_back(series_of(curves.size(), name, columns));
+    curves.back().filter = {table.columns.front(), name};
   }
   return curves;
 }
 
-std::string words(std::string name) {
-  for (const auto& [unit, written] :
-       {std::pair{"_d", "  [{/:Italic d}]"}, std::pair{"_s", "  [s]"}}) {
-    if (!name.ends_with(unit)) continue;
-    name.resize(name.size() - std::string_view(unit).size());
-    std::replace(name.begin(), name.end(), '_', ' ');
-    return plain(name) + written;
+/// "exit_speed_error" as "exit speed error"; "distance_d" as "distance" with the unit d.
+Axis axis_of(std::string column, bool log) {
+  Axis axis{.log = log};
+  for (const auto& [ending, unit] : {std::pair{"_d", italic("d")}, std::pair{"_s", Text("s")}}) {
+    if (!column.ends_with(ending)) continue;
+    column.resize(column.size() - 2);
+    axis.unit = unit;
   }
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return plain(name);
+  std::replace(column.begin(), column.end(), '_', ' ');
+  axis.name = column;
+  return axis;
 }
 
-constexpr const char* cost_label = "cost: seconds per cycle of 600 sheared grains";
+Axis cost_axis() {
+  return {.name = "cost: seconds per cycle of 600 sheared grains", .log = true};
+}
 
 /// Work against precision: one curve a method.
-std::optional<Chart> work_precision(const CsvTable& table) {
-  const int cost = table.column("seconds_per_cycle");
-  const int error = static_cast<int>(table.columns.size());
-  if (table.column("method") != 1 || cost == 0 || cost == error) return std::nullopt;
-  return Chart{{.label = cost_label, .log = true},
-               {.label = words(table.columns.back()), .log = true},
-               curves_by_first_column(table, {.x = cost, .x_error = 0, .y = error, .y_error = 0}),
-               {}};
-}
-
-/// How two runs that begin alike part.
-std::optional<Chart> separation(const CsvTable& table) {
-  const int time = table.column("time_s");
-  const int distance = table.column("distance_d");
-  if (time == 0 || distance == 0 || table.column("run") != 1) return std::nullopt;
-  Chart chart{{.label = words("time_s")},
-              {.label = words("distance_d"), .log = true},
-              curves_by_first_column(table, {.x = time, .x_error = 0, .y = distance, .y_error = 0}),
-              {}};
-  return chart;
-}
-
-/// What finite stiffness, or a time step, does to a mean: `NAME` with `NAME_error` against cost.
-std::optional<Chart> means_against_cost(const CsvTable& table) {
-  const int cost = table.column("seconds_per_cycle");
-  if (cost == 0) return std::nullopt;
-  Chart chart{{.label = cost_label, .log = true}, {.label = "mean over runs"}, {}, {}};
-  const TableRows rows = rows_of(table);
-  for (const char* name : {"phi_uncorrected_bias", "phi_bias", "phi"}) {
-    const int y = table.column(name);
-    const int error = table.column(std::string(name) + "_error");
-    if (y == 0 || error == 0) continue;
-    ChartSeries curve = series_of(chart.series.size(), words(name));
-    curve.points = chart_points(rows, {.x = cost, .x_error = 0, .y = y, .y_error = error});
-    chart.series.push_back(std::move(curve));
+bool work_precision(FigureTable& table) {
+  const std::string& error = table.columns.back();
+  if (table.columns.front() != "method" || !has(table, "seconds_per_cycle") ||
+      error == "seconds_per_cycle") {
+    return false;
   }
-  if (chart.series.empty()) return std::nullopt;
-  return chart;
+  table.chart = {.x = cost_axis(),
+                 .y = axis_of(error, true),
+                 .series = curves_by_first_column(table, {.x = "seconds_per_cycle", .y = error})};
+  return true;
 }
 
-Chart chart_of(const CsvTable& table) {
-  for (const auto rule : {work_precision, separation, means_against_cost}) {
-    if (auto chart = rule(table)) return std::move(*chart);
+/// The distance between two runs that begin alike.
+bool separation(FigureTable& table) {
+  if (!has(table, "time_s") || !has(table, "distance_d") || table.columns.front() != "run") {
+    return false;
   }
-  return {};
+  table.chart = {.x = axis_of("time_s", false),
+                 .y = axis_of("distance_d", true),
+                 .series = curves_by_first_column(table, {.x = "time_s", .y = "distance_d"})};
+  return true;
+}
+
+/// The effect of a finite stiffness or time step on a mean: `NAME` with `NAME_error` against cost.
+bool means_against_cost(FigureTable& table) {
+  if (!has(table, "seconds_per_cycle")) return false;
+  table.chart = {.x = cost_axis(), .y = {.name = "mean over runs"}};
+  for (const std::string name : {"phi_uncorrected_bias", "phi_bias", "phi"}) {
+    const std::string error = name + "_error";
+    if (!has(table, name) || !has(table, error)) continue;
+    table.chart.series.push_back(
+        series_of(table.chart.series.size(), axis_of(name, false).name,
+                  {.x = "seconds_per_cycle", .y = name, .y_error = error}));
+  }
+  return !table.chart.series.empty();
 }
 
 ReportPanel read_panel(const std::filesystem::path& file) {
@@ -219,8 +200,9 @@ ReportPanel read_panel(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in) throw NotFound(file.string() + ": cannot be read");
-  Chart chart = chart_of(CsvReader(text, file.string()).read());
-  return {file.stem().string(), std::move(chart), std::move(text), {}, ""};
+  FigureTable table = table_of(file.stem().string(), CsvReader(text, file.string()).read());
+  const bool drawn = work_precision(table) || separation(table) || means_against_cost(table);
+  return {table.name, drawn ? chart_json(table) : nlohmann::json(), std::move(text), {}, ""};
 }
 
 }  // namespace

@@ -57,6 +57,7 @@ nlohmann::json facts(const RegeneratedFigure& result) {
 }
 
 void print_verdicts(const RegeneratedFigure& result) {
+  if (result.verdicts.empty()) return;
   tell("  verdict: {}\n", name_of(overall(result.verdicts)));
   for (const Verdict& verdict : result.verdicts) {
     const std::string value =

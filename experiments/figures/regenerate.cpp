@@ -289,11 +289,13 @@ RegeneratedFigure regenerate(Store& store, const Figure& figure, const Regenerat
       result.plot_error = error.what();
     }
   }
-  nlohmann::json verdict = to_json(made.verdicts);
-  verdict["figure"] = result.name;
-  verdict["scale"] = result.scale;
-  result.files.push_back(
-      write_text(options.folder / (result.name + ".verdict.json"), verdict.dump(1) + "\n"));
+  if (!made.verdicts.empty()) {
+    nlohmann::json verdict = to_json(made.verdicts);
+    verdict["figure"] = result.name;
+    verdict["scale"] = result.scale;
+    result.files.push_back(
+        write_text(options.folder / (result.name + ".verdict.json"), verdict.dump(1) + "\n"));
+  }
 
   nlohmann::json& facts = computed.lineage;
   for (const auto& file : result.files) {

@@ -49,6 +49,15 @@ std::string escape_html(std::string_view text) {
   return result;
 }
 
+std::string text_html(const Text& text) {
+  std::string html;
+  for (const TextRun& run : text.runs) {
+    const std::string plain = escape_html(run.text);
+    html += run.style.empty() ? plain : "<" + run.style + ">" + plain + "</" + run.style + ">";
+  }
+  return html;
+}
+
 std::string script_json(const nlohmann::json& value) {
   std::string result;
   for (const char c : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) {

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 
+#include "analysis/chart.hpp"
 #include "analysis/measures.hpp"
 #include "core/threads.hpp"
 #include "experiments/report/frames.hpp"
@@ -142,11 +143,11 @@ std::string frame_name(const CheckpointRecord& record) {
 json facts_of(const Measures& measures, double theta) {
   json facts = json::array();
   if (measures.interior_grains > 0) {
-    facts.push_back(fmt::format("{{/:Italic ϕ}} = {:.4f}", measures.phi));
-    facts.push_back(fmt::format("{:.1f} % crystalline", measures.crystalline_percent));
-    facts.push_back(fmt::format("largest crystallite {}", measures.largest_crystallite));
+    facts.push_back(to_json(italic("ϕ") + fmt::format(" = {:.4f}", measures.phi)));
+    facts.push_back(to_json(fmt::format("{:.1f} % crystalline", measures.crystalline_percent)));
+    facts.push_back(to_json(fmt::format("largest crystallite {}", measures.largest_crystallite)));
   }
-  if (theta != 0) facts.push_back(fmt::format("tilt {:.4f} rad", theta));
+  if (theta != 0) facts.push_back(to_json(fmt::format("tilt {:.4f} rad", theta)));
   return facts;
 }
 

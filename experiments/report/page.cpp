@@ -184,10 +184,12 @@ std::string data_html(const ReportData& data) {
   json charts = json::object();
   for (const ReportFigure& figure : data.figures) {
     for (const ReportPanel& panel : figure.panels) {
-      if (!panel.chart.series.empty()) charts[panel.name] = to_json(panel.chart);
+      if (!panel.chart.is_null()) charts[panel.name] = panel.chart;
     }
   }
-  for (const ReportPanel& panel : data.accuracy) charts[panel.name] = to_json(panel.chart);
+  for (const ReportPanel& panel : data.accuracy) {
+    if (!panel.chart.is_null()) charts[panel.name] = panel.chart;
+  }
   return fmt::format(
       "<script type=\"application/json\" id=\"report-data\">{}</script>\n<script>{}</script>\n",
       script_json({{"charts", charts}, {"packings", data.packings.runs}}), front_end_script());

@@ -28,15 +28,16 @@ std::string table_html(const ReportPanel& panel) {
   std::string html = fmt::format(
       "<div class=\"scroll tall\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table>",
       escape_html(panel.name));
-  for (const std::vector<std::string>& row : panel.table) {
-    const char* tag = &row == &panel.table.front() ? "th" : "td";
+  for (const std::vector<TextTable::Cell>& row : panel.text.rows) {
+    const char* tag = &row == &panel.text.rows.front() ? "th" : "td";
     html += "<tr>";
-    for (const std::string& cell : row) {
-      html += fmt::format("<{0}>{1}</{0}>", tag, escape_html(cell));
+    for (const TextTable::Cell& cell : row) {
+      html += fmt::format("<{0} style=\"color: {1}\">{2}</{0}>", tag, cell.colour,
+                          text_html(cell.text));
     }
     html += "</tr>\n";
   }
-  return html + "</table></div>";
+  return html + "</table></div><p class=\"small\">" + text_html(panel.text.note) + "</p>";
 }
 
 std::string progress_of(const RunRecord& run) {
@@ -127,12 +128,12 @@ std::string panel_html(const ReportData& data, const ReportPanel& panel) {
   if (!panel.drawing.empty()) {
     plot = fmt::format("<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">", name,
                        base64(std::as_bytes(std::span(panel.drawing))));
-  } else if (data.interactive && !panel.chart.series.empty()) {
+  } else if (data.interactive && !panel.chart.is_null()) {
     plot = fmt::format(
         "<div class=\"plot\" data-chart=\"{}\"><noscript>Plots need JavaScript; "
         "the numbers are below.</noscript></div>",
         name);
-  } else if (!panel.table.empty()) {
+  } else if (!panel.text.rows.empty()) {
     plot = table_html(panel);
   } else if (!data.interactive) {
     plot =

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -97,24 +96,6 @@ std::optional<FigureRecord> record_of(const std::vector<FigureRecord>& records,
   return std::nullopt;
 }
 
-std::vector<std::vector<std::string>> texts_of(const FigureTable& table) {
-  std::vector<std::vector<std::string>> texts = {table.columns};
-  for (const std::vector<TableValue>& row : table.rows) {
-    std::vector<std::string> line;
-    for (const TableValue& value : row) {
-      const auto* text = std::get_if<std::string>(&value);
-      const auto* whole = std::get_if<std::int64_t>(&value);
-      const auto* real = std::get_if<double>(&value);
-      line.push_back(text != nullptr                           ? *text
-                     : whole != nullptr                        ? std::to_string(*whole)
-                     : real != nullptr && std::isfinite(*real) ? fmt::format("{:.9g}", *real)
-                                                               : "");
-    }
-    texts.push_back(std::move(line));
-  }
-  return texts;
-}
-
 ReportFigure make_figure(const Store& store, const Figure& figure, const ReportOptions& options,
                          const std::vector<FigureRecord>& records, ReportData& data) {
   RegenerateOptions how;
@@ -130,8 +111,8 @@ ReportFigure make_figure(const Store& store, const Figure& figure, const ReportO
   made.lineage = figure_lineage(store, {made.name, 0, "", computed.lineage});
   const DrawingFolder folder;
   for (const FigureTable& table : computed.result.tables) {
-    ReportPanel panel{table.name, table.chart, to_csv(table), {}, ""};
-    if (table.chart.series.empty()) panel.table = texts_of(table);
+    ReportPanel panel{table.name, {}, to_csv(table), table.text, ""};
+    if (!table.chart.series.empty()) panel.chart = chart_json(table);
     try {
       if (!data.interactive) panel.drawing = draw(table, folder);
     } catch (const AnalysisError& error) {

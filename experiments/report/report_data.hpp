@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "experiments/figures/figure_lineage.hpp"
-#include "experiments/report/packings.hpp"
 #include "experiments/figures/regenerate.hpp"
+#include "experiments/report/packings.hpp"
 #include "experiments/report/report.hpp"
 #include "provenance/lineage.hpp"
 
@@ -18,10 +18,10 @@ namespace shearcell {
 
 struct ReportPanel {
   std::string name;
-  Chart chart;
+  nlohmann::json chart;  ///< for the front end; null if there is none
   std::string csv;
-  std::vector<std::vector<std::string>> table;  ///< header and rows, where there is no chart
-  std::string drawing;  ///< SVG, when the page is not interactive and gnuplot is there
+  TextTable text;       ///< if the panel is a table
+  std::string drawing;  ///< SVG, if the page is not interactive and gnuplot is installed
 };
 
 struct ReportFigure {

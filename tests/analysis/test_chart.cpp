@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a reader zooms into is what gnuplot draws: the same numbers as in the table.
+// The gnuplot script and the report's chart show the numbers of the table.
 #include "analysis/chart.hpp"
 
 #include <gtest/gtest.h>
@@ -7,38 +7,85 @@
 #include <cstdio>
 #include <limits>
 
+#include "analysis/error.hpp"
 #include "analysis/figure.hpp"
+#include "analysis/gnuplot_script.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 
 namespace shearcell {
 namespace {
 
+FigureTable table_with(TableRows rows, Chart chart) {
+  return {.name = "t",
+          .columns = {"variant", "cycle", "phi", "error"},
+          .rows = std::move(rows),
+          .chart = std::move(chart)};
+}
+
+const SeriesColumns phi_columns{.x = "cycle", .y = "phi", .y_error = "error"};
+
 TEST(Chart, TakesItsPointsFromTheRowsOfOneCurve) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const TableRows rows = {{std::string("a"), std::int64_t{1}, 0.5, 0.1},
-                          {std::string("b"), std::int64_t{1}, 0.6, {}},
-                          {std::string("a"), std::int64_t{2}, {}, 0.1},
-                          {std::string("a"), std::int64_t{3}, nan, 0.1},
-                          {std::string("a"), std::int64_t{4}, 0.7, nan}};
-  const CurveColumns columns{.x = 2, .x_error = 0, .y = 3, .y_error = 4};
-  const auto points = chart_points(rows, columns, 1, std::string("a"));
+  const FigureTable table = table_with({{std::string("a"), std::int64_t{1}, 0.5, 0.1},
+                                        {std::string("b"), std::int64_t{1}, 0.6, {}},
+                                        {std::string("a"), std::int64_t{2}, {}, 0.1},
+                                        {std::string("a"), std::int64_t{3}, nan, 0.1},
+                                        {std::string("a"), std::int64_t{4}, 0.7, nan}},
+                                       {});
+  const Series of_a{.columns = phi_columns, .filter = {"variant", std::string("a")}};
+  const auto points = points_of(table, of_a);
   ASSERT_EQ(points.size(), 2U) << "without a y there is no point";
   EXPECT_EQ(points[0].x, 1);
   EXPECT_EQ(points[0].y, 0.5);
   EXPECT_EQ(points[0].y_error, 0.1);
   EXPECT_EQ(points[0].x_error, std::nullopt);
   EXPECT_EQ(points[1].y_error, std::nullopt);
-  EXPECT_EQ(chart_points(rows, columns).size(), 3U);
+  EXPECT_EQ(points_of(table, {.columns = phi_columns}).size(), 3U);
+  const Series between{.columns = {.x = "cycle", .y = "phi", .x_high = "phi"}};
+  EXPECT_EQ(points_of(table, between).at(0).x, 0.75) << "the middle of both columns";
+  EXPECT_THROW(points_of(table, {.columns = {.x = "cycle", .y = "psi"}}), AnalysisError);
 }
 
 TEST(Chart, HasTheDigitsOfTheCsv) {
-  Chart chart{{.label = "x", .low = 0}, {.label = "y", .log = true}, {}, {0.646}};
-  chart.series.push_back({"t", "#123456", 7, true, {{1.0 / 3, 2, std::nullopt, 0.25}}});
-  EXPECT_EQ(to_json(chart).dump(),
-            R"({"levels":[0.646],"series":[{"colour":"#123456","line":true,"point":7,)"
-            R"("points":[[0.333333333,2.0,null,0.25]],"title":"t"}],)"
-            R"("x":{"high":null,"label":"x","log":false,"low":0.0},)"
-            R"("y":{"high":null,"label":"y","log":true,"low":null}})");
+  const FigureTable table = table_with(
+      {}, {.x = {.name = "x", .symbol = italic("n"), .unit = "s", .low = 0},
+           .y = {.name = "y", .log = true},
+           .series = {{.title = "t", .colour = "#123456", .points = {{1.0 / 3, 2, {}, 0.25}}}},
+           .lines = {{0.646}}});
+  EXPECT_EQ(chart_json(table).dump(),
+            R"({"lines":[{"at":0.646,"colour":"#888888","stub":false,"vertical":false}],)"
+            R"("series":[{"band":false,"colour":"#123456","dashed":false,"line":false,"point":7,)"
+            R"("points":[[0.333333333,2.0,null,0.25]],"shift":0.0,"title":[["t",""]]}],"title":[],)"
+            R"("x":{"clip":false,"high":null,"label":[["x",""],["  ",""],["n","i"]],"log":false,)"
+            R"("low":0.0,"unit":[["s",""]],"whole":false},)"
+            R"("y":{"clip":false,"high":null,"label":[["y",""]],"log":true,"low":null,"unit":[],)"
+            R"("whole":false}})");
+}
+
+// The script and the chart come from one description: what one shows, the other shows too.
+TEST(GnuplotScript, StatesEverySeriesLineAndLabel) {
+  const FigureTable table = table_with(
+      {{std::string("it's"), std::int64_t{1}, 0.5, 0.1},
+       {std::string("b"), std::int64_t{2}, 0.6, {}}},
+      {.x = {.name = "shear cycle", .symbol = italic("n"), .whole = true},
+       .y = {.name = "a_b", .unit = "%", .low = 0},
+       .series = {{.title = italic("ϕ") + subscript("u"),
+                   .colour = "#123456",
+                   .join = Join::line,
+                   .columns = phi_columns,
+                   .filter = {"variant", std::string("it's")}},
+                  {.title = "experiment", .colour = "#654321", .points = {{1, 0.25}}, .shift = 0.5},
+                  {.title = "nothing", .colour = "#000000", .point = 4}},
+       .lines = {{0.1}, {2, true, true}}});
+  const std::string script = gnuplot_script(table);
+  for (const char* part :
+       {"set xlabel 'shear cycle  {/:Italic n}'\n", "set xtics 1\n", "set ylabel 'a\\_b  [%]'\n",
+        "set yrange [0:*]\n", "(strcol(1) eq 'it''s' ? column(3) : NaN):4 with yerrorbars",
+        "title '{/:Italic ϕ}_{u}'", "$points1 << EOD\n1,0.25,,\nEOD\n", "using ($1 + 0.5):2",
+        "keyentry with points lc rgb '#000000' pt 4", "first 0.1 to graph 1, first 0.1",
+        "from 2, graph 0 to 2, graph 0.06"}) {
+    EXPECT_NE(script.find(part), std::string::npos) << part << "\nin\n" << script;
+  }
 }
 
 TEST(Chart, EveryPanelOfEveryFigureHasOne) {
@@ -54,10 +101,11 @@ TEST(Chart, EveryPanelOfEveryFigureHasOne) {
   for (const Figure& figure : all_figures()) {
     for (const FigureTable& table : figure.make(runs).tables) {
       if (figure.needs == FigureNeeds::none) continue;  // a table, not a chart
-      EXPECT_FALSE(table.chart.x.label.empty()) << table.name;
-      EXPECT_FALSE(table.chart.y.label.empty()) << table.name;
+      for (const Axis* axis : {&table.chart.x, &table.chart.y}) {
+        EXPECT_FALSE(axis->name.empty() && axis->symbol.empty()) << table.name;
+      }
       std::size_t points = 0;
-      for (const ChartSeries& series : table.chart.series) points += series.points.size();
+      for (const Series& one : table.chart.series) points += points_of(table, one).size();
       if (table.rows.empty()) continue;
       std::printf("%s: %zu rows, %zu points\n", table.name.c_str(), table.rows.size(), points);
       const bool one_a_row = table.name.starts_with("S2");

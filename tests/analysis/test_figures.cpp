@@ -199,7 +199,7 @@ TEST(Plot, ABadScriptSaysWhatGnuplotSaid) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const Folder folder;
   FigureTable table = s2(two_variants())[0];
-  table.plot = "plot no such thing\n";
+  table.chart.series[0].colour = "'no such colour";
   write_csv(table, folder.path());
   try {
     draw_svg(table, folder.path());

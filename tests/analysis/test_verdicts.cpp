@@ -200,13 +200,12 @@ FigureRun of_table_1(const char* experiment, const std::string& key, const nlohm
 }
 
 TEST(FigureTable1, WhatIsSweptMayDifferAndNothingElse) {
-  EXPECT_EQ(rulings("table1", std::vector{of_table_1("drag", "fluid", "still")}), Rulings{pass});
   std::vector<FigureRun> runs = {of_table_1("gravity", "gravity_m_per_s2", 9.81),
                                  of_table_1("gravity", "gravity_m_per_s2", 0.0),
                                  of_table_1("other", "pressure_Pa", 955.0),
                                  of_table_1("timestep", "steps_per_cycle", 57143)};
   runs[2].labels = {{"fluid", "still"}};
-  EXPECT_EQ(rulings("table1", runs), (Rulings{pass, fail, pass}));
+  EXPECT_EQ(rulings("table1", runs), Rulings{}) << "inputs are not claims";
   const FigureTable table = find_figure("table1")->make(runs).tables.at(0);
   const std::string csv = to_csv(table);
   for (const char* row :
@@ -222,7 +221,6 @@ TEST(FigureTable1, AStiffeningVariesTheSpringsAndHasNoTime) {
   FigureRun run = of_table_1("spring_constant", "protocol", "stiffen");
   for (const char* key : {"period_s", "steps_per_cycle"}) run.parameters.erase(key);
   run.checkpoints.back().stiffness_N_per_m = 65400;
-  EXPECT_EQ(rulings("table1", std::vector{run}), Rulings{pass});
   const std::string csv = to_csv(find_figure("table1")->make(std::vector{run}).tables.at(0));
   for (const char* row :
        {",stiffness_N_per_m,654,654,65400,1,varied\n", ",steps_per_cycle,45600,,,0,none\n",
@@ -230,7 +228,8 @@ TEST(FigureTable1, AStiffeningVariesTheSpringsAndHasNoTime) {
     EXPECT_NE(csv.find(row), std::string::npos) << row << csv;
   }
   run.checkpoints.clear();
-  EXPECT_EQ(rulings("table1", std::vector{run}), Rulings{}) << "declared, not computed";
+  EXPECT_TRUE(find_figure("table1")->make(std::vector{run}).tables.at(0).rows.empty())
+      << "declared, not computed";
 }
 
 /// Cycle 0 is the packing as it settled, cycles 1 to 9 are minima at k/k0 = 1 .. 100.

@@ -37,22 +37,23 @@ TEST_F(AccuracyCharts, DrawACurveForEachMethod) {
   const auto panels = read();
   ASSERT_EQ(panels.size(), 1U);
   EXPECT_EQ(panels[0].name, "accuracy-bounce");
-  const Chart& chart = panels[0].chart;
-  EXPECT_TRUE(chart.x.log && chart.y.log);
-  ASSERT_EQ(chart.series.size(), 3U);
-  EXPECT_EQ(chart.series[0].points.size(), 2U);
-  EXPECT_EQ(chart.series[0].points[1].x, 6);
-  EXPECT_EQ(chart.series[0].points[1].y, 4e-6);
-  EXPECT_EQ(chart.series[1].title, "leapfrog, \"exact\"");
-  EXPECT_TRUE(chart.series[2].points.empty());
+  const nlohmann::json& chart = panels[0].chart;
+  EXPECT_TRUE(chart.at("x").at("log") && chart.at("y").at("log"));
+  const nlohmann::json& series = chart.at("series");
+  ASSERT_EQ(series.size(), 3U);
+  ASSERT_EQ(series[0].at("points").size(), 2U);
+  EXPECT_EQ(series[0].at("points")[1][0], 6);
+  EXPECT_EQ(series[0].at("points")[1][1], 4e-6);
+  EXPECT_EQ(series[1].at("title")[0][0], "leapfrog, \"exact\"");
+  EXPECT_TRUE(series[2].at("points").empty());
 }
 
 TEST_F(AccuracyCharts, DrawMeansWithTheirErrors) {
   write("accuracy-stiffness.csv",
         "stiffness_factor,seconds_per_cycle,phi_bias,phi_bias_error\n1,10,-1e-4,2e-5\n");
   const auto panels = read();
-  ASSERT_EQ(panels[0].chart.series.size(), 1U);
-  EXPECT_EQ(panels[0].chart.series[0].points[0].y_error, 2e-5);
+  ASSERT_EQ(panels[0].chart.at("series").size(), 1U);
+  EXPECT_EQ(panels[0].chart["series"][0]["points"][0][3], 2e-5);
 }
 
 TEST_F(AccuracyCharts, GiveOnlyNumbersOfOtherTables) {
@@ -62,7 +63,7 @@ TEST_F(AccuracyCharts, GiveOnlyNumbersOfOtherTables) {
   const auto panels = read();
   ASSERT_EQ(panels.size(), 2U);
   EXPECT_EQ(panels[0].name, "a");
-  EXPECT_TRUE(panels[0].chart.series.empty());
+  EXPECT_TRUE(panels[0].chart.is_null());
   EXPECT_EQ(panels[0].csv, "x,y\n1,2\n");
 }
 

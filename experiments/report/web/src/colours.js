@@ -2,6 +2,7 @@
 // Colours of grains. Classes are told apart with any colour vision (Okabe and Ito), sizes of a
 // quantity by viridis.
 import {crystalliteSizes} from "./frames.js";
+import {italic, sub} from "./text.js";
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 
@@ -9,7 +10,7 @@ export const classColours = ["#c9cdd3", "#0072b2", "#e69f00"];  // disordered, F
 const crystalliteColours = [
   "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#a6761d", "#7570b3"
 ];
-const plain = "#c9cdd3";
+const plainColour = "#c9cdd3";
 const small = "#8f98a3";  // crystallites beyond the palette
 const wall = "#6b7480";
 
@@ -24,8 +25,8 @@ export function viridis(fraction) {
 }
 
 export const quantities = {
-  phi: {label: "ϕ_{local}", low: 0.55, high: 0.74, of: (grains) => grains.phiLocal},
-  q6: {label: "q_{6}", low: 0.2, high: 0.6, of: (grains) => grains.q6}
+  phi: {label: [...italic("ϕ"), ...sub("local")], low: 0.55, high: 0.74, of: (grains) => grains.phiLocal},
+  q6: {label: [...italic("q"), ...sub("6")], low: 0.2, high: 0.6, of: (grains) => grains.q6}
 };
 
 // Three bytes a sphere, grains first.
@@ -48,7 +49,7 @@ function painter(grains, mode) {
   if (mode === "crystallite") {
     const {rank} = crystalliteSizes(grains.crystallite);
     const palette = crystalliteColours.map(rgb);
-    const [none, rest] = [rgb(plain), rgb(small)];
+    const [none, rest] = [rgb(plainColour), rgb(small)];
     return (i) => {
       const label = grains.crystallite[i];
       return label === 0 ? none : palette[rank.get(label)] ?? rest;
@@ -66,7 +67,7 @@ export function keyOf(grains, mode) {
     const entries = [...rank].slice(0, 4).map(([label, place]) => ({
       colour: crystalliteColours[place], text: size.get(label) === 1 ? "1 grain" : `${size.get(label)} grains`
     }));
-    entries.push({colour: plain, text: entries.length > 0 ? "in none" : "no crystallite"});
+    entries.push({colour: plainColour, text: entries.length > 0 ? "in none" : "no crystallite"});
     return {entries};
   }
   const counts = [0, 0, 0];

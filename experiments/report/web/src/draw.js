@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws a chart into an SVG element: frame with mirrored ticks, error bars, lines, symbols.
 import {
-  line, symbol, symbolCircle, symbolDiamond, symbolSquare, symbolTriangle
+  area, line, symbol, symbolCircle, symbolDiamond, symbolSquare, symbolTriangle
 } from "d3-shape";
-import {writeSvgText} from "./markup.js";
 import {ticksOf} from "./scales.js";
+import {axisLabel, writeSvgText} from "./text.js";
 
 const svgNamespace = "http://www.w3.org/2000/svg";
 
@@ -20,9 +20,9 @@ const shapes = {
   2: symbolSquare, 3: symbolCircle, 4: symbolTriangle, 5: symbolTriangle, 6: symbolDiamond
 };
 
-export function symbolPath(point, area = 34) {
+export function symbolPath(point, size = 34) {
   const shape = shapes[Math.floor(point / 2)] ?? symbolCircle;
-  return symbol(shape, area)();
+  return symbol(shape, size)();
 }
 
 const isOpen = (point) => point % 2 === 0;
@@ -45,6 +45,7 @@ export function dress(element, colour) {
 
 // One symbol, as it stands in the plot or in the legend.
 export function drawSymbol(parent, point, x, y) {
+  if (point === 0) return null;
   return svg("path", {
     class: isOpen(point) ? "symbol open" : "symbol",
     d: symbolPath(point),
@@ -55,8 +56,7 @@ export function drawSymbol(parent, point, x, y) {
 export function drawFrame(root, chart, scales, box) {
   const frame = svg("g", {class: "axes"}, root);
   const {left, right, top, bottom} = box;
-  const whole = chart.series.every((one) => one.points.every(([at]) => Number.isInteger(at)));
-  const x = ticksOf(scales.x, chart.x.log, Math.max(3, Math.round((right - left) / 85)), whole);
+  const x = ticksOf(scales.x, chart.x.log, Math.max(3, Math.round((right - left) / 85)), chart.x.whole);
   const y = ticksOf(scales.y, chart.y.log, Math.max(3, Math.round((bottom - top) / 55)));
   const tick = (length) => (at) => {
     const p = scales.x(at);
@@ -81,18 +81,20 @@ export function drawFrame(root, chart, scales, box) {
   svg("rect", {x: left, y: top, width: right - left, height: bottom - top, fill: "none"}, frame);
   const below = svg("text",
     {class: "label", x: (left + right) / 2, y: bottom + 40, "text-anchor": "middle"}, root);
-  writeSvgText(below, chart.x.label);
+  writeSvgText(below, axisLabel(chart.x));
   const beside = svg("text", {
     class: "label", "text-anchor": "middle",
     transform: `translate(15 ${(top + bottom) / 2}) rotate(-90)`
   }, root);
-  writeSvgText(beside, chart.y.label);
+  writeSvgText(beside, axisLabel(chart.y));
 }
 
-export function drawLevels(root, chart, scales, box) {
-  for (const level of chart.levels) {
-    const y = scales.y(level);
-    svg("path", {class: "level", d: `M${box.left} ${y}H${box.right}`}, root);
+export function drawReferenceLines(root, chart, scales, box) {
+  for (const {at, vertical, stub, colour} of chart.lines) {
+    const d = vertical
+      ? `M${scales.x(at)} ${box.bottom}V${stub ? box.bottom - 0.06 * (box.bottom - box.top) : box.top}`
+      : `M${box.left} ${scales.y(at)}H${box.right}`;
+    dress(svg("path", {class: stub ? "reference stub" : "reference", d}, root), colour);
   }
 }
 
@@ -128,11 +130,16 @@ export function drawSeries(root, one, scales) {
   dress(group, one.colour);
   const drawn = one.points.filter(([x, y]) => Number.isFinite(scales.x(x) + scales.y(y)));
   const marks = marked(drawn, scales, one.line);
-  const bars = errorBars(marks, scales);
+  const bars = one.band ? "" : errorBars(marks, scales);
+  if (one.band) {
+    const shape = area((p) => scales.x(p[0]), (p) => scales.y(p[1] - (p[3] ?? 0)),
+      (p) => scales.y(p[1] + (p[3] ?? 0)));
+    svg("path", {class: "band", d: shape(drawn)}, group);
+  }
   if (bars) svg("path", {class: "bars", d: bars}, group);
   if (one.line && drawn.length > 1) {
     const path = line((p) => scales.x(p[0]), (p) => scales.y(p[1]));
-    svg("path", {class: "line", d: path(drawn)}, group);
+    svg("path", {class: one.dashed ? "line dashed" : "line", d: path(drawn)}, group);
   }
   for (const [x, y] of marks) drawSymbol(group, one.point, scales.x(x), scales.y(y));
   return group;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One interactive plot: what is visible, which part of the axes is shown, and drawing it again when
 // either changes.
-import {drawFrame, drawLevels, drawSeries, drawSymbol, dress, svg} from "./draw.js";
+import {drawFrame, drawReferenceLines, drawSeries, drawSymbol, dress, svg} from "./draw.js";
 import {addGestures} from "./gestures.js";
-import {plainText, writeHtmlText} from "./markup.js";
 import {addReadout} from "./readout.js";
 import {saveSvg} from "./save.js";
 import {extentOf, makeScale} from "./scales.js";
+import {plainText, writeHtmlText} from "./text.js";
 
 const margin = {left: 66, right: 14, top: 12, bottom: 52};
 let plots = 0;
@@ -75,7 +75,7 @@ export class Plot {
       x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top
     }, clip);
     const area = svg("g", {"clip-path": `url(#${this.clipId})`}, root);
-    drawLevels(area, this.chart, this.scales, box);
+    drawReferenceLines(area, this.chart, this.scales, box);
     for (const one of visible) drawSeries(area, one, this.scales);
     drawFrame(root, this.chart, this.scales, box);
     if (visible.every((one) => one.points.length === 0)) {
@@ -140,7 +140,7 @@ export class Plot {
       entry.classList.toggle("without-data", one.points.length === 0);
       const key = svg("svg", {class: "key", width: 26, height: 14, "aria-hidden": "true"});
       dress(key, one.colour);
-      if (one.line) svg("path", {class: "line", d: "M0 7H26"}, key);
+      if (one.line) svg("path", {class: one.dashed ? "line dashed" : "line", d: "M0 7H26"}, key);
       drawSymbol(key, one.point, 13, 7);
       const title = document.createElement("span");
       writeHtmlText(title, one.title);

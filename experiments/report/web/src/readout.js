@@ -2,8 +2,8 @@
 // The values of the point under the pointer, or of the one that the arrow keys are at.
 import {dress, svg} from "./draw.js";
 import {positionIn} from "./gestures.js";
-import {plainText, writeHtmlText} from "./markup.js";
 import {formatOn} from "./scales.js";
+import {plainText, writeHtmlText} from "./text.js";
 
 const reach = 28;  // pixels
 
@@ -39,7 +39,7 @@ export function addReadout(plot) {
 
   function quantity(label, scale, value, error) {
     const line = document.createElement("div");
-    writeHtmlText(line, label.replace(/ {2,}\[.*$/, ""));
+    writeHtmlText(line, label);
     const spread = error ? ` ± ${formatOn(scale, error)}` : "";
     line.append(` = ${formatOn(scale, value)}${spread}`);
     return line;
@@ -56,7 +56,7 @@ export function addReadout(plot) {
     const title = document.createElement("strong");
     writeHtmlText(title, found.one.title);
     const [x, y, xError, yError] = found.one.points[found.index];
-    note.replaceChildren(title, quantity(plot.chart.x.label, plot.scales.x, x, xError),
+    note.replaceChildren(title, quantity(plot.chart.x.label, plot.scales.x, x - found.one.shift, xError),
       quantity(plot.chart.y.label, plot.scales.y, y, yError));
     const bounds = plot.canvas.getBoundingClientRect();
     const host = plot.host.getBoundingClientRect();

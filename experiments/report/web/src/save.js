@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files out of the page: a plot as SVG that needs no stylesheet, a table as CSV, a view as PNG.
-import {writeSvgText} from "./markup.js";
+import {writeSvgText} from "./text.js";
 
 const written = [
   "fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin",

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From a chart's points to the two scales of a plot, and their ticks.
 import {scaleLinear, scaleLog} from "d3-scale";
+import {plain, sup} from "./text.js";
 
 // The range of one axis over visible series, errors included, with a little room on either side.
 export function extentOf(chart, series, axis) {
-  const {log, low, high} = chart[axis];
+  const {log, low, high, clip} = chart[axis];
   const [value, error] = axis === "x" ? [0, 2] : [1, 3];
-  const framed = low != null && high != null;  // bars may then leave the frame
   let least = Infinity;
   let most = -Infinity;
   for (const one of series) {
     for (const point of one.points) {
-      const spread = framed ? 0 : point[error] ?? 0;
+      const spread = point[error] ?? 0;
       for (const end of [point[value] - spread, point[value], point[value] + spread]) {
         if (log && end <= 0) continue;
         least = Math.min(least, end);
@@ -20,11 +20,13 @@ export function extentOf(chart, series, axis) {
     }
   }
   if (axis === "y") {
-    for (const level of chart.levels) {
-      least = Math.min(least, level);
-      most = Math.max(most, level);
+    for (const {at, vertical} of chart.lines) {
+      if (vertical) continue;
+      least = Math.min(least, at);
+      most = Math.max(most, at);
     }
   }
+  if (clip) [least, most] = [low, high];
   if (!(least <= most)) [least, most] = log ? [0.1, 1] : [low ?? 0, high ?? 1];
   return log ? paddedLog(least, most) : padded(least, most, low, high);
 }
@@ -46,6 +48,8 @@ export function makeScale(log, domain, range) {
   return (log ? scaleLog() : scaleLinear()).domain(domain).range(range);
 }
 
+const minus = (text) => text.replace("-", "−");
+
 // {at, text} of labelled ticks, and the places of the unlabelled ones between them.
 // `whole`: there is nothing between whole numbers.
 export function ticksOf(scale, log, wanted, whole = false) {
@@ -57,7 +61,9 @@ function linearTicks(scale, wanted, whole) {
   const finerThanWhole = whole && major.length > 1 && major[1] - major[0] < 1 &&
     major.some(Number.isInteger);
   if (finerThanWhole) {
-    return {major: major.filter(Number.isInteger).map((at) => ({at, text: String(at)})), minor: []};
+    return {
+      major: major.filter(Number.isInteger).map((at) => ({at, text: plain(String(at))})), minor: []
+    };
   }
   const format = scale.tickFormat(wanted);
   const step = major.length > 1 ? major[1] - major[0] : 0;
@@ -66,7 +72,7 @@ function linearTicks(scale, wanted, whole) {
   for (let at = (major[0] ?? 0) - step / 2; step > 0 && at < high; at += step) {
     if (at > low) minor.push(at);
   }
-  return {major: major.map((at) => ({at, text: format(at).replace("-", "−")})), minor};
+  return {major: major.map((at) => ({at, text: plain(minus(format(at)))})), minor};
 }
 
 function logTicks(scale, wanted) {
@@ -75,7 +81,7 @@ function logTicks(scale, wanted) {
   if (decades < 1.2) {
     const format = scaleLinear().domain([low, high]).tickFormat(wanted);
     const major = scaleLinear().domain([low, high]).ticks(Math.min(wanted, 4));
-    return {major: major.map((at) => ({at, text: format(at)})), minor: []};
+    return {major: major.map((at) => ({at, text: plain(format(at))})), minor: []};
   }
   const every = Math.max(1, Math.ceil(decades / wanted));
   const major = [];
@@ -84,8 +90,9 @@ function logTicks(scale, wanted) {
     for (let digit = 1; digit < 10; ++digit) {
       const at = digit * 10 ** power;
       if (at < low || at > high) continue;
-      if (digit === 1 && power % every === 0) major.push({at, text: `10^{${power}}`.replace("-", "−")});
-      else if (digit === 1 || decades < 6) minor.push(at);
+      if (digit === 1 && power % every === 0) {
+        major.push({at, text: [...plain("10"), ...sup(minus(String(power)))]});
+      } else if (digit === 1 || decades < 6) minor.push(at);
     }
   }
   return {major, minor};
@@ -94,12 +101,12 @@ function logTicks(scale, wanted) {
 // Enough digits to tell neighbours apart on this axis and no more.
 export function formatOn(scale, value) {
   const [low, high] = scale.domain();
-  if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value).replace("-", "−");
+  if (Number.isInteger(value) && Math.abs(value) < 1e6) return minus(String(value));
   const span = Math.abs(high - low);
   const digits = Math.ceil(-Math.log10(span / 1000));
   const size = Math.abs(value);
   if (size !== 0 && (size < 1e-3 || size >= 1e6)) {
-    return value.toExponential(3).replace("-", "−");
+    return minus(value.toExponential(3));
   }
-  return value.toFixed(Math.min(8, Math.max(0, digits))).replace("-", "−");
+  return minus(value.toFixed(Math.min(8, Math.max(0, digits))));
 }

@@ -2,9 +2,9 @@
 // The packings of the report: which run, which checkpoint, what the colours mean, what is cut away.
 import {coloursOf, keyOf, viridis} from "./colours.js";
 import {crystalliteSizes, decodeFrame, structureNames} from "./frames.js";
-import {writeHtmlText} from "./markup.js";
 import {saveBlob} from "./save.js";
 import {PackingScene} from "./scene.js";
+import {italic, plain, sub, writeHtmlText} from "./text.js";
 import {onThemeChange, pageColours} from "./theme.js";
 
 const axes = {none: -1, x: 0, y: 1, z: 2};
@@ -96,7 +96,7 @@ export class Viewer {
     this.part("cycle").value = String(index);
     this.part("cycle").setAttribute("aria-valuetext", stored.name);
     this.part("cycle-text").textContent = stored.name;
-    const facts = [`N = ${grains}`, ...stored.facts];
+    const facts = [plain(`N = ${grains}`), ...stored.facts];
     this.part("facts").replaceChildren(...facts.map((fact) => {
       const one = document.createElement("span");
       writeHtmlText(one, fact);
@@ -190,11 +190,13 @@ export class Viewer {
     const label = frame.crystallite[i];
     const size = label > 0 ? crystalliteSizes(frame.crystallite).size.get(label) : 0;
     this.readout.replaceChildren();
-    writeHtmlText(this.readout, `grain ${i}: ${structureNames[frame.structure[i]]}, ` +
-      `{/:Italic ϕ}_{local} = ${frame.phiLocal[i].toFixed(4)}, ` +
-      `{/:Italic q}_6 = ${frame.q6[i].toFixed(4)}, ` +
-      (size > 0 ? `in a crystallite of ${size}` : "in no crystallite") +
-      `${frame.interior[i] ? "" : ", near a wall"}, at (${place}) d`);
+    const where = `${size > 0 ? `in a crystallite of ${size}` : "in no crystallite"}` +
+      `${frame.interior[i] ? "" : ", near a wall"}, at (${place}) d`;
+    writeHtmlText(this.readout, [
+      ...plain(`grain ${i}: ${structureNames[frame.structure[i]]}, `),
+      ...italic("ϕ"), ...sub("local"), ...plain(` = ${frame.phiLocal[i].toFixed(4)}, `),
+      ...italic("q"), ...sub("6"), ...plain(` = ${frame.q6[i].toFixed(4)}, ${where}`)
+    ]);
   }
 
   showKey({entries, bar}) {
@@ -203,7 +205,7 @@ export class Viewer {
     if (bar) {
       const label = document.createElement("span");
       label.className = "of";
-      writeHtmlText(label, `{/:Italic ${bar.label[0]}}${bar.label.slice(1)}`);
+      writeHtmlText(label, bar.label);
       const strip = document.createElement("span");
       strip.className = "strip";
       const stops = [0, 0.25, 0.5, 0.75, 1].map((t) => `rgb(${viridis(t).join(" ")})`);
