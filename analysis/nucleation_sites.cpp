@@ -13,7 +13,8 @@ namespace {
 
 double place(const CrystalliteMap& map, const Eigen::Vector3d& centre, CellAxis axis) {
   if (axis == CellAxis::x) return (centre.x() + 1) / (map.width + 2);
-  return (centre.y() - map.bottom) / (map.top - map.bottom);
+  const double height = axis == CellAxis::y ? map.top - map.bottom : nominal_height * map.width;
+  return (centre.y() - map.bottom) / height;
 }
 
 std::vector<double> histogram(std::span<const double> places, std::size_t bins) {

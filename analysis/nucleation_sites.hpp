@@ -11,11 +11,14 @@
 
 namespace shearcell {
 
-enum class CellAxis { x, y };
+/// `y` is relative to the height of the cell at that moment, `y_nominal` to 1.675 L, with L the
+/// free width.
+enum class CellAxis { x, y, y_nominal };
+inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 
 /// Places of the centres of mass of all crystallites of 15 to 25 grains in a run. x is counted from
 /// d outside the left plane in units of w = width + 2 d, y from the bottom plane in units of the
-/// height h that the cell has at that moment, so that both lie in [0, 1]. [choice]
+/// height h, so that both lie in [0, 1]; a cell higher than 1.675 L exceeds that. [choice]
 std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis);
 
 /// The same with one place for each nucleus, where it first has 15 to 25 grains, so that one that

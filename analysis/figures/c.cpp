@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figure C: probability to grow less that to shrink against the size of a crystallite, for each
-// amplitude. Supplement C, Fig. 4(a) of the main text.
+// Figure C: growth of crystallites. Probability to grow minus probability to shrink against size,
+// critical size against amplitude, and largest crystallite against phi. Supplement C, Figs. 4(a)
+// and 4(b) of the main text.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,6 +44,18 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
 const std::array<const char*, 5> amplitude_colours = {"#6a3d9a", "#000000", "#2ca02c", "#1f4fd8",
                                                       "#d62728"};
 
+Text title_of(double amplitude) {
+  return italic("A") + fmt::format(" = {}", amplitude);
+}
+
+const char* colour_of(std::size_t k) {
+  return amplitude_colours[k % amplitude_colours.size()];
+}
+
+int point_of(std::size_t k) {
+  return 5 + 2 * static_cast<int>(k % 5);
+}
+
 Chart chart_of(std::span<const AmplitudeGrowth> all) {
   Chart chart{
       .x = {.name = "crystallite size", .unit = "grains", .low = 0, .high = 60, .clip = true},
@@ -53,14 +66,13 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
             .clip = true},
       .lines = {{0}}};
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const char* colour = amplitude_colours[k % amplitude_colours.size()];
     chart.series.push_back(
-        {.title = italic("A") + fmt::format(" = {}", all[k].amplitude),
-         .colour = colour,
-         .point = 5 + 2 * static_cast<int>(k % 5),
+        {.title = title_of(all[k].amplitude),
+         .colour = colour_of(k),
+         .point = point_of(k),
          .columns = {.x = "size_grains", .y = "delta_rho", .y_error = "delta_rho_error"},
          .filter = {"amplitude_rad", all[k].amplitude}});
-    chart.lines.push_back({all[k].published->critical_size, true, true, colour});
+    chart.lines.push_back({all[k].published->critical_size, true, true, colour_of(k)});
   }
   return chart;
 }
@@ -107,6 +119,24 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
                              .columns = {.x = "amplitude_rad",
                                          .y = "critical_size_grains",
                                          .y_error = "critical_size_standard_error_grains"}}}};
+  return table;
+}
+
+/// Fig. 4(b) of the main text: with method 1 of section C the onset is the phi at which a curve
+/// reaches its critical size. No crystallite counts as one grain, as in method 2.
+FigureTable largest_table(std::span<const FigureRun> runs, std::span<const AmplitudeGrowth> all) {
+  std::vector<CurveStyle> styles;
+  std::vector<ReferenceLine> lines;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    styles.push_back({all[k].amplitude, title_of(all[k].amplitude), colour_of(k), point_of(k)});
+    lines.push_back({.at = all[k].published->critical_size, .colour = colour_of(k)});
+  }
+  const MeasureColumn largest{"largest_crystallite", "grains", [](const Measures& m) {
+                                return std::max(1.0, static_cast<double>(m.largest_crystallite));
+                              }};
+  FigureTable table = against_phi("C_largest", curves_of(runs, "amplitude_rad", styles), largest,
+                                  {.name = "largest crystallite", .unit = "grains", .log = true});
+  table.chart.lines = std::move(lines);
   return table;
 }
 
@@ -159,7 +189,7 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
 
 FigureResult figure_c(std::span<const FigureRun> runs) {
   const std::vector<AmplitudeGrowth> all = growth_by_amplitude(runs);
-  FigureResult result{{rates_table(all), critical_table(all)}, {}};
+  FigureResult result{{rates_table(all), critical_table(all), largest_table(runs, all)}, {}};
   for (const AmplitudeGrowth& one : all) {
     result.verdicts.push_back(critical_size_is_published(one));
   }

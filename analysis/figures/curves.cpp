@@ -140,6 +140,10 @@ Axis crystalline_axis() {
   return {.name = "percentage crystalline", .unit = "%", .low = 0};
 }
 
+Axis overlap_axis() {
+  return {.name = "mean overlap", .symbol = Text("⟨") + italic("δ") + "⟩", .unit = italic("d")};
+}
+
 Axis amplitude_axis() {
   return {.name = "amplitude", .symbol = italic("A"), .unit = "rad", .low = 0, .high = 0.12};
 }

@@ -60,6 +60,7 @@ RunStatistics over(const CurvePoint& point, const Quantity& quantity);
 Axis cycle_axis();
 Axis phi_axis();
 Axis crystalline_axis();
+Axis overlap_axis();
 Axis amplitude_axis();  ///< 0 to 0.12 rad
 Axis onset_axis();      ///< phi at the onset
 

@@ -73,10 +73,9 @@ FigureTable table_of(const std::map<int, Stiffness>& found) {
                               .x_error = "overlap_standard_error_d",
                               .y_error = column + "_standard_error"}};
   };
-  table.chart = {.x = {.name = "mean overlap",
-                       .symbol = Text("⟨") + italic("δ") + "⟩",
-                       .unit = italic("d"),
-                       .log = true},
+  Axis overlap = overlap_axis();
+  overlap.log = true;
+  table.chart = {.x = std::move(overlap),
                  .y = phi_axis(),
                  .series = {phi_series(italic("ϕ") + subscript("u") + ", uncorrected", 6, "phi_u"),
                             phi_series(italic("ϕ"), 7, "phi")}};

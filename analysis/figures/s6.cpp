@@ -100,6 +100,23 @@ FigureTable onset_table(std::span<const CurveOnset> onsets) {
   return table;
 }
 
+/// Figure 5(c) of the main text shows a slight difference in structure; the supplement does not say
+/// in which quantity.
+std::vector<FigureTable> structure_panels(std::span<const Curve> curves) {
+  std::vector<FigureTable> panels = {
+      crystallinity_against_phi("S6_crystalline", curves),
+      against_phi("S6_contacts", curves, {"contacts_per_grain", "", &Measures::contacts_per_grain},
+                  {.name = "contacts per grain"}),
+      against_phi("S6_overlap", curves, {"overlap", "d", &Measures::mean_overlap}, overlap_axis())};
+  for (FigureTable& panel : panels) {
+    for (ReferenceLine line : onset_lines()) {
+      line.vertical = true;
+      panel.chart.lines.push_back(line);
+    }
+  }
+  return panels;
+}
+
 Verdict gravity_does_not_matter(const CurveOnset& with, const CurveOnset& without) {
   return means_agree(
       with.onset.tells() && without.onset.tells(),
@@ -122,6 +139,7 @@ FigureResult figure_s6(std::span<const FigureRun> runs) {
   phi.chart.lines = onset_lines();
   phi.chart.series.push_back(onset_series(onsets));
   FigureResult result{{std::move(phi), onset_table(onsets)}, {}};
+  for (FigureTable& panel : structure_panels(curves)) result.tables.push_back(std::move(panel));
   for (const CurveOnset& o : onsets) {
     if (o.gravity) continue;
     result.verdicts.push_back(onset_is_published(

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figure S7: crystallites near the critical size appear all over the cell, in the middle as likely
-// as anywhere, and more near the top than near the bottom. Supplement E.
+// Figure S7: where crystallites near the critical size are; in two definitions of the height, and
+// for several spring constants. Supplement E.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "analysis/agreement.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
+#include "analysis/figures/groups.hpp"
 #include "analysis/nucleation_sites.hpp"
 #include "analysis/statistics.hpp"
 
@@ -28,10 +30,10 @@ struct Places {
   std::size_t count = 0;
 };
 
-Places places_of(std::span<const FigureRun> runs, CellAxis axis) {
+Places places_of(std::span<const FigureRun* const> runs, CellAxis axis) {
   Places places;
-  for (const FigureRun& run : runs) {
-    std::vector<double> found = nucleus_places(run, axis);
+  for (const FigureRun* run : runs) {
+    std::vector<double> found = nucleus_places(*run, axis);
     if (found.empty()) continue;
     places.count += found.size();
     places.runs.push_back(std::move(found));
@@ -50,13 +52,44 @@ double smallest_width(std::span<const FigureRun> runs) {
   return width;
 }
 
-void add_rows(const char* axis, std::span<const DensityBin> density, const Places& places,
-              FigureTable& table) {
-  for (const DensityBin& bin : density) {
-    table.rows.push_back({std::string(axis), bin.low, bin.high, bin.density, table_value(bin.error),
-                          static_cast<std::int64_t>(places.count),
-                          static_cast<std::int64_t>(places.runs.size())});
+/// One curve of a panel.
+struct Profile {
+  TableValue key;  ///< in the first column
+  Text title;
+  Places places;
+};
+
+/// Probability density over [0, 1] of one or more distributions.
+FigureTable density_table(std::string name, std::string first_column, Text x,
+                          std::span<const Profile> profiles) {
+  static const std::array<const char*, 4> colours = {"#000000", "#d62728", "#1f4fd8", "#2ca02c"};
+  FigureTable table{.name = std::move(name),
+                    .columns = {std::move(first_column), "low", "high", "probability_density",
+                                "standard_error", "crystallites", "runs"},
+                    .rows = {}};
+  table.chart = {.x = {.symbol = std::move(x), .low = 0, .high = 1},
+                 .y = {.name = "probability density", .symbol = italic("P"), .low = 0}};
+  for (const Profile& profile : profiles) {
+    for (const DensityBin& bin : density(profile.places.runs, bins)) {
+      table.rows.push_back({profile.key, bin.low, bin.high, bin.density, table_value(bin.error),
+                            static_cast<std::int64_t>(profile.places.count),
+                            static_cast<std::int64_t>(profile.places.runs.size())});
+    }
+    const std::size_t k = table.chart.series.size();
+    table.chart.series.push_back({.title = profile.title,
+                                  .colour = colours[k % colours.size()],
+                                  .point = 4 + 2 * static_cast<int>(k % 4),
+                                  .columns = {.x = "low",
+                                              .y = "probability_density",
+                                              .y_error = "standard_error",
+                                              .x_high = "high"},
+                                  .filter = {table.columns.front(), profile.key}});
   }
+  return table;
+}
+
+Text ratio(const char* length, const Text& unit) {
+  return italic(length) + "/" + unit;
 }
 
 std::string enough_in_words(const Places& places) {
@@ -134,34 +167,32 @@ Verdict more_near_the_top(const Places& places) {
 }  // namespace
 
 FigureResult figure_s7(std::span<const FigureRun> runs) {
-  const Places x = places_of(runs, CellAxis::x);
-  const Places y = places_of(runs, CellAxis::y);
-  const std::vector<DensityBin> density_x = density(x.runs, bins);
-  const std::vector<DensityBin> density_y = density(y.runs, bins);
-  FigureTable table;
-  table.name = "S7";
-  table.columns = {"axis",           "low",          "high", "probability_density",
-                   "standard_error", "crystallites", "runs"};
-  add_rows("x/w", density_x, x, table);
-  add_rows("y/h", density_y, y, table);
-  const auto along = [](const char* axis, const char* length, const char* colour, int point) {
-    return Series{.title = italic("P") + "(" + italic(axis) + "/" + italic(length) + ")",
-                  .colour = colour,
-                  .point = point,
-                  .columns = {.x = "low",
-                              .y = "probability_density",
-                              .y_error = "standard_error",
-                              .x_high = "high"},
-                  .filter = {"axis", std::string(axis) + "/" + length}};
-  };
-  table.chart = {
-      .x = {.symbol = italic("x") + "/" + italic("w") + ",  " + italic("y") + "/" + italic("h"),
-            .low = 0,
-            .high = 1},
-      .y = {.name = "probability density", .symbol = italic("P"), .low = 0},
-      .series = {along("x", "w", "#000000", 4), along("y", "h", "#d62728", 6)}};
-  return {{std::move(table)},
-          {uniform_in_the_middle(density_x, x, smallest_width(runs)), more_near_the_top(y)}};
+  // The panels of the supplement are those of the softest springs; a manifest may have others.
+  const auto by_stiffness = runs_by(runs, "stiffness_N_per_m");
+  std::vector<const FigureRun*> softest;
+  for (const FigureRun& run : runs) {
+    const double k = number_of(run, "stiffness_N_per_m");
+    if (by_stiffness.empty() || k == by_stiffness.begin()->first) softest.push_back(&run);
+  }
+  const auto probability = [](const Text& of) { return italic("P") + "(" + of + ")"; };
+  const Text x_over_w = ratio("x", italic("w")), y_over_h = ratio("y", italic("h"));
+  const Text y_over_nominal = ratio("y", Text("1.675 ") + italic("L"));
+  const std::array<Profile, 3> places = {
+      {{"x/w", probability(x_over_w), places_of(softest, CellAxis::x)},
+       {"y/h", probability(y_over_h), places_of(softest, CellAxis::y)},
+       {"y/1.675L", probability(y_over_nominal), places_of(softest, CellAxis::y_nominal)}}};
+  std::vector<Profile> stiffness;
+  for (const auto& [k, members] : by_stiffness) {
+    stiffness.push_back(
+        {k, italic("k") + fmt::format(" = {} N/m", k), places_of(members, CellAxis::y)});
+  }
+  const std::span all(places);
+  return {{density_table("S7", "axis", x_over_w + ",  " + y_over_h, all.first(2)),
+           density_table("S7_heights", "axis", y_over_h + ",  " + y_over_nominal, all.last(2)),
+           density_table("S7_stiffness", "stiffness_N_per_m", y_over_h, stiffness)},
+          {uniform_in_the_middle(density(places[0].places.runs, bins), places[0].places,
+                                 smallest_width(runs)),
+           more_near_the_top(places[1].places)}};
 }
 
 }  // namespace shearcell

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Makes a figure from stored checkpoints alone: nothing is simulated.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/figure.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+struct FigureOptions {
+  std::filesystem::path folder;      ///< for the files; created if missing
+  std::optional<std::string> scale;  ///< default: the one that was declared last
+  std::size_t workers = 1;
+  bool fresh = false;  ///< measure every checkpoint again, even if the store keeps its measures
+  std::function<void(std::size_t done, std::size_t total)> report;  ///< may be empty
+};
+
+struct FigureSummary {
+  std::string name;
+  std::string scale;
+  std::size_t runs = 0;
+  std::size_t checkpoints = 0;
+  std::size_t measured = 0;                  ///< checkpoints that were analysed for it now
+  std::vector<std::filesystem::path> files;  ///< CSV, SVG, PDF of each panel, verdict, lineage
+  std::vector<Verdict> verdicts;             ///< on the supplement's claims
+  std::vector<std::string> damage;           ///< checkpoints that could not be read, one line each
+  std::vector<std::string> pruned;           ///< checkpoints whose files were pruned, likewise
+  std::vector<std::string> changed;          ///< checkpoints whose kept measures were different
+  std::string cache_trouble;                 ///< why measures cannot be kept; "" if they can
+  std::string plot_error;                    ///< why there is no SVG; "" if there is
+};
+
+/// A figure before anything is written.
+struct ComputedFigure {
+  FigureSummary summary;  ///< without files
+  FigureResult result;
+  nlohmann::json lineage;  ///< as the figure's record has it; `outputs` is empty
+};
+
+/// Tables, verdicts and inputs of a figure. Reads the store and writes nothing but measures into
+/// derived.sqlite; options.folder is not used. A checkpoint whose measures are kept is not read;
+/// one that would have to be read and is damaged or pruned is left out and named. Throws NotFound
+/// if the store holds no run for the figure.
+ComputedFigure compute_figure(const Store& store, const Figure& figure,
+                              const FigureOptions& options);
+
+/// Computes the figure; writes FOLDER/PANEL.csv, .svg and, with librsvg, .pdf of each panel,
+/// FOLDER/NAME.verdict.json if there are claims, and FOLDER/NAME.lineage.json; and records a
+/// FigureGenerated event with host and build, unless the newest event of this figure says the same.
+/// The same checkpoints give the same bytes. Throws as compute_figure() and require_own_files().
+FigureSummary draw_figure(Store& store, const Figure& figure, const FigureOptions& options);
+
+}  // namespace shearcell

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/figures/lineage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/limits.hpp"
+#include "provenance/errors.hpp"
+#include "provenance/io/plain_file.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/sha256.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+FigureInput read_input(const json& input) {
+  FigureInput result;
+  input.at("run").get_to(result.run);
+  input.at("experiment").get_to(result.experiment);
+  input.at("variant").get_to(result.variant);
+  result.seed = count_at(input, "seed");
+  input.at("manifest").get_to(result.manifest);
+  input.at("checkpoints").get_to(result.checkpoints);
+  return result;
+}
+
+// The swept values of the run in the membership that the figure used.
+json labels_of(const RunRecord& run, const FigureInput& input) {
+  for (const Membership& member : run.memberships) {
+    if (member.manifest == input.manifest && member.variant == input.variant) return member.labels;
+  }
+  return json::object();
+}
+
+const ManifestText* remember_manifest(const Store& store, FigureLineage& lineage,
+                                      const std::string& sha256) {
+  for (const ManifestText& known : lineage.manifests) {
+    if (known.sha256 == sha256) return &known;
+  }
+  auto manifest = find_manifest(store, sha256);
+  if (!manifest) return nullptr;
+  lineage.manifests.push_back(std::move(*manifest));
+  return &lineage.manifests.back();
+}
+
+json attempt_json(const Attempt& attempt, std::size_t number) {
+  return {{"attempt", number},
+          {"event", attempt.seq},
+          {"started_at", attempt.started_at},
+          {"ended_at", attempt.ended_at},
+          {"outcome", name_of(attempt.outcome)},
+          {"why", attempt.why},
+          {"host", attempt.host},
+          {"from", {{"run", attempt.from_run}, {"checkpoint", attempt.from_checkpoint}}}};
+}
+
+json checkpoint_json(const std::string& sha256, const RunLineage& run) {
+  const CheckpointHistory* known = run.find(sha256);
+  if (known == nullptr) return {{"sha256", sha256}, {"known", false}};
+  return {{"sha256", sha256},
+          {"known", true},
+          {"state_hash", known->record.state_hash},
+          {"cycle", known->record.cycle},
+          {"step", known->record.step},
+          {"file", known->record.file},
+          {"size", known->record.size},
+          {"event", known->record.seq},
+          {"recorded_at", known->recorded_at},
+          {"attempt", known->attempt ? json(*known->attempt + 1) : json(nullptr)},
+          {"rejected", known->rejected},
+          {"pruned", known->pruned}};
+}
+
+json stage_json(const RunLineage& stage) {
+  json attempts = json::array();
+  for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
+    attempts.push_back(attempt_json(stage.attempts[a], a + 1));
+  }
+  return {
+      {"run", stage.run.id},        {"kind", stage.run.kind},         {"parent", stage.run.parent},
+      {"grains", stage.run.grains}, {"resolved", stage.run.resolved}, {"attempts", attempts}};
+}
+
+// Of a lineage file beside the published one, or "".
+std::string hash_in_lineage_beside(const std::filesystem::path& file, const std::string& figure) {
+  const auto text =
+      read_plain(file.parent_path() / (figure + ".lineage.json"), StoreLimits::value_bytes);
+  if (!text) return "";
+  const json lineage = parse_json(*text);
+  if (!lineage.is_object() || !lineage.contains("outputs")) return "";
+  const json& outputs = lineage["outputs"];
+  const std::string name = file.filename().string();
+  if (!outputs.is_object() || !outputs.contains(name) || !outputs[name].is_string()) return "";
+  return outputs[name].get<std::string>();
+}
+
+std::map<std::string, std::string> outputs_of(const FigureRecord& record) {
+  std::map<std::string, std::string> outputs;
+  const auto found = record.provenance.find("outputs");
+  if (found == record.provenance.end() || !found->is_object()) return outputs;
+  for (const auto& [name, sha256] : found->items()) {
+    if (sha256.is_string()) outputs[name] = sha256.get<std::string>();
+  }
+  return outputs;
+}
+
+// The same and the lineage file, which is the record without the host and build.
+std::map<std::string, std::string> files_of(const FigureRecord& record) {
+  std::map<std::string, std::string> files = outputs_of(record);
+  files[record.name + ".lineage.json"] = sha256_hex(lineage_text(record.provenance));
+  return files;
+}
+
+}  // namespace
+
+std::string lineage_text(json provenance) {
+  if (provenance.is_object()) provenance.erase("made");
+  return provenance.dump(1) + '\n';
+}
+
+std::vector<FigureRecord> figure_records(const Store& store) {
+  std::vector<FigureRecord> records;
+  for (const FigureRecord& figure : store.figures()) {
+    for (const Event& event : store.events("figure/" + figure.name)) {
+      if (event.type != "FigureGenerated") continue;
+      records.push_back({figure.name, event.seq, event.recorded_at, event.body()});
+    }
+  }
+  std::sort(records.begin(), records.end(),
+            [](const FigureRecord& a, const FigureRecord& b) { return a.seq < b.seq; });
+  return records;
+}
+
+FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
+  FigureLineage lineage{record, {}, outputs_of(record), {}, {}};
+  try {
+    const std::string scale = record.provenance.value("scale", "");
+    for (const json& entry : record.provenance.at("inputs")) {
+      FigureInput input = read_input(entry);
+      if (!lineage.runs.contains(input.run)) {
+        for (RunLineage& stage : run_lineage(store, input.run)) {
+          const std::string id = stage.run.id;
+          lineage.runs.try_emplace(id, std::move(stage));
+        }
+      }
+      if (const auto* manifest = remember_manifest(store, lineage, input.manifest)) {
+        input.lines =
+            manifest_lines(manifest->text, scale, labels_of(lineage.runs.at(input.run).run, input));
+      }
+      lineage.inputs.push_back(std::move(input));
+    }
+  } catch (const json::exception& problem) {
+    throw StoreDamaged(
+        fmt::format("event {} (FigureGenerated of {}): its payload is "
+                    "malformed: {}; run `verify`",
+                    record.seq, record.name, problem.what()));
+  } catch (const NotFound& problem) {
+    throw StoreDamaged(fmt::format("event {} (FigureGenerated of {}): {}", record.seq, record.name,
+                                   problem.what()));
+  }
+  return lineage;
+}
+
+json to_json(const FigureLineage& lineage) {
+  json manifests = json::array(), inputs = json::array(), stages = json::array();
+  for (const ManifestText& m : lineage.manifests) {
+    manifests.push_back({{"sha256", m.sha256},
+                         {"path", m.path},
+                         {"registered_at", m.registered_at},
+                         {"text", m.text}});
+  }
+  for (const FigureInput& input : lineage.inputs) {
+    json lines = json::array(), checkpoints = json::array();
+    for (const ManifestLine& line : input.lines) {
+      lines.push_back({{"key", line.key}, {"line", line.line}, {"text", line.text}});
+    }
+    const RunLineage& run = lineage.runs.at(input.run);
+    for (const std::string& c : input.checkpoints) checkpoints.push_back(checkpoint_json(c, run));
+    inputs.push_back({{"run", input.run},
+                      {"experiment", input.experiment},
+                      {"variant", input.variant},
+                      {"seed", input.seed},
+                      {"manifest", input.manifest},
+                      {"manifest_lines", lines},
+                      {"checkpoints", checkpoints}});
+  }
+  for (const auto& [id, stage] : lineage.runs) stages.push_back(stage_json(stage));
+  const json& facts = lineage.record.provenance;
+  return {{"figure", lineage.record.name},
+          {"event", lineage.record.seq},
+          {"recorded_at", lineage.record.recorded_at},
+          {"scale", facts.value("scale", json(nullptr))},
+          {"analysis_version", facts.value("analysis_version", json(nullptr))},
+          {"made", facts.value("made", json(nullptr))},
+          {"outputs", lineage.outputs},
+          {"manifests", manifests},
+          {"inputs", inputs},
+          {"runs", stages}};
+}
+
+std::optional<PublishedFile> find_published(const Store& store, const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) {
+    throw NotFound(file.string() + ": there is no such regular file");
+  }
+  if (std::filesystem::file_size(file) > StoreLimits::published_bytes) {
+    throw NotFound(file.string() + ": larger than any file of a figure");
+  }
+  const std::string sha256 = sha256_hex_of_file(file);
+  const std::string name = file.filename().string();
+  std::vector<FigureRecord> records = figure_records(store);
+  std::reverse(records.begin(), records.end());  // the newest that fits
+  for (const FigureRecord& record : records) {
+    for (const auto& [output, hash] : files_of(record)) {
+      if (hash == sha256)
+        return PublishedFile{PublishedFile::Verdict::matches, sha256, hash, record};
+    }
+  }
+  std::optional<PublishedFile> by_name;
+  for (const FigureRecord& record : records) {
+    const auto outputs = files_of(record);
+    const auto output = outputs.find(name);
+    if (output == outputs.end()) continue;
+    const PublishedFile found{PublishedFile::Verdict::changed, sha256, output->second, record};
+    if (hash_in_lineage_beside(file, record.name) == output->second) return found;
+    if (!by_name) by_name = found;
+  }
+  return by_name;
+}
+
+std::vector<InputFault> check_inputs(const Store& store, const FigureLineage& lineage) {
+  const ObjectStore objects(store.folder());
+  std::vector<InputFault> faults;
+  for (const FigureInput& input : lineage.inputs) {
+    const RunLineage& run = lineage.runs.at(input.run);
+    for (const std::string& sha256 : input.checkpoints) {
+      const CheckpointHistory* known = run.find(sha256);
+      if (known == nullptr) {
+        faults.push_back({input.run, sha256, "the log does not have it"});
+        continue;
+      }
+      try {
+        objects.get(sha256, known->record.size);
+      } catch (const StoreDamaged& damage) {
+        faults.push_back({input.run, sha256, known->pruned ? "pruned" : damage.what()});
+      }
+    }
+  }
+  return faults;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures of many checkpoints: those that the store keeps are read; the others are computed,
+// several at a time, and kept.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/derived_measures.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+struct MeasureOptions {
+  std::size_t workers = 1;
+  bool fresh = false;  ///< compute all of them again and replace the kept ones
+  /// Called as checkpoints are computed; may be empty.
+  std::function<void(std::size_t done, std::size_t total)> report;
+};
+
+struct MeasuredCheckpoints {
+  /// In the order of the records; for each the results in the order of the measures, or nothing
+  /// if the checkpoint had to be read and could not be.
+  std::vector<std::optional<std::vector<nlohmann::json>>> results;
+  std::size_t computed = 0;         ///< checkpoints
+  std::size_t kept = 0;             ///< checkpoints whose results were kept
+  std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each, sorted
+  std::vector<std::string> pruned;  ///< likewise, whose files were pruned
+  std::vector<std::string>
+      changed;          ///< with `fresh`: checkpoints whose kept results were different
+  std::string trouble;  ///< why results cannot be kept; "" if they can
+};
+
+/// Results are kept under the checkpoint's recorded SHA-256, so for a kept result the file is not
+/// read and may be missing; `verify` checks files. Kept and computed results are the same bytes.
+MeasuredCheckpoints measure_checkpoints(const Store& store,
+                                        std::span<const CheckpointRecord> records,
+                                        std::span<const DerivedMeasure> measures,
+                                        const MeasureOptions& options);
+
+}  // namespace shearcell

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A published figure leads back to every checkpoint, run, manifest line, seed, build and host.
+#include "experiments/figures/lineage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "experiments/figures/draw.hpp"
+#include "experiments/runner/host.hpp"
+#include "provenance/errors.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
+const std::string kText = tiny_manifest("", kBothFluids + "seeds: [4, 9]\n");
+
+std::string line_of(const std::string& text, int line) {
+  std::istringstream in(text);
+  std::string found;
+  for (int l = 0; l < line; ++l) std::getline(in, found);
+  return found;
+}
+
+class FigureLineageTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    compute(store_, kText, ExpandOptions{.scale = {}, .cycles = 1, .seeds = {}});
+    make("out");
+  }
+  void make(const std::string& name) {
+    FigureOptions options;
+    options.folder = folder_.path() / name;
+    draw_figure(store_, *find_figure("S2"), options);
+  }
+  std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
+
+  TemporaryFolder folder_;
+  Store store_{folder_.path() / "store", Access::create};
+};
+
+TEST_F(FigureLineageTest, LeadsToEveryCheckpointAndWhatMadeIt) {
+  const FigureLineage lineage = figure_lineage(store_, figure_records(store_).at(0));
+  ASSERT_EQ(lineage.inputs.size(), 4U);
+  EXPECT_EQ(lineage.record.provenance.at("made"), host_facts());
+  ASSERT_EQ(lineage.manifests.size(), 1U);
+  EXPECT_EQ(lineage.manifests[0].text, kText);
+  EXPECT_EQ(lineage.runs.size(), 6U) << "four sheared, two packings";
+  for (const FigureInput& input : lineage.inputs) {
+    EXPECT_TRUE(input.seed == 4 || input.seed == 9);
+    EXPECT_EQ(input.checkpoints.size(), 2U);
+    const RunLineage& run = lineage.runs.at(input.run);
+    for (const std::string& sha256 : input.checkpoints) {
+      const CheckpointHistory* checkpoint = run.find(sha256);
+      ASSERT_NE(checkpoint, nullptr);
+      EXPECT_EQ(run.attempts.at(checkpoint->attempt.value()).host, host_facts());
+    }
+    const Attempt& first = run.attempts.at(0);
+    EXPECT_NE(lineage.runs.at(first.from_run).find(first.from_checkpoint), nullptr);
+    for (const ManifestLine& line : input.lines) {
+      EXPECT_EQ(line_of(kText, line.line), line.text) << line.key;
+    }
+    ASSERT_EQ(input.lines.size(), 3U);
+    EXPECT_EQ(input.lines[0].key, "experiment");
+    EXPECT_EQ(input.lines[1].key, "sweep.grid.fluid");
+    EXPECT_EQ(input.lines[2].text, "seeds: [4, 9]");
+  }
+  EXPECT_TRUE(check_inputs(store_, lineage).empty());
+  const nlohmann::json all = to_json(lineage);
+  EXPECT_EQ(all.at("inputs").at(0).at("checkpoints").at(0).at("attempt"), 1);
+  EXPECT_EQ(all.at("outputs").size(), lineage.outputs.size());
+}
+
+TEST_F(FigureLineageTest, AFileAloneFindsItsRecord) {
+  const std::string old = read_bytes(file("out/S2a.csv"));
+  for (const char* name : {"out/S2a.csv", "out/S2b.csv", "out/S2.lineage.json"}) {
+    const auto found = find_published(store_, file(name));
+    ASSERT_TRUE(found.has_value()) << name;
+    EXPECT_EQ(found->verdict, PublishedFile::Verdict::matches) << name;
+  }
+  // A longer figure takes its place; the old file, renamed, still finds the old record.
+  compute(store_, kText);
+  make("out");
+  std::ofstream(file("published.csv"), std::ios::binary) << old;
+  ASSERT_EQ(figure_records(store_).size(), 2U);
+  const auto found = find_published(store_, file("published.csv"));
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->record.seq, figure_records(store_).at(0).seq);
+  EXPECT_EQ(find_published(store_, file("out/S2a.csv"))->record.seq,
+            figure_records(store_).at(1).seq);
+}
+
+TEST_F(FigureLineageTest, AChangedFileIsToldFromAnUnknownOne) {
+  const std::string bytes = read_bytes(file("out/S2a.csv"));
+  for (const std::size_t at : {std::size_t{0}, bytes.size() / 2, bytes.size() - 1}) {
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 1);
+    std::ofstream(file("out/S2a.csv"), std::ios::binary) << changed;
+    const auto found = find_published(store_, file("out/S2a.csv"));
+    ASSERT_TRUE(found.has_value());
+    EXPECT_EQ(found->verdict, PublishedFile::Verdict::changed);
+    EXPECT_EQ(found->recorded, found->record.provenance.at("outputs").at("S2a.csv"));
+  }
+  std::ofstream(file("else.csv")) << "a,b\n1,2\n";
+  EXPECT_FALSE(find_published(store_, file("else.csv")).has_value());
+  EXPECT_THROW(find_published(store_, file("missing.csv")), NotFound);
+  EXPECT_THROW(find_published(store_, folder_.path()), NotFound);
+}
+
+// Between two records of the same file name, the lineage beside the file decides.
+TEST_F(FigureLineageTest, TheLineageBesideAChangedFileNamesItsRecord) {
+  compute(store_, kText);
+  make("new");
+  std::ofstream(file("out/S2a.csv"), std::ios::app) << "\n";
+  EXPECT_EQ(find_published(store_, file("out/S2a.csv"))->record.seq,
+            figure_records(store_).at(0).seq);
+  std::filesystem::remove(file("out/S2.lineage.json"));
+  EXPECT_EQ(find_published(store_, file("out/S2a.csv"))->record.seq,
+            figure_records(store_).at(1).seq);
+}
+
+TEST_F(FigureLineageTest, MissingAndDamagedInputsAreNamed) {
+  const FigureLineage lineage = figure_lineage(store_, figure_records(store_).at(0));
+  const auto path = [&](std::size_t i) {
+    return store_.folder() / ObjectStore::file_of(lineage.inputs.at(i).checkpoints.at(0));
+  };
+  std::filesystem::remove(path(0));
+  truncate_file(path(3));
+  const std::vector<InputFault> faults = check_inputs(store_, lineage);
+  ASSERT_EQ(faults.size(), 2U);
+  for (const InputFault& fault : faults) std::printf("%s\n", fault.what.c_str());
+  EXPECT_EQ(faults[0].checkpoint, lineage.inputs[0].checkpoints[0]);
+  EXPECT_NE(faults[0].what.find("missing"), std::string::npos);
+  EXPECT_EQ(faults[1].checkpoint, lineage.inputs[3].checkpoints[0]);
+}
+
+// As the program recorded them before it recorded who made a figure.
+TEST_F(FigureLineageTest, ReadsAnOldRecordAndRefusesABrokenOne) {
+  nlohmann::json old = figure_records(store_).at(0).provenance;
+  old.erase("made");
+  old.erase("analysis_version");
+  store_.record_figure("S2", old);
+  const FigureLineage lineage = figure_lineage(store_, figure_records(store_).back());
+  EXPECT_EQ(lineage.inputs.size(), 4U);
+  EXPECT_TRUE(to_json(lineage).at("made").is_null());
+  for (const nlohmann::json& broken :
+       {nlohmann::json{{"inputs", 3}}, nlohmann::json{{"inputs", {{{"run", "x"}}}}},
+        nlohmann::json::object()}) {
+    store_.record_figure("S2", broken);
+    EXPECT_THROW(figure_lineage(store_, figure_records(store_).back()), StoreDamaged)
+        << broken.dump();
+  }
+}
+
+TEST(ManifestLines, FollowTheScale) {
+  const std::string text =
+      "experiment: e\nquestion: q\nbase:\n  grains: 300\nsweep:\n  grid:\n    fluid:\n"
+      "      - still\n      - cell\nseeds: 3\nscales:\n  small:\n    seeds: 2\n"
+      "  other: {sweep: {zip: {amplitude_rad: [0.05, 0.08]}}}\n";
+  const auto at = [&](const std::string& scale, const nlohmann::json& labels) {
+    std::string found;
+    for (const ManifestLine& line : manifest_lines(text, scale, labels)) {
+      found += line.key + ":" + std::to_string(line.line) + " ";
+    }
+    return found;
+  };
+  EXPECT_EQ(at("", {{"fluid", "cell"}}), "experiment:1 sweep.grid.fluid:9 seeds:10 ");
+  EXPECT_EQ(at("small", {{"fluid", "still"}}),
+            "experiment:1 scales.small:12 sweep.grid.fluid:8 scales.small.seeds:13 ");
+  EXPECT_EQ(at("other", {{"amplitude_rad", 0.08}}),
+            "experiment:1 scales.other:14 scales.other.sweep.zip.amplitude_rad:14 seeds:10 ");
+  EXPECT_EQ(at("gone", {{"gone", 1}}), "experiment:1 seeds:10 ");
+  EXPECT_TRUE(manifest_lines("not: [a", "", nlohmann::json::object()).empty());
+}
+
+}  // namespace
+}  // namespace shearcell

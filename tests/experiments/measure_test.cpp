@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures of checkpoints are kept, and a figure is the same from kept or computed measures.
+#include "experiments/figures/measure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "analysis/error.hpp"
+#include "experiments/figures/collect.hpp"
+#include "experiments/figures/draw.hpp"
+#include "provenance/derived.hpp"
+#include "provenance/sqlite.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
+class Measure : public testing::Test {
+ protected:
+  void SetUp() override { compute(store_, tiny_manifest("", kBothFluids)); }
+
+  FigureSummary make(const std::string& name, bool fresh = false) {
+    FigureOptions options;
+    options.folder = folder_.path() / name;
+    options.workers = 2;
+    options.fresh = fresh;
+    return draw_figure(store_, *find_figure("S2"), options);
+  }
+  std::string csv(const std::string& name) const {
+    return read_bytes(folder_.path() / name / "S2a.csv") +
+           read_bytes(folder_.path() / name / "S2b.csv");
+  }
+  std::filesystem::path cache() const { return store_.folder() / DerivedCache::kFile; }
+  void sql(const std::string& statement) const {
+    sqlite::Database(cache(), sqlite::Open::existing).execute(statement);
+  }
+  std::vector<CheckpointRecord> records() const {
+    std::vector<CheckpointRecord> all;
+    for (const RunRecord& run : runs_of_kind(store_, "shear")) {
+      for (const CheckpointRecord& record : store_.checkpoints(run.id)) all.push_back(record);
+    }
+    return all;
+  }
+
+  TemporaryFolder folder_;
+  Store store_{folder_.path() / "store", Access::create};
+};
+
+TEST_F(Measure, IsMeasuredOnceAndGivesTheSameBytesAgain) {
+  EXPECT_EQ(make("first").measured, 6U);
+  EXPECT_EQ(make("second").measured, 0U);
+  std::filesystem::remove(cache());
+  EXPECT_EQ(make("third").measured, 6U);
+  const FigureSummary fresh = make("fourth", true);
+  EXPECT_EQ(fresh.measured, 6U);
+  EXPECT_TRUE(fresh.changed.empty());
+  for (const char* other : {"second", "third", "fourth"}) EXPECT_EQ(csv(other), csv("first"));
+  EXPECT_TRUE(store_.verify().ok());
+  EXPECT_TRUE(store_.verify().findings.empty()) << "what is kept is no orphan";
+}
+
+TEST_F(Measure, OnlyNewCheckpointsAreMeasured) {
+  make("short");
+  compute(store_, tiny_manifest("", kBothFluids),
+          ExpandOptions{.scale = {}, .cycles = 3, .seeds = {}});
+  EXPECT_EQ(make("long").measured, 2U);
+  std::filesystem::remove(cache());
+  EXPECT_EQ(make("again").measured, 8U);
+  EXPECT_EQ(csv("again"), csv("long"));
+}
+
+TEST_F(Measure, OneAnalysisGivesAllThatFiguresMadeTogetherNeed) {
+  std::string text = tiny_manifest("", kBothFluids);
+  text.replace(text.find("[S2]"), 4, "[S7, walls]");
+  compute(store_, text);
+  FigureOptions options;
+  options.folder = folder_.path() / "together";
+  std::vector<std::string> order;
+  std::size_t measured = 0;
+  for (const Figure* figure :
+       in_order_of_needs({find_figure("table1"), find_figure("walls"), find_figure("S7")})) {
+    order.emplace_back(figure->name);
+    measured += draw_figure(store_, *figure, options).measured;
+  }
+  EXPECT_EQ(order, (std::vector<std::string>{"S7", "walls", "table1"}));
+  EXPECT_EQ(measured, 6U) << "checkpoints, each once";
+}
+
+// A run that two experiments have counts in each.
+TEST_F(Measure, AFigureOfEveryExperimentMeasuresNothing) {
+  const std::string text = tiny_manifest("", kBothFluids);
+  compute(store_, "experiment: other" + text.substr(text.find('\n')));
+  FigureOptions options;
+  options.folder = folder_.path() / "table";
+  const FigureSummary table = draw_figure(store_, *find_figure("table1"), options);
+  EXPECT_EQ(table.measured, 0U);
+  EXPECT_EQ(table.runs, 2U * 2U);
+  EXPECT_EQ(table.checkpoints, 2U * 2U) << "the last one of each";
+  EXPECT_TRUE(table.verdicts.empty());
+  EXPECT_NE(read_bytes(folder_.path() / "table" / "table1.csv").find("other,mass_kg,"),
+            std::string::npos);
+}
+
+TEST_F(Measure, AChangedValueIsFoundAndReplaced) {
+  make("first");
+  sql("UPDATE derived SET (content, sha256) = (SELECT content, sha256 FROM derived LIMIT 1)");
+  EXPECT_EQ(make("second").measured, 5U) << "all but the one whose content it is";
+  EXPECT_EQ(csv("second"), csv("first"));
+  sql("UPDATE derived SET version = version + 1");
+  EXPECT_EQ(make("third").measured, 6U) << "of another version";
+  EXPECT_EQ(csv("third"), csv("first"));
+}
+
+// As when the analysis was changed and its version was not.
+TEST_F(Measure, FreshNamesWhatWasKeptDifferently) {
+  make("first");
+  const CheckpointRecord victim = records().at(2);
+  DerivedCache kept(store_.folder());
+  const DerivedKey key{victim.sha256, scalar_measures().key(), analysis_version};
+  nlohmann::json wrong = decode_result(kept.get(std::span(&key, 1)).at(0).value());
+  wrong["phi"] = 0.5;
+  const DerivedObject object{key, encode_result(wrong)};
+  kept.put(std::span(&object, 1));
+  make("wrong");
+  EXPECT_NE(csv("wrong"), csv("first"));
+  EXPECT_EQ(make("fresh", true).changed, std::vector{victim.sha256});
+  EXPECT_EQ(csv("fresh"), csv("first"));
+  EXPECT_EQ(make("after").measured, 0U);
+  EXPECT_EQ(csv("after"), csv("first"));
+}
+
+// Only who computes hashes can do this; it must neither crash nor give a wrong number.
+TEST_F(Measure, OtherContentUnderARightHashIsRefused) {
+  make("first");
+  DerivedCache kept(store_.folder());
+  DerivedObject object{{records().at(0).sha256, scalar_measures().key(), analysis_version}, {}};
+  object.content = {std::byte{0xff}, std::byte{0}};
+  kept.put(std::span(&object, 1));
+  EXPECT_EQ(make("second").measured, 1U);
+  EXPECT_EQ(csv("second"), csv("first"));
+  object.content = encode_result(nlohmann::json{{"phi", "dense"}});
+  kept.put(std::span(&object, 1));
+  EXPECT_THROW(make("third"), AnalysisError);
+  EXPECT_EQ(make("fourth", true).changed.size(), 1U);
+  EXPECT_EQ(csv("fourth"), csv("first"));
+}
+
+TEST_F(Measure, ResultsComeInTheOrderOfTheRecordsWhateverTheWorkers) {
+  std::vector<CheckpointRecord> all = records();
+  all.push_back(all.front());  // a run that two experiments share
+  const std::vector<DerivedMeasure> two = {
+      scalar_measures(), {"grains", nlohmann::json::object(), [](const Analysis& a) {
+                            return nlohmann::json(a.grains.phi_local);
+                          }}};
+  const MeasuredCheckpoints one = measure_checkpoints(store_, all, two, {1, true, {}});
+  const MeasuredCheckpoints many = measure_checkpoints(store_, all, two, {4, true, {}});
+  const MeasuredCheckpoints kept = measure_checkpoints(store_, all, two, {2, false, {}});
+  ASSERT_EQ(one.results.size(), all.size());
+  EXPECT_EQ(one.computed, all.size() - 1);
+  EXPECT_EQ(kept.computed, 0U);
+  EXPECT_EQ(kept.kept, all.size() - 1);
+  EXPECT_EQ(one.results, many.results);
+  EXPECT_EQ(one.results, kept.results);
+  EXPECT_EQ(one.results.front(), one.results.back());
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+    const Analysis analysis = analyse(store_.load_checkpoint(all[i]));
+    EXPECT_EQ(one.results[i]->at(0).at("phi"), analysis.measures.phi);
+    EXPECT_EQ(one.results[i]->at(1).get<std::vector<double>>(), analysis.grains.phi_local);
+  }
+}
+
+TEST_F(Measure, WorksWhereNothingCanBeKept) {
+  make("first");
+  std::filesystem::remove(cache());
+  std::filesystem::create_directory(cache());
+  const FigureSummary figure = make("second");
+  std::printf("%s\n", figure.cache_trouble.c_str());
+  EXPECT_NE(figure.cache_trouble, "");
+  EXPECT_EQ(figure.measured, 6U);
+  EXPECT_EQ(csv("second"), csv("first"));
+}
+
+}  // namespace
+}  // namespace shearcell
