@@ -21,4 +21,10 @@ inline std::uint64_t cycle_steps(const Drive& drive) {
   return drive.steps_per_cycle + drive.pause_steps;
 }
 
+/// Whether the moving wall keeps its height from this step to the next.
+inline bool holds_wall(const Drive& drive, std::uint64_t step) {
+  return drive.pause_walls == PauseWalls::held &&
+         step % cycle_steps(drive) >= drive.steps_per_cycle;
+}
+
 }  // namespace shearcell

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The three loops over neighbours that take nearly all of the time, as plain functions over arrays.
+// The loops over neighbours, which take nearly all of the computing time, as functions over arrays.
 //
-// Each exists as a scalar text, which is the specification, and as a vector text that must give the
-// same bits. Properties that make that possible:
-//  1. One grain per lane: a grain's force is summed by its own lane, in this order: the plane and
-//     the grains of the moving wall, the other planes, the other walls' grains, its neighbours, all
-//     in ascending permanent id. No sum crosses lanes.
+// Each loop has a scalar reference implementation (scalar_kernel.cpp) and a SIMD version
+// (simd_kernel.cpp, simd_lists.cpp); both give the same bits. The rules that make this possible:
+//  1. One grain per lane: a grain's force is summed by its own lane, over the plane and the grains
+//  of
+//     the moving wall, the other planes, then the other walls' grains and its neighbours in
+//     ascending permanent id. No sum crosses lanes.
 //  2. A neighbour that does not touch, and padding, adds +0 to the sum, which changes no bit. So
-//     the result does not depend on which non-touching neighbours a list happens to hold.
+//  the
+//     result does not depend on which non-touching neighbours a list happens to hold.
 //  3. A position is a row {x, y, z, margin} of four doubles. Lanes load whole rows and transpose
-//     them in registers: no gathers, and nothing is written but a grain's own row.
+//  them
+//     in registers: no gathers, and a lane writes only its own grain's row.
 //
-// The rows of one array are: the grains, padded; a place that nothing touches; the wall grains,
+// One array holds these rows: the grains, padded; one row that touches nothing; the wall grains,
 // those of the moving wall first. The margin [d] is how far the grain may move in the frame of the
-// shear before its list has to be made again.
+// shear before its neighbour list must be rebuilt.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +29,7 @@ constexpr std::size_t padded(std::size_t grains) {
   return (grains + 7) / 8 * 8;
 }
 
-/// Offset of the row, just behind the padded grains, of a place that nothing touches.
+/// Offset of the row that touches nothing, right behind the padded grains.
 constexpr std::int32_t padding_offset(std::size_t grains) {
   return static_cast<std::int32_t>(4 * padded(grains));
 }
@@ -41,46 +44,57 @@ struct WallPlane {
   double point[2] = {}, normal[2] = {};
 };
 
-/// What a grain, or some grain of a block, is near to; the kernel need not look for the rest. With
-/// kNearSeam a neighbour is nearest through the seam in z.
+/// What some grain of a block is near to; the kernel skips the rest. kNearSeam: some neighbour's
+/// nearest image lies across the seam in z.
 inline constexpr std::uint8_t kNearSeam = 1, kNearMovingWall = 2, kNearOtherWall = 4;
 inline constexpr std::uint8_t kNearWall = kNearMovingWall | kNearOtherWall;
 
 /// Neighbours as row offsets (4 * index, in doubles), in blocks of one vector of grains. Grain
-/// `lane` of block b has its k-th neighbour, k < head[b] + slots[b], at
-/// list[begin[b] + k * lanes + lane]. The first head[b] are grains of the moving wall. Shorter rows
-/// are filled up with the offset of a row that touches nothing.
+/// `lane` of block b has its k-th neighbour, k < moving_wall_slots[b] + other_slots[b], at
+/// list[begin[b] + k * lanes + lane]. The first moving_wall_slots[b] are grains of the moving wall.
+/// Shorter rows are filled up with padding_offset.
 struct NeighbourRows {
   const std::int32_t* list = nullptr;
-  const std::uint32_t* begin = nullptr;
-  const std::uint16_t* slots = nullptr;
-  const std::uint16_t* head = nullptr;
-  const std::uint8_t* near = nullptr;  ///< per block
+  const std::uint32_t* begin = nullptr;  ///< per block, like the next three
+  const std::uint16_t* other_slots = nullptr;
+  const std::uint16_t* moving_wall_slots = nullptr;
+  const std::uint8_t* near = nullptr;
 };
 
-/// One time step of the leapfrog for every grain of a range of blocks.
-struct StepTask {
+/// Input of the loops over contacts, and the check of the margins that they do on the way.
+struct ContactTask {
   std::size_t grains = 0;
-  const double* rows = nullptr;  ///< positions at this step [d], rows of 4
-  double* next_rows = nullptr;   ///< positions at the next step
-  double* velocity[3] = {};      ///< [d/s], half a step before -> half a step after
+  const double* rows = nullptr;  ///< positions [d], rows of 4
   NeighbourRows neighbours;
   WallPlane planes[4];  ///< that of the moving wall first
-  double* push =
-      nullptr;  ///< per grain of blocks near the moving wall: y of its sum with that wall
-  double depth = 0, per_depth = 0;
-  double keep = 0;  ///< (1 - b dt / 2m) / (1 + b dt / 2m)
-  double kick = 0;  ///< dt k/m / (1 + b dt / 2m)
-  double fall = 0;  ///< -dt g / (1 + b dt / 2m)
-  double flow = 0;  ///< dt b/m du/dy / (1 + b dt / 2m), for the fluid that follows the walls
-  double time_step = 0;
-  double top = 0;  ///< height at which that fluid stands still
-  /// Where each grain was when the list was made, in the frame that moves with the shear; in single
-  /// precision, which only the margins have to know.
+  /// Output, per grain of blocks near the moving wall: y of its contact sum with that wall [d].
+  double* moving_wall_force_y = nullptr;
+  double depth = 0, per_depth = 0;  ///< period in z [d] and its inverse
+  /// Position of each grain when its list was built, in the frame that moves with the shear. Single
+  /// precision, which `margin_loss` allows for.
   const float* reference[3] = {};
-  double origin = 0;      ///< height at which that frame stands still
-  double next_shear = 0;  ///< tan(theta) at the next step
-  double loss = 0;        ///< what the shear and rounding have taken from every margin [d]
+  double frame_height = 0;  ///< height at which that frame does not move [d]
+  double tan_theta = 0;     ///< of the tilt when the margins are checked
+  double margin_loss = 0;   ///< part of every margin used up by the shear and by rounding [d]
+};
+
+/// The contact sums of every grain of a range of blocks; margins are checked at `rows`.
+struct SumTask : ContactTask {
+  double* sum[3] = {};  ///< output: force over k, so an overlap times a direction [d]
+};
+
+/// One time step of the leapfrog; margins are checked at `next_rows`. With
+/// D = 1 + b dt / 2m the new velocity is velocity_factor * v + contact_kick * sum + gravity_step +
+/// fluid_step * (y - fluid_rest_height).
+struct StepTask : ContactTask {
+  double* next_rows = nullptr;  ///< output: positions at the next step
+  double* velocity[3] = {};     ///< [d/s], half a step before `rows` -> half a step after
+  double velocity_factor = 0;   ///< (1 - b dt / 2m) / D
+  double contact_kick = 0;      ///< dt k/m / D [1/s]
+  double gravity_step = 0;      ///< -dt g / D [d/s], added to v_y
+  double fluid_step = 0;        ///< dt b/m du_x/dy / D [1/s], for a fluid that moves with the walls
+  double fluid_rest_height = 0;  ///< height at which that fluid is at rest [d]
+  double time_step = 0;          ///< dt [s]
 };
 
 /// Sites (grains and wall grains) ordered by the cells of a grid, x fastest, then z, then y.
@@ -93,7 +107,7 @@ struct CellGrid {
   const std::int32_t* id = nullptr;      ///< its permanent id: wall grains before grains
 };
 
-/// The outer list: for the grains at a range of places, the sites nearer than 1 and both margins,
+/// The outer list: for the grains at a range of places, the sites nearer than 1 plus both margins,
 /// in ascending id.
 struct SearchTask {
   CellGrid grid;
@@ -106,10 +120,11 @@ struct SearchTask {
   double depth = 0, per_depth = 0;
 };
 
-/// More neighbours than any packing has; a row is cut off there when a cell has collapsed.
+/// More neighbours than any packing has; where a cell has collapsed, rows are cut off at this
+/// length.
 inline constexpr std::size_t kMostNeighbours = 1024;
 
-/// The inner list from the outer: neighbours nearer than 1 and both margins now.
+/// The inner list, pruned from the outer: neighbours nearer than 1 plus both margins now.
 struct PruneTask {
   std::size_t grains = 0;
   const double* rows = nullptr;
@@ -123,22 +138,23 @@ struct PruneTask {
   std::size_t inner_stride = 0;                 ///< most slots that a block may have
   std::uint32_t* begin = nullptr;               ///< per block, packed within each range
   std::uint16_t* inner_count = nullptr;         ///< per grain and spare lane
-  std::uint16_t* slots = nullptr;
-  std::uint16_t* head = nullptr;
-  std::uint8_t* near = nullptr;        ///< per block
+  std::uint16_t* other_slots = nullptr;         ///< per block, like the next two
+  std::uint16_t* moving_wall_slots = nullptr;
+  std::uint8_t* near = nullptr;
   std::uint8_t* grain_near = nullptr;  ///< per grain and spare lane
   std::int32_t padding = 0;
   double depth = 0, per_depth = 0;
 };
 
-/// One implementation of the loops.
+/// One implementation of the loops. The first two return a positive number when a grain is farther
+/// from `reference` than its margin less the margin_loss.
 struct Kernels {
   const char* name;
   std::size_t lanes;
-  /// Indexed [gravity on][fluid moves]. Returns a positive number when a grain has moved farther
-  /// from `reference` than its margin less the loss.
+  double (*sum_contacts)(const SumTask&, std::size_t first_block, std::size_t last_block);
+  /// Indexed [gravity on][fluid moves].
   double (*step[2][2])(const StepTask&, std::size_t first_block, std::size_t last_block);
-  /// Returns the largest number of neighbours found; rows longer than the stride are cut.
+  /// Returns the largest number of neighbours found; rows longer than the stride are cut off.
   std::size_t (*search)(const SearchTask&, std::size_t first_place, std::size_t last_place);
   /// Returns false, leaving the inner list unusable, when a row outgrows inner_stride.
   bool (*prune)(const PruneTask&, std::size_t first_block, std::size_t last_block);

@@ -36,7 +36,7 @@ NeighbourLists::NeighbourLists(const Kernels& kernels, const ListSettings& setti
 
 bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
   if (settings_.rebuild_every_step) return false;
-  const double room = inner_wall_margin_ - inner_reference_.loss(pose.tan_theta);
+  const double room = inner_wall_margin_ - inner_reference_.margin_loss(pose.tan_theta);
   return excess <= 0 && inner_reference_.wall_moved(pose) < room;
 }
 
@@ -117,7 +117,7 @@ bool NeighbourLists::prune(const Snapshot& now) {
 bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = settings_.inner_horizon * now.time_step;
-  const double loss = outer_reference_.loss(now.pose.tan_theta);
+  const double loss = outer_reference_.margin_loss(now.pose.tan_theta);
   double smallest_room = outer_wall_margin_ - outer_reference_.wall_moved(now.pose) - loss;
   inner_wall_margin_ = std::min(least + horizon * now.wall_speed, smallest_room);
   for (std::size_t g = 0; g < now.grains; ++g) {
@@ -134,8 +134,8 @@ bool NeighbourLists::set_inner_margins(const Snapshot& now) {
 void NeighbourLists::cut(const Snapshot& now) {
   inner_reference_.set(now.rows, now.grains, now.pose, widest_margin_);
   const std::size_t blocks = (now.grains + kernels_.lanes - 1) / kernels_.lanes;
-  slots_.resize(blocks);
-  head_.resize(blocks);
+  other_slots_.resize(blocks);
+  moving_wall_slots_.resize(blocks);
   near_.resize(blocks);
   begin_.resize(blocks);
   inner_count_.resize(padded(now.grains));
@@ -152,8 +152,8 @@ void NeighbourLists::cut(const Snapshot& now) {
   std::copy(planes.begin(), planes.end(), task.planes);
   task.wall_margin = inner_wall_margin_;
   task.inner_count = inner_count_.data();
-  task.slots = slots_.data();
-  task.head = head_.data();
+  task.other_slots = other_slots_.data();
+  task.moving_wall_slots = moving_wall_slots_.data();
   task.near = near_.data();
   task.grain_near = grain_near_.data();
   task.begin = begin_.data();
@@ -179,12 +179,13 @@ void NeighbourLists::cut(const Snapshot& now) {
 }
 
 NeighbourRows NeighbourLists::rows() const {
-  return {inner_.data(), begin_.data(), slots_.data(), head_.data(), near_.data()};
+  return {inner_.data(), begin_.data(), other_slots_.data(), moving_wall_slots_.data(),
+          near_.data()};
 }
 
 std::size_t NeighbourLists::bytes() const {
   return 4 * (outer_.size() + inner_.size() + offset_of_id_.size() + outer_margin_.size()) +
-         2 * outer_count_.size() + 3 * inner_count_.size() + 9 * slots_.size() +
+         2 * outer_count_.size() + 3 * inner_count_.size() + 9 * other_slots_.size() +
          outer_reference_.bytes() + inner_reference_.bytes();
 }
 

@@ -100,7 +100,7 @@ class NeighbourLists {
   std::size_t outer_stride_ = 32, inner_stride_ = 16;
   AlignedVector<std::int32_t> outer_, inner_;
   std::vector<std::int32_t> offset_of_id_, at_moving_wall_;
-  std::vector<std::uint16_t> outer_count_, inner_count_, slots_, head_;
+  std::vector<std::uint16_t> outer_count_, inner_count_, other_slots_, moving_wall_slots_;
   std::vector<std::uint32_t> begin_;
   std::vector<std::uint8_t> near_, grain_near_;
 };

@@ -41,7 +41,7 @@ double Reference::wall_moved(const WallPose& pose) const {
   return travel * (1 + std::fabs(pose.tan_theta)) + std::fabs(pose.tan_theta - pose_.tan_theta);
 }
 
-double Reference::loss(double tan_theta) const {
+double Reference::margin_loss(double tan_theta) const {
   // The smallest singular value of a simple shear e is sqrt(1 + e^2/4) - e/2 > 1 - e/2: that much
   // is left of a distance of 1 and two margins, and each of two grains bears half of what is not.
   return 0.25 * std::fabs(tan_theta - pose_.tan_theta) * (1 + 2 * widest_) + rounding_ + 1e-9;

@@ -25,10 +25,10 @@ class Reference {
   /// Bound of the same for every wall grain and wall plane.
   double wall_moved(const WallPose& pose) const;
   /// What the shear since, and the rounding of what is kept here, have taken from every margin [d].
-  double loss(double tan_theta) const;
+  double margin_loss(double tan_theta) const;
 
   /// Height [d] at which the frame stands still.
-  double origin() const { return pose_.top; }
+  double frame_height() const { return pose_.top; }
   /// One coordinate of the grains in the untilted frame; single precision, of which `loss` knows.
   const float* data(std::size_t axis) const { return at_[axis].data(); }
   std::size_t bytes() const { return 3 * sizeof(float) * at_[0].size(); }

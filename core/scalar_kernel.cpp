@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The specification of the kernel: the same operations in the same order, one grain at a time.
+// The reference implementation of the loops: one grain at a time, the operations in the order that
+// every other version keeps.
 #include <algorithm>
 #include <cmath>
 
@@ -43,32 +44,46 @@ void touch_plane(Sum& sum, const double* own, const WallPlane& plane) {
 }
 
 // Sum over the contacts of grain g.
-Sum contact_sum(const StepTask& t, std::size_t g) {
+Sum contact_sum(const ContactTask& t, std::size_t g) {
   const double* own = t.rows + 4 * g;
   Sum sum{0, 0, 0};
   const std::int32_t* list = t.neighbours.list + t.neighbours.begin[g];
   const std::uint8_t near = t.neighbours.near[g];
   if ((near & kNearMovingWall) != 0) {
-    const std::size_t head = t.neighbours.head[g];
+    const std::size_t slots = t.neighbours.moving_wall_slots[g];
     touch_plane(sum, own, t.planes[0]);
-    add_contacts(sum, own, t.rows, list, head, t.depth, t.per_depth);
-    t.push[g] = sum.y;
-    list += head;
+    add_contacts(sum, own, t.rows, list, slots, t.depth, t.per_depth);
+    t.moving_wall_force_y[g] = sum.y;
+    list += slots;
   }
   if ((near & kNearOtherWall) != 0) {
     for (std::size_t w = 1; w < 4; ++w) touch_plane(sum, own, t.planes[w]);
   }
-  add_contacts(sum, own, t.rows, list, t.neighbours.slots[g], t.depth, t.per_depth);
+  add_contacts(sum, own, t.rows, list, t.neighbours.other_slots[g], t.depth, t.per_depth);
   return sum;
 }
 
-// The square of how far a grain has moved from where it was when its list was made.
-double square_moved(const StepTask& t, std::size_t g, const double* at) {
+// The square of the distance that a grain has moved since its list was built, less that of what is
+// left of its margin: positive when the list may miss a neighbour.
+double margin_excess(const ContactTask& t, std::size_t g, const double* at) {
   const double ry = double{t.reference[1][g]};
-  const double wx = at[0] - std::fma(t.next_shear, ry - t.origin, double{t.reference[0][g]});
+  const double wx = at[0] - std::fma(t.tan_theta, ry - t.frame_height, double{t.reference[0][g]});
   const double wy = at[1] - ry;
   const double wz = at[2] - double{t.reference[2][g]};
-  return std::fma(wz, wz, std::fma(wy, wy, wx * wx));
+  const double room = std::max(at[3] - t.margin_loss, 0.0);
+  return std::fma(-room, room, std::fma(wz, wz, std::fma(wy, wy, wx * wx)));
+}
+
+double sum_contacts(const SumTask& t, std::size_t first, std::size_t last) {
+  double excess = -1;
+  for (std::size_t g = first; g < std::min(last, t.grains); ++g) {
+    const Sum sum = contact_sum(t, g);
+    t.sum[0][g] = sum.x;
+    t.sum[1][g] = sum.y;
+    t.sum[2][g] = sum.z;
+    excess = std::max(excess, margin_excess(t, g, t.rows + 4 * g));
+  }
+  return excess;
 }
 
 template <bool kGravity, bool kFlow>
@@ -77,11 +92,11 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
   for (std::size_t g = first; g < std::min(last, t.grains); ++g) {
     const double* own = t.rows + 4 * g;
     const Sum sum = contact_sum(t, g);
-    double vx = std::fma(t.kick, sum.x, t.keep * t.velocity[0][g]);
-    double vy = std::fma(t.kick, sum.y, t.keep * t.velocity[1][g]);
-    const double vz = std::fma(t.kick, sum.z, t.keep * t.velocity[2][g]);
-    if constexpr (kGravity) vy += t.fall;
-    if constexpr (kFlow) vx = std::fma(t.flow, own[1] - t.top, vx);
+    double vx = std::fma(t.contact_kick, sum.x, t.velocity_factor * t.velocity[0][g]);
+    double vy = std::fma(t.contact_kick, sum.y, t.velocity_factor * t.velocity[1][g]);
+    const double vz = std::fma(t.contact_kick, sum.z, t.velocity_factor * t.velocity[2][g]);
+    if constexpr (kGravity) vy += t.gravity_step;
+    if constexpr (kFlow) vx = std::fma(t.fluid_step, own[1] - t.fluid_rest_height, vx);
     t.velocity[0][g] = vx;
     t.velocity[1][g] = vy;
     t.velocity[2][g] = vz;
@@ -90,8 +105,7 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
     next[1] = std::fma(t.time_step, vy, own[1]);
     next[2] = std::fma(t.time_step, vz, own[2]);
     next[3] = own[3];
-    const double room = std::max(own[3] - t.loss, 0.0);
-    excess = std::max(excess, std::fma(-room, room, square_moved(t, g, next)));
+    excess = std::max(excess, margin_excess(t, g, next));
   }
   return excess;
 }
@@ -143,7 +157,7 @@ bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
   for (std::size_t g = first; g < std::min(last, t.grains); ++g) {
     const double* own = t.rows + 4 * g;
     std::int32_t* inner = t.inner + begin;
-    std::size_t kept = 0, head = 0;
+    std::size_t kept = 0, wall = 0;
     for (std::size_t k = 0; k < t.outer_count[g]; ++k) {
       const std::int32_t offset = t.outer[g * t.outer_stride + k];
       const double* other = t.rows + offset;
@@ -153,14 +167,14 @@ bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
       const double cutoff = 1 + (own[3] + other[3]);
       if (!(dx * dx + dy * dy + dz * dz < cutoff * cutoff)) continue;
       if (kept == t.inner_stride) return false;
-      if (offset >= t.first_wall && offset < t.moving_end) ++head;
+      if (offset >= t.first_wall && offset < t.moving_end) ++wall;
       inner[kept++] = offset;
     }
     t.inner_count[g] = static_cast<std::uint16_t>(kept);
-    t.head[g] = static_cast<std::uint16_t>(head);
-    t.slots[g] = static_cast<std::uint16_t>(kept - head);
+    t.moving_wall_slots[g] = static_cast<std::uint16_t>(wall);
+    t.other_slots[g] = static_cast<std::uint16_t>(kept - wall);
     t.near[g] = t.grain_near[g] =
-        static_cast<std::uint8_t>(near_planes(t, own) | (head > 0 ? kNearMovingWall : 0));
+        static_cast<std::uint8_t>(near_planes(t, own) | (wall > 0 ? kNearMovingWall : 0));
     t.begin[g] = static_cast<std::uint32_t>(begin);
     begin += kept;
   }
@@ -173,6 +187,7 @@ const Kernels& scalar_kernels() {
   static const Kernels kernels{
       "scalar",
       1,
+      sum_contacts,
       {{step<false, false>, step<false, true>}, {step<true, false>, step<true, true>}},
       search,
       prune};

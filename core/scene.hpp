@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What acts on the grains, in units of the grain diameter d, the grain mass m and the second.
+// Forces on the grains and motion of the walls, in units of grain diameter d, grain mass m and
+// second.
 #pragma once
 
 #include <cstddef>
@@ -42,15 +43,22 @@ inline double carried_weight(const Scene& scene, const Cell& cell, std::size_t g
   return carries ? scene.gravity * static_cast<double>(grains) : 0.0;
 }
 
+/// The moving wall during a pause: held at its height, or free to move under its load.
+enum class PauseWalls : std::uint8_t { held, moving };
+template <>
+inline constexpr auto kNames<PauseWalls> = names_in_order<PauseWalls>("held", "moving");
+
 /// The tilt theta(t) = A sin(omega t), by whole steps so that a cycle ends at theta = 0 exactly.
-/// After each cycle the walls may rest for `pause_steps` (periodically paused shear, B.5).
+/// After each cycle the side walls may rest upright for `pause_steps` (periodically paused shear,
+/// B.5).
 struct Drive {
   double amplitude = 0;  ///< A [rad]; 0 keeps the walls upright
   std::uint64_t steps_per_cycle = 1;
   std::uint64_t pause_steps = 0;
+  PauseWalls pause_walls = PauseWalls::held;
 };
 
-/// Lengths, masses and times of the outside world: SI value of d, m and the second.
+/// SI values of d and m. The unit of time is the second.
 struct Units {
   double diameter_m = 3e-3;
   double mass_kg = 2e-5;

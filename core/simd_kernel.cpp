@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kernel with one grain per vector lane, compiled for AVX2+FMA and AVX-512 and chosen at run
-// time. Every arithmetic operation and its order is that of scalar_kernel.cpp.
+// The loops over contacts with one grain per vector lane, compiled for AVX2+FMA and AVX-512 and
+// chosen at run time. Operations and their order are those of scalar_kernel.cpp.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/simd_kernel.cpp"
@@ -16,7 +16,7 @@ namespace shearcell {
 namespace HWY_NAMESPACE {
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
 
-// contact_factor(s) for s >= 0; kDeep: for s beyond the series too.
+// contact_factor(s) for s >= 0; kDeep: also for s beyond the range of the series.
 template <bool kDeep>
 HWY_INLINE V contact_factors(V s) {
   V series = hn::Set(kD, kContactSeries.back());
@@ -33,9 +33,9 @@ HWY_INLINE V contact_factors(V s) {
 // Adds (1/r - 1) dr over the touching neighbours; lane l has its k-th at list[k * kLanes + l].
 // Returns the largest s.
 template <bool kSeam, bool kDeep>
-HWY_INLINE V sum_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
-                          const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,
-                          V per_depth) {
+HWY_INLINE V add_all(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
+                     const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,
+                     V per_depth) {
   V deepest = hn::Zero(kD);
   for (const std::int32_t* const end = list + slots * kLanes; list != end; list += kLanes) {
     V margin;
@@ -54,17 +54,17 @@ HWY_INLINE V sum_contacts(Vectors& sum, const Vectors& own, const double* HWY_RE
   return deepest;
 }
 
-// Overlaps beyond the series are rare: a block that has one is summed again, from its beginning.
+// Overlaps beyond the range of the series are rare: a block that has one is summed again.
 template <bool kSeam>
 HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
                              const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,
                              V per_depth) {
   Vectors series = sum;
-  const V deepest = sum_contacts<kSeam, false>(series, own, rows, list, slots, depth, per_depth);
+  const V deepest = add_all<kSeam, false>(series, own, rows, list, slots, depth, per_depth);
   if (HWY_LIKELY(hn::AllFalse(kD, hn::Gt(deepest, hn::Set(kD, kSeriesEnd))))) {
     sum = series;
   } else {
-    sum_contacts<kSeam, true>(sum, own, rows, list, slots, depth, per_depth);
+    add_all<kSeam, true>(sum, own, rows, list, slots, depth, per_depth);
   }
 }
 
@@ -76,35 +76,40 @@ HWY_INLINE void touch_plane(Vectors& sum, const Vectors& own, const WallPlane& p
   sum.y = hn::MulAdd(overlap, ny, sum.y);
 }
 
-// The square of how far grains have moved from where they were when their lists were made.
-HWY_INLINE V square_moved(const StepTask& t, std::size_t g, const Vectors& at) {
+// Raises `excess` to the margin_excess of scalar_kernel.cpp for each grain of a block.
+HWY_INLINE V raise_excess(V excess, const ContactTask& t, std::size_t g, const Vectors& at,
+                          V margin) {
   const hn::Rebind<float, D> single;
   const auto reference = [&](std::size_t axis) HWY_ATTR {
     return hn::PromoteTo(kD, hn::LoadU(single, t.reference[axis] + g));
   };
   const V ry = reference(1);
   const V x =
-      hn::MulAdd(hn::Set(kD, t.next_shear), hn::Sub(ry, hn::Set(kD, t.origin)), reference(0));
+      hn::MulAdd(hn::Set(kD, t.tan_theta), hn::Sub(ry, hn::Set(kD, t.frame_height)), reference(0));
   const V wx = hn::Sub(at.x, x);
   const V wy = hn::Sub(at.y, ry);
   const V wz = hn::Sub(at.z, reference(2));
-  return hn::MulAdd(wz, wz, hn::MulAdd(wy, wy, hn::Mul(wx, wx)));
+  const V moved = hn::MulAdd(wz, wz, hn::MulAdd(wy, wy, hn::Mul(wx, wx)));
+  const V room = hn::Max(hn::Sub(margin, hn::Set(kD, t.margin_loss)), hn::Zero(kD));
+  // The last block's spare lanes hold no grain.
+  const auto real = hn::FirstN(kD, t.grains - g);
+  return hn::IfThenElse(real, hn::Max(excess, hn::NegMulAdd(room, room, moved)), excess);
 }
 
 // Sum over the contacts of one block of grains.
-HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vectors& own, V depth,
+HWY_INLINE Vectors contact_sum(const ContactTask& t, std::size_t block, const Vectors& own, V depth,
                                V per_depth) {
   Vectors sum{hn::Zero(kD), hn::Zero(kD), hn::Zero(kD)};
   const std::int32_t* list = t.neighbours.list + t.neighbours.begin[block];
-  const std::size_t slots = t.neighbours.slots[block];
+  const std::size_t slots = t.neighbours.other_slots[block];
   const std::uint8_t near = t.neighbours.near[block];
   if (HWY_UNLIKELY((near & kNearWall) != 0)) {
     if ((near & kNearMovingWall) != 0) {
-      const std::size_t head = t.neighbours.head[block];
+      const std::size_t wall_slots = t.neighbours.moving_wall_slots[block];
       touch_plane(sum, own, t.planes[0]);
-      add_contacts<true>(sum, own, t.rows, list, head, depth, per_depth);
-      hn::StoreU(sum.y, kD, t.push + block * kLanes);
-      list += head * kLanes;
+      add_contacts<true>(sum, own, t.rows, list, wall_slots, depth, per_depth);
+      hn::StoreU(sum.y, kD, t.moving_wall_force_y + block * kLanes);
+      list += wall_slots * kLanes;
     }
     if ((near & kNearOtherWall) != 0) {
       for (std::size_t w = 1; w < 4; ++w) touch_plane(sum, own, t.planes[w]);
@@ -118,6 +123,29 @@ HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vecto
   return sum;
 }
 
+// Positions and margins of a block.
+HWY_INLINE Vectors load_block(const ContactTask& t, std::size_t g, V& margin) {
+  return load_rows(
+      t.rows, [&](std::size_t lane) HWY_ATTR { return 4 * (g + lane); }, margin);
+}
+
+double sum_contacts(const SumTask& t, std::size_t first, std::size_t last) {
+  const V depth = hn::Set(kD, t.depth);
+  const V per_depth = hn::Set(kD, t.per_depth);
+  V excess = hn::Set(kD, -1.0);
+  for (std::size_t block = first; block < last; ++block) {
+    const std::size_t g = block * kLanes;
+    V margin;
+    const Vectors own = load_block(t, g, margin);
+    const Vectors sum = contact_sum(t, block, own, depth, per_depth);
+    hn::StoreU(sum.x, kD, t.sum[0] + g);
+    hn::StoreU(sum.y, kD, t.sum[1] + g);
+    hn::StoreU(sum.z, kD, t.sum[2] + g);
+    excess = raise_excess(excess, t, g, own, margin);
+  }
+  return hn::GetLane(hn::MaxOfLanes(kD, excess));
+}
+
 template <bool kGravity, bool kFlow>
 double step(const StepTask& t, std::size_t first, std::size_t last) {
   const V depth = hn::Set(kD, t.depth);
@@ -126,18 +154,18 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
   for (std::size_t block = first; block < last; ++block) {
     const std::size_t g = block * kLanes;
     V margin;
-    const Vectors own = load_rows(
-        t.rows, [&](std::size_t lane) HWY_ATTR { return 4 * (g + lane); }, margin);
+    const Vectors own = load_block(t, g, margin);
     const Vectors sum = contact_sum(t, block, own, depth, per_depth);
 
-    const V keep = hn::Set(kD, t.keep);
-    const V kick = hn::Set(kD, t.kick);
-    V vx = hn::MulAdd(kick, sum.x, hn::Mul(keep, hn::LoadU(kD, t.velocity[0] + g)));
-    V vy = hn::MulAdd(kick, sum.y, hn::Mul(keep, hn::LoadU(kD, t.velocity[1] + g)));
-    const V vz = hn::MulAdd(kick, sum.z, hn::Mul(keep, hn::LoadU(kD, t.velocity[2] + g)));
-    if constexpr (kGravity) vy = hn::Add(vy, hn::Set(kD, t.fall));
+    const V factor = hn::Set(kD, t.velocity_factor);
+    const V kick = hn::Set(kD, t.contact_kick);
+    V vx = hn::MulAdd(kick, sum.x, hn::Mul(factor, hn::LoadU(kD, t.velocity[0] + g)));
+    V vy = hn::MulAdd(kick, sum.y, hn::Mul(factor, hn::LoadU(kD, t.velocity[1] + g)));
+    const V vz = hn::MulAdd(kick, sum.z, hn::Mul(factor, hn::LoadU(kD, t.velocity[2] + g)));
+    if constexpr (kGravity) vy = hn::Add(vy, hn::Set(kD, t.gravity_step));
     if constexpr (kFlow) {
-      vx = hn::MulAdd(hn::Set(kD, t.flow), hn::Sub(own.y, hn::Set(kD, t.top)), vx);
+      vx = hn::MulAdd(hn::Set(kD, t.fluid_step), hn::Sub(own.y, hn::Set(kD, t.fluid_rest_height)),
+                      vx);
     }
     hn::StoreU(vx, kD, t.velocity[0] + g);
     hn::StoreU(vy, kD, t.velocity[1] + g);
@@ -146,12 +174,7 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
     const Vectors next{hn::MulAdd(dt, vx, own.x), hn::MulAdd(dt, vy, own.y),
                        hn::MulAdd(dt, vz, own.z)};
     store_rows(next, margin, t.next_rows + 4 * g);
-
-    const V room = hn::Max(hn::Sub(margin, hn::Set(kD, t.loss)), hn::Zero(kD));
-    // The last block's spare lanes hold no grain.
-    const auto real = hn::FirstN(kD, t.grains - g);
-    excess = hn::IfThenElse(
-        real, hn::Max(excess, hn::NegMulAdd(room, room, square_moved(t, g, next))), excess);
+    excess = raise_excess(excess, t, g, next, margin);
   }
   return hn::GetLane(hn::MaxOfLanes(kD, excess));
 }
@@ -164,6 +187,7 @@ const Kernels* kernels() {
   static const Kernels table{
       HWY_TARGET == HWY_AVX3 ? "AVX-512" : "AVX2",
       kLanes,
+      sum_contacts,
       {{step<false, false>, step<false, true>}, {step<true, false>, step<true, true>}},
       search,
       prune};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The neighbour lists' loops with one neighbour per vector lane. They choose what the kernel looks
-// at and never what it computes.
+// The loops that build and prune the neighbour lists, with one neighbour per vector lane. They
+// decide which pairs the kernel tests, never what it computes.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/simd_lists.cpp"
@@ -142,10 +142,11 @@ HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g,
 }
 
 // How many at the front of a row are grains of the moving wall.
-HWY_INLINE std::size_t head_of(const PruneTask& t, const std::int32_t* kept, std::size_t count) {
-  std::size_t head = 0;
-  while (head < count && kept[head] >= t.first_wall && kept[head] < t.moving_end) ++head;
-  return head;
+HWY_INLINE std::size_t count_moving_wall(const PruneTask& t, const std::int32_t* kept,
+                                         std::size_t count) {
+  std::size_t wall = 0;
+  while (wall < count && kept[wall] >= t.first_wall && kept[wall] < t.moving_end) ++wall;
+  return wall;
 }
 
 // Sets the planes that each grain of a block is near to.
@@ -172,50 +173,50 @@ HWY_INLINE void find_planes(const PruneTask& t, std::size_t block) {
 // The kept neighbours of one block, per lane, before they are interleaved.
 struct Kept {
   std::int32_t rows[kLanes][kMostNeighbours + 64];
-  std::size_t count[kLanes], head[kLanes];
-  std::size_t slots, head_slots;  // of the longest lane
+  std::size_t count[kLanes], wall[kLanes];
+  std::size_t other_slots, wall_slots;  // of the longest lane
 };
 
 HWY_INLINE void prune_block(const PruneTask& t, std::size_t block, Kept& kept) {
   find_planes(t, block);
-  kept.slots = kept.head_slots = 0;
+  kept.other_slots = kept.wall_slots = 0;
   std::uint8_t near = 0;
   for (std::size_t l = 0; l < kLanes; ++l) {
     const std::size_t g = block * kLanes + l;
     if (g >= t.grains) t.grain_near[g] = 0;
     const std::size_t count = g < t.grains ? prune_row(t, g, kept.rows[l]) : 0;
-    const std::size_t head = head_of(t, kept.rows[l], count);
-    if (head > 0) t.grain_near[g] |= kNearMovingWall;
+    const std::size_t wall = count_moving_wall(t, kept.rows[l], count);
+    if (wall > 0) t.grain_near[g] |= kNearMovingWall;
     near |= t.grain_near[g];
     kept.count[l] = count;
-    kept.head[l] = head;
-    kept.slots = std::max(kept.slots, count - head);
-    kept.head_slots = std::max(kept.head_slots, head);
+    kept.wall[l] = wall;
+    kept.other_slots = std::max(kept.other_slots, count - wall);
+    kept.wall_slots = std::max(kept.wall_slots, wall);
     t.inner_count[g] = static_cast<std::uint16_t>(count);
   }
   t.near[block] = near;
-  t.head[block] = static_cast<std::uint16_t>(kept.head_slots);
-  t.slots[block] = static_cast<std::uint16_t>(kept.slots);
+  t.moving_wall_slots[block] = static_cast<std::uint16_t>(kept.wall_slots);
+  t.other_slots[block] = static_cast<std::uint16_t>(kept.other_slots);
 }
 
 // Interleaves the lanes: first the grains of the moving wall, where a lane has any, then the
 // others.
 HWY_INLINE void write_block(const PruneTask& t, Kept& kept, std::int32_t* HWY_RESTRICT to) {
-  for (std::size_t l = 0; kept.head_slots > 0 && l < kLanes; ++l) {
-    for (std::size_t k = 0; k < kept.head_slots; ++k) {
-      to[k * kLanes + l] = k < kept.head[l] ? kept.rows[l][k] : t.padding;
+  for (std::size_t l = 0; kept.wall_slots > 0 && l < kLanes; ++l) {
+    for (std::size_t k = 0; k < kept.wall_slots; ++k) {
+      to[k * kLanes + l] = k < kept.wall[l] ? kept.rows[l][k] : t.padding;
     }
   }
-  to += kept.head_slots * kLanes;
+  to += kept.wall_slots * kLanes;
   const auto padding = hn::Set(kOffsets, t.padding);
   const std::int32_t* from[kLanes];
   for (std::size_t l = 0; l < kLanes; ++l) {
-    for (std::size_t k = kept.count[l]; k < kept.head[l] + kept.slots; k += kLanes) {
+    for (std::size_t k = kept.count[l]; k < kept.wall[l] + kept.other_slots; k += kLanes) {
       hn::StoreU(padding, kOffsets, kept.rows[l] + k);
     }
-    from[l] = kept.rows[l] + kept.head[l];
+    from[l] = kept.rows[l] + kept.wall[l];
   }
-  for (std::size_t k = 0; k < kept.slots; ++k) {
+  for (std::size_t k = 0; k < kept.other_slots; ++k) {
     for (std::size_t l = 0; l < kLanes; ++l) to[k * kLanes + l] = from[l][k];
   }
 }
@@ -225,10 +226,10 @@ bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
   std::size_t begin = first * t.inner_stride * kLanes;
   for (std::size_t block = first; block < last; ++block) {
     prune_block(t, block, kept);
-    if (kept.head_slots + kept.slots > t.inner_stride) return false;
+    if (kept.wall_slots + kept.other_slots > t.inner_stride) return false;
     t.begin[block] = static_cast<std::uint32_t>(begin);
     write_block(t, kept, t.inner + begin);
-    begin += (kept.head_slots + kept.slots) * kLanes;
+    begin += (kept.wall_slots + kept.other_slots) * kLanes;
   }
   return true;
 }

@@ -11,7 +11,7 @@
 namespace shearcell {
 namespace {
 
-// Steps between two looks of the watchdog, which cost about four steps each.
+// Steps between two watchdog checks, each of which costs about four steps.
 constexpr std::uint64_t kWatchInterval = 1024;
 
 const Kernels& require_kernels(const Kernels* kernels) {
@@ -52,9 +52,9 @@ void Simulation::load(const State& state) {
   id_.resize(grains);
   std::iota(id_.begin(), id_.end(), 0);
   for (auto& axis : velocity_) axis.assign(room, 0.0);
-  push_.assign(room, 0.0);
-  // Spare lanes sit far off on one side and the padding of the lists far off on the other, so that
-  // neither touches anything (nor each other, for which NaN would not be safe: 0 * NaN).
+  moving_wall_force_y_.assign(room, 0.0);
+  // Spare lanes are far away on one side and the padding of the lists far away on the other, so
+  // that neither touches anything or each other. NaN would not be safe: 0 * NaN.
   for (auto& rows : rows_) {
     rows.assign(4 * (room + 1 + walls_.size()), 0.0);
     for (std::size_t g = grains; g < room; ++g) rows[4 * g] = 1e30;
@@ -82,9 +82,9 @@ void Simulation::set_constants() {
   task_.grains = id_.size();
   task_.depth = cell_.depth;
   task_.per_depth = 1 / cell_.depth;
-  task_.keep = (1 - half) * implicit;
-  task_.kick = scene_.time_step * scene_.stiffness * implicit;
-  task_.fall = -scene_.time_step * scene_.gravity * implicit;
+  task_.velocity_factor = (1 - half) * implicit;
+  task_.contact_kick = scene_.time_step * scene_.stiffness * implicit;
+  task_.gravity_step = -scene_.time_step * scene_.gravity * implicit;
   task_.time_step = scene_.time_step;
 }
 
@@ -111,8 +111,7 @@ void Simulation::advance(const Drive& drive, std::uint64_t steps) {
   if (counts_.builds == 0 || was_set_) {
     refresh_lists(drive);
     was_set_ = false;
-    look(
-        scene_.time_step);  // what is wrong from the beginning may hide itself before the next look
+    watch(scene_.time_step);  // an error in the initial state may be hidden by the next check
   }
   for (std::uint64_t n = 0; n < steps; ++n) step_once(drive);
 }
@@ -120,7 +119,7 @@ void Simulation::advance(const Drive& drive, std::uint64_t steps) {
 void Simulation::set_state(const State& state) {
   const auto grains = static_cast<Eigen::Index>(id_.size());
   if (state.position.cols() != grains || state.velocity.cols() != grains) {
-    throw std::invalid_argument("a state of other grains than those of the simulation");
+    throw std::invalid_argument("the state has another number of grains than the simulation");
   }
   copy_in(state);
   pose_ = pose_at(Drive{}, step_);
@@ -128,27 +127,36 @@ void Simulation::set_state(const State& state) {
   was_set_ = true;
 }
 
-// A step of the kernel that keeps no velocity and goes nowhere leaves the sums. False when the
-// lists did not hold.
-bool Simulation::sum_contacts() {
-  StepTask task = task_;
+// Contacts at the present positions; `tan_theta` is that of the pose at which margins are checked.
+void Simulation::set_contacts(ContactTask& task, double tan_theta) const {
   task.rows = rows_[0].data();
-  task.next_rows = rows_[1].data();
-  for (std::size_t axis = 0; axis < 3; ++axis) task.velocity[axis] = sum_[axis].data();
-  task.keep = task.time_step = 0;
-  task.kick = 1;
-  task.next_shear = pose_.tan_theta;
-  task.loss = lists_.reference().loss(task.next_shear);
+  task.tan_theta = tan_theta;
+  task.margin_loss = lists_.reference().margin_loss(tan_theta);
   const auto planes = walls_.planes(pose_);
   std::copy(planes.begin(), planes.end(), task.planes);
+}
+
+// Calls a kernel, which returns the excess over the margins, for all blocks.
+template <class Call>
+double Simulation::over_blocks(Call&& call) {
   const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;
-  const auto sum = kernels_.step[0][0];
   std::vector<double>& excess = excess_of_thread_;
   team_->run(blocks, [&](std::size_t thread, std::size_t first, std::size_t last) {
-    excess[thread] = sum(task, first, last);
+    excess[thread] = call(first, last);
   });
   ++evaluations_;
-  return lists_.inner_valid(*std::max_element(excess.begin(), excess.end()), pose_);
+  return *std::max_element(excess.begin(), excess.end());
+}
+
+// False when the lists were not valid.
+bool Simulation::sum_contacts() {
+  SumTask task{task_, {}};
+  set_contacts(task, pose_.tan_theta);
+  for (std::size_t axis = 0; axis < 3; ++axis) task.sum[axis] = sum_[axis].data();
+  const double excess = over_blocks([&](std::size_t first, std::size_t last) {
+    return kernels_.sum_contacts(task, first, last);
+  });
+  return lists_.inner_valid(excess, pose_);
 }
 
 const Forces& Simulation::forces() {
@@ -168,70 +176,59 @@ const Forces& Simulation::forces() {
           scene_.stiffness * sum_[axis][g] - (axis == 1 ? scene_.gravity : 0.0);
     }
   }
-  forces_.on_wall = force_on_wall(push_of_moving_wall());
+  forces_.on_wall = force_on_wall();
   return forces_;
 }
 
 // The fluid's du/dy is Eq. S5 with the height counted from the top wall.
-void Simulation::set_flow(const Drive& drive) {
-  task_.flow = scene_.time_step * scene_.drag_rate * shear_rate(drive) /
-               (1 + 0.5 * scene_.drag_rate * scene_.time_step);
-  task_.top = pose_.top;
+void Simulation::set_fluid_step(const Drive& drive) {
+  task_.fluid_step = scene_.time_step * scene_.drag_rate * shear_rate(drive) /
+                     (1 + 0.5 * scene_.drag_rate * scene_.time_step);
+  task_.fluid_rest_height = pose_.top;
 }
 
 void Simulation::step_once(const Drive& drive) {
-  const bool flow = scene_.fluid == Fluid::cell && drive.amplitude != 0;
-  if (flow) set_flow(drive);
-  task_.rows = rows_[0].data();
-  task_.next_rows = rows_[1].data();
+  const bool fluid_moves = scene_.fluid == Fluid::cell && drive.amplitude != 0;
+  if (fluid_moves) set_fluid_step(drive);
   WallPose next = pose_at(drive, step_ + 1);
-  task_.next_shear = next.tan_theta;
-  task_.loss = lists_.reference().loss(task_.next_shear);
-  const auto planes = walls_.planes(pose_);
-  std::copy(planes.begin(), planes.end(), task_.planes);
-  const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;
-  const auto step = kernels_.step[scene_.gravity != 0][flow];
-  std::vector<double>& excess = excess_of_thread_;
-  team_->run(blocks, [&](std::size_t thread, std::size_t first, std::size_t last) {
-    excess[thread] = step(task_, first, last);
-  });
+  set_contacts(task_, next.tan_theta);
+  task_.next_rows = rows_[1].data();
+  const auto step = kernels_.step[scene_.gravity != 0][fluid_moves];
+  const double excess =
+      over_blocks([&](std::size_t first, std::size_t last) { return step(task_, first, last); });
 
-  ++evaluations_;
-  move_wall(push_of_moving_wall());
+  if (holds_wall(drive, step_)) {
+    wall_velocity_ = 0;
+  } else {
+    move_wall();
+  }
   (cell_.moving == MovingWall::bottom ? next.bottom : next.top) = wall_height_;
   pose_ = next;
   walls_.place(pose_, rows_[1].data() + wall_offset(id_.size()));
   std::swap(rows_[0], rows_[1]);
   ++step_;
-  const double worst = *std::max_element(excess.begin(), excess.end());
-  if (!lists_.inner_valid(worst, pose_)) refresh_lists(drive);
+  if (!lists_.inner_valid(excess, pose_)) refresh_lists(drive);
   if (step_ % kWatchInterval == 0) {
-    stop_the_slowest();
-    look(scene_.time_step);
+    zero_slowest_velocities();
+    watch(scene_.time_step);
   }
 }
 
-// Drag alone takes a velocity below the normal numbers, where each operation costs a hundred times
-// as much, and leaves it there. No position can tell such a velocity from zero.
-void Simulation::stop_the_slowest() {
-  const auto stop = [](double& v) {
+// Drag alone reduces a velocity to a subnormal number, with which each operation takes a hundred
+// times as long. Such a velocity changes no position.
+void Simulation::zero_slowest_velocities() {
+  const auto zero = [](double& v) {
     if (v != 0 && std::fabs(v) < 0x1p-1000) v = 0;
   };
-  for (auto& axis : velocity_) std::for_each(axis.begin(), axis.end(), stop);
-  stop(wall_velocity_);
-}
-
-double Simulation::push_of_moving_wall() const {
-  double push = 0;
-  for (const std::int32_t g : lists_.at_moving_wall()) push += push_[static_cast<std::size_t>(g)];
-  return push;
+  for (auto& axis : velocity_) std::for_each(axis.begin(), axis.end(), zero);
+  zero(wall_velocity_);
 }
 
 void Simulation::check() const {
-  if (counts_.builds > 0) look(0);  // otherwise nothing has happened to the state that was loaded
+  if (counts_.builds > 0) watch(0);  // without lists the state is still the one that was loaded
 }
 
-void Simulation::look(double time_step) const {
+void Simulation::watch(double time_step) const {
   WatchTask task;
   task.rows = rows_[0].data();
   for (std::size_t axis = 0; axis < 3; ++axis) task.velocity[axis] = velocity_[axis].data();
@@ -245,19 +242,23 @@ void Simulation::look(double time_step) const {
   check_grains(task, cell_, scene_, pose_, settings_.limits);
 }
 
-double Simulation::force_on_wall(double push) const {
-  // Contacts push the wall by minus what they push the grains by. The load points inwards.
+// Upwards: the load acts inwards, and contacts push the wall by minus what they push the grains by.
+double Simulation::force_on_wall() const {
+  double contacts = 0;
+  for (const std::int32_t g : lists_.at_moving_wall()) {
+    contacts += moving_wall_force_y_[static_cast<std::size_t>(g)];
+  }
   const double area = cell_.width * cell_.depth;
   const double inwards = cell_.moving == MovingWall::bottom ? 1.0 : -1.0;
   const double load = scene_.pressure * area + carried_weight(scene_, cell_, id_.size());
-  return inwards * load - scene_.stiffness * push;
+  return inwards * load - scene_.stiffness * contacts;
 }
 
-void Simulation::move_wall(double push) {
-  const double force = force_on_wall(push);
+void Simulation::move_wall() {
   const double mass = scene_.wall_mass * (cell_.width * cell_.depth);
   const double half = 0.5 * scene_.time_step * scene_.wall_drag / scene_.wall_mass;
-  wall_velocity_ = ((1 - half) * wall_velocity_ + scene_.time_step * (force / mass)) / (1 + half);
+  wall_velocity_ =
+      ((1 - half) * wall_velocity_ + scene_.time_step * (force_on_wall() / mass)) / (1 + half);
   wall_height_ += scene_.time_step * wall_velocity_;
 }
 
@@ -283,8 +284,8 @@ void Simulation::refresh_lists(const Drive& drive) {
     task_.velocity[axis] = velocity_[axis].data();
     task_.reference[axis] = lists_.reference().data(axis);
   }
-  task_.push = push_.data();
-  task_.origin = lists_.reference().origin();
+  task_.moving_wall_force_y = moving_wall_force_y_.data();
+  task_.frame_height = lists_.reference().frame_height();
   task_.neighbours = lists_.rows();
 }
 
@@ -302,19 +303,19 @@ void Simulation::rebuild_lists(const Drive& drive) {
     sites.push_back({static_cast<std::int32_t>(4 * g), walls + id_[g]});
   }
   order_.build(cell_, pose_, reach, rows_[0].data(), sites);
-  // Grains stay near each other for longer than the lists of a loose, fast packing last.
+  // The order in memory stays good for longer than the lists of a loose, fast packing are valid.
   const bool stale = counts_.builds < 2 || step_ - sorted_at_ >= 200;
   if (settings_.lists.sort_memory && stale) sort_memory();
   lists_.build(snapshot(drive), id_, order_);
-  // Both buffers hold all that `place` does not write.
+  // Both buffers hold the rows that `place` does not write.
   std::copy(rows_[0].begin() + padding_offset(id_.size()), rows_[0].end(),
             rows_[1].begin() + padding_offset(id_.size()));
   ++counts_.builds;
 }
 
-// Near in space is near in memory. Within a stretch of memory the grains near the same walls or the
-// seam, and of those the ones with equally many neighbours, share a vector: its lanes all wait for
-// the longest list and all do what one of them needs.
+// Grains that are near in space become near in memory. Within a stretch of memory, grains near the
+// same walls or the seam, and among those grains with equally many neighbours, share a vector:
+// every lane takes as long as the one with the longest list and most branches.
 void Simulation::sort_memory() {
   constexpr std::size_t kStretch = 256;
   const auto first_grain = static_cast<std::int32_t>(walls_.active().size());
@@ -369,7 +370,8 @@ State Simulation::state() const {
 }
 
 std::size_t Simulation::bytes() const {
-  return 8 * (rows_[0].size() + rows_[1].size() + 3 * velocity_[0].size() + push_.size()) +
+  return 8 * (rows_[0].size() + rows_[1].size() + 3 * velocity_[0].size() +
+              moving_wall_force_y_.size()) +
          4 * id_.size() + lists_.bytes() + walls_.bytes() + order_.bytes();
 }
 

@@ -4,7 +4,8 @@
 // The integrator is the leapfrog with the drag taken implicitly: with v at half steps,
 //   v' = [(1 - b dt/2m) v + dt (F/m + b/m u)] / (1 + b dt/2m),   x' = x + dt v',
 // where F depends on positions alone and u is the fluid's velocity. The moving wall obeys the same
-// scheme. It is velocity Verlet seen at half steps; a restart from (x, v, step) is exact.
+// scheme. This is velocity Verlet with velocities stored at half steps; a restart from (x, v, step)
+// is exact.
 #pragma once
 
 #include <array>
@@ -27,45 +28,45 @@
 
 namespace shearcell {
 
-/// How fast a simulation runs, never what it computes.
+/// Settings that change the speed of a simulation and not its result.
 struct EngineSettings {
   const Kernels* kernels = find_kernels(Simd::best);
   std::size_t threads = 1;
   ListSettings lists;
-  WatchdogLimits limits;  ///< these decide where a run fails, not what it computes until then
+  WatchdogLimits limits;  ///< decide when a run fails, not what it computes before that
 };
 
-/// How often the lists were made anew.
+/// How often the outer lists were built and the inner lists pruned.
 struct ListCounts {
   std::uint64_t builds = 0;
   std::uint64_t prunes = 0;
 };
 
-/// Net forces [m d/s^2] on all that can move.
+/// Net forces [m d/s^2] on the grains and the moving wall.
 struct Forces {
   Eigen::Matrix3Xd on_grain;  ///< of contacts and gravity, in the order of the permanent ids
-  double on_wall = 0;         ///< upwards on the moving wall: pressure and contacts
+  double on_wall = 0;         ///< upwards on the moving wall: load and contacts
 };
 
 class Simulation {
  public:
-  /// Takes the state over. Throws std::invalid_argument when the sizes disagree, the cell is too
-  /// shallow for the cutoffs, or the machine lacks the SIMD asked for.
+  /// Copies the state. Throws std::invalid_argument when the sizes disagree, the cell is too
+  /// shallow for the cutoffs, or the machine lacks the SIMD instructions asked for.
   Simulation(Cell cell, const Scene& scene, const State& state, EngineSettings settings = {});
 
-  /// Advances by `steps` time steps. The watchdog looks at a state that was given before the first
-  /// of them, and at every 1024th step. Throws NumericalFailure (watchdog.hpp).
+  /// Advances by `steps` time steps. The watchdog checks a new state before its first step, and
+  /// every 1024th step. Throws NumericalFailure (watchdog.hpp).
   void advance(const Drive& drive, std::uint64_t steps);
 
-  /// Looks for what the watchdog looks for, now, but for the time step. Throws NumericalFailure.
+  /// Runs all watchdog checks now, except the time-step check. Throws NumericalFailure.
   void check() const;
 
-  /// Goes on from another state of the same grains, between upright walls. Throws
+  /// Continues from another state of the same grains, between upright walls. Throws
   /// std::invalid_argument when their number differs.
   void set_state(const State& state);
 
-  /// Forces at the present positions without drag, walls upright; the same bits as a step finds.
-  /// The reference holds until the next call.
+  /// Forces at the present positions without drag, walls upright; the same bits as in a time step.
+  /// The reference is valid until the next call.
   const Forces& forces();
 
   /// The state in the order of the permanent ids.
@@ -74,16 +75,16 @@ class Simulation {
   const Cell& cell() const { return cell_; }
   const Scene& scene() const { return scene_; }
   std::size_t grains() const { return id_.size(); }
-  /// How often forces were summed since construction, in steps and otherwise.
+  /// How often forces were computed since construction, in steps and in forces().
   std::uint64_t evaluations() const { return evaluations_; }
   const ListCounts& list_counts() const { return counts_; }
-  /// Memory held for grains, walls and lists [bytes].
+  /// Memory used for grains, walls and lists [bytes].
   std::size_t bytes() const;
 
-  /// Other forces from here on; the state stays as it is.
+  /// Uses other forces from the next step on; the state does not change.
   void set_scene(const Scene& scene);
 
-  /// Another largest overlap for the watchdog [d].
+  /// Sets the watchdog's largest overlap [d].
   void set_overlap_limit(double limit) { settings_.limits.overlap = limit; }
 
  private:
@@ -94,13 +95,15 @@ class Simulation {
   void refresh_lists(const Drive& drive);
   void sort_memory();
   void step_once(const Drive& drive);
+  void set_contacts(ContactTask& task, double tan_theta) const;
+  template <class Call>
+  double over_blocks(Call&& call);
   bool sum_contacts();
-  void set_flow(const Drive& drive);
-  double push_of_moving_wall() const;
-  double force_on_wall(double push) const;
-  void move_wall(double push);
-  void stop_the_slowest();
-  void look(double time_step) const;
+  void set_fluid_step(const Drive& drive);
+  double force_on_wall() const;
+  void move_wall();
+  void zero_slowest_velocities();
+  void watch(double time_step) const;
   WallPose pose_at(const Drive& drive, std::uint64_t step) const;
   double shear_rate(const Drive& drive) const;
   Snapshot snapshot(const Drive& drive);
@@ -111,21 +114,21 @@ class Simulation {
   const Kernels& kernels_;
   std::unique_ptr<Team> team_;
   std::uint64_t step_ = 0;
-  std::uint64_t sorted_at_ = 0;  // step when memory was last put in order
+  std::uint64_t sorted_at_ = 0;  // step when the memory was last sorted
   double wall_height_ = 0, wall_velocity_ = 0;
   std::vector<std::int32_t> id_;  // permanent id of each grain in memory
   std::array<AlignedVector<double>, 2> rows_;
   std::array<AlignedVector<double>, 3> velocity_;
-  std::vector<double> push_;  // y of each grain's sum with the moving wall
+  std::vector<double> moving_wall_force_y_;  // of each grain's contacts with that wall, over k [d]
   CellOrder order_;
   Walls walls_;
   NeighbourLists lists_;
   WallPose pose_;  // at step_
   StepTask task_;
   std::vector<double> excess_of_thread_;
-  std::array<AlignedVector<double>, 3> sum_;  // of contacts, where forces are asked for
+  std::array<AlignedVector<double>, 3> sum_;  // contact sums for forces()
   Forces forces_;
-  bool was_set_ = false;  // to a state for which the lists have not been looked at
+  bool was_set_ = false;  // the lists have not been checked for the new state
   std::uint64_t evaluations_ = 0;
   ListCounts counts_;
 };

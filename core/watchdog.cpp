@@ -38,7 +38,8 @@ double largest_overlap(const WatchTask& task, std::size_t g, double depth) {
   const std::size_t block = g / task.lanes;
   const std::int32_t* list = task.neighbours.list + task.neighbours.begin[block] + g % task.lanes;
   double nearest = 1;
-  const std::size_t slots = task.neighbours.head[block] + task.neighbours.slots[block];
+  const std::size_t slots =
+      task.neighbours.moving_wall_slots[block] + task.neighbours.other_slots[block];
   for (std::size_t k = 0; k < slots; ++k) {
     const double* other = task.rows + list[k * task.lanes];
     const double dx = own[0] - other[0];
@@ -59,8 +60,8 @@ void for_each_touch(const WatchTask& task, std::size_t g, const Cell& cell, cons
   const double* own = task.rows + 4 * g;
   const std::size_t block = g / task.lanes;
   const std::int32_t* list = task.neighbours.list + task.neighbours.begin[block] + g % task.lanes;
-  const std::size_t head = task.neighbours.head[block];
-  const std::size_t slots = head + task.neighbours.slots[block];
+  const std::size_t wall_slots = task.neighbours.moving_wall_slots[block];
+  const std::size_t slots = wall_slots + task.neighbours.other_slots[block];
   const std::int32_t first_wall = wall_offset(task.id->size());
   for (std::size_t k = 0; k < slots; ++k) {
     const std::int32_t offset = list[k * task.lanes];
@@ -69,8 +70,8 @@ void for_each_touch(const WatchTask& task, std::size_t g, const Cell& cell, cons
     const Eigen::Vector3d dr(own[0] - other[0], own[1] - other[1], dz);
     const double square = dr.squaredNorm();
     if (!(square < 1)) continue;
-    const double wall = k < head ? kOfMovingWall : kOfStandingWall;
-    visit(dr / std::sqrt(square), offset < first_wall ? kOfGrain : wall, k < head);
+    const double wall = k < wall_slots ? kOfMovingWall : kOfStandingWall;
+    visit(dr / std::sqrt(square), offset < first_wall ? kOfGrain : wall, k < wall_slots);
   }
   const Eigen::Vector3d across(pose.cos_theta, -pose.sin_theta, 0), up(0, 1, 0);
   const std::array<double, 4> distance = plane_distances(cell, pose, own);
@@ -92,8 +93,8 @@ struct Fastest {
 void bound_grain(const WatchTask& task, std::size_t g, const Cell& cell, const WallPose& pose,
                  double least, Fastest& fastest) {
   const std::size_t block = g / task.lanes;
-  const auto slots =
-      static_cast<double>(task.neighbours.head[block] + task.neighbours.slots[block]);
+  const auto slots = static_cast<double>(task.neighbours.moving_wall_slots[block] +
+                                         task.neighbours.other_slots[block]);
   if (kOfGrain * slots + 4 * kOfMovingWall <= least) return;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for_each_touch(task, g, cell, pose, [&](const Eigen::Vector3d& normal, double weight, bool) {
@@ -115,7 +116,7 @@ void bound_wall(const WatchTask& task, const Cell& cell, const Scene& scene, con
   double most = 0;
   for (std::size_t g = 0; g < task.id->size(); ++g) {
     const std::size_t block = g / task.lanes;
-    if (near(g)) most += each * (1.0 + task.neighbours.head[block]);
+    if (near(g)) most += each * (1.0 + task.neighbours.moving_wall_slots[block]);
   }
   if (most <= least) return;
   double bound = 0;

@@ -58,7 +58,7 @@ void sample_parts(StepTask task, std::size_t first, std::size_t last) {
     std::copy_n(task.velocity[axis], room, velocity);
     task.velocity[axis] = velocity;
   }
-  task.push = stopwatch.nowhere.data() + 7 * room;
+  task.moving_wall_force_y = stopwatch.nowhere.data() + 7 * room;
   const auto step = [&] { return stopwatch.inner->step[kGravity][kFlow](task, first, last); };
   timed(stopwatch.whole, step);
   std::vector<std::uint8_t> near(task.neighbours.near + first, task.neighbours.near + last);
@@ -66,7 +66,7 @@ void sample_parts(StepTask task, std::size_t first, std::size_t last) {
   task.neighbours.near = near.data() - first;
   timed(stopwatch.without_walls, step);
   const std::vector<std::uint16_t> none(last - first, 0);
-  task.neighbours.slots = none.data() - first;
+  task.neighbours.other_slots = none.data() - first;
   timed(stopwatch.without_neighbours, step);
   stopwatch.sampled += seconds_since(start);
 }

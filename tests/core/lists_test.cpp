@@ -98,11 +98,12 @@ std::vector<std::int32_t> found_row(const NeighbourLists& lists, const Walls& wa
   const auto moving_end = wall_offset(grains) + static_cast<std::int32_t>(4 * walls.moving_size());
   const std::size_t block = g / lanes;
   std::vector<std::int32_t> row;
-  for (std::size_t k = 0; k < inner.head[block] + std::size_t{inner.slots[block]}; ++k) {
+  for (std::size_t k = 0;
+       k < inner.moving_wall_slots[block] + std::size_t{inner.other_slots[block]}; ++k) {
     const std::int32_t offset = inner.list[inner.begin[block] + k * lanes + g % lanes];
     if (offset == padding_offset(grains)) continue;
     const bool of_moving = offset >= wall_offset(grains) && offset < moving_end;
-    RC_ASSERT(of_moving == (k < inner.head[block]));
+    RC_ASSERT(of_moving == (k < inner.moving_wall_slots[block]));
     RC_ASSERT(!of_moving || (lists.near()[g] & kNearMovingWall) != 0);
     row.push_back(offset);
   }
@@ -150,7 +151,7 @@ TEST(Reference, AnAffineShearAloneMovesNothing) {
   const Points points = random_points(64, cell, wall_pose(cell, 0, 0), 3);
   Reference reference;
   reference.set(points.rows.data(), 64, wall_pose(cell, 0, 0), 0.2);
-  const double rounding = reference.loss(0);
+  const double rounding = reference.margin_loss(0);
   EXPECT_LT(rounding, 1e-4);
   Points sheared = points;
   const WallPose pose = wall_pose(cell, 0.05, 0);
@@ -162,7 +163,7 @@ TEST(Reference, AnAffineShearAloneMovesNothing) {
     EXPECT_LT(reference.moved(sheared.rows.data(), g, pose), rounding);
   }
   // Two grains 1.4 apart along the direction that shrinks most, e/2 of a distance.
-  EXPECT_GT(reference.loss(pose.tan_theta), 1.4 * 0.5 * pose.tan_theta / 2);
+  EXPECT_GT(reference.margin_loss(pose.tan_theta), 1.4 * 0.5 * pose.tan_theta / 2);
   sheared.rows[4 * 17 + 2] += 0.25;
   EXPECT_NEAR(reference.moved(sheared.rows.data(), 17, pose), 0.25, rounding);
 }

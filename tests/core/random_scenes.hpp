@@ -42,6 +42,7 @@ inline Drive any_drive() {
   drive.steps_per_cycle = *rc::gen::inRange<std::uint64_t>(40, 2000).as("steps per cycle");
   drive.amplitude = any_number("amplitude", 0, 5e-5) * static_cast<double>(drive.steps_per_cycle);
   drive.pause_steps = *rc::gen::element<std::uint64_t>(0, 0, 17, 300).as("pause");
+  if (any_bool("moving in a pause")) drive.pause_walls = PauseWalls::moving;
   return drive;
 }
 

@@ -111,10 +111,15 @@ void brute_step(const Cell& cell, const Scene& scene, const Drive& drive, State&
   const double weight = lifts ? scene.gravity * static_cast<double>(at.cols()) : 0;
   const double force = inwards * (scene.pressure * area + weight) - scene.stiffness * push;
   const double wall_half = 0.5 * scene.time_step * scene.wall_drag / scene.wall_mass;
-  state.wall_velocity = ((1 - wall_half) * state.wall_velocity +
-                         scene.time_step * (force / (scene.wall_mass * area))) /
-                        (1 + wall_half);
-  state.wall_height += scene.time_step * state.wall_velocity;
+  const bool pause = state.step % cycle_steps(drive) >= drive.steps_per_cycle;
+  if (pause && drive.pause_walls == PauseWalls::held) {
+    state.wall_velocity = 0;
+  } else {
+    state.wall_velocity = ((1 - wall_half) * state.wall_velocity +
+                           scene.time_step * (force / (scene.wall_mass * area))) /
+                          (1 + wall_half);
+    state.wall_height += scene.time_step * state.wall_velocity;
+  }
   ++state.step;
 }
 

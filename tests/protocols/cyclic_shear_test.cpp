@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "protocols/rest.hpp"
 #include "tests/protocols/packings.hpp"
 
 namespace shearcell {
@@ -132,7 +133,8 @@ TEST(CyclicShear, KeepsTheWallsUprightDuringAPause) {
   }
   EXPECT_EQ(tilted, 2 * (3000 - 2));  // all but the two zeros of the sine in each cycle
 
-  // A cycle with its pause is a cycle, and then rest between fixed walls.
+  // With the moving wall free, a cycle with its pause is a cycle and then time without shear.
+  paused.pause_walls = PauseWalls::moving;
   Simulation whole(dense().cell, table_1(), dense().state);
   const std::vector<Stop> stops = shear(whole, CyclicShear(paused, 1, 1), 1700);
   EXPECT_EQ(stops.back().step, 4000U);
@@ -142,7 +144,23 @@ TEST(CyclicShear, KeepsTheWallsUprightDuringAPause) {
   EXPECT_TRUE(same_bits(whole.state(), parts.state()));
 }
 
-TEST(CyclicShear, GoesOnFromTheMidstOfAPause) {
+TEST(CyclicShear, HoldsTheMovingWallDuringAPause) {
+  Drive paused = kDrive;
+  paused.pause_steps = 1000;
+  const State before = after(CyclicShear(kDrive, 1, 1));
+  const State end = after(CyclicShear(paused, 1, 1));
+  EXPECT_NE(before.wall_velocity, 0);
+  EXPECT_EQ(end.wall_height, before.wall_height);
+  EXPECT_EQ(end.wall_velocity, 0);
+  // Rest of the same length, from the state without a pause.
+  const State rest = rested(dense().cell, table_1(), before, 1000 * table_1().time_step);
+  EXPECT_EQ(rest.position, end.position);
+  EXPECT_EQ(rest.velocity, end.velocity);
+  // The wall moves again in the next cycle.
+  EXPECT_NE(after(CyclicShear(paused, 2, 1)).wall_height, end.wall_height);
+}
+
+TEST(CyclicShear, ContinuesFromAnyStepOfAPause) {
   Drive paused = kDrive;
   paused.pause_steps = 1000;
   const CyclicShear protocol(paused, 2, 1);
