@@ -84,6 +84,7 @@ Kernels timed_kernels(const Kernels& inner) {
   return {
       inner.name,
       inner.lanes,
+      inner.sum_contacts,
       {{timed_step<0, 0>, timed_step<0, 1>}, {timed_step<1, 0>, timed_step<1, 1>}},
       [](const SearchTask& task, std::size_t first, std::size_t last) {
         return timed(stopwatch.search, [&] { return stopwatch.inner->search(task, first, last); });

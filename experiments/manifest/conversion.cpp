@@ -44,6 +44,7 @@ Drive drive(const Parameters& p) {
   if (p.protocol == ProtocolKind::paused) {
     const double steps = std::clamp(std::nearbyint(pause_time_steps(p)), 1.0, kMostPauseSteps);
     drive.pause_steps = static_cast<std::uint64_t>(steps);
+    drive.pause_walls = p.pause_walls;
   }
   return drive;
 }

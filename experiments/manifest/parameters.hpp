@@ -79,6 +79,7 @@ struct Parameters {
   double period_s = 2;
   std::uint64_t steps_per_cycle = 45600;
   double pause_s = 2;
+  PauseWalls pause_walls = PauseWalls::held;
   EngineKind engine = EngineKind::shearcell;
 
   // Stiffening.

@@ -138,6 +138,9 @@ std::vector<Field> shear_fields() {
                  {.stage = Stage::shear, .under = ProtocolKind::paused},
                  "rest between fixed walls after each cycle, under protocol paused (B.5); rounded "
                  "to whole time steps"),
+      names("pause_walls", "", choice<&P::pause_walls>(),
+            {.stage = Stage::shear, .under = ProtocolKind::paused, .omitted_at = "moving"},
+            "the moving wall during a pause: held at its height, or moving under its load"),
       integer("cycles", "n", &P::cycles, 0, 1e6, kNoKey,
               "cycles to shear for; a larger value extends a run"),
       names("engine", "", choice<&P::engine>(), {.stage = Stage::shear, .omitted_at = "shearcell"},

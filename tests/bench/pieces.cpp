@@ -129,13 +129,13 @@ struct Arrays {
     task.neighbours = lists.rows();
     const auto planes = walls.planes(pose);
     std::copy(planes.begin(), planes.end(), task.planes);
-    task.push = push.data();
+    task.moving_wall_force_y = push.data();
     task.depth = from.cell.depth;
     task.per_depth = 1 / from.cell.depth;
-    task.keep = 0.5;  // velocities stay finite over any number of repeats
-    task.kick = from.scene.time_step * from.scene.stiffness;
+    task.velocity_factor = 0.5;  // velocities stay finite over any number of repeats
+    task.contact_kick = from.scene.time_step * from.scene.stiffness;
     task.time_step = from.scene.time_step;
-    task.origin = pose.top;
+    task.frame_height = pose.top;
     return task;
   }
 };

@@ -162,7 +162,14 @@ TEST(Identity, APauseEntersOnlyWhereTheProtocolIsPaused) {
   paused.protocol = longer.protocol = ProtocolKind::paused;
   EXPECT_EQ(prepare_stage(paused, 1).key, prepare.key);
   const StageSpec shear = last_stage(paused, 1, prepare);
-  EXPECT_EQ(shear.key, "e6e8e2b64efd95186ef23bc827b867e5441eefd1ef729840f8675abf5937903b");
+  // The runs of older stores, whose moving wall is free during a pause.
+  Parameters free = paused;
+  free.pause_walls = PauseWalls::moving;
+  const StageSpec older = last_stage(free, 1, prepare);
+  EXPECT_EQ(older.key, "e6e8e2b64efd95186ef23bc827b867e5441eefd1ef729840f8675abf5937903b");
+  EXPECT_FALSE(older.resolved.at("parameters").contains("pause_walls"));
+  EXPECT_EQ(read_stage(older.resolved).parameters, free);
+  EXPECT_NE(older.key, shear.key);
   EXPECT_NE(last_stage(longer, 1, prepare).key, shear.key);
   EXPECT_EQ(read_stage(last_stage(longer, 1, prepare).resolved).parameters, longer);
 

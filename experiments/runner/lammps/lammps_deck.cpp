@@ -35,7 +35,8 @@ class Deck {
         scene_(task.scene),
         area_(cell_.width * cell_.depth),
         bottom_moves_(cell_.moving == MovingWall::bottom),
-        shears_(task.drive.amplitude != 0) {}
+        shears_(task.drive.amplitude != 0),
+        holds_(task.drive.pause_steps > 0 && task.drive.pause_walls == PauseWalls::held) {}
 
   std::string text() {
     atoms();
@@ -92,8 +93,8 @@ class Deck {
     add(text_, "variable top equal {}", bottom_moves_ ? fmt::format("{:.17g}", cell_.top) : height);
     add(text_, "variable rise equal v_{}-({:.17g})", bottom_moves_ ? "bottom" : "top",
         bottom_moves_ ? cell_.bottom : cell_.top);
+    if (shears_ || holds_) add(text_, "variable phase equal step%{}", cycle);
     if (!shears_) return;
-    add(text_, "variable phase equal step%{}", cycle);
     add(text_, "variable theta equal {:.17g}*sin(2*PI*v_phase/{})*(v_phase<{})",
         task_.drive.amplitude, turn, turn);
     add(text_, "variable turn equal -v_theta\nvariable shear equal tan(v_theta)");
@@ -152,11 +153,20 @@ class Deck {
     const char* moving = bottom_moves_ ? "bottom" : "top";
     const auto grains = static_cast<std::size_t>(task_.state.position.cols());
     const double load = scene_.pressure * area_ + carried_weight(scene_, cell_, grains);
-    add(text_, "variable push equal {:.17g}+f_{}_plane[1]{}", (bottom_moves_ ? 1 : -1) * load,
-        moving,
-        has(bottom_moves_ ? WallSide::bottom : WallSide::top) ? fmt::format("+fcm({},y)", moving)
-                                                              : "");
-    add(text_, "fix push wall addforce 0 v_push 0");
+    std::string force =
+        fmt::format("{:.17g}+f_{}_plane[1]", (bottom_moves_ ? 1 : -1) * load, moving);
+    if (has(bottom_moves_ ? WallSide::bottom : WallSide::top)) {
+      force += fmt::format("+fcm({},y)", moving);
+    }
+    if (holds_) {
+      // The force that, with the drag, stops the wall within one step.
+      const double mass = area_ * (scene_.wall_mass + added(scene_.wall_drag));
+      const double stop = area_ * scene_.wall_drag - mass / scene_.time_step;
+      const auto turn = task_.drive.steps_per_cycle;
+      force = fmt::format("({0})*(v_phase<{1})+{2:.17g}*vy[{3}]*(v_phase>={1})", force, turn, stop,
+                          grains + 1);
+    }
+    add(text_, "variable push equal {}\nfix push wall addforce 0 v_push 0", force);
     if (scene_.wall_drag != 0) {
       add(text_, "fix wall_drag wall viscous {:.17g}", scene_.wall_drag * area_);
     }
@@ -199,6 +209,7 @@ class Deck {
   double area_;
   bool bottom_moves_;
   bool shears_;
+  bool holds_;  // the moving wall, during a pause
   std::string text_;
 };
 
