@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Our engine beside LAMMPS in one scene: settling from one loose filling where that is asked for,
-// trajectories from one state, then means over seeds, then speed and memory.
+// Our engine and LAMMPS compared in one scene: settling from one loose filling (optional),
+// trajectories from one state, means over seeds, speed and memory.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "experiments/bench/settling.hpp"
+#include "analysis/statistics.hpp"
+#include "experiments/bench/packing.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 
-namespace shearcell {
+namespace shearcell::bench {
 
 struct EngineCheckOptions {
   std::size_t grains = 2000;
@@ -19,10 +21,10 @@ struct EngineCheckOptions {
   std::uint64_t steps = 1000;  ///< of the trajectories, and of the timing
   std::uint64_t cycles = 3;    ///< before the means; 0 leaves them out
   std::size_t seeds = 3;
-  std::size_t ranks = 1;  ///< processes of LAMMPS, besides one alone
-  bool settle = false;    ///< settle in LAMMPS too, by `ranks` processes
-  double settle_time_limit = SettleParameters{}.time_limit;  ///< [s], of either
-  std::function<void(const std::string&)> report;  ///< what is being done now; may be empty
+  std::size_t ranks = 1;  ///< processes of LAMMPS, in addition to one alone
+  bool settle = false;    ///< settle in LAMMPS too, with `ranks` processes
+  double settle_time_limit = SettleParameters{}.time_limit;  ///< [s], of both engines
+  std::function<void(const std::string&)> report;            ///< progress messages; may be empty
 };
 
 /// How far two runs from one settled packing are apart after the same time under shear.
@@ -31,8 +33,8 @@ struct TrajectoryCheck {
   std::uint64_t steps = 0;
   double distance = 0;  ///< largest of a grain from where our engine has it [d]
   double height = 0;    ///< of the moving walls from each other [d]
-  /// Largest distance [d] between two runs of our own engine, one of whose grains began 1e-16 d
-  /// elsewhere: what rounding alone does. 0 where it was not measured.
+  /// Largest distance [d] between two runs of our own engine, one of which starts with a grain
+  /// moved by 1e-16 d: the effect of rounding alone.
   double rounding = 0;
 };
 
@@ -42,38 +44,54 @@ struct EngineSpeed {
   double bytes = 0;  ///< ours: of the simulation; LAMMPS: of its largest process
 };
 
+/// One quantity, averaged over the packings of each engine, ours first.
+struct EngineMean {
+  std::string name;
+  std::vector<RunStatistics> of;
+  std::vector<double> apart;  ///< |mean - ours| in standard errors of the difference; 0 for ours
+};
+
 /// Means of several engines, ours first.
 struct EngineMeans {
   std::vector<std::string> engines;
-  std::vector<EngineMean> means;  ///< none where there was one seed
+  std::vector<EngineMean> means;  ///< empty for a single seed
   double limit = 0;               ///< of `apart`, by Student's t, shared among all comparisons
 
   bool agree() const;
 };
 
-/// Loose grains of one seed, settled by one engine.
-struct EngineSettling {
+struct Settling {
   std::string engine;
   std::uint64_t seed = 0;
-  Settling result;
+  State state;                                   ///< settled; its step counts from the loose grains
+  double seconds = 0;                            ///< wall time of the whole settling
+  double million_particle_steps_per_second = 0;  ///< of LAMMPS: in its time loop alone
+  double bytes = 0;  ///< ours: of the simulation; LAMMPS: of its largest process
+  PackingNumbers numbers;
 };
+
+/// Throw NumericalFailure, for example when a packing is not settled after the time limit, and
+/// EngineError. `seen` gets the state of LAMMPS every 0.1 s of simulated time.
+Settling settling_by_us(const Packing& loose, const SettleParameters& settle);
+Settling settling_by_lammps(const Packing& loose, const SettleParameters& settle,
+                            const LammpsProgram& program, std::size_t ranks,
+                            const std::function<void(const State&)>& seen = {});
 
 struct EngineCheck {
   std::string lammps_version;
   std::size_t grains = 0;
-  std::vector<EngineSettling> settlings;  ///< ours, and LAMMPS's where that was asked for
-  EngineMeans settled;                    ///< over the seeds of `settlings`
+  std::vector<Settling> settlings;  ///< ours, and LAMMPS's with the option `settle`
+  EngineMeans settled;              ///< over the seeds of `settlings`
   std::vector<TrajectoryCheck> trajectories;
-  double explicit_drag_order = 0;  ///< log2 of the ratio of errors at dt and dt/2
-  EngineMeans sheared;             ///< after some cycles from our packings
+  EngineMeans sheared;  ///< after shear from our packings
   std::vector<EngineSpeed> speeds;
 
-  /// Whether trajectories agree as far as rounding lets them, and means within the limit.
+  /// Trajectories agree within the effect of rounding, and means within the limit.
   bool agree() const;
 };
 
-/// Table I in a rough cell. Throws EngineError when LAMMPS is missing or fails, NumericalFailure
-/// when a packing does not settle.
+/// Table I in a rough cell. Throws EngineError if LAMMPS is missing or fails, NumericalFailure if a
+/// packing does not settle.
 EngineCheck check_engines(const EngineCheckOptions& options);
 
-}  // namespace shearcell
+}  // namespace shearcell::bench

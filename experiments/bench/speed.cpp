@@ -5,115 +5,100 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
-#include "core/filling.hpp"
-#include "core/simulation.hpp"
+#include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "protocols/settle.hpp"
 #include "provenance/checkpoint.hpp"
+#include "provenance/io/stopwatch.hpp"
 
 namespace shearcell {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using bench::Packing;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// The engine holds no clock, so its kernels are timed from outside: a table of functions that take
-// the time around those of the kernel in use. One simulation at a time, one thread.
-struct Stopwatch {
+// The engine has no clock, so its kernels are timed from outside: a table of functions that call
+// those of the kernel in use and add up their times. One simulation at a time, one thread.
+struct KernelTimes {
   const Kernels* inner = nullptr;
   std::size_t calls = 0;
   double step = 0, search = 0, prune = 0;
-  // Every so many steps the same step is done again to nowhere: whole, without looking at walls,
-  // and without any neighbours.
+  // Every 16th step is repeated with its results written elsewhere: whole, without the walls, and
+  // without any neighbours.
   double sampled = 0, whole = 0, without_walls = 0, without_neighbours = 0;
-  std::vector<double> nowhere;
+  std::vector<double> elsewhere;
 };
-Stopwatch stopwatch;
+KernelTimes times;
 
 template <class Call>
 auto timed(double& total, Call&& call) {
-  const auto start = Clock::now();
+  const Stopwatch watch;
   const auto result = call();
-  total += seconds_since(start);
+  total += watch.seconds();
   return result;
 }
 
 template <int kGravity, int kFlow>
 void sample_parts(StepTask task, std::size_t first, std::size_t last) {
   constexpr std::size_t kInterval = 16;
-  if (++stopwatch.calls % kInterval != 0) return;
-  const auto start = Clock::now();
+  if (++times.calls % kInterval != 0) return;
+  const Stopwatch watch;
   const std::size_t room = padded(task.grains);
-  stopwatch.nowhere.resize(8 * room);
-  task.next_rows = stopwatch.nowhere.data();
+  times.elsewhere.resize(8 * room);
+  task.next_rows = times.elsewhere.data();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    double* velocity = stopwatch.nowhere.data() + (4 + axis) * room;
+    double* velocity = times.elsewhere.data() + (4 + axis) * room;
     std::copy_n(task.velocity[axis], room, velocity);
     task.velocity[axis] = velocity;
   }
-  task.moving_wall_force_y = stopwatch.nowhere.data() + 7 * room;
-  const auto step = [&] { return stopwatch.inner->step[kGravity][kFlow](task, first, last); };
-  timed(stopwatch.whole, step);
+  task.moving_wall_force_y = times.elsewhere.data() + 7 * room;
+  const auto step = [&] { return times.inner->step[kGravity][kFlow](task, first, last); };
+  timed(times.whole, step);
   std::vector<std::uint8_t> near(task.neighbours.near + first, task.neighbours.near + last);
   for (std::uint8_t& bits : near) bits &= static_cast<std::uint8_t>(~kNearWall);
   task.neighbours.near = near.data() - first;
-  timed(stopwatch.without_walls, step);
+  timed(times.without_walls, step);
   const std::vector<std::uint16_t> none(last - first, 0);
   task.neighbours.other_slots = none.data() - first;
-  timed(stopwatch.without_neighbours, step);
-  stopwatch.sampled += seconds_since(start);
+  timed(times.without_neighbours, step);
+  times.sampled += watch.seconds();
 }
 
 template <int kGravity, int kFlow>
 double timed_step(const StepTask& task, std::size_t first, std::size_t last) {
   sample_parts<kGravity, kFlow>(task, first, last);
-  return timed(stopwatch.step,
-               [&] { return stopwatch.inner->step[kGravity][kFlow](task, first, last); });
+  return timed(times.step, [&] { return times.inner->step[kGravity][kFlow](task, first, last); });
 }
 
 Kernels timed_kernels(const Kernels& inner) {
-  stopwatch = {};
-  stopwatch.inner = &inner;
-  return {
-      inner.name,
-      inner.lanes,
-      inner.sum_contacts,
-      {{timed_step<0, 0>, timed_step<0, 1>}, {timed_step<1, 0>, timed_step<1, 1>}},
-      [](const SearchTask& task, std::size_t first, std::size_t last) {
-        return timed(stopwatch.search, [&] { return stopwatch.inner->search(task, first, last); });
-      },
-      [](const PruneTask& task, std::size_t first, std::size_t last) {
-        return timed(stopwatch.prune, [&] { return stopwatch.inner->prune(task, first, last); });
-      }};
+  times = {};
+  times.inner = &inner;
+  return {inner.name,
+          inner.lanes,
+          inner.sum_contacts,
+          {{timed_step<0, 0>, timed_step<0, 1>}, {timed_step<1, 0>, timed_step<1, 1>}},
+          [](const SearchTask& task, std::size_t first, std::size_t last) {
+            return timed(times.search, [&] { return times.inner->search(task, first, last); });
+          },
+          [](const PruneTask& task, std::size_t first, std::size_t last) {
+            return timed(times.prune, [&] { return times.inner->prune(task, first, last); });
+          }};
 }
 
-struct Prepared {
-  Cell cell;
-  State state;
-  Scene scene;
-  Drive drive;
-};
-
-// The pressure of Table I can lift no higher column than this many grains make.
+// The pressure of Table I cannot lift the column of a cell with more grains.
 constexpr std::size_t kHighest = 18200;
 
-// Into how many equal parts along the depth a larger packing is cut: the fewest that divide it.
+// The smallest number of equal parts along the depth that are small enough.
 std::size_t parts_of(std::size_t grains) {
   std::size_t parts = (grains + kHighest - 1) / kHighest;
   while (grains % parts != 0) ++parts;
   return parts;
 }
 
-// The same packing behind itself, `copies` times along the periodic depth.
-Prepared repeated(const Prepared& one, std::size_t copies) {
-  Prepared made = one;
+// The packing repeated `copies` times along the periodic depth.
+Packing repeated(const Packing& one, std::size_t copies) {
+  Packing made = one;
   made.cell.depth *= static_cast<double>(copies);
   const Eigen::Index grains = one.state.position.cols();
   made.state.position = one.state.position.replicate(1, static_cast<Eigen::Index>(copies));
@@ -129,47 +114,42 @@ Prepared repeated(const Prepared& one, std::size_t copies) {
   return made;
 }
 
-Prepared prepare(std::size_t grains) {
+Packing prepare(std::size_t grains) {
   const std::size_t parts = parts_of(grains);
   Parameters parameters;
   parameters.grains = grains / parts;
-  Prepared made;
-  made.cell = make_cell(geometry(parameters), 1);
-  made.state = fill_cell(made.cell, geometry(parameters), 1);
-  made.scene = shear_scene(parameters);
-  made.drive = drive(parameters);
-  made.state = pressed(made.cell, made.state, settle_scene(parameters), {});
+  Packing made = bench::pressed_packing(parameters, 1);
   Simulation simulation(made.cell, made.scene, made.state);
-  simulation.advance(Drive{}, 2000);  // the weight
+  simulation.advance(Drive{}, 2000);  // under the grains' weight too
   made.state = simulation.state();
   made.state.step = 0;
   return parts == 1 ? made : repeated(made, parts);
 }
 
-std::string hash_after(const Prepared& made, const EngineSettings& settings, std::uint64_t steps) {
+std::string hash_after(const Packing& made, const EngineSettings& settings, std::uint64_t steps) {
   Simulation simulation(made.cell, made.scene, made.state, settings);
-  simulation.advance(made.drive, steps);
+  simulation.advance(drive(made.parameters), steps);
   Checkpoint checkpoint;
   checkpoint.cell = simulation.cell();
   checkpoint.state = simulation.state();
   return state_hash(checkpoint);
 }
 
-void measure_shares(const Prepared& made, const Kernels& kernels, std::uint64_t steps,
+void measure_shares(const Packing& made, const Kernels& kernels, std::uint64_t steps,
                     SpeedResult& result) {
   const Kernels table = timed_kernels(kernels);
   EngineSettings settings;
   settings.kernels = &table;
   Simulation simulation(made.cell, made.scene, made.state, settings);
-  const auto start = Clock::now();
-  simulation.advance(made.drive, steps);
-  const double total = seconds_since(start) - stopwatch.sampled;
-  const double step_share = stopwatch.step / total;
-  result.integration_share = step_share * stopwatch.without_neighbours / stopwatch.whole;
-  result.wall_share = step_share * std::max(0.0, 1 - stopwatch.without_walls / stopwatch.whole);
+  const Stopwatch watch;
+  simulation.advance(drive(made.parameters), steps);
+  const double total = watch.seconds() - times.sampled;
+  const double step_share = times.step / total;
+  result.integration_share = step_share * times.without_neighbours / times.whole;
+  result.wall_share = step_share * std::max(0.0, 1 - times.without_walls / times.whole);
   result.force_share = step_share - result.integration_share - result.wall_share;
-  result.search_share = stopwatch.search / total;
-  result.prune_share = stopwatch.prune / total;
+  result.search_share = times.search / total;
+  result.prune_share = times.prune / total;
   const ListCounts& counts = simulation.list_counts();
   result.steps_per_search = static_cast<double>(steps) / static_cast<double>(counts.builds);
   result.steps_per_prune = static_cast<double>(steps) / static_cast<double>(counts.prunes);
@@ -177,19 +157,19 @@ void measure_shares(const Prepared& made, const Kernels& kernels, std::uint64_t 
       static_cast<double>(simulation.bytes()) / static_cast<double>(simulation.grains());
 }
 
-void measure_rate(const Prepared& made, const EngineSettings& settings, const SpeedOptions& options,
+void measure_rate(const Packing& made, const EngineSettings& settings, const SpeedOptions& options,
                   SpeedResult& result) {
   Simulation simulation(made.cell, made.scene, made.state, settings);
-  const auto warm_up = Clock::now();
+  const Stopwatch warm_up;
   std::uint64_t steps = 0;
-  for (; seconds_since(warm_up) < options.seconds_per_repeat || steps == 0; steps += 20) {
-    simulation.advance(made.drive, 20);
+  for (; warm_up.seconds() < options.seconds_per_repeat || steps == 0; steps += 20) {
+    simulation.advance(drive(made.parameters), 20);
   }
   std::vector<double> rates;
   for (std::size_t repeat = 0; repeat < options.repeats; ++repeat) {
-    const auto start = Clock::now();
-    simulation.advance(made.drive, steps);
-    rates.push_back(1e-6 * static_cast<double>(steps * result.grains) / seconds_since(start));
+    const Stopwatch watch;
+    simulation.advance(drive(made.parameters), steps);
+    rates.push_back(1e-6 * static_cast<double>(steps * result.grains) / watch.seconds());
   }
   std::sort(rates.begin(), rates.end());
   result.median_rate = rates[rates.size() / 2];
@@ -202,7 +182,7 @@ std::vector<SpeedResult> measure_size(std::size_t grains, const SpeedOptions& op
     if (options.report) options.report(fmt::format("N = {}: {}", grains, what));
   };
   say("pressing a packing");
-  const Prepared made = prepare(grains);
+  const Packing made = prepare(grains);
   std::vector<SpeedResult> results;
   for (const Simd simd : {Simd::avx512, Simd::avx2, Simd::scalar}) {
     const Kernels* kernels = find_kernels(simd);
@@ -219,8 +199,8 @@ std::vector<SpeedResult> measure_size(std::size_t grains, const SpeedOptions& op
       result.state_hash = hash_after(made, settings, 200);
       if (!results.empty() && result.state_hash != results.front().state_hash) {
         throw std::runtime_error(fmt::format(
-            "{} with {} threads gives another state than {} after 200 steps at N = {}; no rate is "
-            "worth reporting",
+            "{} with {} threads and {} give different states after 200 steps at N = {}; no rate is "
+            "reported",
             result.simd, threads, results.front().simd, grains));
       }
       measure_rate(made, settings, options, result);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How fast the engine is: particle-steps per second in the real scene, and where the time goes.
+// Speed of the engine in the sheared scene: particle-steps per second and the share of each part.
 #pragma once
 
 #include <cstddef>
@@ -16,17 +16,17 @@ struct SpeedOptions {
   std::vector<std::size_t> threads = {1};
   std::size_t repeats = 7;
   double seconds_per_repeat = 0.5;
-  std::function<void(const std::string&)> report;  ///< what is being done now; may be empty
+  std::function<void(const std::string&)> report;  ///< progress messages; may be empty
 };
 
-/// Of one size with one kernel and one number of threads. Rates are in 1e6 particle-steps/s.
+/// One size with one kernel and one number of threads. Rates are in 1e6 particle-steps/s.
 struct SpeedResult {
   std::size_t grains = 0;
   std::string simd;
   std::size_t threads = 1;
   double median_rate = 0, slowest_rate = 0, fastest_rate = 0;
-  /// Shares of the time. Walls: planes and the moving wall's grains (those of the others are
-  /// neighbours among the forces). The rest is the moving wall, the drive, sorting, the watchdog.
+  /// Shares of the time. Walls: planes and the moving wall's grains; grains of the other walls
+  /// count as neighbours under forces. The rest: moving wall, drive, sorting, watchdog.
   double force_share = 0, integration_share = 0, wall_share = 0;
   double search_share = 0, prune_share = 0;  ///< of the outer list, of the inner list
   double steps_per_search = 0, steps_per_prune = 0;
@@ -34,11 +34,10 @@ struct SpeedResult {
   std::string state_hash;  ///< after 200 steps; the same for all results of one size
 };
 
-/// Table I in a rough cell sheared at A = 0.0833; beyond N = 18200 the packing of a part of the
-/// grains is repeated along the depth, since the pressure can lift no higher column and a wide one
-/// takes hours to press. The packing is pressed together first; each kernel must then give the same
-/// state after 200 steps as the first one, or else std::runtime_error is thrown and nothing is
-/// timed. Shares are measured with one thread.
+/// Table I in a rough cell sheared at A = 0.0833, from a packing pressed together first. Beyond
+/// N = 18200 a smaller packing is repeated along the depth, because the pressure cannot lift a
+/// higher column. Before anything is timed every kernel must give the same state after 200 steps;
+/// otherwise std::runtime_error is thrown. Shares are measured with one thread.
 std::vector<SpeedResult> measure_speed(const SpeedOptions& options);
 
 }  // namespace shearcell

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "experiments/cli/command.hpp"
 #include "experiments/bench/speed.hpp"
+#include "experiments/cli/command.hpp"
 
 namespace shearcell::cli {
 namespace {

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "analysis/plot.hpp"
-#include "experiments/cli/command.hpp"
 #include "experiments/bench/accuracy/accuracy.hpp"
+#include "experiments/cli/command.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -32,10 +32,7 @@ nlohmann::json facts(const accuracy::Section& section) {
     }
     rows.push_back(std::move(values));
   }
-  return {{"name", section.table.name},
-          {"title", section.title},
-          {"rows", rows},
-          {"findings", section.findings}};
+  return {{"name", section.table.name}, {"title", section.title}, {"rows", rows}};
 }
 
 // All data before the first drawing, which needs gnuplot.
@@ -51,7 +48,6 @@ void print(const std::vector<accuracy::Section>& sections) {
   for (const accuracy::Section& section : sections) {
     fmt::print("{}\n", section.title);
     print_table(section.header, section.summary);
-    for (const std::string& finding : section.findings) fmt::print("{}\n", finding);
     fmt::print("\n");
   }
 }

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "experiments/cli/command.hpp"
 #include "experiments/bench/stability/stability.hpp"
+#include "experiments/cli/command.hpp"
 
 namespace shearcell::cli {
 namespace {

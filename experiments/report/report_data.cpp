@@ -12,7 +12,7 @@
 
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
-#include "experiments/bench/accuracy_charts.hpp"
+#include "experiments/report/accuracy_charts.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
 

@@ -18,7 +18,6 @@
 
 #include "analysis/measures.hpp"
 #include "analysis/voronoi.hpp"
-#include "experiments/bench/accuracy/near_neighbours.hpp"
 #include "tests/analysis/oracles.hpp"
 #include "tests/analysis/packings.hpp"
 
@@ -29,43 +28,6 @@ double seconds(Work&& work) {
   const double start = shearcell::testing::thread_seconds();
   work();
   return shearcell::testing::thread_seconds() - start;
-}
-
-// Error against time of q6, beside that from voro++'s cells.
-void print_order(const shearcell::testing::Packing& p,
-                 const std::vector<shearcell::testing::VoroCell>& cells, double own, double peer) {
-  using namespace shearcell;
-  const Analysis exact = analyse(p.cell, p.pose, p.grains);
-  const auto print = [&](const char* name, const std::vector<double>& q6, double time) {
-    double squares = 0, interior = 0;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (exact.grains.interior[i] == 0) continue;
-      squares += (q6[i] - cells[i].q6) * (q6[i] - cells[i].q6);
-      ++interior;
-    }
-    std::printf("%-22s %8.4f s, error of q6 %.1e\n", name, time, std::sqrt(squares / interior));
-  };
-  std::vector<double> of_peer;
-  for (const testing::VoroCell& cell : cells) of_peer.push_back(cell.q6);
-  print("Voronoi cells, voro++", of_peer, peer);
-  print("Voronoi cells", exact.grains.q6, own);
-  const struct {
-    const char* name;
-    accuracy::NeighbourRule neighbours;
-  } rules[] = {{"within 1.2 d", {1.2, 0}},
-               {"within 1.3 d", {1.3, 0}},
-               {"within 1.4 d", {1.4, 0}},
-               {"12 nearest", {1.6, 12}}};
-  for (const auto& rule : rules) {
-    std::vector<double> q6;
-    double best = 1e9;
-    for (int k = 0; k < 5; ++k) {
-      best = std::min(best, seconds([&] {
-                        q6 = accuracy::q6_of_near(p.cell, p.pose, p.grains, rule.neighbours);
-                      }));
-    }
-    print(rule.name, q6, best);
-  }
 }
 
 double peak_memory_mb() {
@@ -125,7 +87,6 @@ int main(int argc, char** argv) {
   std::printf("grains %d, wall grains %zu, volumes agree within %.1e d^3\n", grains,
               p.cell.wall_grains.size(), worst);
   std::printf("voronoi %.4f s, voro++ %.4f s, ratio %.2f\n", own, peer, own / peer);
-  print_order(p, cells, own, peer);
   std::printf("whole analysis %.4f s; memory %.0f MB, of which %.0f MB before it\n", whole, memory,
               before);
   std::printf("%d at once: memory %.0f MB, %.0f MB for each\n", at_once, memory_at_once,

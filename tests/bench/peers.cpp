@@ -17,11 +17,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/filling.hpp"
 #include "core/random.hpp"
 #include "core/simulation.hpp"
+#include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "protocols/settle.hpp"
 
 namespace shearcell {
 namespace {
@@ -31,20 +30,14 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kAccuracySteps = 200;
 constexpr std::uint64_t kSpeedSteps = 2000;
 
-struct Kicked {
-  Cell cell;
-  State state;  ///< velocities at the whole step
-  Scene scene;
-};
+// Velocities are those of the whole step.
+using Kicked = bench::Packing;
 
 Kicked prepare(std::size_t grains) {
   Parameters parameters;
   parameters.grains = grains;
   parameters.gravity_m_per_s2 = 0;
-  Kicked kicked;
-  kicked.cell = make_cell(geometry(parameters), 1);
-  kicked.state = fill_cell(kicked.cell, geometry(parameters), 1);
-  kicked.state = pressed(kicked.cell, kicked.state, settle_scene(parameters), {});
+  Kicked kicked = bench::pressed_packing(parameters, 1);
   kicked.state.wall_velocity = 0;
   for (Eigen::Index i = 0; i < kicked.state.position.cols(); ++i) {
     const auto a = uniform_pair({static_cast<std::uint32_t>(i), 0, 0, 9}, 1);
@@ -54,7 +47,6 @@ Kicked prepare(std::size_t grains) {
     double& z = kicked.state.position(2, i);
     z -= kicked.cell.depth * std::floor(z / kicked.cell.depth);
   }
-  kicked.scene = shear_scene(parameters);
   kicked.scene.pressure = 0;
   kicked.scene.wall_mass = 1e30;
   return kicked;

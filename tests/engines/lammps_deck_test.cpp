@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/filling.hpp"
+#include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/lammps/lammps_deck.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -15,11 +15,12 @@ namespace shearcell::test {
 namespace {
 
 LammpsTask loose_task(const Parameters& p) {
+  const bench::Packing packing = bench::loose_packing(p, 1);
   LammpsTask task;
-  task.cell = make_cell(geometry(p), 1);
+  task.cell = packing.cell;
   task.scene = shear_scene(p);
   task.drive = drive(p);
-  task.state = fill_cell(task.cell, geometry(p), 1);
+  task.state = packing.state;
   task.end = 100;
   return task;
 }

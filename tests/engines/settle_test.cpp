@@ -5,13 +5,17 @@
 
 #include <cmath>
 
-#include "experiments/runner/lammps/lammps_settle.hpp"
+#include "experiments/bench/engines.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/bench/settling.hpp"
+#include "experiments/runner/lammps/lammps_settle.hpp"
 #include "tests/experiments/program.hpp"
 
 namespace shearcell::test {
 namespace {
+
+using bench::Settling;
+using bench::settling_by_lammps;
+using bench::settling_by_us;
 
 class LammpsSettling : public testing::Test {
  protected:
@@ -27,7 +31,7 @@ class LammpsSettling : public testing::Test {
 };
 
 TEST_F(LammpsSettling, TakesOurStepsAtFirst) {
-  const accuracy::Packing loose = loose_packing(small(), 1);
+  const bench::Packing loose = bench::loose_packing(small(), 1);
   LammpsTask task;
   task.cell = loose.cell;
   task.scene = settle_scene(loose.parameters);
@@ -47,7 +51,7 @@ TEST_F(LammpsSettling, TakesOurStepsAtFirst) {
 }
 
 TEST_F(LammpsSettling, EndsAtAPackingOfTheSameKind) {
-  const accuracy::Packing loose = loose_packing(small(), 1);
+  const bench::Packing loose = bench::loose_packing(small(), 1);
   const Settling ours = settling_by_us(loose, {});
   const Settling theirs = settling_by_lammps(loose, {}, find_lammps(), 1);
   for (const Settling* s : {&ours, &theirs}) {
@@ -76,7 +80,7 @@ TEST_F(LammpsSettling, EndsAtTheTimeLimitWhereAWallNeverRests) {
   Parameters heavy = small();
   heavy.gravity_m_per_s2 *= 5;
   heavy.walls = WallTexture::smooth;
-  const accuracy::Packing loose = loose_packing(heavy, 1);
+  const bench::Packing loose = bench::loose_packing(heavy, 1);
   const Settle endless({}, settle_scene(heavy));
   SettleParameters settle;
   const auto pressed = static_cast<double>(endless.press_steps(loose.cell, 300));

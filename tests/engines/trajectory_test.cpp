@@ -6,11 +6,9 @@
 #include <cmath>
 #include <functional>
 
-#include "core/filling.hpp"
-#include "core/simulation.hpp"
+#include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
-#include "protocols/settle.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -34,15 +32,14 @@ LammpsTask task_of(const Case& scene) {
   p.period_s = 0.5;  // walls that move fast
   p.steps_per_cycle = 10000;
   scene.change(p);
-  LammpsTask task;
-  task.cell = make_cell(geometry(p), 1);
-  task.scene = shear_scene(p);
-  task.drive = drive(p);
   Parameters pressing = p;
   pressing.drag_kg_per_s = Parameters{}.drag_kg_per_s;
-  const State loose = fill_cell(task.cell, geometry(p), 1);
-  Simulation simulation(task.cell, task.scene,
-                        pressed(task.cell, loose, settle_scene(pressing), {}));
+  const bench::Packing packing = bench::pressed_packing(pressing, 1);
+  LammpsTask task;
+  task.cell = packing.cell;
+  task.scene = shear_scene(p);
+  task.drive = drive(p);
+  Simulation simulation(task.cell, task.scene, packing.state);
   simulation.advance(task.drive, scene.resting ? cycle_steps(task.drive) - 100 : 500);
   task.state = simulation.state();
   task.end = task.state.step + 200;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every hard case ends as it should; one that crashes or hangs is told like any other.
+// Every hard case ends as expected; a case that crashes or hangs is reported.
 #include <gtest/gtest.h>
 
 #include <cctype>
@@ -31,7 +31,7 @@ using stability::Outcome;
 
 class Hard : public testing::TestWithParam<HardCase> {};
 
-// The long ones take fewer steps here; all of them: ctest -C sweep -L sweep.
+// The long cases take fewer steps here; in full: ctest -C sweep -L sweep.
 TEST_P(Hard, CaseEndsAsExpected) {
   const HardCase& hard = GetParam();
   const Outcome outcome = hard.run(true);
@@ -49,7 +49,7 @@ std::string name_of(const testing::TestParamInfo<HardCase>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, Hard, testing::ValuesIn(stability::hard_cases()), name_of);
 
-TEST(HardCases, HaveNamesOfTheirOwnAndSayWhatTheyExpect) {
+TEST(HardCases, HaveUniqueNamesAndExpectations) {
   std::set<std::string> names;
   for (const HardCase& hard : stability::hard_cases()) {
     EXPECT_TRUE(names.insert(hard.name).second) << hard.name;
@@ -61,15 +61,15 @@ StabilityResult map(std::function<Outcome(bool)> run, double seconds = 60) {
   return map_case({"made-up", "what this test makes up", "", std::move(run)}, true, seconds);
 }
 
-TEST(HardCases, TellWhatWasFound) {
-  const std::string text(200'000, 'x');  // more than a pipe holds
+TEST(HardCases, ReportTheirOutcome) {
+  const std::string text(200'000, 'x');
   const StabilityResult result = map([&](bool) { return Outcome{true, text}; });
   EXPECT_TRUE(result.as_expected);
   EXPECT_EQ(result.outcome, text);
   EXPECT_FALSE(map([](bool) { return Outcome{false, "off"}; }).as_expected);
 }
 
-TEST(HardCases, ThatCrashHangOrThrowAreToldSo) {
+TEST(HardCases, ThatCrashHangOrThrowAreReported) {
   const StabilityResult crash = map([](bool) -> Outcome { std::abort(); });
   EXPECT_FALSE(crash.as_expected);
   EXPECT_NE(crash.outcome.find("signal 6"), std::string::npos) << crash.outcome;

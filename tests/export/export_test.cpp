@@ -6,9 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "experiments/bench/packing.hpp"
 #include "experiments/export/formats.hpp"
-#include "experiments/manifest/conversion.hpp"
-#include "protocols/settle.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
 namespace shearcell {
@@ -23,9 +22,9 @@ std::vector<Checkpoint> checkpoints() {
   parameters.grains = 250;
   Checkpoint upright;
   upright.run = std::string(64, 'a');
-  upright.cell = make_cell(geometry(parameters), 1);
-  const State loose = fill_cell(upright.cell, geometry(parameters), 1);
-  upright.state = pressed(upright.cell, loose, settle_scene(parameters), {});
+  const bench::Packing packing = bench::pressed_packing(parameters, 1);
+  upright.cell = packing.cell;
+  upright.state = packing.state;
   upright.state.position.row(2).array() += 2 * upright.cell.depth;  // z is unwrapped
   upright.cycle = 3;
   upright.time_s = 6;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <filesystem>
 
-#include "experiments/bench/accuracy_charts.hpp"
+#include "experiments/report/accuracy_charts.hpp"
 #include "experiments/figures/figure_lineage.hpp"
 #include "provenance/errors.hpp"
 #include "tests/fuzz/seeds.hpp"

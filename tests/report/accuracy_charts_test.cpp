@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tables of `bench accuracy --out` become diagrams; what is no such table is named.
-#include "experiments/bench/accuracy_charts.hpp"
+#include "experiments/report/accuracy_charts.hpp"
 
 #include <gtest/gtest.h>
 

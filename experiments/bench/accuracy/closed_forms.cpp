@@ -8,8 +8,10 @@
 namespace shearcell::accuracy {
 namespace {
 
-// Separation of two grains that meet head on, and how fast it grows, at time t after they were
-// `gap` from touching with the speed of approach u.
+// Two grains collide head on. While they touch, the overlap is
+//   (u/w) exp(-b t/2m) sin(w t),   w^2 = 2 k/m - (b/2m)^2,
+// with u their speed of approach; before and after, drag slows them down exponentially. At t = 0
+// they are `gap` from touching.
 struct Meeting {
   double stiffness, drag, gap, u;
 
@@ -27,14 +29,18 @@ struct Meeting {
   }
 };
 
+struct CollisionError {
+  double speed = 0;  // of separation after it, over the speed of approach
+  double time = 0;   // of its end, over the contact time
+};
+
 CollisionError one_collision(const Scene& scene, const Method& method, double dt, double phase) {
   const double u = 10, time = contact_time(scene);
-  // Far enough apart that a step backwards is free as well.
+  // Far enough apart that half a step backwards is free of contact as well.
   const Meeting exact{scene.stiffness, scene.drag_rate, (2 + phase) * u * dt, u};
-  Box box = box_of(scene, {20, 20, 20});
-  box.gravity = 0;
+  const Box box{{20, 20, 20}, scene.stiffness, scene.drag_rate};
   Motion start{Eigen::Matrix3Xd(3, 2), Eigen::Matrix3Xd::Zero(3, 2)};
-  // Oblique, so that no direction of the grid is special.
+  // Oblique to the axes.
   const Eigen::Vector3d n = Eigen::Vector3d(2, 3, 6) / 7;
   const Eigen::Vector3d middle(10, 10, 10);
   start.position.col(0) = middle - (1 + exact.gap) / 2 * n;
@@ -51,13 +57,14 @@ CollisionError one_collision(const Scene& scene, const Method& method, double dt
     const double speed_error = rate.dot(apart.normalized()) - exact.speed(t_velocity);
     const double way_error = apart.norm() - exact.separation(t);
     error.speed = speed_error / u;
-    // What the wrong speed does not explain of the separation comes from the wrong time.
+    // The part of the separation's error that the speed does not explain is an error of time.
     error.time = (speed_error * (t - exact.leaves_at()) - way_error) / exact.leaving_speed() / time;
   });
   return error;
 }
 
-// Of a grain that springs bind to `rest`, n springs in each of the given directions.
+// Of a grain bound to `rest` by n springs in each direction, a damped harmonic motion:
+//   x - x_0 = a exp(-b t/2m) (cos w t + b/(2 m w) sin w t),   w^2 = n k/m - (b/2m)^2
 double oscillation_error(const Box& box, const Eigen::Vector3d& rest, const Eigen::Vector3d& start,
                          double springs, const Method& method, double dt, double periods) {
   const double decay = box.drag_rate / 2;
@@ -77,12 +84,7 @@ double oscillation_error(const Box& box, const Eigen::Vector3d& rest, const Eige
   return std::sqrt(squares / static_cast<double>(steps)) / amplitude.norm();
 }
 
-}  // namespace
-
-double contact_time(const Scene& scene) {
-  return std::numbers::pi / std::sqrt(2 * scene.stiffness);
-}
-
+// Root mean square over `phases` starts, spread evenly over one time step.
 CollisionError collision_error(const Scene& scene, const Method& method, double dt, int phases) {
   CollisionError mean;
   for (int p = 0; p < phases; ++p) {
@@ -93,17 +95,92 @@ CollisionError collision_error(const Scene& scene, const Method& method, double 
   return {std::sqrt(mean.speed), std::sqrt(mean.time)};
 }
 
+// Root mean square error of the position over the first `periods` of an oscillation, over its
+// amplitude at the start. One grain on the bottom plane under gravity, lifted by half of its
+// overlap g/k, so that it stays in contact.
 double wall_error(const Scene& scene, const Method& method, double dt, double periods) {
-  const Box box = box_of(scene, {20, 20, 20});
+  const Box box{{20, 20, 20}, scene.stiffness, scene.drag_rate, scene.gravity};
   const double overlap = scene.gravity / scene.stiffness;
   return oscillation_error(box, {10, 0.5 - overlap, 10}, {10, 0.5 - overlap / 2, 10}, 1, method, dt,
                            periods);
 }
 
+// One grain between four planes 1 - 0.02 d apart, released 0.005 d off the middle in x and y.
 double cage_error(const Scene& scene, const Method& method, double dt, double periods) {
-  Box box = box_of(scene, {0.98, 0.98, 20});
-  box.gravity = 0;
-  return oscillation_error(box, {0.49, 0.49, 10}, {0.495, 0.485, 10}, 2, method, dt, periods);
+  return oscillation_error({{0.98, 0.98, 20}, scene.stiffness, scene.drag_rate}, {0.49, 0.49, 10},
+                           {0.495, 0.485, 10}, 2, method, dt, periods);
+}
+
+}  // namespace
+
+double contact_time(const Scene& scene) {
+  return std::numbers::pi / std::sqrt(2 * scene.stiffness);
+}
+
+double row_frequency(const Scene& scene, int grains, int n) {
+  return 2 * std::sqrt(scene.stiffness) * std::sin(std::numbers::pi * n / grains);
+}
+
+double found_row_frequency(const Scene& scene, const Method& method, double dt, int grains, int n,
+                           std::uint64_t steps) {
+  constexpr double overlap = 0.003, amplitude = 1e-6;
+  constexpr double across = 1 - 2 * overlap;  // the planes of the duct hold each grain as deep
+  const Box box{{across, across, grains * (1 - overlap)}, scene.stiffness};
+  Eigen::Matrix3Xd rest(3, grains);
+  Eigen::RowVectorXd wave(grains);
+  for (int i = 0; i < grains; ++i) {
+    rest.col(i) << across / 2, across / 2, i * (1 - overlap);
+    wave[i] = std::cos(2 * std::numbers::pi * n * i / grains);
+  }
+  wave.normalize();
+  Motion start{rest, Eigen::Matrix3Xd::Zero(3, grains)};
+  start.position.row(2) += amplitude * wave;
+  std::vector<double> x;
+  integrate(box, method, start, dt, steps, 1, [&](std::uint64_t, const Motion& m) {
+    x.push_back(wave.dot(m.position.row(2) - rest.row(2)));
+  });
+  double both = 0, square = 0;
+  for (std::size_t k = 1; k + 1 < x.size(); ++k) {
+    both += x[k] * (x[k + 1] + x[k - 1]);
+    square += x[k] * x[k];
+  }
+  return std::acos(std::clamp(both / (2 * square), -1.0, 1.0)) / dt;
+}
+
+std::vector<ClosedForm> closed_forms(const Scene& scene, const Thoroughness& how) {
+  return {
+      {"collision-speed", "Two grains collide: speed after it", "speed_error",
+       [=](const Method& m, double dt) { return collision_error(scene, m, dt, how.phases).speed; },
+       true},
+      {"collision-end", "Two grains collide: when it ends, in contact times", "time_error",
+       [=](const Method& m, double dt) { return collision_error(scene, m, dt, how.phases).time; },
+       true},
+      {"wall", "One grain swings on a wall: position, in amplitudes", "position_error",
+       [=](const Method& m, double dt) { return wall_error(scene, m, dt, how.periods); }},
+      {"cage", "One grain swings in a cage: position, in amplitudes", "position_error",
+       [=](const Method& m, double dt) { return cage_error(scene, m, dt, how.periods); }},
+      {"row", "Waves in a row of grains: worst of their frequencies", "frequency_error",
+       [=](const Method& m, double dt) {
+         double worst = 0;
+         for (int n = 1; n <= how.waves; ++n) {
+           const double found = found_row_frequency(scene, m, dt, 2 * how.waves, n, how.wave_steps);
+           const double exact = row_frequency(scene, 2 * how.waves, n);
+           worst = std::max(worst, std::fabs(found / exact - 1));
+         }
+         return worst;
+       }},
+  };
+}
+
+double fitted_order(const std::function<double(double dt)>& error, double largest, int count) {
+  Eigen::VectorXd x(count), y(count);
+  for (int n = 0; n < count; ++n) {
+    const double dt = largest * std::exp2(-n / 4.0);
+    x[n] = std::log(dt);
+    y[n] = std::log(error(dt));
+  }
+  x.array() -= x.mean();
+  return x.dot(y) / x.squaredNorm();
 }
 
 }  // namespace shearcell::accuracy

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors of an integrator against closed forms: motions of one or two grains.
+// Errors of an integrator against motions that are known in closed form.
 #pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "experiments/bench/accuracy/integrate.hpp"
 
@@ -9,28 +14,37 @@ namespace shearcell::accuracy {
 /// Half the period of two grains on one spring, pi/sqrt(2 k/m) [s]: how long a collision lasts.
 double contact_time(const Scene& scene);
 
-/// Root mean squares over the places within a step at which the contact begins.
-struct CollisionError {
-  double speed = 0;  ///< of separation after it, over the speed of approach
-  double time = 0;   ///< of its end, over the contact time
+/// Frequency [rad/s] of the longitudinal wave number `n` (n periods in the box) in a row of
+/// `grains` along z whose neighbours overlap by 0.003 d: exactly
+///   2 sqrt(k/m) sin(pi n / grains),
+/// and as a method finds it without drag over `steps` steps, from
+///   cos(w dt) = sum x_n (x_(n+1) + x_(n-1)) / (2 sum x_n^2)
+/// with x_n the projection of the positions onto the wave after n steps.
+double row_frequency(const Scene& scene, int grains, int n);
+double found_row_frequency(const Scene& scene, const Method& method, double dt, int grains, int n,
+                           std::uint64_t steps);
+
+/// How thoroughly the closed forms are compared.
+struct Thoroughness {
+  int phases = 32;      ///< of a collision within a step
+  double periods = 10;  ///< of the oscillations
+  int waves = 8;        ///< in a row of twice as many grains
+  std::uint64_t wave_steps = 2000;
 };
 
-/// Two grains meet head on, far from walls: while they touch, the overlap is
-///   (u/w) exp(-b t/2m) sin(w t),   w^2 = 2 k/m - (b/2m)^2,
-/// with u their speed of approach; before and after, drag slows them down exponentially. Phases are
-/// spread evenly over one time step.
-CollisionError collision_error(const Scene& scene, const Method& method, double dt, int phases);
+/// One error of a method at a time step [s]; 0 for the exact motion.
+struct ClosedForm {
+  std::string name;   ///< of its files
+  std::string title;  ///< what the error is of
+  std::string error;  ///< column and axis
+  std::function<double(const Method& method, double dt)> measure;
+  /// Single errors scatter, because a contact ends within a step: fit the order over many steps.
+  bool irregular = false;
+};
+std::vector<ClosedForm> closed_forms(const Scene& scene, const Thoroughness& how);
 
-/// Root mean square over time, and over the first `periods` of the oscillation, of the error of
-/// position, over the amplitude at the start.
-///
-/// On a wall: one grain lies on the bottom plane under gravity, lifted by half of its overlap g/k,
-/// and so never leaves it. In a cage: one grain between four planes 1 - 0.02 d apart, which all
-/// touch it all the time, let go from 0.005 d off its middle in x and y. Both are damped harmonic
-/// motions,
-///   x - x_0 = a exp(-b t/2m) (cos w t + b/(2 m w) sin w t),   w^2 = n k/m - (b/2m)^2,
-/// with n = 1 on the wall and n = 2 in the cage.
-double wall_error(const Scene& scene, const Method& method, double dt, double periods);
-double cage_error(const Scene& scene, const Method& method, double dt, double periods);
+/// Order of convergence: the slope of log(error) against log(step), over `count` time steps from
+/// `largest` down by factors of the fourth root of 2.
+double fitted_order(const std::function<double(double dt)>& error, double largest, int count);
 
 }  // namespace shearcell::accuracy

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cases at and beyond the edge of what the engine can compute. Each has a right answer that is
-// known without it, or must be stopped or refused with the numbers that say why.
+// Cases at and beyond the limits of what the engine can compute. Each has a right answer that is
+// known without the engine, or must be stopped or refused with the numbers that say why.
 #pragma once
 
 #include <functional>
@@ -11,30 +11,25 @@ namespace shearcell::stability {
 
 struct Outcome {
   bool as_expected = false;
-  std::string text;  ///< what came out, with its numbers
+  std::string text;  ///< the result, with its numbers
 };
 
 struct HardCase {
   std::string name;
-  std::string done;      ///< what is done
-  std::string expected;  ///< the right answer, or by what it is stopped
-  /// With `quick` a case of very many steps takes fewer of them. What it throws is not as expected.
+  std::string done;      ///< what is computed
+  std::string expected;  ///< the right answer, or the check that stops it
+  /// With `quick` a case of very many steps takes fewer. An exception counts as not as expected.
   std::function<Outcome(bool quick)> run;
 };
 
 using Cases = std::vector<HardCase>;
 
-Cases stability_limit_cases();
 Cases time_step_cases();
-Cases stiffness_cases();
 Cases load_cases();
-Cases drive_cases();
-Cases placement_cases();
-Cases cell_cases();
+Cases motion_cases();
 Cases crystal_cases();
-Cases long_cases();
 
-/// All of them, in the order in which they are told.
+/// All of them. `shearcell bench stability` and the tests `stability.*` run this table.
 const Cases& hard_cases();
 
 }  // namespace shearcell::stability

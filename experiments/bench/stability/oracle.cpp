@@ -17,28 +17,25 @@ struct Walls {
   double tangent, bottom, top;
 };
 
-double angle(const Drive& drive, std::uint64_t step) {
-  const std::uint64_t phase = step % (drive.steps_per_cycle + drive.pause_steps);
-  if (phase >= drive.steps_per_cycle) return 0;
-  return drive.amplitude * std::sin(2 * std::numbers::pi * static_cast<double>(phase) /
-                                    static_cast<double>(drive.steps_per_cycle));
-}
+struct Angle {
+  double value = 0, rate = 0;  // [rad], [rad/s]
+};
 
-// d theta / dt [rad/s].
-double angle_rate(const Drive& drive, const Scene& scene, std::uint64_t step) {
+Angle angle(const Drive& drive, double time_step, std::uint64_t step) {
   const std::uint64_t phase = step % (drive.steps_per_cycle + drive.pause_steps);
-  if (phase >= drive.steps_per_cycle) return 0;
+  if (phase >= drive.steps_per_cycle) return {};
   const double turn = 2 * std::numbers::pi / static_cast<double>(drive.steps_per_cycle);
-  return drive.amplitude * turn / scene.time_step * std::cos(turn * static_cast<double>(phase));
+  const double at = turn * static_cast<double>(phase);
+  return {drive.amplitude * std::sin(at), drive.amplitude * turn / time_step * std::cos(at)};
 }
 
-Walls walls_at(const Cell& cell, const Drive& drive, const State& state) {
+Walls walls_at(const Cell& cell, double angle, const State& state) {
   const bool bottom_moves = cell.moving == MovingWall::bottom;
-  return {std::tan(angle(drive, state.step)), bottom_moves ? state.wall_height : cell.bottom,
+  return {std::tan(angle), bottom_moves ? state.wall_height : cell.bottom,
           bottom_moves ? cell.top : state.wall_height};
 }
 
-// Where a wall grain is: side walls lean about the top wall, the others keep their shape.
+// Position of a wall grain: side walls tilt about the top wall, the others keep their shape.
 V wall_grain_at(const Cell& cell, const Walls& walls, const WallGrain& grain) {
   V p = grain.position;
   if (grain.side == WallSide::left || grain.side == WallSide::right) {
@@ -101,13 +98,14 @@ Pushes pushes(const Cell& cell, const Walls& walls, const Eigen::Matrix3Xd& at) 
 }
 
 void step_once(const Cell& cell, const Scene& scene, const Drive& drive, State& state) {
-  const Walls walls = walls_at(cell, drive, state);
+  const Angle tilt = angle(drive, scene.time_step, state.step);
+  const Walls walls = walls_at(cell, tilt.value, state);
   const Pushes push = pushes(cell, walls, state.position);
   const double dt = scene.time_step, half = 0.5 * scene.drag_rate * dt;
   Eigen::Matrix3Xd force = scene.stiffness * push.on_grain;
   force.row(1).array() -= scene.gravity;
   if (scene.fluid == Fluid::cell) {
-    const double rate = angle_rate(drive, scene, state.step) * (1 + walls.tangent * walls.tangent);
+    const double rate = tilt.rate * (1 + walls.tangent * walls.tangent);
     force.row(0).array() += scene.drag_rate * rate * (state.position.row(1).array() - walls.top);
   }
   state.velocity = ((1 - half) * state.velocity + dt * force) / (1 + half);
@@ -137,7 +135,7 @@ double fastest_vibration(const Cell& cell, const Scene& scene, const State& stat
   const Eigen::Index n = state.position.cols();
   Eigen::Matrix3Xd mode(3, n);
   for (Eigen::Index i = 0; i < mode.size(); ++i) {
-    mode.data()[i] = std::sin(1.0 + 12.9898 * static_cast<double>(i * i));  // no symmetry at all
+    mode.data()[i] = std::sin(1.0 + 12.9898 * static_cast<double>(i * i));  // no symmetry
   }
   double square = 0;
   for (int iteration = 0; iteration < 3000; ++iteration) {
@@ -146,7 +144,7 @@ double fastest_vibration(const Cell& cell, const Scene& scene, const State& stat
     for (const Contact& c : contacts) {
       V apart = mode.col(c.grain);
       if (c.kind == Contact::Kind::grain) apart -= mode.col(c.other);
-      // The load of a sphere's contact turns with it; a plane's does not.
+      // The load of a contact of spheres turns with it; that of a plane does not.
       const double load = c.kind == Contact::Kind::wall_plane ? 0 : c.overlap / (1 - c.overlap);
       const V along = apart.dot(c.normal) * c.normal;
       const V back = along - load * (apart - along);

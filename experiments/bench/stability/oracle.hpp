@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a state should do, by other means than the engine's: each pair with each of its images, the
-// contact law as it is written on paper, the C library's tangent, no lists, no order of summation.
+// The right answers of the hard cases, independent of the engine: the contact law over all pairs
+// and all images, without neighbour lists.
 #pragma once
 
 #include "core/cell.hpp"
@@ -9,16 +9,15 @@
 
 namespace shearcell::stability {
 
-/// Advances a state by `steps` of the leapfrog (core/simulation.hpp). Takes about 10 ns for each
-/// pair and step: for small cells.
+/// Advances a state by `steps` of the leapfrog, at about 10 ns per pair and step.
 void advance_all_pairs(const Cell& cell, const Scene& scene, const Drive& drive,
                        std::uint64_t steps, State& state);
 
-/// Largest angular frequency [rad/s] of small vibrations about a state between upright walls that
-/// stand still, the load on each contact included; by power iteration, from below to about 1e-4.
+/// Largest angular frequency [rad/s] of small vibrations about a state between upright walls at
+/// rest, including the load on each contact. Power iteration: too low by a relative 1e-4 at most.
 double fastest_vibration(const Cell& cell, const Scene& scene, const State& state);
 
-/// Largest distance [d] of a grain from where it is in the other state, and of the moving wall.
+/// Largest distance [d] between the positions of a grain, or of the moving wall, in two states.
 double largest_difference(const State& a, const State& b);
 
 }  // namespace shearcell::stability

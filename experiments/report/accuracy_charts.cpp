@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/bench/accuracy_charts.hpp"
+#include "experiments/report/accuracy_charts.hpp"
 
 #include <fmt/format.h>
 

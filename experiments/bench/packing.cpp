@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/bench/packing.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "analysis/measures.hpp"
+#include "core/diagnostics.hpp"
+#include "experiments/manifest/conversion.hpp"
+
+namespace shearcell::bench {
+
+Packing loose_packing(const Parameters& parameters, std::uint64_t seed) {
+  Packing packing{parameters, make_cell(geometry(parameters), seed), settle_scene(parameters), {}};
+  packing.state = fill_cell(packing.cell, geometry(parameters), seed);
+  return packing;
+}
+
+Packing pressed_packing(const Parameters& parameters, std::uint64_t seed) {
+  Packing packing = loose_packing(parameters, seed);
+  packing.state = pressed(packing.cell, packing.state, packing.scene, {});
+  packing.scene = shear_scene(parameters);
+  return packing;
+}
+
+void settle(Simulation& simulation, const SettleParameters& parameters, const Scene& scene) {
+  const Settle protocol(parameters, scene);
+  while (!protocol.advance(simulation, std::numeric_limits<std::uint64_t>::max()).finished) {
+  }
+}
+
+Packing settled_packing(const Parameters& parameters, std::uint64_t seed) {
+  Packing packing = loose_packing(parameters, seed);
+  Simulation simulation(packing.cell, packing.scene, packing.state);
+  settle(simulation, {}, packing.scene);
+  packing.state = simulation.state();
+  packing.state.step = 0;
+  return packing;
+}
+
+Simulation sheared(const Packing& packing, std::uint64_t steps_per_cycle) {
+  Parameters parameters = packing.parameters;
+  parameters.steps_per_cycle = steps_per_cycle;
+  return {packing.cell, shear_scene(parameters), packing.state};
+}
+
+PackingNumbers numbers_of(const Cell& cell, const Scene& scene, double theta, const State& state) {
+  const WallPose pose = wall_pose(cell, theta, state.wall_height);
+  const Measures measures = analyse(cell, pose, state.position).measures;
+  return {measures.phi,
+          measures.phi_uncorrected,
+          measures.contacts_per_grain,
+          measures.mean_overlap,
+          std::fabs(diagnose(cell, scene, state, pose).wall_imbalance),
+          pose.top - pose.bottom};
+}
+
+}  // namespace shearcell::bench

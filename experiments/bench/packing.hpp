@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The packings that the benchmarks start from, and the numbers by which packings are compared.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/simulation.hpp"
+#include "experiments/manifest/parameters.hpp"
+#include "protocols/settle.hpp"
+
+namespace shearcell::bench {
+
+/// Grains in a cell, and the scene that acts on them.
+struct Packing {
+  Parameters parameters;  ///< default where the cell is not made from parameters
+  Cell cell;
+  Scene scene;
+  State state;
+};
+
+/// The cell of these parameters with its loose grains and the scene of settling. Throws
+/// GeometryError.
+Packing loose_packing(const Parameters& parameters, std::uint64_t seed);
+
+/// The same, pressed together without gravity: dense but not at rest, at step 0, with the scene of
+/// shearing.
+Packing pressed_packing(const Parameters& parameters, std::uint64_t seed);
+
+/// Settled, at step 0, with the scene of settling. Throws NumericalFailure if the grains do not
+/// settle.
+Packing settled_packing(const Parameters& parameters, std::uint64_t seed);
+
+/// Runs the settling protocol to its end.
+void settle(Simulation& simulation, const SettleParameters& parameters, const Scene& scene);
+
+/// A settled packing ready to be sheared with this number of steps per cycle.
+Simulation sheared(const Packing& packing, std::uint64_t steps_per_cycle);
+
+struct PackingNumbers {
+  double phi = 0;              ///< Eq. S4
+  double phi_uncorrected = 0;  ///< without the correction for overlaps
+  double contacts = 0;         ///< per grain
+  double overlap = 0;          ///< mean, Eq. S3 [d]
+  double imbalance = 0;        ///< |P A - F| / (P A) of the moving wall
+  double height = 0;           ///< of the cell [d]
+};
+
+/// Of a state at tilt `theta` [rad]. Throws AnalysisError if its Voronoi cells cannot be computed.
+PackingNumbers numbers_of(const Cell& cell, const Scene& scene, double theta, const State& state);
+
+}  // namespace shearcell::bench
