@@ -129,7 +129,6 @@ struct FigureTable {
   TableRows rows;
   Chart chart = {};
   TextTable text = {};
-  std::string plot = {};  ///< gnuplot commands that replace those of the chart
 };
 
 /// RFC 4180 with a header row and "\n" line ends. Numbers carry nine significant digits; a number

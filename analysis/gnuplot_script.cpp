@@ -347,9 +347,7 @@ std::string gnuplot_script(const FigureTable& table) {
       "'{}.csv'\n{}set output\n",
       gnuplot_script_beginning, words ? width_of(table.text) : table.chart.width,
       words ? height_of(table.text) : table.chart.height, style, table.name, table.name,
-      words                ? text_table_commands(table.text)
-      : table.plot.empty() ? Script(table).text()
-                           : table.plot);
+      words ? text_table_commands(table.text) : Script(table).text());
 }
 
 }  // namespace shearcell

@@ -46,7 +46,7 @@ struct PackingNumbers {
   double height = 0;           ///< of the cell [d]
 };
 
-/// Of a state at tilt `theta` [rad]. Throws AnalysisError if its Voronoi cells cannot be computed.
+/// Of a state at tilt `theta` [rad]. Throws AnalysisError as analyse() does.
 PackingNumbers numbers_of(const Cell& cell, const Scene& scene, double theta, const State& state);
 
 }  // namespace shearcell::bench

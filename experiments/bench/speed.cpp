@@ -96,7 +96,6 @@ std::size_t parts_of(std::size_t grains) {
   return parts;
 }
 
-// The packing repeated `copies` times along the periodic depth.
 Packing repeated(const Packing& one, std::size_t copies) {
   Packing made = one;
   made.cell.depth *= static_cast<double>(copies);
@@ -198,10 +197,9 @@ std::vector<SpeedResult> measure_size(std::size_t grains, const SpeedOptions& op
       settings.threads = threads;
       result.state_hash = hash_after(made, settings, 200);
       if (!results.empty() && result.state_hash != results.front().state_hash) {
-        throw std::runtime_error(fmt::format(
-            "{} with {} threads and {} give different states after 200 steps at N = {}; no rate is "
-            "reported",
-            result.simd, threads, results.front().simd, grains));
+        throw std::runtime_error(
+            fmt::format("{} with {} threads and {} give different states after 200 steps at N = {}",
+                        result.simd, threads, results.front().simd, grains));
       }
       measure_rate(made, settings, options, result);
       const double steps = 1e6 * result.median_rate * options.seconds_per_repeat /

@@ -39,9 +39,7 @@ nlohmann::json facts(const accuracy::Section& section) {
 void write(const std::vector<accuracy::Section>& sections, const std::filesystem::path& folder) {
   for (const accuracy::Section& section : sections) require_own_files(section.table, folder);
   for (const accuracy::Section& section : sections) write_csv(section.table, folder);
-  for (const accuracy::Section& section : sections) {
-    if (!section.table.plot.empty()) draw_svg(section.table, folder);
-  }
+  for (const accuracy::Section& section : sections) draw_svg(section.table, folder);
 }
 
 void print(const std::vector<accuracy::Section>& sections) {

@@ -37,19 +37,19 @@ double error_of(const ClosedForm& form, const Method& method, double dt) {
   }
 }
 
-std::string plot_of(const ClosedForm& form) {
-  std::string plot = fmt::format(
-      "set logscale xy\nset format y '10^{{%T}}'\n"
-      "set xlabel 'seconds per cycle of 600 sheared grains'\nset ylabel 'relative error'\n"
-      "set title '{}' font ',12'\nplot ",
-      form.title);
+Chart chart_of(const ClosedForm& form) {
+  Chart chart{.x = {.name = "seconds per cycle of 600 sheared grains", .log = true},
+              .y = {.name = "relative error", .log = true},
+              .title = form.title};
   for (std::size_t m = 0; m < methods().size(); ++m) {
-    plot += fmt::format(
-        "{}data using (strcol(1) eq '{}' ? $6 : NaN):7 with linespoints lc rgb '{}' pt {} ps 0.7 "
-        "title '{}'",
-        m == 0 ? "" : ", \\\n     ", methods()[m].name, kColours[m], kPoints[m], methods()[m].name);
+    chart.series.push_back({.title = methods()[m].name,
+                            .colour = kColours[m],
+                            .point = kPoints[m],
+                            .join = Join::line,
+                            .columns = {.x = "seconds_per_cycle", .y = form.error},
+                            .filter = {"method", methods()[m].name}});
   }
-  return plot + "\n";
+  return chart;
 }
 
 Section section_of(const ClosedForm& form, const Scene& scene, const std::vector<double>& steps,
@@ -63,7 +63,7 @@ Section section_of(const ClosedForm& form, const Scene& scene, const std::vector
                            "evaluations_per_contact_time",
                            "seconds_per_cycle",
                            form.error};
-  section.table.plot = plot_of(form);
+  section.table.chart = chart_of(form);
   const double limit = stability_limit_s(Parameters{}), contact = contact_time(scene);
   for (const double dt : steps) {
     section.summary.push_back({short_number(dt), fmt::format("{:.2f}", dt / limit)});

@@ -139,7 +139,7 @@ double found_row_frequency(const Scene& scene, const Method& method, double dt, 
   integrate(box, method, start, dt, steps, 1, [&](std::uint64_t, const Motion& m) {
     x.push_back(wave.dot(m.position.row(2) - rest.row(2)));
   });
-  double both = 0, square = 0;
+  double both = 0, square = 0;  // cos(w dt) = sum x_k (x_(k+1) + x_(k-1)) / (2 sum x_k^2)
   for (std::size_t k = 1; k + 1 < x.size(); ++k) {
     both += x[k] * (x[k + 1] + x[k - 1]);
     square += x[k] * x[k];

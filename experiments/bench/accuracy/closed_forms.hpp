@@ -16,10 +16,7 @@ double contact_time(const Scene& scene);
 
 /// Frequency [rad/s] of the longitudinal wave number `n` (n periods in the box) in a row of
 /// `grains` along z whose neighbours overlap by 0.003 d: exactly
-///   2 sqrt(k/m) sin(pi n / grains),
-/// and as a method finds it without drag over `steps` steps, from
-///   cos(w dt) = sum x_n (x_(n+1) + x_(n-1)) / (2 sum x_n^2)
-/// with x_n the projection of the positions onto the wave after n steps.
+/// 2 sqrt(k/m) sin(pi n / grains), and as a method finds it without drag over `steps` steps.
 double row_frequency(const Scene& scene, int grains, int n);
 double found_row_frequency(const Scene& scene, const Method& method, double dt, int grains, int n,
                            std::uint64_t steps);

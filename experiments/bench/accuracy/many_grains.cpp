@@ -145,11 +145,13 @@ Section seeds_section(const Options& options, double engine_rate) {
                            "mean_overlap_d_error",
                            "runs",
                            "stopped"};
-  section.table.plot = fmt::format(
-      "set xlabel 'time step over 2/ω_{{max}}'\n"
-      "set ylabel 'volume fraction  {{/:Italic ϕ}}'\n"
-      "plot data using 3:5:6 with yerrorbars pt 7 lc rgb '#000000' title '{} seeds'\n",
-      seeds);
+  section.table.chart = {
+      .x = {.name = "time step", .unit = Text("2/ω") + subscript("max")},
+      .y = {.name = "volume fraction", .symbol = italic("ϕ")},
+      .series = {{.title = fmt::format("{} seeds", seeds),
+                  .colour = "#000000",
+                  .columns = {
+                      .x = "time_step_over_stability_limit", .y = "phi", .y_error = "phi_error"}}}};
   for (std::size_t s = 0; s < steps.size(); ++s) {
     const std::span runs = std::span(means).subspan(s * seeds, seeds);
     const RunStatistics phi = over(runs, &PackingNumbers::phi),
@@ -197,13 +199,20 @@ Section stiffness_section(const Options& options, double engine_rate) {
                            "phi_uncorrected_bias",
                            "phi_uncorrected_bias_error",
                            "runs"};
-  section.table.plot = fmt::format(
-      "set logscale x\nset xlabel 'seconds per cycle of {} sheared grains'\n"
-      "set ylabel 'bias of the volume fraction'\n"
-      "plot data using 2:8:9 with yerrorbars pt 6 lc rgb '#000000' title '{{/:Italic ϕ}}_u', \\\n"
-      "     data using 2:5:6 with yerrorbars pt 7 lc rgb '#d62728' title '{{/:Italic ϕ}} (S4)', "
-      "\\\n     0 lc rgb '#888888' notitle\n",
-      p.grains);
+  section.table.chart = {
+      .x = {.name = fmt::format("seconds per cycle of {} sheared grains", p.grains), .log = true},
+      .y = {.name = "bias of the volume fraction"},
+      .series =
+          {{.title = italic("ϕ") + subscript("u"),
+            .colour = "#000000",
+            .point = 6,
+            .columns = {.x = "seconds_per_cycle",
+                        .y = "phi_uncorrected_bias",
+                        .y_error = "phi_uncorrected_bias_error"}},
+           {.title = italic("ϕ") + Text(" (S4)"),
+            .colour = "#d62728",
+            .columns = {.x = "seconds_per_cycle", .y = "phi_bias", .y_error = "phi_bias_error"}}},
+      .lines = {{.at = 0}}};
   for (std::size_t n = 0; n < runs.front().size(); ++n) {
     // At the same part of a contact time, a cycle takes sqrt(k) as many steps.
     const double factor = raised_stiffness(1, n, StiffenParameters{}.steps_per_decade);

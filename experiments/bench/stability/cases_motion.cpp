@@ -64,7 +64,6 @@ Outcome on_plane() {
   return all_of(parts);
 }
 
-// Two planes push along their own normals: half an oscillation along each.
 Outcome corner() {
   Scene scene = only_springs();
   scene.time_step /= 10;
@@ -108,7 +107,6 @@ Outcome head_on(double diameters_per_step) {
        expect_near("energy kept", kinetic_energy(end) / kinetic_energy(packing.state), 1, 0.05)});
 }
 
-// Newton's cradle, one contact at a time.
 Outcome flies_into_row() {
   std::vector<V> positions;
   for (int i = 0; i < 8; ++i) positions.emplace_back(20 + i, 20, 20);
