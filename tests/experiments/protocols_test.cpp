@@ -10,6 +10,7 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stage_runner.hpp"
+#include "protocols/rest.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
 namespace shearcell {
@@ -65,13 +66,10 @@ TEST_F(Protocols, PausedShearRecordsTheEndsOfItsPauses) {
   }
   // The first cycles are the same; then one of the two rests between walls that stand still.
   const Parameters p = read_stage(runs[0].resolved).parameters;
-  Simulation simulation(continuous[1].cell, shear_scene(p), continuous[1].state);
-  simulation.advance(Drive{}, 3000);
-  State rested = simulation.state();
-  EXPECT_EQ(rested.step, paused[1].state.step);
-  EXPECT_EQ(rested.position, paused[1].state.position);
-  EXPECT_EQ(rested.velocity, paused[1].state.velocity);
-  EXPECT_EQ(rested.wall_height, paused[1].state.wall_height);
+  const State rest = rested(continuous[1].cell, shear_scene(p), continuous[1].state, 0.3);
+  EXPECT_EQ(rest.position, paused[1].state.position);
+  EXPECT_EQ(rest.velocity, paused[1].state.velocity);
+  EXPECT_EQ(rest.wall_height, paused[1].state.wall_height);
   EXPECT_LT(paused[1].observables.at("kinetic_energy_per_grain_m_d2_per_s2"),
             0.1 * continuous[1].observables.at("kinetic_energy_per_grain_m_d2_per_s2"));
   expect_replays(runs[1]);
