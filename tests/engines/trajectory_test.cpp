@@ -17,7 +17,7 @@ struct Case {
   const char* name;
   std::function<void(Parameters&)> change;
   std::size_t ranks = 1;
-  bool resting = false;  ///< begins shortly before a pause ends
+  std::uint64_t from = 500;  // the first of the 200 steps; a cycle has 10000
 };
 
 void PrintTo(const Case& scene, std::ostream* out) {
@@ -40,7 +40,7 @@ LammpsTask task_of(const Case& scene) {
   task.scene = shear_scene(p);
   task.drive = drive(p);
   Simulation simulation(task.cell, task.scene, packing.state);
-  simulation.advance(task.drive, scene.resting ? cycle_steps(task.drive) - 100 : 500);
+  simulation.advance(task.drive, scene.from);
   task.state = simulation.state();
   task.end = task.state.step + 200;
   task.stride = 1'000'000;
@@ -83,6 +83,12 @@ void top(Parameters& p) {
   p.moving_wall = MovingWall::top;
 }
 
+void pause(Parameters& p) {
+  p.fluid = Fluid::cell;
+  p.protocol = ProtocolKind::paused;
+  p.pause_s = 0.01;
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Scenes, LammpsTrajectory,
     testing::Values(Case{"TableI", [](Parameters&) {}}, Case{"TopMoves", top},
@@ -103,13 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
                            top(p);
                            p.fluid = Fluid::cell;
                          }},
-                    Case{"EndOfAPause",
-                         [](Parameters& p) {
-                           p.fluid = Fluid::cell;
-                           p.protocol = ProtocolKind::paused;
-                           p.pause_s = 0.01;
-                         },
-                         1, true},
+                    Case{"BeginningOfAPause", pause, 1, 9900}, Case{"EndOfAPause", pause, 1, 10100},
                     Case{"TwoProcesses", [](Parameters& p) { p.fluid = Fluid::cell; }, 2}),
     [](const auto& scene) { return std::string(scene.param.name); });
 
