@@ -1,7 +1,7 @@
 #!/bin/sh
-# Installs what is missing, builds and runs every test. Arguments go to ctest, as in
+# Installs missing packages, builds, and runs every test. Arguments go to ctest:
 #   sh tests/run.sh -R core
-# Tests are compiled several at once, which is least work in all. Who changes one of them often takes
+# To work on one test file, build one file at a time instead:
 #   cmake --preset debug && cmake --build --preset debug && ctest --preset debug -R core
 set -eu
 cd "$(dirname "$0")/.."
