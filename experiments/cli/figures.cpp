@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `figures`: regenerates figures from stored checkpoints.
+// `figures`: draws figures from stored checkpoints.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -8,7 +8,8 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/figures/regenerate.hpp"
+#include "experiments/figures/collect.hpp"
+#include "experiments/figures/draw.hpp"
 #include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/plain_file.hpp"
@@ -16,7 +17,7 @@
 namespace shearcell::cli {
 namespace {
 
-struct FigureOptions {
+struct FigureArguments {
   std::vector<std::string> names;
   bool all = false;
   bool fresh = false;
@@ -24,20 +25,13 @@ struct FigureOptions {
   std::optional<std::string> scale;
 };
 
-std::string known_figures() {
-  std::string names;
-  for (const Figure& figure : all_figures()) names += " " + std::string(figure.name);
-  return names;
-}
-
-void complain(const RegeneratedFigure& result) {
+void complain(const FigureSummary& result) {
   for (const std::string& line : result.damage)
     fmt::print(stderr, "left out: {}\n", for_terminal(line));
   for (const std::string& line : result.pruned)
     fmt::print(stderr, "left out: {}\n", for_terminal(line));
   for (const std::string& sha256 : result.changed) {
-    fmt::print(stderr, "checkpoint {:.12}: other measures than these were kept; replaced\n",
-               sha256);
+    fmt::print(stderr, "checkpoint {:.12}: the kept measures were different; replaced\n", sha256);
   }
   if (!result.cache_trouble.empty()) {
     fmt::print(stderr, "measures cannot be kept: {}\n", for_terminal(result.cache_trouble));
@@ -46,7 +40,7 @@ void complain(const RegeneratedFigure& result) {
     fmt::print(stderr, "no plot: {}\n", for_terminal(result.plot_error));
 }
 
-nlohmann::json facts(const RegeneratedFigure& result) {
+nlohmann::json facts(const FigureSummary& result) {
   nlohmann::json files = nlohmann::json::array();
   for (const auto& file : result.files) files.push_back(file.string());
   return {{"figure", result.name},       {"scale", result.scale},
@@ -56,7 +50,7 @@ nlohmann::json facts(const RegeneratedFigure& result) {
           {"changed", result.changed},   {"verdict", to_json(result.verdicts)}};
 }
 
-void print_verdicts(const RegeneratedFigure& result) {
+void print_verdicts(const FigureSummary& result) {
   if (result.verdicts.empty()) return;
   tell("  verdict: {}\n", name_of(overall(result.verdicts)));
   for (const Verdict& verdict : result.verdicts) {
@@ -69,8 +63,8 @@ void print_verdicts(const RegeneratedFigure& result) {
   }
 }
 
-/// Tells what came of one figure, in words or into the list.
-void take(const RegeneratedFigure& result, nlohmann::json& list, Context& context) {
+/// Prints one figure's summary or adds it to the list.
+void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
   complain(result);
   if (!result.damage.empty()) context.exit_code = kStoreDamaged;
   const bool incomplete = !result.plot_error.empty() || !result.pruned.empty();
@@ -84,19 +78,20 @@ void take(const RegeneratedFigure& result, nlohmann::json& list, Context& contex
   print_verdicts(result);
 }
 
-void figures(const FigureOptions& options, Context& context) {
+void figures(const FigureArguments& options, Context& context) {
   Store store(context.store, Access::write);
-  const std::vector<std::string> names =
-      options.all || options.names.empty() ? figures_of_store(store) : options.names;
-  if (names.empty()) fmt::print(stderr, "No manifest of this store asks for a figure.\n");
-  std::vector<const Figure*> wanted;
-  for (const std::string& name : names) {
-    wanted.push_back(find_figure(name));
-    if (wanted.back() == nullptr) {
-      throw NotFound("there is no figure " + name + "; known are" + known_figures());
-    }
+  WantedFigures wanted;
+  if (options.all || options.names.empty()) {
+    wanted = figures_of_store(store);
+    if (wanted.figures.empty()) fmt::print(stderr, "No manifest of this store lists a figure.\n");
+  } else {
+    for (const std::string& name : options.names) wanted.figures.push_back(&figure_called(name));
   }
-  RegenerateOptions how;
+  for (const std::string& problem : wanted.unknown) {  // the other figures are made all the same
+    fmt::print(stderr, "shearcell: {}\n", for_terminal(problem));
+    context.exit_code = kUsageError;
+  }
+  FigureOptions how;
   how.folder = options.out;
   how.scale = options.scale;
   how.fresh = options.fresh;
@@ -108,9 +103,9 @@ void figures(const FigureOptions& options, Context& context) {
     };
   }
   nlohmann::json list = nlohmann::json::array();
-  for (const Figure* figure : in_order_of_needs(std::move(wanted))) {
+  for (const Figure* figure : in_order_of_needs(std::move(wanted.figures))) {
     try {
-      const RegeneratedFigure result = regenerate(store, *figure, how);
+      const FigureSummary result = draw_figure(store, *figure, how);
       take(result, list, context);
     } catch (const NotFound& missing) {  // the other figures are made all the same
       fmt::print(stderr, "shearcell: {}\n", for_terminal(missing.what()));
@@ -126,8 +121,8 @@ void figures(const FigureOptions& options, Context& context) {
 }  // namespace
 
 void add_figures(CLI::App& app, Context& context) {
-  auto options = std::make_shared<FigureOptions>();
-  CLI::App* command = app.add_subcommand("figures", "Regenerate figures from the store alone");
+  auto options = std::make_shared<FigureArguments>();
+  CLI::App* command = app.add_subcommand("figures", "Draw figures from the store alone");
   command->add_option("figure", options->names, "Figures, as S2 (default: all)");
   command->add_flag("--all", options->all, "All that the store's manifests ask for");
   command->add_option("--out", options->out, "Folder to write to")
@@ -138,12 +133,11 @@ void add_figures(CLI::App& app, Context& context) {
                     "Measure every checkpoint again and compare with what is kept");
   add_common_options(*command, context, true);
   command->footer(
-      "Writes CSV, SVG and PDF for each panel, NAME.verdict.json: whether what the supplement "
-      "claims "
-      "of\n"
-      "the figure holds, and NAME.lineage.json: which checkpoints they came from.\n"
-      "What is measured on a checkpoint is kept in the store's derived.sqlite, which may be\n"
-      "deleted at any time.\n"
+      "Writes CSV, SVG and PDF of each panel, NAME.verdict.json (the verdicts on the supplement's\n"
+      "claims) and NAME.lineage.json (the checkpoints that they come from).\n"
+      "Measures of checkpoints are kept in the store's derived.sqlite, which may be deleted at "
+      "any\n"
+      "time.\n"
       "Examples:\n  shearcell figures S2 --out figures\n  shearcell figures --all");
   command->callback([options, &context] { figures(*options, context); });
 }

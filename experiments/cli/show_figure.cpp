@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "experiments/manifest/document.hpp"
-#include "experiments/figures/figure_lineage.hpp"
+#include "experiments/figures/lineage.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell::cli {

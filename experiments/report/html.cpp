@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/report/html.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdint>
 
 namespace shearcell {
@@ -8,7 +10,7 @@ namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
 
-/// Any bytes as UTF-8: what JSON's own writer makes of them.
+/// Any bytes as valid UTF-8, by JSON's writer.
 std::string valid_utf8(std::string_view text) {
   const std::string dumped =
       nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -58,10 +60,35 @@ std::string text_html(const Text& text) {
   return html;
 }
 
+std::string html_table(const HtmlRow& head, const std::vector<HtmlRow>& rows,
+                       std::string_view css_class) {
+  const auto add = [&](std::string& html, const HtmlRow& row, const char* tag) {
+    html += "<tr>";
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const bool number = head[k].starts_with('#');
+      html += fmt::format("<{0}{1}>{2}</{0}>", tag, number ? " class=\"number\"" : "",
+                          std::string_view(row[k]).substr(&row == &head && number ? 1 : 0));
+    }
+    html += "</tr>\n";
+  };
+  std::string html = fmt::format("<table class=\"{}\"><thead>", css_class);
+  add(html, head, "th");
+  html += "</thead><tbody>\n";
+  for (const HtmlRow& row : rows) add(html, row, "td");
+  return html + "</tbody></table>";
+}
+
+std::string scroll_box(std::string_view label, const std::string& html,
+                       std::string_view css_class) {
+  return fmt::format(
+      "<div class=\"{}\" tabindex=\"0\" role=\"region\" aria-label=\"{}\">{}</div>\n", css_class,
+      escape_html(label), html);
+}
+
 std::string script_json(const nlohmann::json& value) {
   std::string result;
   for (const char c : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) {
-    // These stand in JSON only within strings, where an escape means the same.
+    // JSON has these only within strings, where an escape means the same.
     switch (c) {
       case '<':
         result += "\\u003c";

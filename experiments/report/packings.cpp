@@ -4,14 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
-#include <mutex>
 #include <set>
 
 #include "analysis/chart.hpp"
 #include "analysis/measures.hpp"
-#include "core/threads.hpp"
+#include "experiments/figures/parallel_reads.hpp"
 #include "experiments/report/frames.hpp"
 #include "experiments/report/html.hpp"
 #include "provenance/errors.hpp"
@@ -180,43 +177,6 @@ Frame make_frame(const Store& store, const CheckpointRecord& record) {
           packed.step.maxCoeff()};
 }
 
-/// Frames of all runs, one after the other; null where one cannot be read.
-std::vector<Frame> make_frames(const Store& store, const std::vector<CheckpointRecord>& records,
-                               std::size_t workers,
-                               const std::function<void(std::size_t, std::size_t)>& report,
-                               Packings& packings) {
-  std::vector<Frame> frames(records.size());
-  std::atomic<std::size_t> next{0};
-  std::size_t done = 0;
-  std::mutex mutex;  // guards `done`, `error` and the notes
-  std::exception_ptr error;
-  const auto work = [&](std::size_t) {
-    for (std::size_t i = next++; i < records.size(); i = next++) {
-      try {
-        frames[i] = make_frame(store, records[i]);
-      } catch (const StoreDamaged& damage) {
-        const std::lock_guard lock(mutex);
-        packings.notes.emplace_back(damage.what());
-      } catch (const CheckpointPruned& pruned) {
-        const std::lock_guard lock(mutex);
-        packings.notes.emplace_back(pruned.what());
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        error = std::current_exception();
-        return;
-      }
-      const std::lock_guard lock(mutex);
-      if (report) report(++done, records.size());
-    }
-  };
-  {
-    const auto threads = start_threads(std::min<std::size_t>(workers, records.size()), work);
-    work(0);
-  }
-  if (error) std::rethrow_exception(error);
-  return frames;
-}
-
 }  // namespace
 
 std::vector<std::size_t> evenly(std::size_t size, std::size_t count) {
@@ -245,7 +205,13 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
   for (const ChosenRun& run : runs) {
     records.insert(records.end(), run.checkpoints.begin(), run.checkpoints.end());
   }
-  std::vector<Frame> frames = make_frames(store, records, workers, report, packings);
+  std::vector<Frame> frames(records.size());  // null where a checkpoint cannot be read
+  const UnreadCheckpoints unread = read_in_parallel(
+      records.size(), workers, [&](std::size_t k) { frames[k] = make_frame(store, records[k]); },
+      report);
+  for (const auto* list : {&unread.damaged, &unread.pruned}) {
+    packings.notes.insert(packings.notes.end(), list->begin(), list->end());
+  }
   std::sort(packings.notes.begin(), packings.notes.end());
   auto next = frames.begin();
   for (std::size_t r = 0; r < runs.size(); ++r) {

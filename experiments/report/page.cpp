@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// For a Content-Security-Policy: only this very script may run.
+/// For a Content-Security-Policy that allows this script only.
 std::string script_hash(std::string_view script) {
   const std::string hex = sha256_hex(script);
   std::vector<std::byte> digest;
@@ -66,23 +66,23 @@ std::string title_html(const ReportData& data) {
 }
 
 std::string overview_html(const ReportData& data) {
-  std::string html =
-      "<nav aria-label=\"Experiments\"><table class=\"overview\"><thead><tr><th>question</th>"
-      "<th>verdict</th><th>figures</th><th class=\"number\">stages</th></tr></thead><tbody>\n";
+  std::vector<HtmlRow> rows;
   for (const ReportExperiment& experiment : data.experiments) {
     std::string figures;
     for (const std::string& name : experiment.figures) {
       figures += fmt::format("<a href=\"#figure-{0}\">{0}</a> ", escape_html(name));
     }
-    html += fmt::format(
-        "<tr><td><a href=\"#experiment-{0}\">{1}</a> <span class=\"small\">{0}</span></td>"
-        "<td>{2}</td><td>{3}</td><td class=\"number\">{4}</td></tr>\n",
-        escape_html(experiment.name),
-        escape_html(experiment.question.empty() ? experiment.name : experiment.question),
-        experiment.figures.empty() ? "" : ruling_html(ruling_of(data, experiment)), figures,
-        experiment.runs.size());
+    const std::string& question =
+        experiment.question.empty() ? experiment.name : experiment.question;
+    rows.push_back({fmt::format("<a href=\"#experiment-{0}\">{1}</a> <span "
+                                "class=\"small\">{0}</span>",
+                                escape_html(experiment.name), escape_html(question)),
+                    experiment.figures.empty() ? "" : ruling_html(ruling_of(data, experiment)),
+                    figures, std::to_string(experiment.runs.size())});
   }
-  html += "</tbody></table>\n<p class=\"small\">";
+  std::string html = "<nav aria-label=\"Experiments\">" +
+                     html_table({"question", "verdict", "figures", "#stages"}, rows, "overview") +
+                     "\n<p class=\"small\">";
   if (!data.packings.runs.empty()) html += "<a href=\"#packings\">Packings in 3D</a> · ";
   if (!data.accuracy.empty()) html += "<a href=\"#accuracy\">Error against cost</a> · ";
   return html +
@@ -90,57 +90,20 @@ std::string overview_html(const ReportData& data) {
          "</nav>\n";
 }
 
-// The parts that web/src/viewer.js finds by their `data-part`.
-constexpr const char* viewer_controls = R"(<div class="viewer">
-<div class="controls">
-<label>Run <select data-part="run"></select></label>
-<label>Colour <select data-part="colour"><option value="class">FCC, HCP, disordered</option>
-<option value="crystallite">crystallites</option><option value="phi">local volume fraction</option>
-<option value="q6">bond order q6</option></select></label>
-<label>Disordered <select data-part="disordered"><option value="full">full size</option>
-<option value="small">small</option><option value="hidden">hidden</option></select></label>
-<label>Clip <select data-part="cut-axis"><option value="none">nothing</option>
-<option value="x">along x</option><option value="y">along y</option>
-<option value="z">along z</option></select></label>
-<label class="grow">at <input type="range" data-part="cut-at" min="0" max="1000" value="500">
-<output data-part="cut-text"></output></label>
-<label><input type="checkbox" data-part="cut-side"> other side</label>
-<label><input type="checkbox" data-part="walls" checked> wall grains</label>
-<label><input type="checkbox" data-part="box" checked> cell</label>
-</div>
-<p class="warning" data-part="trouble" hidden>This browser has no WebGL 2, so packings cannot be shown.</p>
-<div class="stage3d" data-part="stage">
-<canvas data-part="canvas" tabindex="0" role="img" aria-label="The packing. Arrow keys turn it, plus and minus zoom, 0 shows all."></canvas>
-<div class="key3d" data-part="key"></div>
-</div>
-<div class="timeline">
-<button type="button" data-part="play">Play</button>
-<label class="grow"><span class="visually-hidden">Checkpoint</span>
-<input type="range" data-part="cycle" min="0" max="0" step="1" value="0"></label>
-<output data-part="cycle-text"></output>
-</div>
-<p class="facts"><span data-part="facts"></span> <span>checkpoint <code data-part="checkpoint"></code></span></p>
-<p class="facts" data-part="grain" role="status"></p>
-<p><button type="button" data-part="reset">First view</button>
-<button type="button" data-part="save">Save PNG</button></p>
-</div>
-)";
-
 std::string packings_html(const ReportData& data) {
   if (data.packings.runs.empty()) return "";
   return fmt::format(
-      "<section id=\"packings\" hidden>\n<h2>Packings</h2>\n{}<p class=\"small\">{} of {}. "
-      "Positions are rounded to {:.2g} d (16 bits an axis), φ<sub>local</sub> and q<sub>6</sub> to "
-      "1.6e-5; the store has them exactly. Spheres are drawn with the diameter d, without "
-      "perspective; x is the shear direction, y points up, z is periodic. Crystallites are of "
-      "interior grains, at least 1.5 d from the walls. Drag turns, the wheel zooms once the "
-      "picture "
-      "has the focus.</p>\n</section>\n",
-      viewer_controls, count(data.packings.frames, "checkpoint"),
-      count(data.packings.runs.size(), "run"), data.packings.largest_step);
+      "<section id=\"packings\" hidden>\n<h2>Packings</h2>\n<div class=\"viewer\"></div>\n<p "
+      "class=\"small\">{} of {}. Positions are rounded to {:.2g} d (16 bits an axis), "
+      "φ<sub>local</sub> and q<sub>6</sub> to 1.6e-5; the store has the exact values. Spheres are "
+      "drawn with the diameter d, without perspective; x is the shear direction, y points up, z is "
+      "periodic. Crystallites consist of interior grains, at least 1.5 d from the walls. Drag to "
+      "turn; click, then use the wheel to zoom.</p>\n</section>\n",
+      count(data.packings.frames, "checkpoint"), count(data.packings.runs.size(), "run"),
+      data.packings.largest_step);
 }
 
-/// Figures that no experiment asks for.
+/// Figures of all experiments together.
 std::string across_html(const ReportData& data) {
   std::string html;
   for (const ReportFigure& figure : data.figures) {
@@ -162,13 +125,14 @@ std::string accuracy_html(const ReportData& data) {
 
 std::string about_html(const ReportData& data) {
   std::string html =
-      "<section id=\"about\">\n<h2>About this file</h2>\n<p>It holds all that it shows and fetches "
-      "nothing. Errors are standard errors over runs. Made from the store alone; the same store "
-      "gives the same file.</p>\n";
+      "<section id=\"about\">\n<h2>About this file</h2>\n<p>This file is complete: it fetches "
+      "nothing. "
+      "Errors are standard errors over runs. It is made from the store alone; the same store gives "
+      "the same file.</p>\n";
   if (!data.interactive) {
     html += has_front_end()
-                ? "<p>Figures are drawings here: it was asked for so.</p>\n"
-                : "<p>Figures are drawings here, and there are no packings: this program was built "
+                ? "<p>Figures are drawings, as requested.</p>\n"
+                : "<p>Figures are drawings, and there are no packings: this program was built "
                   "without Node, which bundles the interactive part.</p>\n";
   } else {
     html += fmt::format(

@@ -25,19 +25,18 @@ std::string claim_html(const Verdict& verdict) {
 }
 
 std::string table_html(const ReportPanel& panel) {
-  std::string html = fmt::format(
-      "<div class=\"scroll tall\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table>",
-      escape_html(panel.name));
+  std::vector<HtmlRow> rows;
   for (const std::vector<TextTable::Cell>& row : panel.text.rows) {
-    const char* tag = &row == &panel.text.rows.front() ? "th" : "td";
-    html += "<tr>";
+    HtmlRow& cells = rows.emplace_back();
     for (const TextTable::Cell& cell : row) {
-      html += fmt::format("<{0} style=\"color: {1}\">{2}</{0}>", tag, cell.colour,
-                          text_html(cell.text));
+      cells.push_back(
+          {fmt::format("<span style=\"color: {}\">{}</span>", cell.colour, text_html(cell.text))});
     }
-    html += "</tr>\n";
   }
-  return html + "</table></div><p class=\"small\">" + text_html(panel.text.note) + "</p>";
+  const HtmlRow head = std::move(rows.front());
+  rows.erase(rows.begin());
+  return scroll_box(panel.name, html_table(head, rows), "scroll tall") + "<p class=\"small\">" +
+         text_html(panel.text.note) + "</p>";
 }
 
 std::string progress_of(const RunRecord& run) {
@@ -50,41 +49,41 @@ const Membership& member_of(const RunRecord& run, const std::string& experiment)
                        [&](const Membership& m) { return m.experiment == experiment; });
 }
 
-std::string run_row(const ReportData& data, const RunRecord& run, const std::string& experiment) {
+HtmlRow run_row(const ReportData& data, const RunRecord& run, const std::string& experiment) {
   const Membership& member = member_of(run, experiment);
-  const double rate = run.wall_seconds > 0 ? run.particle_steps / run.wall_seconds * 1e-6 : 0;
+  const bool timed = run.wall_seconds > 0;
+  const double rate = timed ? run.particle_steps / run.wall_seconds * 1e-6 : 0;
   const bool shown = std::any_of(data.packings.runs.begin(), data.packings.runs.end(),
                                  [&](const nlohmann::json& p) { return p.at("id") == run.id; });
-  const std::string view =
-      shown ? fmt::format("<a hidden data-packing=\"{}\" href=\"#packings\">3D</a>",
-                          escape_html(run.id))
-            : "";
-  return fmt::format(
-      "<tr><td><a class=\"id\" href=\"#run-{0}\">{10}</a></td><td>{1}</td><td>{2}</td>"
-      "<td class=\"number\">{3}</td><td class=\"number\">{4}</td><td class=\"state "
-      "{5}\">{5}</td><td class=\"number\">{6}</td><td class=\"number\">{7}</td><td "
-      "class=\"number\">{8}</td><td>{9}</td></tr>\n",
-      escape_html(run.id.substr(0, 12)), escape_html(member.scale), escape_html(member.variant),
-      member.seed, run.grains, name_of(run.state), progress_of(run),
-      rate > 0 ? fmt::format("{:.1f}", rate) : "",
-      run.wall_seconds > 0 ? format_duration(run.wall_seconds) : "", view,
-      escape_html(run.id.substr(0, 8)));
+  const std::string state(name_of(run.state));
+  return {fmt::format("<a class=\"id\" href=\"#run-{}\">{}</a>", escape_html(run.id.substr(0, 12)),
+                      escape_html(run.id.substr(0, 8))),
+          escape_html(member.scale),
+          escape_html(member.variant),
+          std::to_string(member.seed),
+          std::to_string(run.grains),
+          "<span class=\"state " + state + "\">" + state + "</span>",
+          progress_of(run),
+          rate > 0 ? fmt::format("{:.1f}", rate) : "",
+          timed ? format_duration(run.wall_seconds) : "",
+          shown ? fmt::format("<a hidden data-packing=\"{}\" href=\"#packings\">3D</a>",
+                              escape_html(run.id))
+                : ""};
 }
 
 std::string run_table(const ReportData& data, const ReportExperiment& experiment) {
   const auto completed =
       std::count_if(experiment.runs.begin(), experiment.runs.end(),
                     [](const RunRecord& run) { return run.state == RunState::completed; });
-  std::string html = fmt::format(
-      "<details class=\"runs\"><summary>Runs: {} of {} stages completed</summary>\n"
-      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Runs of {}\"><table>\n"
-      "<thead><tr><th>run</th><th>scale</th><th>variant</th><th class=\"number\">seed</th>"
-      "<th class=\"number\">N</th><th>state</th><th class=\"number\">cycle</th>"
-      "<th class=\"number\" title=\"million particle-steps per second\">M/s</th>"
-      "<th class=\"number\">time</th><th></th></tr></thead>\n<tbody>\n",
-      completed, experiment.runs.size(), escape_html(experiment.name));
-  for (const RunRecord& run : experiment.runs) html += run_row(data, run, experiment.name);
-  return html + "</tbody></table></div></details>\n";
+  std::vector<HtmlRow> rows;
+  for (const RunRecord& run : experiment.runs) rows.push_back(run_row(data, run, experiment.name));
+  const HtmlRow head = {
+      "run",   "scale", "variant", "#seed",
+      "#N",    "state", "#cycle",  "#<span title=\"million particle-steps per second\">M/s</span>",
+      "#time", ""};
+  return fmt::format("<details class=\"runs\"><summary>Runs: {} of {} stages completed</summary>\n",
+                     completed, experiment.runs.size()) +
+         scroll_box("Runs of " + experiment.name, html_table(head, rows)) + "</details>\n";
 }
 
 }  // namespace
@@ -99,7 +98,7 @@ std::string ruling_html(Ruling ruling) {
 Ruling ruling_of(const ReportData& data, const ReportExperiment& experiment) {
   std::vector<Verdict> all;
   for (const std::string& name : experiment.figures) {
-    const std::vector<Verdict>& own = figure_called(data, name).about.verdicts;
+    const std::vector<Verdict>& own = figure_called(data, name).summary.verdicts;
     all.insert(all.end(), own.begin(), own.end());
   }
   return overall(all);
@@ -112,9 +111,9 @@ std::string figure_html(const ReportData& data, const ReportFigure& figure) {
       escape_html(figure.name), escape_html(figure.title));
   for (const ReportPanel& panel : figure.panels) html += panel_html(data, panel);
   html += "</div>\n<ul class=\"claims\">\n";
-  for (const Verdict& verdict : figure.about.verdicts) html += claim_html(verdict);
+  for (const Verdict& verdict : figure.summary.verdicts) html += claim_html(verdict);
   html += "</ul>\n";
-  for (const auto* list : {&figure.about.damage, &figure.about.pruned}) {
+  for (const auto* list : {&figure.summary.damage, &figure.summary.pruned}) {
     for (const std::string& line : *list) {
       html += fmt::format("<p class=\"warning\">Left out: {}</p>\n", escape_html(line));
     }

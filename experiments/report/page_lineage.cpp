@@ -108,22 +108,18 @@ std::string span_of_cycles(const FigureInput& input, const RunLineage& run) {
 }
 
 std::string inputs_table(const ReportFigure& figure) {
-  std::string html =
-      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Inputs\"><table><thead>"
-      "<tr><th>run</th><th>experiment</th><th>variant</th><th class=\"number\">seed</th>"
-      "<th class=\"number\">checkpoints</th><th>cycles</th><th>manifest lines</th></tr></thead>"
-      "<tbody>\n";
+  std::vector<HtmlRow> rows;
   for (const FigureInput& input : figure.lineage.inputs) {
     std::set<int> lines;
     for (const ManifestLine& line : input.lines) lines.insert(line.line);
-    html += fmt::format(
-        "<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"number\">{}</td><td "
-        "class=\"number\">{}</td><td>{}</td><td>{}</td></tr>\n",
-        run_link(input.run), escape_html(input.experiment), escape_html(input.variant), input.seed,
-        input.checkpoints.size(), span_of_cycles(input, figure.lineage.runs.at(input.run)),
-        fmt::format("{}", fmt::join(lines, ", ")));
+    rows.push_back({run_link(input.run), escape_html(input.experiment), escape_html(input.variant),
+                    std::to_string(input.seed), std::to_string(input.checkpoints.size()),
+                    span_of_cycles(input, figure.lineage.runs.at(input.run)),
+                    fmt::format("{}", fmt::join(lines, ", "))});
   }
-  return html + "</tbody></table></div>\n";
+  const HtmlRow head = {"run",          "experiment", "variant",       "#seed",
+                        "#checkpoints", "cycles",     "manifest lines"};
+  return scroll_box("Inputs", html_table(head, rows));
 }
 
 std::string attempts_html(const RunLineage& stage) {
@@ -184,7 +180,7 @@ std::string lineage_html(const ReportData& data, const ReportFigure& figure) {
   html += row("log", fmt::format("event {}, {}", data.head.seq, code(data.head.hash)));
   html += row("scale", escape_html(scale.empty() ? "base" : scale));
   html += row("inputs", fmt::format("{} runs, {} checkpoints; analysis version {}",
-                                    figure.about.runs, figure.about.checkpoints,
+                                    figure.summary.runs, figure.summary.checkpoints,
                                     escape_html(text_at(facts, "analysis_version"))));
   html += row("computed by", makers_html(data, figure));
   html += row("manifests", manifests_html(figure));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/report/report_data.hpp"
 
-#include <fmt/format.h>
 #include <stdlib.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
+#include "experiments/figures/collect.hpp"
 #include "experiments/report/accuracy_charts.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
@@ -21,40 +21,29 @@ namespace {
 
 using nlohmann::json;
 
-/// In the order in which they were first registered, with the words of the newest manifest.
+/// In the order in which they were first registered, with the question and figures of the newest
+/// manifest.
 std::vector<ReportExperiment> experiments_of(const Store& store) {
   std::vector<ReportExperiment> found;
-  for (const Event& event : store.events()) {
-    if (event.type != "ManifestRegistered") continue;
-    const json body = event.body();
-    try {
-      const json& info = body.at("info");
-      const auto name = info.at("experiment").get<std::string>();
-      auto known = std::find_if(found.begin(), found.end(),
-                                [&](const ReportExperiment& e) { return e.name == name; });
-      if (known == found.end())
-        known = found.insert(found.end(), ReportExperiment{name, {}, {}, {}});
-      known->question = info.value("question", "");
-      info.at("figures").get_to(known->figures);
-    } catch (const json::exception& problem) {
-      throw StoreDamaged("event " + std::to_string(event.seq) +
-                         " (ManifestRegistered): its payload is not as it must be: " +
-                         problem.what() + "; run `verify`");
+  for (RegisteredManifest& manifest : registered_manifests(store)) {
+    auto known = std::ranges::find(found, manifest.experiment, &ReportExperiment::name);
+    if (known == found.end()) {
+      known = found.insert(found.end(), ReportExperiment{manifest.experiment, {}, {}, {}});
     }
+    known->question = std::move(manifest.question);
+    known->figures = std::move(manifest.figures);
   }
   const std::vector<RunRecord> runs = store.runs();
   for (ReportExperiment& experiment : found) {
+    const auto is_member = [&](const Membership& m) { return m.experiment == experiment.name; };
     for (const RunRecord& run : runs) {
-      const bool member =
-          std::any_of(run.memberships.begin(), run.memberships.end(),
-                      [&](const Membership& m) { return m.experiment == experiment.name; });
-      if (member) experiment.runs.push_back(run);
+      if (std::ranges::any_of(run.memberships, is_member)) experiment.runs.push_back(run);
     }
   }
   return found;
 }
 
-/// A folder for gnuplot that goes away.
+/// A temporary folder for gnuplot.
 class DrawingFolder {
  public:
   DrawingFolder() {
@@ -96,9 +85,9 @@ std::optional<FigureRecord> record_of(const std::vector<FigureRecord>& records,
   return std::nullopt;
 }
 
-ReportFigure make_figure(const Store& store, const Figure& figure, const ReportOptions& options,
-                         const std::vector<FigureRecord>& records, ReportData& data) {
-  RegenerateOptions how;
+ReportFigure figure_of(const Store& store, const Figure& figure, const ReportOptions& options,
+                       const std::vector<FigureRecord>& records, ReportData& data) {
+  FigureOptions how;
   how.scale = options.scale;
   how.workers = options.workers;
   how.report = options.measured;
@@ -106,7 +95,7 @@ ReportFigure make_figure(const Store& store, const Figure& figure, const ReportO
   ReportFigure made;
   made.name = figure.name;
   made.title = figure.title;
-  made.about = std::move(computed.about);
+  made.summary = std::move(computed.summary);
   made.recorded = record_of(records, made.name, computed.lineage);
   made.lineage = figure_lineage(store, {made.name, 0, "", computed.lineage});
   const DrawingFolder folder;
@@ -114,7 +103,7 @@ ReportFigure make_figure(const Store& store, const Figure& figure, const ReportO
     ReportPanel panel{table.name, {}, to_csv(table), table.text, ""};
     if (!table.chart.series.empty()) panel.chart = chart_json(table);
     try {
-      if (!data.interactive) panel.drawing = draw(table, folder);
+      if (!data.interactive && table.text.rows.empty()) panel.drawing = draw(table, folder);
     } catch (const AnalysisError& error) {
       data.drawing_trouble = error.what();
     }
@@ -123,43 +112,29 @@ ReportFigure make_figure(const Store& store, const Figure& figure, const ReportO
   return made;
 }
 
-/// Each figure once, under the first experiment that asks for it; then those about all of them.
-std::vector<std::pair<const Figure*, std::string>> figures_to_make(const ReportData& data,
-                                                                   Report& report) {
-  std::vector<std::pair<const Figure*, std::string>> wanted;
-  std::set<std::string> seen;
+/// The first experiment that asks for the figure; "" if it is about all of them.
+std::string experiment_showing(const ReportData& data, const Figure& figure) {
   for (const ReportExperiment& experiment : data.experiments) {
-    for (const std::string& name : experiment.figures) {
-      if (!seen.insert(name).second) continue;
-      if (const Figure* figure = find_figure(name)) {
-        wanted.emplace_back(figure, experiment.name);
-      } else {
-        report.notes.push_back("figure " + name + ": this program cannot make it");
-      }
-    }
+    if (std::ranges::count(experiment.figures, figure.name) > 0) return experiment.name;
   }
-  for (const Figure& figure : all_figures()) {
-    const bool about_all = figure.scope == FigureScope::every;
-    if (about_all && seen.insert(std::string(figure.name)).second) wanted.emplace_back(&figure, "");
-  }
-  return wanted;
+  return "";
 }
 
 void add_figures(const Store& store, const ReportOptions& options, ReportData& data,
                  Report& report) {
   const std::vector<FigureRecord> records = figure_records(store);
-  const auto wanted = figures_to_make(data, report);
-  std::map<const Figure*, std::string> experiments(wanted.begin(), wanted.end());
-  std::vector<const Figure*> figures;
-  for (const auto& [figure, experiment] : wanted) figures.push_back(figure);
+  WantedFigures wanted = figures_of_store(store);
+  report.notes = std::move(wanted.unknown);
   std::set<std::string> made;
-  for (const Figure* figure : in_order_of_needs(std::move(figures))) {
+  for (const Figure* figure : in_order_of_needs(std::move(wanted.figures))) {
+    const std::string experiment = experiment_showing(data, *figure);
+    if (experiment.empty() && figure->scope != FigureScope::every) continue;  // an older manifest's
     try {
-      ReportFigure one = make_figure(store, *figure, options, records, data);
-      one.experiment = experiments.at(figure);
-      const RegeneratedFigure& about = one.about;
-      report.damage.insert(report.damage.end(), about.damage.begin(), about.damage.end());
-      report.notes.insert(report.notes.end(), about.pruned.begin(), about.pruned.end());
+      ReportFigure one = figure_of(store, *figure, options, records, data);
+      one.experiment = experiment;
+      const FigureSummary& summary = one.summary;
+      report.damage.insert(report.damage.end(), summary.damage.begin(), summary.damage.end());
+      report.notes.insert(report.notes.end(), summary.pruned.begin(), summary.pruned.end());
       made.insert(one.name);
       data.figures.push_back(std::move(one));
     } catch (const NotFound& missing) {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/figures/figure_lineage.hpp"
-#include "experiments/figures/regenerate.hpp"
+#include "experiments/figures/draw.hpp"
+#include "experiments/figures/lineage.hpp"
 #include "experiments/report/packings.hpp"
 #include "experiments/report/report.hpp"
 #include "provenance/lineage.hpp"
@@ -28,7 +28,7 @@ struct ReportFigure {
   std::string name;
   std::string title;
   std::string experiment;  ///< under which it is shown; "" when it is about all
-  RegeneratedFigure about;
+  FigureSummary summary;
   std::vector<ReportPanel> panels;
   FigureLineage lineage;
   std::optional<FigureRecord> recorded;  ///< the newest record that says the same

@@ -190,7 +190,7 @@ TEST_F(DrawFigure, NamesTheNearestFigureOfAnUnknownOne) {
   const WantedFigures wanted = figures_of_store(store_);
   EXPECT_EQ(wanted.figures.size(), 2U);
   ASSERT_EQ(wanted.unknown.size(), 2U);
-  EXPECT_EQ(wanted.unknown[0], "experiment x: there is no figure 'walss'; did you mean walls?");
+  EXPECT_EQ(wanted.unknown[0], "experiment x: there is no figure walss; did you mean walls?");
   EXPECT_NE(wanted.unknown[1].find("known are table1, S1"), std::string::npos);
   EXPECT_EQ(&figure_called("S2"), find_figure("S2"));
   EXPECT_THROW(figure_called("S99"), NotFound);

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <set>
 
-#include "experiments/figures/regenerate.hpp"
+#include "experiments/figures/draw.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/sha256.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -161,16 +161,16 @@ TEST_F(ReplayTest, TellsWhereAStateDiverges) {
 TEST_F(ReplayTest, FiguresNameWhatWasPruned) {
   const auto records = store_.checkpoints(sheared().id);
   store_.prune({records[1], records[2]});
-  RegenerateOptions options;
+  FigureOptions options;
   options.folder = folder_.path() / "figures";
-  const RegeneratedFigure figure = regenerate(store_, *find_figure("S2"), options);
+  const FigureSummary figure = draw_figure(store_, *find_figure("S2"), options);
   EXPECT_TRUE(figure.damage.empty());
   ASSERT_EQ(figure.pruned.size(), 2U);
   for (const std::string& line : figure.pruned) {
     EXPECT_NE(line.find("shearcell regenerate"), std::string::npos) << line;
   }
   for (const std::size_t at : {1U, 2U}) regenerate_checkpoint(store_, records[at]);
-  EXPECT_TRUE(regenerate(store_, *find_figure("S2"), options).pruned.empty());
+  EXPECT_TRUE(draw_figure(store_, *find_figure("S2"), options).pruned.empty());
 }
 
 }  // namespace

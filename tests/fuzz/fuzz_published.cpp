@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <filesystem>
 
+#include "experiments/figures/lineage.hpp"
 #include "experiments/report/accuracy_charts.hpp"
-#include "experiments/figures/figure_lineage.hpp"
 #include "provenance/errors.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/fuzz/targets.hpp"

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "experiments/figures/figure_lineage.hpp"
+#include "experiments/figures/lineage.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/prov_json.hpp"
 #include "provenance/ro_crate.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colours of grains. Classes are told apart with any colour vision (Okabe and Ito), sizes of a
-// quantity by viridis.
+// Colours of grains: structures by the colour-blind safe palette of Okabe and Ito, quantities by
+// viridis.
 import {crystalliteSizes} from "./frames.js";
 import {italic, sub} from "./text.js";
 

@@ -28,7 +28,7 @@ export function symbolPath(point, size = 34) {
 const isOpen = (point) => point % 2 === 0;
 const pointsDown = (point) => point === 10 || point === 11;
 
-// Black and dark lines would vanish on a dark page.
+// Makes dark colours visible on a dark page.
 export function onDark(colour) {
   const channels = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
   const light = (0.3 * channels[0] + 0.59 * channels[1] + 0.11 * channels[2]) / 255;
@@ -43,7 +43,7 @@ export function dress(element, colour) {
   element.style.setProperty("--on-dark", onDark(known));
 }
 
-// One symbol, as it stands in the plot or in the legend.
+// One symbol of the plot or of the legend.
 export function drawSymbol(parent, point, x, y) {
   if (point === 0) return null;
   return svg("path", {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brings a report to life. The page is complete without this, but for the plots and the packings.
+// Adds plots, packings and downloads to the page; everything else works without scripts.
 import {Plot} from "./plot.js";
 import {saveText} from "./save.js";
 import {addThemeSwitch} from "./theme.js";
@@ -7,7 +7,7 @@ import {Viewer} from "./viewer.js";
 
 const data = JSON.parse(document.getElementById("report-data").textContent);
 
-// Plots are drawn when the reader comes near them, or before the page is printed.
+// A plot is drawn when it is scrolled near the window, or before printing.
 function addPlots() {
   const waiting = new Map();
   for (const host of document.querySelectorAll("[data-chart]")) {
@@ -58,7 +58,7 @@ function addDownloads() {
   }
 }
 
-// A link into a closed part of the page opens it.
+// A link to a closed <details> opens it.
 function openTarget() {
   const target = location.hash.length > 1 && document.getElementById(location.hash.slice(1));
   if (target instanceof HTMLDetailsElement) target.open = true;

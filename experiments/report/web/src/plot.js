@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One interactive plot: what is visible, which part of the axes is shown, and drawing it again when
+// One interactive plot: keeps which series and which part of the axes are visible, and redraws when
 // either changes.
 import {drawFrame, drawReferenceLines, drawSeries, drawSymbol, dress, svg} from "./draw.js";
 import {addGestures} from "./gestures.js";
@@ -95,7 +95,7 @@ export class Plot {
     this.redraw();
   }
 
-  // Around a point in pixels; a factor below 1 comes nearer.
+  // Around a point in pixels; a factor below 1 zooms in.
   zoom(factor, px, py) {
     const {box, chart, scales} = this;
     px ??= (box.left + box.right) / 2;

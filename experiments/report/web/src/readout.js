@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The values of the point under the pointer, or of the one that the arrow keys are at.
+// Shows the values of the point under the pointer, or of the one selected by the arrow keys.
 import {dress, svg} from "./draw.js";
 import {positionIn} from "./gestures.js";
 import {formatOn} from "./scales.js";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files out of the page: a plot as SVG that needs no stylesheet, a table as CSV, a view as PNG.
+// Downloads: a plot as SVG without a stylesheet, a table as CSV, a view as PNG.
 import {writeSvgText} from "./text.js";
 
 const written = [
@@ -19,7 +19,7 @@ export function saveText(name, text, type) {
   saveBlob(name, new Blob([text], {type}));
 }
 
-// What is on the screen, in the colours of paper, with its legend below.
+// The plot as shown, in the colours for paper, with its legend below.
 export function plotAsSvg(plot) {
   const stage = document.createElement("div");
   stage.className = "stage";

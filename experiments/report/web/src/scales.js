@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a chart's points to the two scales of a plot, and their ticks.
+// The scales of a plot and their ticks, from a chart's points.
 import {scaleLinear, scaleLog} from "d3-scale";
 import {plain, sup} from "./text.js";
 
@@ -51,7 +51,7 @@ export function makeScale(log, domain, range) {
 const minus = (text) => text.replace("-", "−");
 
 // {at, text} of labelled ticks, and the places of the unlabelled ones between them.
-// `whole`: there is nothing between whole numbers.
+// `whole`: only whole numbers have a tick.
 export function ticksOf(scale, log, wanted, whole = false) {
   return log ? logTicks(scale, wanted) : linearTicks(scale, wanted, whole);
 }

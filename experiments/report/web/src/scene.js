@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The picture of one packing: spheres, the tilted cell, a camera without perspective. Drawn when
-// something changes and not otherwise.
+// The view of one packing: spheres, the tilted cell, a camera without perspective. It is drawn only
+// when something changes.
 import {
   BufferGeometry, Color, Float32BufferAttribute, LineBasicMaterial, LineSegments, OrthographicCamera,
   Scene, SRGBColorSpace, Vector3, WebGLRenderer
@@ -26,7 +26,7 @@ export function cellCorners(cell) {
 const edges = [0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7];
 
 export class PackingScene {
-  // Throws when the browser has no WebGL 2.
+  // Throws if the browser has no WebGL 2.
   constructor(canvas) {
     this.canvas = canvas;
     this.renderer = new WebGLRenderer({canvas, antialias: true, alpha: false});
@@ -132,7 +132,7 @@ export class PackingScene {
     this.pending = false;
     if (!this.cell) return;
     const distance = this.camera.position.distanceTo(this.controls.target);
-    // Depth in the eye's frame, from the front of the packing to its back.
+    // Depth in the camera's frame, from the front of the packing to its back.
     this.spheres.material.uniforms.fog.value = [-distance + this.span / 2, this.span * 1.15];
     this.renderer.render(this.scene, this.camera);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Spheres as squares that face the reader, with the sphere's own depth and shade in each pixel:
-// exact for a camera without perspective, and as quick for 18200 grains as for 600.
+// Spheres as squares that face the camera, with the sphere's depth and shade in each pixel: exact
+// without perspective, and fast for 18200 grains.
 import {
   BufferAttribute, BufferGeometry, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Mesh,
   RawShaderMaterial, Vector3, Vector4

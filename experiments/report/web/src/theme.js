@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light, dark, or as the system has it; the choice is kept where the browser lets a file keep one.
+// Light, dark, or the system's choice; stored in localStorage if the browser allows it for files.
 
 const listeners = [];
 const systemDark = window.matchMedia("(prefers-color-scheme: dark)");
@@ -26,7 +26,7 @@ function keep(choice) {
   try {
     localStorage.setItem("shearcell-theme", choice);
   } catch {
-    // It holds until the page is closed.
+    // The choice lasts until the page is closed.
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The packings of the report: which run, which checkpoint, what the colours mean, what is cut away.
+// The packing viewer: run, checkpoint, colours, clip plane.
 import {coloursOf, keyOf, viridis} from "./colours.js";
+import {controls} from "./controls.js";
 import {crystalliteSizes, decodeFrame, structureNames} from "./frames.js";
 import {saveBlob} from "./save.js";
 import {PackingScene} from "./scene.js";
@@ -12,6 +13,7 @@ const axes = {none: -1, x: 0, y: 1, z: 2};
 export class Viewer {
   constructor(section, packings) {
     this.packings = packings;
+    section.querySelector(".viewer").innerHTML = controls;
     this.part = (name) => section.querySelector(`[data-part="${name}"]`);
     this.canvas = this.part("canvas");
     this.frame = null;
@@ -124,7 +126,7 @@ export class Viewer {
     const {position} = this.frame;
     this.radii = new Float32Array(position.length / 3);
     for (let i = grains; i < this.radii.length; ++i) {
-      // Side walls go on where the moving wall has left them behind; that part is not shown.
+      // Side walls extend beyond the moving wall; that part is not shown.
       const y = position[3 * i + 1];
       this.radii[i] = y > this.stored.cell.bottom - 1 && y < this.stored.cell.top + 1 ? wall : 0;
     }
