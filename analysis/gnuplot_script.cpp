@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -72,47 +73,40 @@ struct Extent {
   }
 };
 
-/// One end of a range: fixed, or that of the data and of the reference lines.
-std::string end_of(const std::optional<double>& fixed, bool holds, const std::string& otherwise) {
-  return fixed && holds ? digits(*fixed) : otherwise;
-}
-
+/// The commands for one chart. The data are written into the script, so that it draws the same
+/// points as the report.
 class Script {
  public:
-  explicit Script(const FigureTable& table) : table_(table), chart_(table.chart) {
+  explicit Script(const FigureTable& table) : chart_(table.chart) {
     for (const Series& series : chart_.series) {
       points_.push_back(points_of(table, series));
-      for (const ChartPoint& p : points_.back()) {
-        x_.take(p.x + series.shift, p.x_error);
+      for (ChartPoint& p : points_.back()) {
+        p.x += series.shift;
+        x_.take(p.x, p.x_error);
         y_.take(p.y, p.y_error);
       }
+      longest_ = std::max(longest_, points_.back().size());
     }
-    any_ = x_.low <= x_.high;
   }
 
   std::string text() {
-    if (!chart_.title.empty()) {
-      add("set title {} font ',12'\n", literal(markup(chart_.title)));
-    }
-    if (!any_) {
-      add("set xlabel {}\nset ylabel {}\n", literal(label_of(chart_.x)),
-          literal(label_of(chart_.y)));
+    if (!chart_.title.empty()) add("set title {} font ',12'\n", literal(markup(chart_.title)));
+    add("set xlabel {}\nset ylabel {}\n", literal(label_of(chart_.x)), literal(label_of(chart_.y)));
+    if (longest_ == 0) {
       add("set label 'no data' at graph 0.5, graph 0.5 center\nplot [0:1] [0:1] NaN notitle\n");
       return text_;
     }
-    axis("x", chart_.x, x_);
-    axis("y", chart_.y, y_);
-    offsets();
+    ticks("x", chart_.x, x_);
+    ticks("y", chart_.y, y_);
+    ranges();
     for (const ReferenceLine& line : chart_.lines) reference(line);
-    const char* separator = "plot ";
-    for (std::size_t k = 0; k < chart_.series.size(); ++k) inline_points(k);
-    for (std::size_t k = 0; k < chart_.series.size(); ++k) {
-      for (const std::string& part : parts(k)) {
-        add("{}{}", separator, part);
-        separator = ", \\\n     ";
-      }
+    for (std::size_t k = 0; k < points_.size(); ++k) data(k);
+    std::string plots;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      for (const std::string& part : parts(k))
+        plots += (plots.empty() ? "plot " : ", \\\n     ") + part;
     }
-    return text_ + "\n";
+    return text_ + plots + "\n";
   }
 
  private:
@@ -121,41 +115,41 @@ class Script {
     text_ += fmt::format(format, std::forward<Values>(values)...);
   }
 
-  static bool low_holds(const Axis& axis, const Extent& data) {
-    return axis.low && (axis.clip || data.low >= *axis.low);
-  }
-  static bool high_holds(const Axis& axis, const Extent& data) {
-    return axis.high && (axis.clip || data.high <= *axis.high);
-  }
-
-  void axis(const char* name, const Axis& axis, const Extent& data) {
-    add("set {}label {}\n", name, literal(label_of(axis)));
-    if (axis.log) {
-      add("set logscale {}\n", name);
-      if (std::log10(data.high / data.low) > 1)
-        add("set format {0} '10^{{%T}}'\nset m{0}tics 10\n", name);
+  void ticks(const char* name, const Axis& axis, const Extent& data) {
+    if (axis.log) add("set logscale {}\n", name);
+    if (axis.log && data.high > 10 * data.low) {
+      add("set format {0} '10^{{%T}}'\nset m{0}tics 10\n", name);
     }
     if (axis.whole && data.high <= 10) add("set {0}tics 1\nunset m{0}tics\n", name);
-    // The range includes every horizontal line, with a little room.
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const ReferenceLine& line : chart_.lines) {
-      if (line.vertical || *name != 'y') continue;
-      low = std::min(low, line.at);
-      high = std::max(high, line.at);
-    }
-    const bool lines = low < high;
-    const double room = lines ? (high - low) / 4 : 0;
-    add("set {}range [{}:{}]\n", name,
-        end_of(axis.low, low_holds(axis, data), lines ? "*<" + digits(low - room) : "*"),
-        end_of(axis.high, high_holds(axis, data), lines ? digits(high + room) + "<*" : "*"));
   }
 
-  /// Room at the ends that the data decide.
-  void offsets() {
-    const auto room = [](bool fixed, const char* share) { return fixed ? "0" : share; };
-    add("set offsets {}, {}, {}, {}\n", room(low_holds(chart_.x, x_), "graph 0.03"),
-        room(high_holds(chart_.x, x_), "graph 0.03"), room(high_holds(chart_.y, y_), "graph 0.05"),
-        room(low_holds(chart_.y, y_), "graph 0.05"));
+  /// An end of an axis is either fixed, or left to gnuplot with some room beyond the data and the
+  /// horizontal lines.
+  void ranges() {
+    Extent lines;
+    for (const ReferenceLine& line : chart_.lines) {
+      if (!line.vertical) lines.take(line.at, std::nullopt);
+    }
+    const double room = lines.high > lines.low ? (lines.high - lines.low) / 4 : 0;
+    const bool any = lines.low <= lines.high;
+    std::array<std::string, 4> offsets;  // left, right, top, bottom
+    const auto end = [](const std::optional<double>& fixed, bool holds,
+                        const std::string& otherwise, const char* beyond, std::string& offset) {
+      offset = fixed && holds ? "0" : beyond;
+      return fixed && holds ? digits(*fixed) : otherwise;
+    };
+    const Axis &x = chart_.x, &y = chart_.y;
+    const std::string left = end(x.low, x.clip || x_.low >= x.low, "*", "graph 0.03", offsets[0]);
+    const std::string right =
+        end(x.high, x.clip || x_.high <= x.high, "*", "graph 0.03", offsets[1]);
+    const std::string top =
+        end(y.high, y.clip || y_.high <= y.high, any ? digits(lines.high + room) + "<*" : "*",
+            "graph 0.05", offsets[2]);
+    const std::string bottom =
+        end(y.low, y.clip || y_.low >= y.low, any ? "*<" + digits(lines.low - room) : "*",
+            "graph 0.05", offsets[3]);
+    add("set xrange [{}:{}]\nset yrange [{}:{}]\nset offsets {}, {}, {}, {}\n", left, right, bottom,
+        top, offsets[0], offsets[1], offsets[2], offsets[3]);
   }
 
   void reference(const ReferenceLine& line) {
@@ -169,9 +163,9 @@ class Script {
     }
   }
 
-  void inline_points(std::size_t k) {
-    if (!chart_.series[k].columns.x.empty() || points_[k].empty()) return;
-    add("$points{} << EOD\n", k);
+  void data(std::size_t k) {
+    if (points_[k].empty()) return;
+    add("$series{} << EOD\n", k);
     const auto field = [](const std::optional<double>& value) {
       return value ? digits(*value) : std::string();
     };
@@ -181,121 +175,65 @@ class Script {
     add("EOD\n");
   }
 
-  /// The columns of a series as gnuplot names them; 0 for an error that there is not.
-  struct Source {
-    std::string file;
-    std::string x;
-    std::string condition;  ///< that a row belongs to the series; empty when all do
-    int y = 2;
-    int x_error = 3;
-    int y_error = 4;
-  };
-
-  Source source_of(std::size_t k) const {
-    const Series& series = chart_.series[k];
-    const SeriesColumns& columns = series.columns;
-    if (columns.x.empty()) return {fmt::format("$points{}", k), shifted("1", series), ""};
-    const auto number = [&](const std::string& name) {
-      return name.empty() ? 0 : column_number(table_, name);
-    };
-    const int x = number(columns.x);
-    Source source{
-        "data", "", "", number(columns.y), number(columns.x_error), number(columns.y_error)};
-    if (!series.filter.column.empty()) {
-      const int filter = number(series.filter.column);
-      const auto* text = std::get_if<std::string>(&series.filter.value);
-      const auto* whole = std::get_if<std::int64_t>(&series.filter.value);
-      source.condition = text != nullptr ? fmt::format("strcol({}) eq {}", filter, literal(*text))
-                         : whole != nullptr
-                             ? fmt::format("column({}) == {}", filter, *whole)
-                             : fmt::format("column({}) == {}", filter,
-                                           digits(std::get<double>(series.filter.value)));
-    }
-    source.x = columns.x_high.empty() ? shifted(std::to_string(x), series)
-                                      : fmt::format("((${}+${})/2)", x, number(columns.x_high));
-    return source;
-  }
-
-  static std::string shifted(const std::string& column, const Series& series) {
-    return series.shift == 0 ? column : fmt::format("(${} + {})", column, digits(series.shift));
-  }
-
-  static std::string where(const std::string& condition, const std::string& value) {
-    return condition.empty() ? value : fmt::format("({} ? {} : NaN)", condition, value);
-  }
-
-  /// Every how many cycles a joined curve has a mark, so that marks stay apart.
-  std::size_t spacing(std::size_t k) const {
+  /// Every how many points a joined curve has a mark, so that marks stay apart.
+  std::size_t spacing(const Series& series) const {
     constexpr std::size_t most_marks = 60;
-    if (!chart_.x.whole || chart_.series[k].join == Join::none) return 1;
-    std::size_t longest = 0;
-    for (const auto& points : points_) longest = std::max(longest, points.size());
     std::size_t every = 1;
+    if (series.join == Join::none) return every;
     for (const std::size_t step : {2U, 5U, 10U, 20U, 50U, 100U, 200U, 500U, 1000U}) {
-      if (longest / every > most_marks) every = step;
+      if (longest_ / every > most_marks) every = step;
     }
     return every;
   }
 
-  /// What the plot command says of a series: errors, line, points. `yerrorbars` alone would leave
-  /// out points without an error.
+  /// The parts of the plot command that draw one series: errors, line, points. `yerrorbars` alone
+  /// would leave out points without an error.
   std::vector<std::string> parts(std::size_t k) const {
     const Series& series = chart_.series[k];
     const std::string title =
         series.title.empty() ? "notitle" : "title " + literal(markup(series.title));
     const std::string line =
         fmt::format("lc rgb '{}'{}", series.colour, series.join == Join::dashes ? " dt 2" : "");
-    const std::string mark = fmt::format("pt {} ps 0.6", series.point);
-    const char* how = series.point == 0           ? "lines"
-                      : series.join == Join::none ? "points"
-                                                  : "linespoints";
-    const std::string look = series.point == 0 ? line : line + " " + mark;
-    if (points_[k].empty()) return {fmt::format("keyentry with {} {} {}", how, look, title)};
+    const std::string look = fmt::format(
+        "{} {}{} {}",
+        series.point == 0           ? "lines"
+        : series.join == Join::none ? "points"
+                                    : "linespoints",
+        line, series.point == 0 ? "" : fmt::format(" pt {} ps 0.6", series.point), title);
+    if (points_[k].empty()) return {"keyentry with " + look};
 
-    const Source source = source_of(k);
-    const std::string y = fmt::format("column({})", source.y);
-    const std::string values =
-        source.condition.empty() ? std::to_string(source.y) : where(source.condition, y);
-    const std::size_t every = spacing(k);
-    const std::string marked =
-        every == 1 ? values
-                   : where(fmt::format("{}int(column({})) % {} == 0",
-                                       source.condition.empty() ? "" : source.condition + " && ",
-                                       source.x, every),
-                           y);
+    const auto has = [&](const std::optional<double> ChartPoint::*error) {
+      return std::ranges::any_of(points_[k],
+                                 [&](const ChartPoint& p) { return (p.*error).has_value(); });
+    };
+    const std::size_t every = spacing(series);
+    const std::string all = fmt::format("$series{} ", k);
+    const std::string marked = every == 1 ? all : fmt::format("{}every {} ", all, every);
     std::vector<std::string> found;
-    if (series.band && source.y_error > 0) {
-      const std::string error = fmt::format("column({})", source.y_error);
-      found.push_back(fmt::format(
-          "{} using {}:{}:{} with filledcurves fc rgb '{}' fs transparent solid 0.2 noborder "
-          "notitle",
-          source.file, source.x, where(source.condition, y + "-" + error),
-          where(source.condition, y + "+" + error), series.colour));
-    } else if (source.y_error > 0) {
-      const bool both = source.x_error > 0;
-      found.push_back(fmt::format("{} using {}:{}:{}{} with {} lc rgb '{}' lw 0.8 pt 0 notitle",
-                                  source.file, source.x, marked,
-                                  both ? fmt::format("{}:", source.x_error) : "", source.y_error,
-                                  both ? "xyerrorbars" : "yerrorbars", series.colour));
-    }
-    if (every == 1) {
-      found.push_back(fmt::format("{} using {}:{} with {} {} {}", source.file, source.x, values,
-                                  how, look, title));
-    } else {
+    if (has(&ChartPoint::y_error)) {
+      const bool both = has(&ChartPoint::x_error);
       found.push_back(
-          fmt::format("{} using {}:{} with lines {} notitle", source.file, source.x, values, line));
-      found.push_back(fmt::format("{} using {}:{} with points {} {}", source.file, source.x, marked,
-                                  look, title));
+          series.band
+              ? fmt::format(
+                    "{}using 1:($2-$4):($2+$4) with filledcurves fc rgb '{}' fs transparent "
+                    "solid 0.2 noborder notitle",
+                    all, series.colour)
+              : fmt::format("{}using {} lc rgb '{}' lw 0.8 pt 0 notitle", marked,
+                            both ? "1:2:3:4 with xyerrorbars" : "1:2:4 with yerrorbars",
+                            series.colour));
     }
+    if (every > 1) found.push_back(all + "using 1:2 with lines " + line + " notitle");
+    found.push_back(every > 1 && series.point > 0
+                        ? marked + "using 1:2 with points" + look.substr(look.find(' '))
+                        : all + "using 1:2 with " + look);
     return found;
   }
 
-  const FigureTable& table_;
   const Chart& chart_;
   std::vector<std::vector<ChartPoint>> points_;  ///< of each series
+  std::size_t longest_ = 0;                      ///< most points of a series
   Extent x_;
   Extent y_;
-  bool any_ = false;
   std::string text_;
 };
 

@@ -80,8 +80,9 @@ TEST(GnuplotScript, StatesEverySeriesLineAndLabel) {
   const std::string script = gnuplot_script(table);
   for (const char* part :
        {"set xlabel 'shear cycle  {/:Italic n}'\n", "set xtics 1\n", "set ylabel 'a\\_b  [%]'\n",
-        "set yrange [0:*]\n", "(strcol(1) eq 'it''s' ? column(3) : NaN):4 with yerrorbars",
-        "title '{/:Italic ϕ}_{u}'", "$points1 << EOD\n1,0.25,,\nEOD\n", "using ($1 + 0.5):2",
+        "set yrange [0:0.1<*]\n", "$series0 << EOD\n1,0.5,,0.1\nEOD\n",
+        "$series1 << EOD\n1.5,0.25,,\nEOD\n", "$series0 using 1:2:4 with yerrorbars",
+        "title '{/:Italic ϕ}_{u}'", "$series1 using 1:2 with points lc rgb '#654321'",
         "keyentry with points lc rgb '#000000' pt 4", "first 0.1 to graph 1, first 0.1",
         "from 2, graph 0 to 2, graph 0.06"}) {
     EXPECT_NE(script.find(part), std::string::npos) << part << "\nin\n" << script;

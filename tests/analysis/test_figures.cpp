@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figure S2 from made-up runs, the bytes of a CSV file, and gnuplot's drawing.
+// Figures of made-up runs, the bytes of a CSV file, and gnuplot's drawing.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -83,6 +83,73 @@ TEST(FigureS2, OneRunWithTwoCheckpointsOfACycleIsRefused) {
   EXPECT_THROW(s2(runs), AnalysisError);
 }
 
+const FigureTable& panel(const FigureResult& result, const std::string& name) {
+  for (const FigureTable& table : result.tables) {
+    if (table.name == name) return table;
+  }
+  throw AnalysisError("no panel " + name);
+}
+
+/// A crystallite of 20 grains at x = 3, y = 5 [d] of a cell 10 wide whose planes are at 1 and 17.
+FigureRun nucleated(double stiffness) {
+  FigureRun run = made_up_run("stiffness_N_per_m", stiffness, 1, 0, [](int, Measures&) {});
+  CrystalliteMap map = testing::map_of({std::vector<std::int32_t>(20, 0)});
+  map.centre[0] = {3, 5, 0};
+  map.width = 10;
+  map.bottom = 1;
+  map.top = 17;
+  run.checkpoints[0].crystallites = map;
+  return run;
+}
+
+TEST(FigureS7, HasBothHeightsAndEachStiffness) {
+  const std::vector<FigureRun> runs = {nucleated(6540), nucleated(654)};
+  const FigureResult made = find_figure("S7")->make(runs);
+  const std::string s7 = to_csv(panel(made, "S7"));
+  EXPECT_NE(s7.find("x/w,0.3,0.35,20,,1,1\n"), std::string::npos) << "(3 + 1) / (10 + 2)\n" << s7;
+  EXPECT_NE(s7.find("y/h,0.25,0.3,20,,1,1\n"), std::string::npos) << "4 / 16, softest only\n" << s7;
+  const std::string heights = to_csv(panel(made, "S7_heights"));
+  EXPECT_NE(heights.find("y/1.675L,0.2,0.25,20,,1,1\n"), std::string::npos) << "4 / 16.75\n"
+                                                                            << heights;
+  const std::string stiffness = to_csv(panel(made, "S7_stiffness"));
+  for (const char* row : {"654,0.25,0.3,20,,1,1\n", "6540,0.25,0.3,20,,1,1\n"}) {
+    EXPECT_NE(stiffness.find(row), std::string::npos) << row << stiffness;
+  }
+}
+
+TEST(FigureC, DrawsTheLargestCrystalliteAgainstPhi) {
+  const auto run = made_up_run("amplitude_rad", 0.1, 1, 1, [](int n, Measures& m) {
+    m.phi = 0.6401 + 0.01 * n;
+    m.largest_crystallite = 30 * static_cast<std::size_t>(n);
+  });
+  const FigureResult made = find_figure("C")->make(std::vector{run});
+  const FigureTable& table = panel(made, "C_largest");
+  EXPECT_EQ(to_csv(table),
+            "variant,phi_low,phi_high,phi_mean,phi_standard_error,largest_crystallite_mean_grains,"
+            "largest_crystallite_standard_error_grains,runs\n"
+            "amplitude_rad=0.1,0.64,0.642,0.6401,,1,,1\n"
+            "amplitude_rad=0.1,0.65,0.652,0.6501,,30,,1\n");
+  EXPECT_TRUE(table.chart.y.log);
+  EXPECT_EQ(table.chart.lines.at(0).at, 20) << "the critical size of the supplement";
+}
+
+// As the supplement does: one experiment, with the standard deviation of runs at A = 0.05.
+TEST(FigureS5, TheExperimentHasTheStandardDeviationOfOurRuns) {
+  std::vector<FigureRun> runs;
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    runs.push_back(made_up_run("amplitude_rad", 0.05, seed, 40, [seed](int n, Measures& m) {
+      m.phi = 0.64 + 0.0005 * n + 0.001 * static_cast<double>(seed);
+      m.largest_crystallite = n < 10 ? 9 : 11;
+    }));
+  }
+  const FigureResult made = find_figure("S5a")->make(runs);
+  const FigureTable& table = panel(made, "S5a");
+  const ChartPoint experiment = table.chart.series.at(0).points.at(0);
+  EXPECT_EQ(experiment.x, 0.01);
+  EXPECT_EQ(experiment.y, 0.645);
+  EXPECT_NEAR(experiment.y_error.value(), 0.001, 1e-9) << "onsets 0.001 apart";
+}
+
 TEST(Figures, UnknownNameIsNone) {
   EXPECT_EQ(find_figure("S99"), nullptr);
 }
@@ -102,7 +169,7 @@ std::string bytes_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// A folder that goes away with the test. Its name has what a careless script would trip over.
+/// A temporary folder whose name has characters that are special in shell and gnuplot.
 class Folder {
  public:
   Folder() {
