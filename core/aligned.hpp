@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors whose storage starts at a cache line, so that rows of four doubles never straddle one.
+// Vectors whose storage starts at a cache line, so that rows of four doubles never cross one.
 #pragma once
 
 #include <cstddef>

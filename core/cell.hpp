@@ -18,14 +18,14 @@ inline constexpr auto kNames<WallTexture> = names_in_order<WallTexture>("rough",
 template <>
 inline constexpr auto kNames<MovingWall> = names_in_order<MovingWall>("bottom", "top");
 
-/// A fixed sphere of diameter d set into a rough wall. It never moves relative to its wall.
+/// A sphere of diameter d fixed to a rough wall.
 struct WallGrain {
   WallSide side;
   /// Centre [d] in the untilted cell, with its wall plane at the height it has in `Cell`.
   Eigen::Vector3d position;
 };
 
-/// Geometry that stays the same during a run. Lengths in grain diameters d.
+/// Geometry that does not change during a run. Lengths in grain diameters d.
 ///
 /// x is the shear direction, y points up, z is the depth and periodic. In the untilted cell the
 /// side planes lie at x = 0 and x = width, the horizontal planes at y = bottom and y = top.
@@ -38,8 +38,8 @@ struct Cell {
   std::vector<WallGrain> wall_grains;  ///< empty when the walls are smooth; order is permanent
 };
 
-/// Where the walls are at one instant. The side walls tilt about the top wall, which never moves
-/// in x: a wall point at height y is displaced by (y - top) tan(theta).
+/// The walls at one instant. The side walls tilt about the top wall, which is fixed in x: a wall
+/// point at height y is displaced by (y - top) tan(theta).
 struct WallPose {
   double tan_theta = 0;
   double cos_theta = 1;

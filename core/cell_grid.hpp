@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains and wall grains copied into the order of a grid's cells, so that a search runs along
-// contiguous memory.
+// Grains and wall grains copied into the order of a grid's cells, so that a search reads contiguous
+// memory.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ struct PlaceRun {
   std::size_t begin, end;
 };
 
-/// The places whose cells surround that of the site at `place`, itself included, each once: at
-/// most nine runs of three neighbouring cells in x. Returns their number.
+/// The places in the cell of the site at `place` and in its neighbours, each once: at most nine
+/// runs of three neighbouring cells in x. Returns their number.
 inline std::size_t surrounding_runs(const CellGrid& grid, std::size_t place,
                                     std::array<PlaceRun, 9>& runs) {
   const auto cell = static_cast<std::int32_t>(grid.cell[place]);
@@ -42,13 +42,13 @@ inline std::size_t surrounding_runs(const CellGrid& grid, std::size_t place,
   return count;
 }
 
-/// A grain or a wall grain: where its row is, and its permanent id.
+/// Row offset and permanent id of a grain or a wall grain.
 struct Site {
   std::int32_t offset, id;
 };
 
-/// The grid of a cell in its untilted frame. Cells are at least as wide as the reach in x, y and z;
-/// sites that stand out of the walls are kept in the border cells.
+/// A grid in the untilted frame. Its cells are at least as wide as the reach in x, y and z; sites
+/// outside the walls belong to the border cells.
 class CellOrder {
  public:
   /// Sorts sites (kernel.hpp's rows) into cells for pairs up to `reach` [d] apart.
@@ -57,7 +57,7 @@ class CellOrder {
 
   const CellGrid& grid() const { return grid_; }
   std::size_t size() const { return site_.size(); }
-  /// Index among the given sites of that at each place of the grid.
+  /// Index in the given sites of the site at each place.
   const std::vector<std::int32_t>& site() const { return site_; }
   std::size_t bytes() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plain facts about a state, each by the most direct route: what a run records as it goes.
+// Observables of a state that a run records, computed contact by contact without neighbour lists.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace shearcell {
 
-/// One touch of a grain. `other` is a grain (kind grain), a wall grain's place in
-/// Cell::wall_grains (wall_grain), or a WallSide (wall_plane).
+/// One contact of a grain. `other` is a grain (kind grain), an index of Cell::wall_grains
+/// (wall_grain), or a WallSide (wall_plane).
 struct Contact {
   enum class Kind : std::uint8_t { grain, wall_grain, wall_plane };
   Kind kind;
@@ -32,11 +32,11 @@ struct Diagnostics {
   double kinetic_energy = 0;      ///< per grain, at the half step [m d^2/s^2]
   double mean_overlap = 0;        ///< Eq. S3 over pairs of grains [d]
   double largest_overlap = 0;     ///< of two spheres [d]
-  double contacts_per_grain = 0;  ///< touches of a grain with grains, wall grains and planes
+  double contacts_per_grain = 0;  ///< contacts of a grain with grains and wall grains
   double wall_imbalance = 0;      ///< (load - contact force on the moving wall) / (P A_w)
 };
 
-/// Facts about a state. With P = 0 the imbalance is relative to k d^2 instead.
+/// With P = 0 the imbalance is relative to k d^2.
 Diagnostics diagnose(const Cell& cell, const Scene& scene, const State& state,
                      const WallPose& pose);
 

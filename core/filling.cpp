@@ -13,12 +13,13 @@ namespace {
 
 constexpr double kGrainVolume = std::numbers::pi / 6;
 constexpr double kGrainArea = std::numbers::pi / 4;
-// One rough wall's grains reach into the cell by this much volume per area: 0.66 grains per d^2,
-// each a cap whose mean volume over recesses of 0 to d/4 is 0.17 d^3, and the gaps under them.
+// Volume per area that the grains of a rough wall take from the cell: 0.66 grains per d^2, each a
+// cap of mean volume 0.17 d^3 for recesses of 0 to d/4, and the gaps behind them.
 constexpr double kRoughLayer = 0.175;
 constexpr std::uint32_t kFillStream = 4;  // after the four wall sides
 
-// Draws after the first have four streams each behind that of the filling, one left out between.
+// Each draw has a stream per wall side. Draws after the first follow the stream of the filling,
+// with one unused between draws.
 std::uint32_t wall_stream(WallSide side, std::uint32_t draw) {
   return static_cast<std::uint32_t>(side) + (kFillStream + 1) * draw;
 }
@@ -27,8 +28,7 @@ double wrapped_difference(double dz, double depth) {
   return dz - depth * std::nearbyint(dz / depth);
 }
 
-// Random numbers for one attempt: they depend on the seed, the number of grains, what is being
-// placed and the number of the attempt.
+// Random numbers of one attempt. They depend on seed, number of grains, stream and attempt.
 std::array<double, 4> draw(std::uint64_t seed, std::size_t grains, std::uint32_t stream,
                            std::uint64_t attempt) {
   const auto n = static_cast<std::uint32_t>(grains);
@@ -47,7 +47,7 @@ void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side
   const double area = length * depth;
   const auto target =
       static_cast<std::size_t>(geometry.wall_grain_area_fraction * area / kGrainArea);
-  // Close to jamming (0.547) the waiting time diverges; a wall that falls short is still rough.
+  // Near jamming (0.547) the number of attempts diverges; a wall with fewer grains is still rough.
   const auto attempts = static_cast<std::uint64_t>(4000.0 * area);
   const std::uint32_t stream = wall_stream(side, geometry.wall_grain_draw);
   LinkedCells near(length, 0.0, 1.0, depth, 1.0, target);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cell and the loose grains that a run begins with, from seed, grain number and geometry alone.
+// The initial cell and loose grains of a run. They depend on seed, number of grains and geometry
+// only.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 
 namespace shearcell {
 
-/// Thrown when the asked geometry cannot hold the grains; the message says what to change.
+/// The geometry cannot hold the grains; the message says what to change.
 class GeometryError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -22,9 +23,9 @@ struct Geometry {
   double nominal_packing_fraction = 0.64;  ///< sets the width for a given number of grains
   double fill_packing_fraction = 0.28;     ///< of the loose initial grains; sets the fill height
   WallTexture walls = WallTexture::rough;
-  double wall_grain_area_fraction = 0.52;  ///< aimed at by the sequential addition
+  double wall_grain_area_fraction = 0.52;  ///< target of the sequential addition
   double wall_grain_recess = 0.25;         ///< largest depth of a centre behind its plane [d]
-  std::uint32_t wall_grain_draw = 0;       ///< another one has other wall grains, from equal seeds
+  std::uint32_t wall_grain_draw = 0;  ///< other values give other wall grains for the same seed
   MovingWall moving = MovingWall::bottom;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points in a grid of cells no narrower than a search distance: all near points lie in 27 cells.
+// Points in a grid of cells at least as wide as a search distance, so that all near points lie in
+// 27 cells. Used where points are still being added and speed matters little.
 #pragma once
 
 #include <array>
@@ -9,12 +10,12 @@
 
 namespace shearcell {
 
-/// A grid over [0, width] x [low, high] x [0, depth), periodic in z. Points outside in x or y are
-/// kept in the border cells, which stays correct as long as nothing is farther out than a cell.
+/// A grid over [0, width] x [low, high] x [0, depth), periodic in z. Points outside in x or y
+/// belong to the border cells, which is correct up to a distance of one cell.
 class LinkedCells {
  public:
-  /// Cells are at least `reach` wide. Lengths [d]. There are at most about four cells per point
-  /// expected, so that a nearly empty box costs no more than its points.
+  /// Cells are at least `reach` [d] wide. There are at most about four cells per expected point, so
+  /// a nearly empty box costs no more than its points.
   LinkedCells(double width, double low, double high, double depth, double reach,
               std::size_t points);
 

@@ -16,8 +16,7 @@ constexpr double kFirstStep = 0.1, kLargestStep = 0.5, kSmallestStep = 0.002;
 constexpr double kGrow = 1.1, kShrink = 0.5;
 constexpr double kMixing = 0.25, kMixingShrink = 0.99;
 constexpr int kDelay = 20;
-// Of the moving wall per d^2: as heavy as the springs of a layer of grains are stiff, so that it
-// moves no faster than a grain and not much slower.
+// Mass of the moving wall per d^2, chosen so that it moves about as fast as a grain.
 constexpr double kWallMass = 1;
 constexpr std::uint64_t kWatchInterval = 256;
 
@@ -36,7 +35,7 @@ double residual_of(const Forces& forces, const Cell& cell, const Scene& scene) {
 }
 
 // Power and the squares of velocity and force, with the wall's height weighted by its mass. Plain
-// loops: their order is that of the ids, whatever the compiler's vectors.
+// loops in the order of the ids, which the compiler must not reorder.
 struct Sums {
   double power, velocity, force;
 };
@@ -55,7 +54,7 @@ Sums sums(const Forces& forces, const State& state, double wall_mass) {
   return s;
 }
 
-// Velocities are those of FIRE, and a state holds them like any other.
+// The state holds the velocities of FIRE.
 class Fire {
  public:
   explicit Fire(const Simulation& simulation)
@@ -82,7 +81,7 @@ class Fire {
       if (++uphill_ > 1) dt_ = std::max(kShrink * dt_, kSmallestStep);
       downhill_ = 0;
       mixing_ = kMixing;
-      move(-0.5 * dt_ * unit_);  // back from beyond the minimum
+      move(-0.5 * dt_ * unit_);  // back by half a step from beyond the minimum
       rest();
     }
     const double dt = dt_ * unit_;
@@ -98,7 +97,7 @@ class Fire {
     state_.wall_height += dt * state_.wall_velocity;
   }
 
-  // Turns the velocity towards the force and keeps its size.
+  // Turns the velocity towards the force without changing its norm.
   void mix(const Forces& forces) {
     const Sums s = sums(forces, state_, wall_mass_);
     if (!(s.force > 0)) return;

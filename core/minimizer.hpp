@@ -19,22 +19,20 @@ struct MinimizeSettings {
 
 struct Minimum {
   std::uint64_t evaluations = 0;
-  double residual = 0;  ///< of the forces, as force_tolerance counts them
+  double residual = 0;  ///< in the units of force_tolerance
 };
 
-/// Brings the simulation to a minimum by FIRE (Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006),
-/// with the changes of Guenole et al., Comput. Mater. Sci. 175, 109584 (2020)) and to rest, one
-/// step further than it was. It uses the stiffness, gravity and pressure of the simulation's scene,
-/// from positions alone, so its end depends on nothing else; global sums run in the order of
-/// permanent ids. Throws NumericalFailure when the tolerance is not met, or the watchdog's limits
-/// are not.
+/// Moves the simulation to a minimum by FIRE (Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006),
+/// with the changes of Guenole et al., Comput. Mater. Sci. 175, 109584 (2020)). Velocities become
+/// zero and the step is raised by one. The result depends on the positions and the scene alone;
+/// global sums run in the order of permanent ids. Throws NumericalFailure when the tolerance is not
+/// reached or a watchdog check fails.
 Minimum minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings = {});
 
 /// H [m d^2/s^2] of a state between upright walls, contact by contact. Gravity counts from y = 0.
 double enthalpy(const Cell& cell, const Scene& scene, const State& state);
 
-/// The residual of a state between upright walls by the most direct route: its forces summed
-/// contact by contact.
+/// The residual of a state between upright walls, with forces summed contact by contact.
 double force_residual(const Cell& cell, const Scene& scene, const State& state);
 
 }  // namespace shearcell

@@ -7,7 +7,7 @@
 namespace shearcell {
 namespace {
 
-// Of a grain in the frame that moves with the shear [d/s].
+// Speed of a grain in the frame that moves with the shear [d/s].
 double speed(const Snapshot& now, std::size_t g) {
   const double vx = now.velocity[0][g] - now.shear_rate * (now.rows[4 * g + 1] - now.pose.top);
   const double vy = now.velocity[1][g];
@@ -40,12 +40,12 @@ bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
   return excess <= 0 && inner_reference_.wall_moved(pose) < room;
 }
 
-// While many grains are fast (a wall that comes down on loose ones), a wider reach costs less than
-// to search every few dozen steps.
+// While many grains are fast (a wall that presses loose ones), a wider reach costs less than a
+// search every few dozen steps.
 void NeighbourLists::choose_widest_margin(const Snapshot& now) {
   const std::uint64_t age = now.step - built_at_;
   built_at_ = now.step;
-  // Nobody may meet a neighbour through both seams.
+  // No grain may be near a neighbour across both seams.
   const double most = std::min(0.5, 0.24 * (depth_ - 2));
   const double least = settings_.widest_margin();
   if (age > 0 && age < 100) widest_margin_ = std::min(1.3 * widest_margin_, most);
@@ -79,7 +79,7 @@ void NeighbourLists::build(const Snapshot& now, const std::vector<std::int32_t>&
   }
   search(order, now.grains);
   set_inner_margins(now);
-  cut(now);
+  prune_inner(now);
 }
 
 void NeighbourLists::search(const CellOrder& order, std::size_t grains) {
@@ -108,12 +108,12 @@ void NeighbourLists::search(const CellOrder& order, std::size_t grains) {
 
 bool NeighbourLists::prune(const Snapshot& now) {
   if (settings_.rebuild_every_step || !set_inner_margins(now)) return false;
-  cut(now);
+  prune_inner(now);
   return true;
 }
 
-// A pair that comes within its inner margins has to be in the outer list, so these fit into what is
-// left of the outer ones. False when that is too little for some grain or wall.
+// A pair within its inner margins must be in the outer list, so inner margins are at most the rest
+// of the outer ones. False when that rest is too small for some grain or wall.
 bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = settings_.inner_horizon * now.time_step;
@@ -131,7 +131,7 @@ bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   return smallest_room >= least;
 }
 
-void NeighbourLists::cut(const Snapshot& now) {
+void NeighbourLists::prune_inner(const Snapshot& now) {
   inner_reference_.set(now.rows, now.grains, now.pose, widest_margin_);
   const std::size_t blocks = (now.grains + kernels_.lanes - 1) / kernels_.lanes;
   other_slots_.resize(blocks);

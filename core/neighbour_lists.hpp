@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each grain may touch: an outer list found in a grid of cells, and an inner one pruned from
-// it.
+// Neighbour lists: an outer list from a grid search, and an inner list pruned from it, which the
+// kernel reads.
 //
-// Bursts of fast grains would make any single thin skin expire every few dozen steps. So the costly
-// search is done for wide margins, the list that the kernel walks is often cut down from that, and
-// a grain's margin in both (reference.hpp) grows with its speed. None of this changes a result
-// (kernel.hpp).
+// With one thin margin for all, bursts of fast grains would require a new search every few dozen
+// steps. So the search uses wide margins, the inner list is pruned often, and the margin of a grain
+// in both (reference.hpp) grows with its speed. None of this changes a result (kernel.hpp).
 #pragma once
 
 #include <array>
@@ -23,12 +22,12 @@
 
 namespace shearcell {
 
-/// How the lists are kept. These change the speed, never the bits.
+/// These settings change the speed, never the bits.
 struct ListSettings {
-  double outer_cutoff = 1.25;  ///< of two grains that only follow the shear [d]
+  double outer_cutoff = 1.25;  ///< for two grains that only follow the shear [d]
   double inner_cutoff = 1.04;  ///< the same for the inner list
-  double widest_cutoff = 1.4;  ///< of the fastest grains [d]
-  double outer_horizon = 500;  ///< time steps that a fast grain's margin should last
+  double widest_cutoff = 1.4;  ///< for the fastest grains [d]
+  double outer_horizon = 500;  ///< time steps for which a fast grain's margin should suffice
   double inner_horizon = 80;   ///< the same for the inner list
   bool rebuild_every_step = false;
   bool sort_memory = true;  ///< keep grains that are near in space near in memory
@@ -38,9 +37,9 @@ struct ListSettings {
   double widest_margin() const;
 };
 
-/// The cell at the moment when its lists are made.
+/// The cell when its lists are built.
 struct Snapshot {
-  double* rows = nullptr;  ///< kernel.hpp's; the margins in them are for the lists to write
+  double* rows = nullptr;  ///< as in kernel.hpp; the lists write the margins
   const double* velocity[3] = {};
   std::size_t grains = 0;
   WallPose pose;
@@ -56,25 +55,25 @@ class NeighbourLists {
   NeighbourLists(const Kernels& kernels, const ListSettings& settings, double depth,
                  const Walls& walls, Team& team);
 
-  /// False when something may have moved beyond its margin in the inner list. `excess` is what the
-  /// kernel's step returned.
+  /// False when something may have moved beyond its margin in the inner list. `excess` is the
+  /// return value of the kernel.
   bool inner_valid(double excess, const WallPose& pose) const;
 
-  /// Gives every grain and wall grain the margin of a new outer list, none above widest_margin().
+  /// Sets the margins of all grains and wall grains for a new outer list, at most widest_margin().
   void set_outer_margins(const Snapshot& now);
-  /// Finds the outer neighbours and cuts the inner list from them. `order` holds the sites with
-  /// those margins; `id` is the permanent id of each grain in memory.
+  /// Builds the outer list and prunes the inner one from it. `order` holds the sites with those
+  /// margins; `id` is the permanent id of each grain in memory.
   void build(const Snapshot& now, const std::vector<std::int32_t>& id, const CellOrder& order);
-  /// Cuts the inner list anew. Returns false, leaving it unusable, when the outer list has to be
-  /// made again first.
+  /// Prunes the inner list again. Returns false, leaving it unusable, when the outer list must be
+  /// rebuilt first.
   bool prune(const Snapshot& now);
 
   /// Of the newest outer list [d].
   double widest_margin() const { return widest_margin_; }
   NeighbourRows rows() const;
-  /// Length of each grain's inner list when it was last cut; empty before that.
+  /// Length of each grain's inner list when it was last pruned; empty before that.
   const std::vector<std::uint16_t>& inner_count() const { return inner_count_; }
-  /// What each grain is near to: bits of NeighbourRows::near.
+  /// The bits of NeighbourRows::near for each grain.
   const std::vector<std::uint8_t>& near() const { return grain_near_; }
   /// Places in memory of the grains that may touch the moving wall, in ascending permanent id.
   const std::vector<std::int32_t>& at_moving_wall() const { return at_moving_wall_; }
@@ -85,7 +84,7 @@ class NeighbourLists {
   void search(const CellOrder& order, std::size_t grains);
   void choose_widest_margin(const Snapshot& now);
   bool set_inner_margins(const Snapshot& now);
-  void cut(const Snapshot& now);
+  void prune_inner(const Snapshot& now);
 
   const Kernels& kernels_;
   const Walls& walls_;

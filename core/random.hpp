@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counter-based random numbers: the value at a counter depends on key and counter alone, so no
-// generator state has to be stored, shared or split.
+// Counter-based random numbers. A value depends on key and counter alone, so there is no generator
+// state to store, share or split.
 #pragma once
 
 #include <array>

@@ -33,17 +33,18 @@ double Reference::moved(const double* rows, std::size_t grain, const WallPose& p
 }
 
 double Reference::wall_moved(const WallPose& pose) const {
-  // Side walls follow the shear about the top wall, wherever that is. The grains of the bottom move
-  // with its plane, whose x is that of its own height: a grain behind it, by at most d, differs by
-  // the strain times that.
+  // Side walls follow the shear about the top wall. The bottom's wall grains move in x with its
+  // plane: a grain up to d behind the plane differs from the shear by the strain times that
+  // distance.
   const double travel =
       std::max(std::fabs(pose.bottom - pose_.bottom), std::fabs(pose.top - pose_.top));
   return travel * (1 + std::fabs(pose.tan_theta)) + std::fabs(pose.tan_theta - pose_.tan_theta);
 }
 
 double Reference::margin_loss(double tan_theta) const {
-  // The smallest singular value of a simple shear e is sqrt(1 + e^2/4) - e/2 > 1 - e/2: that much
-  // is left of a distance of 1 and two margins, and each of two grains bears half of what is not.
+  // The smallest singular value of a simple shear e is sqrt(1 + e^2/4) - e/2 > 1 - e/2. A distance
+  // of 1 plus two margins shrinks by at most that factor; each of the two grains bears half of the
+  // loss.
   return 0.25 * std::fabs(tan_theta - pose_.tan_theta) * (1 + 2 * widest_) + rounding_ + 1e-9;
 }
 

@@ -16,6 +16,17 @@ enum class Fluid : std::uint8_t { still, cell };
 template <>
 inline constexpr auto kNames<Fluid> = names_in_order<Fluid>("still", "cell");
 
+/// Shear rate du_x/dy of the fluid over that of the cell. The fluid is at rest at the top wall.
+constexpr double fluid_share(Fluid fluid) {
+  switch (fluid) {
+    case Fluid::still:
+      return 0;
+    case Fluid::cell:
+      return 1;
+  }
+  return 0;
+}
+
 /// Where the pressure P holds. `moving_wall`: the load on the moving wall is P A_w, so a moving
 /// bottom wall, which also carries the grains, leaves less than P for the top. `top`: a moving
 /// bottom wall is loaded with P A_w and the grains' weight, so that the top feels P whichever wall

@@ -23,9 +23,9 @@ namespace HWY_NAMESPACE {
 using Offsets = hn::Rebind<std::int32_t, D>;
 constexpr Offsets kOffsets{};
 
-// Stores the lanes of `values` whose grains `mask` selects, one after the other, and anything
-// behind them up to a whole vector. Returns how many. (Compressing doubles, Highway 1.0 copies a
-// table of 16 kB on every call.)
+// Stores the lanes of `values` that `mask` selects, contiguously; the rest of the vector is
+// undefined. Returns their number. (For doubles, Compress of Highway 1.0 copies a table of 16 kB on
+// every call.)
 HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
                                       std::int32_t* HWY_RESTRICT to) {
   std::uint8_t bits[8] = {};
@@ -34,7 +34,7 @@ HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
   return hn::CountTrue(kD, mask);
 }
 
-// Ascending order by rank: how many keys are smaller is counted a vector at a time.
+// Sorts by rank: the number of smaller keys is counted one vector at a time.
 HWY_INLINE void sort_ids(std::int32_t* HWY_RESTRICT ids, std::size_t count) {
   const hn::ScalableTag<std::int32_t> d;
   constexpr std::size_t kMost = 64;
@@ -56,13 +56,13 @@ HWY_INLINE void sort_ids(std::int32_t* HWY_RESTRICT ids, std::size_t count) {
   std::copy(sorted, sorted + count, ids);
 }
 
-// 1 and both margins, squared.
+// The square of 1 plus both margins.
 HWY_INLINE V square_cutoff(V own_margin, V other_margin) {
   const V cutoff = hn::Add(hn::Set(kD, 1.0), hn::Add(own_margin, other_margin));
   return hn::Mul(cutoff, cutoff);
 }
 
-// Sites near the one at `place`, itself left out, in any order; returns their number.
+// Finds the sites near the one at `place`, without itself, in any order; returns their number.
 HWY_INLINE std::size_t find_near(const SearchTask& t, std::size_t place,
                                  std::int32_t* HWY_RESTRICT found) {
   const V depth = hn::Set(kD, t.depth);
@@ -70,7 +70,7 @@ HWY_INLINE std::size_t find_near(const SearchTask& t, std::size_t place,
   const Vectors own{hn::Set(kD, t.grid.position[0][place]), hn::Set(kD, t.grid.position[1][place]),
                     hn::Set(kD, t.grid.position[2][place])};
   const V own_margin = hn::Set(kD, t.grid.margin[place]);
-  // Compared as doubles, which hold every id exactly and whose mask fits.
+  // Compared as doubles, which represent every id exactly and have masks of the right size.
   const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
   std::array<PlaceRun, 9> runs;
   const std::size_t run_count = surrounding_runs(t.grid, place, runs);
@@ -112,7 +112,7 @@ std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
   return most;
 }
 
-// Keeps the near ones of one grain's outer list in `kept`; returns their number.
+// Copies the near neighbours of one grain's outer list to `kept`; returns their number.
 HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g,
                                  std::int32_t* HWY_RESTRICT kept) {
   const V depth = hn::Set(kD, t.depth);
@@ -141,7 +141,7 @@ HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g,
   return count;
 }
 
-// How many at the front of a row are grains of the moving wall.
+// The number of grains of the moving wall, which come first in a row.
 HWY_INLINE std::size_t count_moving_wall(const PruneTask& t, const std::int32_t* kept,
                                          std::size_t count) {
   std::size_t wall = 0;
@@ -199,8 +199,7 @@ HWY_INLINE void prune_block(const PruneTask& t, std::size_t block, Kept& kept) {
   t.other_slots[block] = static_cast<std::uint16_t>(kept.other_slots);
 }
 
-// Interleaves the lanes: first the grains of the moving wall, where a lane has any, then the
-// others.
+// Interleaves the lanes: first the grains of the moving wall, then the others.
 HWY_INLINE void write_block(const PruneTask& t, Kept& kept, std::int32_t* HWY_RESTRICT to) {
   for (std::size_t l = 0; kept.wall_slots > 0 && l < kLanes; ++l) {
     for (std::size_t k = 0; k < kept.wall_slots; ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of positions as vectors, one grain per lane: what the vector loops share. Included once for
+// Rows of positions as vectors, one grain per lane, for both files of SIMD loops. Included once for
 // each instruction set, so it has no ordinary include guard.
 #if defined(SHEARCELL_SIMD_VECTORS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEARCELL_SIMD_VECTORS_INL
@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace shearcell {
 namespace HWY_NAMESPACE {
-// Targets without a fused multiply-add would give other bits: they take the scalar kernel.
+// Targets without a fused multiply-add would give other bits; they use the scalar kernel.
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
 
 namespace hn = hwy::HWY_NAMESPACE;

@@ -182,13 +182,14 @@ const Forces& Simulation::forces() {
 
 // The fluid's du/dy is Eq. S5 with the height counted from the top wall.
 void Simulation::set_fluid_step(const Drive& drive) {
-  task_.fluid_step = scene_.time_step * scene_.drag_rate * shear_rate(drive) /
-                     (1 + 0.5 * scene_.drag_rate * scene_.time_step);
+  const double rate = fluid_share(scene_.fluid) * shear_rate(drive);
+  task_.fluid_step =
+      scene_.time_step * scene_.drag_rate * rate / (1 + 0.5 * scene_.drag_rate * scene_.time_step);
   task_.fluid_rest_height = pose_.top;
 }
 
 void Simulation::step_once(const Drive& drive) {
-  const bool fluid_moves = scene_.fluid == Fluid::cell && drive.amplitude != 0;
+  const bool fluid_moves = fluid_share(scene_.fluid) != 0 && drive.amplitude != 0;
   if (fluid_moves) set_fluid_step(drive);
   WallPose next = pose_at(drive, step_ + 1);
   set_contacts(task_, next.tan_theta);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that changes while a cell is simulated: from it a run continues to the last bit.
+// Everything that changes during a simulation. A run continues from it bit for bit.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,7 @@
 namespace shearcell {
 
 /// Column i belongs to the grain with permanent id i. Velocities are those of the leapfrog, half a
-/// time step before `step`; the forces need no velocity, so this is the whole state.
+/// time step before `step`. Forces depend on positions alone, so nothing else is needed.
 struct State {
   std::uint64_t step = 0;     ///< time steps since the stage began
   Eigen::Matrix3Xd position;  ///< 3 x N [d]; z is unwrapped

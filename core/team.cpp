@@ -10,8 +10,8 @@
 namespace shearcell {
 namespace {
 
-// A step of a large cell takes some 100 us, and the parts of it end within a few: spinning that
-// long is cheaper than sleeping. A caller that stays away (a checkpoint) finds the workers asleep.
+// A step of a large cell takes about 100 us and its parts end within a few of each other: spinning
+// for that time costs less than sleeping. During longer gaps (a checkpoint) the workers sleep.
 constexpr int kSpins = 4000;
 
 void relax() {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A few threads that share one simulation's loops.
+// Threads that share the loops of one simulation.
 //
-// Properties: (1) a loop's items are cut into contiguous ranges, one for each thread, and each item
-// is computed by one thread alone; (2) nothing that a thread computes depends on the range it was
-// given, so the bits do not depend on the number of threads; (3) `run` returns when all ranges are
-// done, and everything written in them is visible to the caller.
+// Properties: (1) each thread computes one contiguous range of a loop's items; (2) no result
+// depends on the ranges, so the bits do not depend on the number of threads; (3) `run` returns when
+// all ranges are done, and everything written in them is visible to the caller.
 #pragma once
 
 #include <atomic>
@@ -18,8 +17,8 @@ namespace shearcell {
 
 class Team {
  public:
-  /// `threads` counts the caller's; 1 starts none. Where the system does not lend so many, the team
-  /// is smaller.
+  /// `threads` includes the caller's; 1 starts none. The team is smaller if the system refuses to
+  /// start so many.
   explicit Team(std::size_t threads);
   ~Team();
   Team(const Team&) = delete;
@@ -55,10 +54,10 @@ class Team {
   void* argument_ = nullptr;
   std::size_t count_ = 0;
   bool stop_ = false;
-  // The round that workers may do, and how many have done it.
+  // Number of the current round, and of the workers that have done it.
   alignas(64) std::atomic<std::uint32_t> round_{0};
   alignas(64) std::atomic<std::uint32_t> done_{0};
-  std::vector<std::jthread> workers_;  // last, so that they see the rest made
+  std::vector<std::jthread> workers_;  // last: they use the other members
 };
 
 }  // namespace shearcell

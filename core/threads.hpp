@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Threads, as many as the system lends.
+// Starting as many threads as the system allows.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,9 @@
 
 namespace shearcell {
 
-/// Starts threads beside the calling one, so that `workers` are at work in all: the k-th, from 1,
-/// calls work(k), and the caller does a part itself. Fewer, or none, where a limit of the system is
-/// reached; no result depends on how many there are. `work` must not throw. The threads are joined
-/// when the list goes.
+/// Starts up to workers - 1 threads; the k-th, from 1, calls work(k), and the caller does part 0
+/// itself. Fewer are started when a limit of the system is reached; no result may depend on their
+/// number. `work` must not throw. The threads are joined when the list is destroyed.
 template <class Work>
 std::vector<std::jthread> start_threads(std::size_t workers, const Work& work) {
   std::vector<std::jthread> threads;
@@ -20,7 +19,7 @@ std::vector<std::jthread> start_threads(std::size_t workers, const Work& work) {
   try {
     while (threads.size() + 1 < workers) threads.emplace_back(work, threads.size() + 1);
   } catch (const std::system_error&) {
-    // Those that were lent do it.
+    // Continue with the threads that were started.
   }
   return threads;
 }

@@ -40,7 +40,7 @@ SineCosine sine_cosine(double angle) {
 }
 
 SineCosine turn_sine_cosine(std::uint64_t step, std::uint64_t period) {
-  // Integers find the octant, so no error grows with the step count.
+  // Integer arithmetic finds the octant, so the error does not grow with the step count.
   const std::uint64_t quarters = 4 * (step % period);
   const std::uint64_t quadrant = quarters / period;
   const std::uint64_t rest = quarters % period;

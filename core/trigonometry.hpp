@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sine and cosine whose bits do not depend on the C library: libm may choose another variant on
-// another machine, and a run must give the same bits everywhere.
+// Sine and cosine with the same bits on every machine, which libm does not guarantee.
 #pragma once
 
 #include <cstdint>

@@ -21,7 +21,7 @@ Walls::Walls(const Cell& cell) : cell_(cell), grains_(cell.wall_grains) {
 std::array<WallPlane, 4> Walls::planes(const WallPose& pose) const {
   const double c = pose.cos_theta;
   const double s = pose.sin_theta;
-  // The side planes pass through the ends of the top wall, which does not move in x.
+  // The side planes pass through the ends of the top wall, which is fixed in x.
   std::array<WallPlane, 4> planes = {
       WallPlane{{0, pose.top}, {c, -s}}, WallPlane{{cell_.width, pose.top}, {-c, s}},
       WallPlane{{0, pose.bottom}, {0, 1}}, WallPlane{{0, pose.top}, {0, -1}}};
@@ -49,7 +49,7 @@ void Walls::choose_active(const WallPose& pose, double reach) {
   }
 }
 
-// Operations and order are those of wall_grain_position().
+// The same operations in the same order as wall_grain_position().
 void Walls::place(const WallPose& pose, double* rows) const {
   const double bottom_x = (pose.bottom - pose.top) * pose.tan_theta;
   const double bottom_y = pose.bottom - cell_.bottom;

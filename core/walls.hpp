@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The walls as the kernel sees them: four planes, and wall grains as rows behind those of the
+// The walls as the kernel sees them: four planes, and wall grains as rows after those of the
 // grains.
 #pragma once
 
@@ -13,14 +13,14 @@
 
 namespace shearcell {
 
-/// Where planes and wall grains are in a pose. Wall grains are numbered with those of the moving
-/// wall first and otherwise in the order of the cell; that is their permanent id.
+/// Planes and wall grains in a pose. The permanent id of a wall grain is its place in the order of
+/// the cell, with those of the moving wall first.
 class Walls {
  public:
   explicit Walls(const Cell& cell);
 
   std::size_t size() const { return grains_.size(); }
-  /// How many wall grains belong to the moving wall; they come first.
+  /// Number of wall grains of the moving wall; they come first.
   std::size_t moving_size() const { return moving_size_; }
 
   /// The planes, that of the moving wall first, then by WallSide.
@@ -29,12 +29,12 @@ class Walls {
   /// Writes the centres of all wall grains [d], with this margin, into rows of 4.
   void place_all(const WallPose& pose, double margin, double* rows) const;
 
-  /// From now on `place` moves only those that stand within `reach` [d] of the cell's height: side
-  /// walls go on where the moving wall has left them behind.
+  /// Selects the wall grains that `place` moves: those within `reach` [d] of the height range of
+  /// the cell. Side walls extend beyond the moving wall.
   void choose_active(const WallPose& pose, double reach);
   const std::vector<std::int32_t>& active() const { return active_; }
 
-  /// Moves the active ones that can move, in rows that place_all has filled.
+  /// Updates the active wall grains in rows that place_all has filled.
   void place(const WallPose& pose, double* rows) const;
 
   std::size_t bytes() const { return 64 * grains_.size() + 4 * active_.size(); }

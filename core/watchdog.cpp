@@ -50,13 +50,13 @@ double largest_overlap(const WatchTask& task, std::size_t g, double depth) {
   return 1 - std::sqrt(nearest);
 }
 
-// What a contact weighs in the bound of the vibrations: of a grain, and of the moving wall itself.
-constexpr double kOfGrain = 2, kOfStandingWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
+// Weights w of contacts in the frequency bound (watchdog.hpp).
+constexpr double kOfGrain = 2, kOfFixedWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
 
-// Visits every contact of a grain: its unit normal, its weight, whether it is with the moving wall.
+// Calls visit(unit normal, weight, is with the moving wall) for every contact of a grain.
 template <class Visit>
-void for_each_touch(const WatchTask& task, std::size_t g, const Cell& cell, const WallPose& pose,
-                    Visit&& visit) {
+void for_each_contact_of(const WatchTask& task, std::size_t g, const Cell& cell,
+                         const WallPose& pose, Visit&& visit) {
   const double* own = task.rows + 4 * g;
   const std::size_t block = g / task.lanes;
   const std::int32_t* list = task.neighbours.list + task.neighbours.begin[block] + g % task.lanes;
@@ -70,7 +70,7 @@ void for_each_touch(const WatchTask& task, std::size_t g, const Cell& cell, cons
     const Eigen::Vector3d dr(own[0] - other[0], own[1] - other[1], dz);
     const double square = dr.squaredNorm();
     if (!(square < 1)) continue;
-    const double wall = k < wall_slots ? kOfMovingWall : kOfStandingWall;
+    const double wall = k < wall_slots ? kOfMovingWall : kOfFixedWall;
     visit(dr / std::sqrt(square), offset < first_wall ? kOfGrain : wall, k < wall_slots);
   }
   const Eigen::Vector3d across(pose.cos_theta, -pose.sin_theta, 0), up(0, 1, 0);
@@ -78,18 +78,18 @@ void for_each_touch(const WatchTask& task, std::size_t g, const Cell& cell, cons
   const std::size_t moving = cell.moving == MovingWall::bottom ? 2 : 3;
   for (std::size_t side = 0; side < 4; ++side) {
     if (!(distance[side] < 0.5)) continue;
-    visit(side < 2 ? across : up, side == moving ? kOfMovingWall : kOfStandingWall, side == moving);
+    visit(side < 2 ? across : up, side == moving ? kOfMovingWall : kOfFixedWall, side == moving);
   }
 }
 
-// Of omega^2 in units of k/m, and whose it is.
+// Largest bound of omega^2 in units of k/m, and its grain.
 struct Fastest {
   double bound = 0;
   std::int64_t grain = -1;
 };
 
-// Raises `fastest` by what a grain adds, as far as that exceeds `least`. Almost always its list is
-// too short for that, or else the trace of the sum too small.
+// Raises `fastest` to the bound of one grain if that exceeds `least`. Almost always the number of
+// neighbours, or else the trace of the sum, shows that it does not.
 void bound_grain(const WatchTask& task, std::size_t g, const Cell& cell, const WallPose& pose,
                  double least, Fastest& fastest) {
   const std::size_t block = g / task.lanes;
@@ -97,7 +97,7 @@ void bound_grain(const WatchTask& task, std::size_t g, const Cell& cell, const W
                                          task.neighbours.other_slots[block]);
   if (kOfGrain * slots + 4 * kOfMovingWall <= least) return;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for_each_touch(task, g, cell, pose, [&](const Eigen::Vector3d& normal, double weight, bool) {
+  for_each_contact_of(task, g, cell, pose, [&](const Eigen::Vector3d& normal, double weight, bool) {
     sum += weight * normal * normal.transpose();
   });
   if (sum.trace() <= std::max(least, fastest.bound)) return;
@@ -106,7 +106,7 @@ void bound_grain(const WatchTask& task, std::size_t g, const Cell& cell, const W
   if (bound > fastest.bound) fastest = {bound, (*task.id)[g]};
 }
 
-// The same for the moving wall.
+// The same for the moving wall itself.
 void bound_wall(const WatchTask& task, const Cell& cell, const Scene& scene, const WallPose& pose,
                 double least, Fastest& fastest) {
   const double each = kOnMovingWall / (scene.wall_mass * cell.width * cell.depth);
@@ -122,9 +122,10 @@ void bound_wall(const WatchTask& task, const Cell& cell, const Scene& scene, con
   double bound = 0;
   for (std::size_t g = 0; g < task.id->size(); ++g) {
     if (!near(g)) continue;
-    for_each_touch(task, g, cell, pose, [&](const Eigen::Vector3d& normal, double, bool moving) {
-      if (moving) bound += each * normal.y() * normal.y();
-    });
+    for_each_contact_of(task, g, cell, pose,
+                        [&](const Eigen::Vector3d& normal, double, bool moving) {
+                          if (moving) bound += each * normal.y() * normal.y();
+                        });
   }
   if (bound > fastest.bound) fastest = {bound, -1};
 }

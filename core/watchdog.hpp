@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stops a simulation that has gone wrong, with the numbers that say why.
+// Checks that stop a simulation whose state is not valid.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace shearcell {
 
-/// A run left the range in which its results mean anything. what() says what to change.
+/// A quantity is over its limit. what() gives the numbers and what to change.
 class NumericalFailure : public std::runtime_error {
  public:
   NumericalFailure(std::string quantity, double value, double limit, std::int64_t grain,
@@ -28,11 +28,11 @@ class NumericalFailure : public std::runtime_error {
 
 struct WatchdogLimits {
   double overlap = 0.1;  ///< largest overlap of two grains, or of a grain and a wall plane [d]
-  double escape = 0.5;   ///< farthest a centre may be behind a wall plane [d]
-  double time_step = 1;  ///< largest, over the stability limit of the contacts (below)
+  double escape = 0.5;   ///< largest distance of a centre behind a wall plane [d]
+  double time_step = 1;  ///< largest time step over the stability limit of the contacts (below)
 };
 
-/// What the watchdog looks at; arrays as in kernel.hpp.
+/// Input of the checks; arrays as in kernel.hpp.
 struct WatchTask {
   const double* rows = nullptr;
   const double* velocity[3] = {};
@@ -40,19 +40,19 @@ struct WatchTask {
   NeighbourRows neighbours;
   std::size_t lanes = 1;
   std::uint64_t step = 0;
-  double time_step = 0;      ///< of the steps being taken [s]; 0 where no time passes
+  double time_step = 0;      ///< [s]; 0 skips the time-step check
   double wall_height = 0;    ///< of the moving wall [d]
   double wall_velocity = 0;  ///< [d/s]
 };
 
-/// Checks that every number is finite, every grain inside the walls, no overlap above its limit,
-/// no grain faster than all the energy of twelve contacts at that limit could have thrown it, and
-/// the time step below 2/omega for every omega that the contacts can vibrate with. That is bounded
-/// grain by grain: since (a - b)^2 <= (1 + c) a^2 + (1 + 1/c) b^2, omega^2 is at most k/m times the
-/// largest eigenvalue of any grain's sum of w n n^T over its contacts, w = 2 with a grain, 1 with
-/// a wall that stands, 5/4 with the moving wall, and of 5 (sum of n_y^2) / M for that wall itself.
-/// The bound is met by a pair (2 k/m) and by an FCC crystal (8 k/m).
-/// Costs about four time steps. Throws NumericalFailure for the first grain in memory found so.
+/// Checks that all numbers are finite, all grains are inside the walls, no overlap is over its
+/// limit, no grain is faster than the energy of twelve contacts at that limit allows, and the time
+/// step is below 2/omega for every frequency omega of the contact network. omega is bounded grain
+/// by grain: since (a - b)^2 <= (1 + c) a^2 + (1 + 1/c) b^2, omega^2 is at most k/m times the
+/// largest eigenvalue of any grain's sum of w n n^T over its contacts, with w = 2 for a grain, 1
+/// for a fixed wall and 5/4 for the moving wall, and of 5 (sum of n_y^2) / M for that wall itself.
+/// The bound is exact for a pair (2 k/m) and for an FCC crystal (8 k/m). Costs about four time
+/// steps. Throws NumericalFailure for the first failing grain in memory.
 void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, const WallPose& pose,
                   const WatchdogLimits& limits);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tilts the side walls to and fro (supplement B.5): without a rest, or with one after each cycle.
+// Tilts the side walls periodically (supplement B.5), without a pause or with one after each cycle.
 #pragma once
 
 #include "protocols/protocol.hpp"

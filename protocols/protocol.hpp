@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is done to a cell during one stage of a run: the interface that every protocol fills in.
+// The interface of protocols: what is done to a cell during one stage of a run.
 #pragma once
 
 #include <cstdint>
@@ -8,27 +8,26 @@
 
 namespace shearcell {
 
-/// Where a stage stands after an advance.
+/// Progress of a stage after an advance.
 struct StageProgress {
-  double cycle = 0;             ///< cycles done; stays 0 for a stage that has none
-  bool checkpoint_due = false;  ///< a state that the stage promises to record
-  bool finished = false;        ///< nothing is left to do; the last state is due as well
+  double cycle = 0;             ///< cycles done; 0 for a stage without cycles
+  bool checkpoint_due = false;  ///< this state must be recorded
+  bool finished = false;        ///< the stage is complete; its last state must be recorded too
 };
 
-/// A protocol holds parameters and no state: what it does next follows from the simulation's state
-/// alone, so a stage continues from any checkpoint as if it had never stopped.
+/// A protocol has parameters and no state. Its next action follows from the state of the simulation
+/// alone, so a stage continues from any checkpoint bit for bit.
 class Protocol {
  public:
   virtual ~Protocol() = default;
 
-  /// Drive of the walls during the stage.
+  /// Motion of the walls during the stage.
   virtual Drive drive() const = 0;
 
-  /// Advances by at most `most_steps`, stopping early where a checkpoint is due. The stage need not
-  /// be looked at between calls. Throws NumericalFailure.
+  /// Advances by at most `most_steps`, fewer when a checkpoint is due. Throws NumericalFailure.
   virtual StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const = 0;
 
-  /// Expected length of the whole stage in steps, for estimates; 0 when it is not known.
+  /// Expected length of the whole stage in steps, for estimates; 0 when unknown.
   virtual std::uint64_t expected_steps() const = 0;
 };
 

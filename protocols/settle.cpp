@@ -18,7 +18,7 @@ std::uint64_t look_steps(const Scene& scene) {
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kLookInterval / scene.time_step));
 }
 
-// Looks during which the wall comes the way to a dense packing.
+// Check intervals that the wall needs to reach a dense packing.
 double press_looks(const Cell& cell, const Scene& scene, std::size_t grains) {
   const double per_area = static_cast<double>(grains) / (cell.width * cell.depth);
   const double way = std::max(0.0, cell.top - cell.bottom - per_area / kDenseGrains);
@@ -62,7 +62,7 @@ State pressed(const Cell& cell, const State& loose, Scene scene, const EngineSet
 
 bool Settle::settled(const Simulation& simulation) const {
   const State state = simulation.state();
-  // Without pressure the wall carries what the grains' weight puts on it, on the scale of m g.
+  // Without pressure the forces on the wall are of the order of m g.
   const double pressure = scene_.pressure > 0 ? scene_.pressure : std::max(scene_.gravity, 1.0);
   const double kinetic =
       0.5 * state.velocity.squaredNorm() / static_cast<double>(state.velocity.cols());
@@ -85,7 +85,7 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
   simulation.set_overlap_limit(on_the_way ? std::max(parameters_.overlap_limit, kPressingOverlap)
                                           : parameters_.overlap_limit);
   StageProgress progress;
-  // A stage that was cut off between its last checkpoint and its end must not go on.
+  // A stage that was interrupted after its last state must not continue.
   progress.finished = progress.checkpoint_due = finished();
   if (progress.finished) return progress;
 

@@ -13,7 +13,7 @@ double power(double base, std::uint64_t exponent) {
 }
 
 // 10^(1/m) by Newton's iteration, since std::pow differs between libraries. It starts above the
-// root and falls until rounding ends it.
+// root and decreases until it is constant to rounding.
 double root_of_ten(std::uint64_t m) {
   const auto degree = static_cast<double>(m);
   double root = 1 + 9 / degree;

@@ -29,7 +29,8 @@ inline Sheared any_packing(std::size_t most_grains) {
 /// Table I with or without drag, gravity and a moving fluid; P acts on either wall.
 inline Scene any_scene() {
   Scene scene = table_1();
-  scene.fluid = any_bool("fluid follows the walls") ? Fluid::cell : Fluid::still;
+  scene.fluid =
+      Fluid{static_cast<std::uint8_t>(*rc::gen::inRange<int>(0, kNames<Fluid>.size()).as("fluid"))};
   if (any_bool("without gravity")) scene.gravity = 0;
   if (any_bool("P at the top")) scene.pressure_at = PressureAt::top;
   if (*rc::gen::inRange(0, 4).as("no drag if 3") == 3) scene.drag_rate = 0;

@@ -65,10 +65,18 @@ void add_wall_grains(Sum& sum, const Cell& cell, const WallPose& pose, const Eig
 
 // What the fluid that follows the walls adds to vx for each d below the top wall in one step.
 double flow_of(const Scene& scene, const Drive& drive, const WallPose& pose, std::uint64_t step) {
-  if (scene.fluid == Fluid::still || drive.amplitude == 0) return 0;
+  double share = 0;
+  switch (scene.fluid) {
+    case Fluid::still:
+      return 0;
+    case Fluid::cell:
+      share = 1;
+      break;
+  }
+  if (drive.amplitude == 0) return 0;
   const double omega =
       2 * std::numbers::pi / (static_cast<double>(drive.steps_per_cycle) * scene.time_step);
-  const double rate = tilt(drive, step).rate * omega / (pose.cos_theta * pose.cos_theta);
+  const double rate = share * (tilt(drive, step).rate * omega / (pose.cos_theta * pose.cos_theta));
   return scene.time_step * scene.drag_rate * rate / (1 + 0.5 * scene.drag_rate * scene.time_step);
 }
 

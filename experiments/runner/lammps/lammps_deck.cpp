@@ -73,15 +73,7 @@ class Deck {
     add(text_, "neigh_modify exclude group planted planted\nneigh_modify exclude group wall all");
   }
 
-  bool fluid_moves() const {
-    switch (scene_.fluid) {
-      case Fluid::still:
-        return false;
-      case Fluid::cell:
-        return shears_;
-    }
-    return false;
-  }
+  bool fluid_moves() const { return shears_ && fluid_share(scene_.fluid) != 0; }
 
   // Tilt and heights at the present step, from the integer step and the moving wall's atom.
   void pose() {
@@ -103,7 +95,8 @@ class Deck {
     if (!fluid_moves()) return;
     add(text_, "variable rate equal {:.17g}*2*PI/{:.17g}*cos(2*PI*v_phase/{})*(v_phase<{})",
         task_.drive.amplitude, turn * scene_.time_step, turn, turn);
-    add(text_, "variable flow atom {:.17g}*(y-v_top)*v_rate/cos(v_theta)^2", scene_.drag_rate);
+    add(text_, "variable flow atom {:.17g}*(y-v_top)*v_rate/cos(v_theta)^2",
+        scene_.drag_rate * fluid_share(scene_.fluid));
   }
 
   // Displacements of a wall's grains, which stand in the data file as in the untilted cell.
