@@ -16,6 +16,14 @@ WallPose wall_pose(const Cell& cell, double theta, double wall_height) {
   return pose;
 }
 
+std::array<WallPlane, 4> wall_planes(const Cell& cell, const WallPose& pose) {
+  const double c = pose.cos_theta;
+  const double s = pose.sin_theta;
+  // The side planes pass through the ends of the top wall, which is fixed in x.
+  return {WallPlane{{0, pose.top}, {c, -s}}, WallPlane{{cell.width, pose.top}, {-c, s}},
+          WallPlane{{0, pose.bottom}, {0, 1}}, WallPlane{{0, pose.top}, {0, -1}}};
+}
+
 Eigen::Vector3d wall_grain_position(const Cell& cell, const WallPose& pose,
                                     const WallGrain& grain) {
   Eigen::Vector3d p = grain.position;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -47,6 +48,23 @@ struct WallPose {
   double bottom = 0;  ///< height of the bottom plane [d]
   double top = 0;     ///< height of the top plane [d]
 };
+
+inline WallSide moving_side(const Cell& cell) {
+  return cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
+}
+
+/// Sign of y from the moving wall into the cell.
+inline double inwards(const Cell& cell) {
+  return cell.moving == MovingWall::bottom ? 1 : -1;
+}
+
+/// A wall plane in the plane of shear: a point and the unit normal into the cell.
+struct WallPlane {
+  double point[2] = {}, normal[2] = {};
+};
+
+/// The planes in a pose, indexed by WallSide.
+std::array<WallPlane, 4> wall_planes(const Cell& cell, const WallPose& pose);
 
 /// Tilt angle [rad] and height [d] of the moving plane -> pose. Portable to the last bit.
 WallPose wall_pose(const Cell& cell, double theta, double wall_height);

@@ -4,17 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linked_cells.hpp"
+
 namespace shearcell {
-namespace {
-
-// Clamped in floating point, so that a wild coordinate (or NaN) lands in a border cell.
-std::int32_t clamp_to_cell(double scaled, std::int32_t cells) {
-  if (!(scaled > 0)) return 0;
-  return static_cast<std::int32_t>(std::min(scaled, static_cast<double>(cells - 1)));
-}
-
-}  // namespace
-
 void CellOrder::choose_grid(const Cell& cell, const WallPose& pose, double reach,
                             std::size_t sites) {
   // A pair at distance r is at most r sqrt(1 + tan^2) apart along x in the untilted frame.

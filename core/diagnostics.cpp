@@ -14,17 +14,13 @@ using Visit = std::function<void(const Contact&)>;
 
 void visit_planes(const Cell& cell, const WallPose& pose, std::int32_t i, const Eigen::Vector3d& p,
                   const Visit& visit) {
-  using V = Eigen::Vector3d;
-  const V left(pose.cos_theta, -pose.sin_theta, 0);
-  const V ends[2] = {V(0, pose.top, 0), V(cell.width, pose.top, 0)};
-  const V normals[4] = {left, -left, V(0, 1, 0), V(0, -1, 0)};
-  const V points[4] = {ends[0], ends[1], V(0, pose.bottom, 0), ends[0]};
+  const auto planes = wall_planes(cell, pose);
   for (std::size_t w = 0; w < 4; ++w) {
-    const V r = p - points[w];
-    const double distance = r.x() * normals[w].x() + r.y() * normals[w].y();
+    const auto& [point, normal] = planes[w];
+    const double distance = (p.x() - point[0]) * normal[0] + (p.y() - point[1]) * normal[1];
     if (distance < 0.5) {
       visit({Contact::Kind::wall_plane, i, static_cast<std::int32_t>(w), static_cast<WallSide>(w),
-             0.5 - distance, normals[w]});
+             0.5 - distance, Eigen::Vector3d(normal[0], normal[1], 0)});
     }
   }
 }
@@ -72,7 +68,7 @@ void for_each_contact(const Cell& cell, const Eigen::Matrix3Xd& positions, const
 Diagnostics diagnose(const Cell& cell, const Scene& scene, const State& state,
                      const WallPose& pose) {
   Diagnostics d;
-  const WallSide moving = cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
+  const WallSide moving = moving_side(cell);
   std::size_t touches = 0, pairs = 0;
   double push = 0;
   for_each_contact(cell, state.position, pose, [&](const Contact& c) {
@@ -90,12 +86,11 @@ Diagnostics diagnose(const Cell& cell, const Scene& scene, const State& state,
   const auto grains = static_cast<double>(state.position.cols());
   d.contacts_per_grain = static_cast<double>(touches) / grains;
   d.kinetic_energy = 0.5 * state.velocity.squaredNorm() / grains;
-  const double inwards = cell.moving == MovingWall::bottom ? 1 : -1;
   const double pressure = scene.pressure * cell.width * cell.depth;
   const double load =
       pressure + carried_weight(scene, cell, static_cast<std::size_t>(state.position.cols()));
-  d.wall_imbalance =
-      (load - inwards * scene.stiffness * push) / (scene.pressure > 0 ? pressure : scene.stiffness);
+  d.wall_imbalance = (load - inwards(cell) * scene.stiffness * push) /
+                     (scene.pressure > 0 ? pressure : scene.stiffness);
   return d;
 }
 

@@ -22,6 +22,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/cell.hpp"
+
 namespace shearcell {
 
 /// Arrays over grains are padded to a multiple of the widest vector.
@@ -38,11 +40,6 @@ constexpr std::int32_t padding_offset(std::size_t grains) {
 constexpr std::int32_t wall_offset(std::size_t grains) {
   return padding_offset(grains) + 4;
 }
-
-/// A wall plane in the plane of shear: a point and the unit normal into the cell.
-struct WallPlane {
-  double point[2] = {}, normal[2] = {};
-};
 
 /// What some grain of a block is near to; the kernel skips the rest. kNearSeam: some neighbour's
 /// nearest image lies across the seam in z.

@@ -5,16 +5,6 @@
 #include <cmath>
 
 namespace shearcell {
-namespace {
-
-// Clamped in floating point, so that a wild coordinate (or NaN) lands in a border cell.
-int clamp_to_cell(double scaled, int cells) {
-  if (!(scaled > 0)) return 0;
-  return static_cast<int>(std::min(scaled, static_cast<double>(cells - 1)));
-}
-
-}  // namespace
-
 LinkedCells::LinkedCells(double width, double low, double high, double depth, double reach,
                          std::size_t points)
     : low_(low), depth_(depth) {

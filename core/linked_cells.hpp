@@ -3,12 +3,20 @@
 // 27 cells. Used where points are still being added and speed matters little.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace shearcell {
+
+/// The cell of a scaled coordinate. Clamped in floating point, so that a wild coordinate (or NaN)
+/// belongs to a border cell.
+inline std::int32_t clamp_to_cell(double scaled, std::int32_t cells) {
+  if (!(scaled > 0)) return 0;
+  return static_cast<std::int32_t>(std::min(scaled, static_cast<double>(cells - 1)));
+}
 
 /// A grid over [0, width] x [low, high] x [0, depth), periodic in z. Points outside in x or y
 /// belong to the border cells, which is correct up to a distance of one cell.

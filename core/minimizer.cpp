@@ -158,14 +158,13 @@ double enthalpy(const Cell& cell, const Scene& scene, const State& state) {
 
 double force_residual(const Cell& cell, const Scene& scene, const State& state) {
   const WallPose pose = wall_pose(cell, 0, state.wall_height);
-  const WallSide moving = cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
-  const double inwards = cell.moving == MovingWall::bottom ? 1 : -1;
+  const WallSide moving = moving_side(cell);
   Forces forces;
   forces.on_grain = Eigen::Matrix3Xd::Zero(3, state.position.cols());
   forces.on_grain.row(1).setConstant(-scene.gravity);
   const auto grains = static_cast<std::size_t>(state.position.cols());
-  forces.on_wall =
-      inwards * (scene.pressure * cell.width * cell.depth + carried_weight(scene, cell, grains));
+  forces.on_wall = inwards(cell) *
+                   (scene.pressure * cell.width * cell.depth + carried_weight(scene, cell, grains));
   for_each_contact(cell, state.position, pose, [&](const Contact& c) {
     const Eigen::Vector3d force = scene.stiffness * c.overlap * c.normal;
     forces.on_grain.col(c.grain) += force;

@@ -250,9 +250,8 @@ double Simulation::force_on_wall() const {
     contacts += moving_wall_force_y_[static_cast<std::size_t>(g)];
   }
   const double area = cell_.width * cell_.depth;
-  const double inwards = cell_.moving == MovingWall::bottom ? 1.0 : -1.0;
   const double load = scene_.pressure * area + carried_weight(scene_, cell_, id_.size());
-  return inwards * load - scene_.stiffness * contacts;
+  return inwards(cell_) * load - scene_.stiffness * contacts;
 }
 
 void Simulation::move_wall() {

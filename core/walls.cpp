@@ -4,13 +4,6 @@
 #include <algorithm>
 
 namespace shearcell {
-namespace {
-
-WallSide moving_side(const Cell& cell) {
-  return cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
-}
-
-}  // namespace
 
 Walls::Walls(const Cell& cell) : cell_(cell), grains_(cell.wall_grains) {
   const auto moves = [&](const WallGrain& grain) { return grain.side == moving_side(cell_); };
@@ -19,12 +12,7 @@ Walls::Walls(const Cell& cell) : cell_(cell), grains_(cell.wall_grains) {
 }
 
 std::array<WallPlane, 4> Walls::planes(const WallPose& pose) const {
-  const double c = pose.cos_theta;
-  const double s = pose.sin_theta;
-  // The side planes pass through the ends of the top wall, which is fixed in x.
-  std::array<WallPlane, 4> planes = {
-      WallPlane{{0, pose.top}, {c, -s}}, WallPlane{{cell_.width, pose.top}, {-c, s}},
-      WallPlane{{0, pose.bottom}, {0, 1}}, WallPlane{{0, pose.top}, {0, -1}}};
+  std::array<WallPlane, 4> planes = wall_planes(cell_, pose);
   const auto moving = static_cast<std::ptrdiff_t>(moving_side(cell_));
   std::rotate(planes.begin(), planes.begin() + moving, planes.begin() + moving + 1);
   return planes;

@@ -75,7 +75,7 @@ void for_each_contact_of(const WatchTask& task, std::size_t g, const Cell& cell,
   }
   const Eigen::Vector3d across(pose.cos_theta, -pose.sin_theta, 0), up(0, 1, 0);
   const std::array<double, 4> distance = plane_distances(cell, pose, own);
-  const std::size_t moving = cell.moving == MovingWall::bottom ? 2 : 3;
+  const auto moving = static_cast<std::size_t>(moving_side(cell));
   for (std::size_t side = 0; side < 4; ++side) {
     if (!(distance[side] < 0.5)) continue;
     visit(side < 2 ? across : up, side == moving ? kOfMovingWall : kOfFixedWall, side == moving);

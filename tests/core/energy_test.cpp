@@ -27,11 +27,10 @@ struct Springs {
 };
 
 Springs springs(const Cell& cell, const Scene& scene, const State& state, const WallPose& pose) {
-  const WallSide moving = cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
   Springs sum;
   for_each_contact(cell, state.position, pose, [&](const Contact& c) {
     sum.energy += 0.5 * scene.stiffness * c.overlap * c.overlap;
-    const bool of_wall = c.kind != Contact::Kind::grain && c.side == moving;
+    const bool of_wall = c.kind != Contact::Kind::grain && c.side == moving_side(cell);
     if (of_wall) sum.on_wall -= scene.stiffness * c.overlap * c.normal.y();
   });
   return sum;
@@ -53,9 +52,8 @@ double other_energy(const Cell& cell, const Scene& scene, const State& before, c
   const double wall = 0.5 * (before.wall_velocity + after.wall_velocity);
   const auto grains = static_cast<std::size_t>(v.cols());
   const double load = scene.pressure * area + carried_weight(scene, cell, grains);
-  const double inwards = cell.moving == MovingWall::bottom ? 1 : -1;
   return 0.5 * v.squaredNorm() + 0.5 * scene.wall_mass * area * wall * wall +
-         scene.gravity * before.position.row(1).sum() - inwards * load * before.wall_height;
+         scene.gravity * before.position.row(1).sum() - inwards(cell) * load * before.wall_height;
 }
 
 struct Ledger {
