@@ -87,7 +87,9 @@ void declare_run(Database& database, const Event& event, const json& body) {
   Statement known(database, "SELECT 1 FROM runs WHERE id = ?");
   if (known.bind(1, id).step()) {
     Statement grow(database,
-                   "UPDATE runs SET state = CASE WHEN state = 'completed' AND target_cycles < ?2 "
+                   // The run may also have ended early, as other experiments asked for.
+                   "UPDATE runs SET state = CASE WHEN state = 'completed' AND (target_cycles < ?2 "
+                   "OR (step > 0 AND cycle < ?2)) "
                    "THEN 'declared' ELSE state END, target_cycles = max(target_cycles, ?2) "
                    "WHERE id = ?1");
     grow.bind(1, id).bind(2, target).run();
@@ -125,12 +127,17 @@ void set_state(Database& database, const Event& event, std::string_view state,
   update.bind(4, new_attempts).run();
 }
 
-/// A target that was raised while the run was at work leaves work to do.
+/// A target that was raised, or an early end (`until`) that did not consider every experiment of
+/// the run, leaves work to do.
 void complete_run(Database& database, const Event& event, const json& body) {
   const json& reached = body.at("target_cycles");
+  const json asked = body.value("/summary/ended/memberships"_json_pointer, json());
   Statement update(database,
-                   "UPDATE runs SET error = '', state = CASE WHEN ?2 AND target_cycles > ?3 THEN "
+                   "UPDATE runs SET error = '', state = CASE WHEN (?2 AND target_cycles > ?3) OR "
+                   "?4 < (SELECT count(*) FROM memberships WHERE run = ?1) THEN "
                    "'declared' ELSE 'completed' END WHERE id = ?1");
+  update.bind(4,
+              asked.is_number_unsigned() ? asked.get<std::uint64_t>() : std::uint64_t{INT64_MAX});
   update.bind(1, after_slash(event.stream)).bind(2, std::uint64_t{!reached.is_null()});
   update.bind(3, reached.is_null() ? 0 : count_at(body, "target_cycles")).run();
 }

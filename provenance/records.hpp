@@ -21,6 +21,8 @@ struct Membership {
   std::string manifest;                ///< SHA-256 of the manifest's text
   std::uint64_t checkpoint_every = 1;  ///< cycles between checkpoints that it asks for
   std::uint64_t target_cycles = 0;     ///< what this experiment asks of the run; set by the store
+  /// Measure that may end the run before that; null for none. Recorded, but not read back.
+  nlohmann::json until = nullptr;
 };
 
 /// A run (one stage) as the expansion of a manifest gives it.

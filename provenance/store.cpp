@@ -57,13 +57,15 @@ bool claims_run(const Event& event) {
 }
 
 json membership_json(const Membership& m) {
-  return {{"experiment", m.experiment},
-          {"scale", m.scale},
-          {"variant", m.variant},
-          {"labels", m.labels},
-          {"seed", m.seed},
-          {"manifest", m.manifest},
-          {"checkpoint_every", m.checkpoint_every}};
+  json written = {{"experiment", m.experiment},
+                  {"scale", m.scale},
+                  {"variant", m.variant},
+                  {"labels", m.labels},
+                  {"seed", m.seed},
+                  {"manifest", m.manifest},
+                  {"checkpoint_every", m.checkpoint_every}};
+  if (!m.until.is_null()) written["until"] = m.until;
+  return written;
 }
 
 bool adds_something(const RunRecord& known, const RunDeclaration& declared) {

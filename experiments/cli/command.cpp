@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+
 namespace shearcell::cli {
 
 void add_common_options(CLI::App& command, Context& context, bool with_json) {
@@ -14,13 +16,30 @@ void add_common_options(CLI::App& command, Context& context, bool with_json) {
 
 void add_expand_options(CLI::App& command, ExpandOptions& options) {
   command.add_option("--scale", options.scale, "Named size (default: desk)");
-  command.add_option("--cycles", options.cycles, "Cycles instead of the manifest's");
-  command.add_option("--seeds", options.seeds, "Number of seeds instead of the manifest's");
+  add_count(command, "--cycles", options.cycles, "Cycles instead of the manifest's");
+  add_count(command, "--seeds", options.seeds, "Number of seeds instead of the manifest's");
+}
+
+std::string unfit_count(const std::string& text, std::uint64_t low, std::uint64_t high) {
+  std::uint64_t value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  const bool plain = error == std::errc() && stop == end && (text[0] != '0' || text.size() == 1);
+  if (plain && value >= low && value <= high) return "";
+  if (high == UINT64_MAX) {
+    return fmt::format("'{}' is not a whole number >= {} in decimal digits", text, low);
+  }
+  return fmt::format("'{}' is not a whole number from {} to {} in decimal digits", text, low, high);
+}
+
+void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help) {
+  add_count(command, "--threads,-t", threads, help, "T", 1, 1024);
 }
 
 void add_engine_option(CLI::App& command, ExpandOptions& options) {
   command.add_option("--engine", options.engine, "What computes the shear (default: shearcell)")
-      ->check(CLI::IsMember({"shearcell", "lammps"}))
+      ->check(CLI::IsMember(
+          std::vector<std::string>(kNameList<EngineKind>.begin(), kNameList<EngineKind>.end())))
       ->type_name("NAME");
 }
 

@@ -64,6 +64,21 @@ void add_common_options(CLI::App& command, Context& context, bool with_json);
 /// --scale, --cycles and --seeds: what of a manifest is meant.
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
+/// What is wrong with a whole number in decimal digits from `low` to `high`; "" when nothing is.
+std::string unfit_count(const std::string& text, std::uint64_t low, std::uint64_t high);
+
+/// An option that takes such a number.
+template <class Count>
+CLI::Option* add_count(CLI::App& command, const std::string& names, Count& value,
+                       const std::string& help, const std::string& type_name = "N",
+                       std::uint64_t low = 0, std::uint64_t high = UINT64_MAX) {
+  const auto check = [low, high](const std::string& text) { return unfit_count(text, low, high); };
+  return command.add_option(names, value, help)->check(check)->type_name(type_name);
+}
+
+/// --threads T.
+void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help);
+
 /// --engine NAME.
 void add_engine_option(CLI::App& command, ExpandOptions& options);
 

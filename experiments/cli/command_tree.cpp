@@ -22,6 +22,7 @@ void append(const CLI::App& app, const std::vector<std::string>& path,
             std::vector<CommandEntry>& tree) {
   CommandEntry made{path, app.get_description(), app.get_footer(), {}, {}, {}};
   for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;  // hidden
     (option->get_positional() ? made.positionals : made.options).push_back(entry(*option));
   }
   const std::vector<const CLI::App*> below =

@@ -7,14 +7,13 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/command_tree.hpp"
+#include "experiments/cluster/job_script.hpp"
 
 namespace shearcell::cli {
 namespace {
 
 std::string joined(const std::vector<std::string>& words) {
-  std::string all;
-  for (const std::string& word : words) all += (all.empty() ? "" : " ") + word;
-  return all;
+  return fmt::format("{}", fmt::join(words, " "));
 }
 
 std::string option_words(const CommandEntry& command) {
@@ -23,13 +22,6 @@ std::string option_words(const CommandEntry& command) {
     names.insert(names.end(), option.names.begin(), option.names.end());
   }
   return joined(names);
-}
-
-/// Single-quoted for a POSIX shell, and for fish, which takes the same.
-std::string shell_quoted(const std::string& text) {
-  std::string all = "'";
-  for (const char c : text) all += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return all + "'";
 }
 
 std::string bash(const std::vector<CommandEntry>& tree) {

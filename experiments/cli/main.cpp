@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program: reads the command line and turns whatever goes wrong into a message and a code.
+// The program: reads the command line and turns errors into messages and exit codes.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -20,8 +20,9 @@ namespace {
 
 constexpr const char* kDescription =
     "Discrete element experiments on cyclically sheared frictionless grains:\n"
-    "YAML manifests expand into seeded runs, a store keeps every checkpoint, and figures are\n"
-    "regenerated from the store alone.";
+    "YAML manifests expand into seeded runs, a store keeps every checkpoint, and figures are "
+    "drawn\n"
+    "from the store alone.";
 
 constexpr const char* kFooter =
     "Examples:\n"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -10,13 +11,14 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/runner/engine.hpp"
-#include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/numerics.hpp"
 #include "experiments/runner/cost.hpp"
+#include "experiments/runner/engine.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/novelty.hpp"
 #include "experiments/runner/progress.hpp"
+#include "experiments/runner/run_end.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -42,7 +44,8 @@ struct Line {
   const StageSpec* stage;
   std::string state = "to do";
   double cycle = 0;
-  StageCost left;
+  StageCost left = {};
+  std::optional<double> left_until = 0;       // particle-steps; nothing when it is not known
   std::vector<std::string> shared_with = {};  // other experiments that contain it
   std::optional<Novelty> novelty = {};        // nothing when the store knows it, or none like it
 };
@@ -123,6 +126,41 @@ std::vector<std::string> notes_of(const Plan& plan) {
   return notes;
 }
 
+// What is left if the run ends where others with the same `until` ended; nothing when none did.
+std::optional<double> left_until(const Line& line, const std::optional<Store>& store) {
+  if (!line.run->until || line.stage->stage == Stage::prepare) return line.left.particle_steps;
+  const auto end = store ? expected_end(*store, *line.run->until) : std::nullopt;
+  if (!end) return std::nullopt;
+  PlannedRun shorter = *line.run;
+  shorter.cycles = std::min(shorter.cycles, static_cast<std::uint64_t>(std::llround(*end)));
+  return stage_cost(shorter, *line.stage, line.cycle).particle_steps;
+}
+
+// The same of the whole plan; nothing without `until`, or when it is not known of some run.
+nlohmann::json left_until(const std::vector<Line>& lines) {
+  double sum = 0;
+  bool asked = false;
+  for (const Line& line : lines) {
+    asked = asked || line.run->until;
+    if (!line.left_until) return nullptr;
+    sum += *line.left_until;
+  }
+  return asked ? nlohmann::json(sum) : nlohmann::json();
+}
+
+void print_until(const std::vector<Line>& lines, double at_most) {
+  const auto asks =
+      std::ranges::find_if(lines, [](const Line& line) { return line.run->until.has_value(); });
+  if (asks == lines.end()) return;
+  fmt::print("      with until: {}: ", describe(*asks->run->until));
+  if (const nlohmann::json left = left_until(lines); left.is_null()) {
+    fmt::print("less; how much less is unknown until such a run has ended\n");
+  } else {
+    fmt::print("about {:.3g} particle-steps, {:.0f} % of these, as such runs ended before\n",
+               left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
+  }
+}
+
 std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store) {
   std::vector<RunRecord> known;
   if (store) known = store->runs();
@@ -131,20 +169,20 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store) 
   for (const PlannedRun& run : plan.runs) {
     for (const StageSpec* stage : {&run.prepare, &run.last}) {
       if (!seen.insert(stage->key).second) continue;
-      Line line{.run = &run, .stage = stage, .left = {}};
+      Line line{.run = &run, .stage = stage};
       line.novelty = novelty(*stage, known);
       for (const RunRecord& record : known) {
         if (record.id != stage->key) continue;
         line.cycle = record.cycle;
         add_shares(record, plan.experiment, line);
-        const bool reached =
-            stage->stage == Stage::prepare || record.cycle >= static_cast<double>(run.cycles);
-        line.state = record.state == RunState::completed && reached ? "done"
-                     : record.attempts > 0                          ? name_of(record.state)
-                                                                    : "to do";
+        const auto from = cycle_to_continue(run, *stage, &record);
+        line.state = !from ? "done" : record.attempts > 0 ? name_of(record.state) : "to do";
         if (line.state == "completed") line.state = "to extend";
       }
-      if (line.state != "done") line.left = stage_cost(run, *stage, line.cycle);
+      if (line.state != "done") {
+        line.left = stage_cost(run, *stage, line.cycle);
+        line.left_until = left_until(line, store);
+      }
       lines.push_back(line);
     }
   }
@@ -201,6 +239,7 @@ void plan(const PlanOptions& options, Context& context) {
                 {"runs", expanded.runs.size()},
                 {"stages", list},
                 {"particle_steps_left", left.particle_steps},
+                {"particle_steps_left_with_until", left_until(lines)},
                 {"bytes_left", left.bytes},
                 {"seconds_left", seconds},
                 {"cores", cores},
@@ -227,6 +266,7 @@ void plan(const PlanOptions& options, Context& context) {
       left.particle_steps, format_duration(seconds), cores, rate.particle_steps_per_second * 1e-6,
       rate.measured ? "measured in this store" : "assumed until a run has been measured",
       format_bytes(left.bytes));
+  print_until(lines, left.particle_steps);
   if (!notes.empty()) fmt::print("\n{}\n", fmt::join(notes, "\n"));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `prune`: frees the bytes of checkpoints that can be computed again; their records stay.
+// `prune`: deletes files of checkpoints that can be recomputed; their records stay.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -25,7 +25,7 @@ struct PruneOptions {
 PruneChoice choice_of(const PruneOptions& options, const Store& store) {
   if (options.runs.empty() && options.state.empty() && options.keep_every == 0) {
     throw CLI::ValidationError(
-        "prune", "say what may go: --keep-every K, --state STATE, or runs; see prune --help");
+        "prune", "choose what to delete: --keep-every K, --state STATE, or runs; see prune --help");
   }
   PruneChoice choice;
   for (const std::string& prefix : options.runs) choice.runs.push_back(store.find_run(prefix).id);
@@ -68,7 +68,7 @@ void prune(const PruneOptions& options, Context& context) {
   const std::size_t kept = std::erase_if(
       records, [&](const CheckpointRecord& c) { return why_not_again(store.run(c.run)); });
   if (!context.json && kept > 0) {
-    fmt::print("{} checkpoints that LAMMPS made are kept: they cannot be computed again\n", kept);
+    fmt::print("{} checkpoints of LAMMPS are kept: they cannot be recomputed\n", kept);
   }
   const std::size_t news = records.size();
   for (CheckpointRecord& left : store.prune_leftovers()) records.push_back(std::move(left));
@@ -93,10 +93,10 @@ void prune(const PruneOptions& options, Context& context) {
                 {"pruned", go},
                 {"bytes_freed", freed}});
   } else if (go) {
-    fmt::print("{} freed; `shearcell regenerate CHECKPOINT` makes one again\n",
+    fmt::print("{} freed; `shearcell regenerate CHECKPOINT` recomputes a file\n",
                format_bytes(static_cast<double>(freed)));
   } else if (!records.empty()) {
-    fmt::print("Nothing was freed. To do it: the same with --yes\n");
+    fmt::print("Nothing was freed. Use --yes to delete these files.\n");
   }
 }
 
@@ -104,23 +104,20 @@ void prune(const PruneOptions& options, Context& context) {
 
 void add_prune(CLI::App& app, Context& context) {
   auto options = std::make_shared<PruneOptions>();
-  CLI::App* command =
-      app.add_subcommand("prune", "Free the bytes of checkpoints that can be computed again");
+  CLI::App* command = app.add_subcommand(
+      "prune", "Delete checkpoint files that can be recomputed; their records stay");
   command->add_option("run", options->runs, "Only these runs: ids, or unique beginnings of them");
   command->add_option("--state", options->state, "Only runs in this state")
       ->check(CLI::IsMember({"declared", "running", "interrupted", "failed", "completed"}));
-  command->add_option("--keep-every", options->keep_every, "Keep every K-th cycle")
-      ->check(CLI::Range(1, 1'000'000'000))
-      ->type_name("K");
-  command->add_flag("--yes,-y", options->yes, "Do it, instead of asking");
+  add_count(*command, "--keep-every", options->keep_every, "Keep every K-th cycle", "K", 1,
+            1'000'000'000);
+  command->add_flag("--yes,-y", options->yes, "Delete without asking");
   add_common_options(*command, context, true);
   command->footer(
-      "Shows first what it would free. Kept in any case are the newest checkpoint of each run, "
-      "those\n"
-      "that other stages started from, and those that LAMMPS made. What was pruned stays on "
-      "record, and figures that "
-      "need\n"
-      "it say so.\n"
+      "Lists the files first and asks. It never deletes the newest checkpoint of a run, those "
+      "that\n"
+      "other stages started from, or those of LAMMPS. Records stay; figures name the checkpoints\n"
+      "that they lack.\n"
       "Examples:\n  shearcell prune --keep-every 10\n  shearcell prune --state failed --yes");
   command->callback([options, &context] { prune(*options, context); });
 }

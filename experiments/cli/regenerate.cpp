@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `regenerate`: computes pruned or damaged checkpoints again, to the same bytes.
+// `regenerate`: recomputes files of pruned or damaged checkpoints with the same bytes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -93,19 +93,15 @@ void regenerate(const RegenerateWish& wish, Context& context) {
 void add_regenerate(CLI::App& app, Context& context) {
   auto wish = std::make_shared<RegenerateWish>();
   CLI::App* command =
-      app.add_subcommand("regenerate", "Compute pruned or damaged checkpoints again");
+      app.add_subcommand("regenerate", "Recompute the files of pruned or damaged checkpoints");
   command
       ->add_option("checkpoint", wish->checkpoints, "SHA-256 of checkpoints, or beginnings of them")
       ->required();
-  command->add_option("--threads,-t", wish->threads, "Threads, for large cells")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("T");
+  add_threads_option(*command, wish->threads, "Threads, for large cells");
   add_common_options(*command, context, true);
   command->footer(
-      "Steps from the nearest earlier checkpoint that is kept. The state and the file must come "
-      "out\n"
-      "with the recorded hashes; else nothing is kept, ReplayDiverged is recorded and the code is "
-      "4.\n"
+      "Steps from the nearest earlier checkpoint. State and file must have the recorded hashes;\n"
+      "otherwise nothing is written, ReplayDiverged is recorded, and the exit code is 4.\n"
       "Examples:\n  shearcell regenerate 2a2c47ca");
   command->callback([wish, &context] { regenerate(*wish, context); });
 }

@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/campaign.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
 
@@ -65,20 +65,13 @@ void run(const RunOptions& options, Context& context) {
 }
 
 void add_worker_options(CLI::App& command, RunOptions& options) {
-  command.add_option("--jobs,-j", options.jobs, "Runs at a time (default: one per core)")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("J");
-  command
-      .add_option("--threads,-t", options.parallel.threads,
-                  "Threads inside each run, for large cells")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("T");
-  command
-      .add_option("--mpi", options.parallel.ranks,
-                  "Processes of each run in LAMMPS, by mpirun; it changes the last digits")
-      ->check(CLI::Range(1, 65536))
-      ->type_name("N");
-  command.add_flag("--quiet,-q", options.quiet, "No progress");
+  add_count(command, "--jobs,-j", options.jobs, "Runs at a time (default: one per core)", "J", 1,
+            1024);
+  add_threads_option(command, options.parallel.threads, "Threads inside each run, for large cells");
+  add_count(command, "--mpi", options.parallel.ranks,
+            "Processes of each run in LAMMPS, by mpirun; it changes the last digits", "N", 1,
+            65536);
+  command.add_flag("--quiet,-q", options.quiet, "Show no progress");
 }
 
 }  // namespace
@@ -127,10 +120,9 @@ void add_run(CLI::App& app, Context& context) {
       "  shearcell run experiments/drag.yaml --scale desk --cycles 100   # extend\n"
       "  shearcell run experiments/drag.yaml --scale smoke --engine lammps --mpi 2\n"
       "\n"
-      "What the store holds already is not computed again. Ctrl-C writes checkpoints and ends\n"
-      "with code 85; run again, or resume, to continue bit for bit. Several programs may run on "
-      "one\n"
-      "store at once, on one machine: they share the work.");
+      "Runs that the store holds are not computed again. Ctrl-C writes checkpoints and ends with\n"
+      "code 85; run again, or resume, to continue bit for bit. Several programs on one machine\n"
+      "may run on one store: they share the work.");
   command->callback([options, &context] { run(*options, context); });
 
   auto resume_options = std::make_shared<RunOptions>();

@@ -7,7 +7,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/show_figure.hpp"
-#include "experiments/runner/progress.hpp"
+#include "experiments/runner/run_end.hpp"
 #include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
 
@@ -62,7 +62,8 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                 {"engine", engine},
                 {"memberships", members},
                 {"checkpoints", list},
-                {"error", run.error}});
+                {"error", run.error},
+                {"ended", end_of(store, run)}});
     return;
   }
   tell("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {} attempts\n",
@@ -73,6 +74,8 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
          engine.value("processes", 1));
   }
   if (!run.error.empty()) tell("error    {}\n", run.error);
+  if (const std::string why = describe_end(end_of(store, run)); !why.empty())
+    tell("ended    {}\n", why);
   for (const Membership& m : run.memberships) {
     tell("part of  {} ({}) {} seed {}\n", m.experiment, m.scale.empty() ? "base" : m.scale,
          m.variant, m.seed);
@@ -100,7 +103,7 @@ void show_pruned(const CheckpointRecord& record, Context& context) {
   if (context.json) return print_json(facts(record));
   tell("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
        record.run);
-  tell("file        pruned; `shearcell regenerate {:.12}` makes it again\n", record.sha256);
+  tell("file        pruned; `shearcell regenerate {:.12}` recomputes it\n", record.sha256);
   tell("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step, record.time_s);
   for (const auto& [name, value] : record.observables) tell("{:<42} {:.6g}\n", name, value);
 }

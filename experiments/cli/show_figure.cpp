@@ -9,19 +9,21 @@
 #include <string>
 #include <vector>
 
-#include "experiments/manifest/document.hpp"
 #include "experiments/figures/lineage.hpp"
+#include "experiments/manifest/document.hpp"
+#include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell::cli {
 namespace {
 
-constexpr std::size_t kWidth = 80;
-
-// A recorded text, fit for a terminal and for what is left of the line.
+// A recorded text, fit for a terminal and for what is left of its line; whole in a file or a pipe.
 std::string cut(const std::string& text, std::size_t used) {
-  std::string shown = printable(text, kWidth);
-  if (shown.size() > kWidth - used) shown.replace(kWidth - used - 3, shown.npos, "...");
+  const auto width = terminal_columns(stdout);
+  if (!width) return printable(text, std::string::npos);
+  const std::size_t left = *width > used + 3 ? *width - used : 4;
+  std::string shown = printable(text, *width);
+  if (shown.size() > left) shown.replace(left - 3, shown.npos, "...");
   return shown;
 }
 

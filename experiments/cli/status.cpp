@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `status`: every run with its state, how far it is and how fast it went.
+// `status`: every run with its state, progress and speed.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/queue_view.hpp"
 #include "experiments/runner/progress.hpp"
+#include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
 #include "experiments/runner/terminal.hpp"
 
@@ -101,8 +104,8 @@ std::vector<std::string> row(const Shown& shown) {
 
 /// A table for each experiment, each run under the first that declared it, and what is to be said
 /// of single runs below them.
-void print(const std::vector<RunRecord>& runs, const std::map<std::string, Lease>& by_run,
-           const QueueView& queue) {
+void print(const Store& store, const std::vector<RunRecord>& runs,
+           const std::map<std::string, Lease>& by_run, const QueueView& queue) {
   std::vector<std::string> experiments;
   std::map<std::string, std::vector<std::vector<std::string>>> tables;
   std::map<RunState, std::size_t> count;
@@ -139,14 +142,18 @@ void print(const std::vector<RunRecord>& runs, const std::map<std::string, Lease
   if (!queue.problem.empty()) tell("The queue is not known: {}\n", queue.problem);
   for (const RunRecord& run : runs) {
     if (!run.error.empty()) tell("{}: {}\n", run.id.substr(0, 8), run.error);
+    if (const nlohmann::json ended = end_of(store, run); !ended.is_null()) {
+      tell("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle, describe_end(ended));
+    }
   }
 }
 
-void print_facts(const std::vector<RunRecord>& runs, const std::map<std::string, Lease>& by_run,
-                 const QueueView& queue) {
+void print_facts(const Store& store, const std::vector<RunRecord>& runs,
+                 const std::map<std::string, Lease>& by_run, const QueueView& queue) {
   nlohmann::json list = nlohmann::json::array();
   for (const RunRecord& run : runs) {
     list.push_back(facts(run));
+    list.back()["ended"] = end_of(store, run);
     const auto held = by_run.find(run.id);
     list.back()["holder"] = held == by_run.end() ? nlohmann::json() : facts(held->second);
     const auto queued = queue.runs.find(run.id);
@@ -169,31 +176,67 @@ void print_facts(const std::vector<RunRecord>& runs, const std::map<std::string,
 void status(Context& context) {
   const Store store(context.store, Access::read);
   if (context.json) {
-    print_facts(store.runs(), holders(store), look_at_queue(store));
+    print_facts(store, store.runs(), holders(store), look_at_queue(store));
   } else {
-    print(store.runs(), holders(store), look_at_queue(store));
+    print(store, store.runs(), holders(store), look_at_queue(store));
   }
 }
 
-/// Prints again and again until nobody holds a run and nothing is queued, or a signal comes.
+// Stages are begun within milliseconds of the end of those before them, so a campaign has ended
+// when nobody has held a stage for so long.
+constexpr std::chrono::seconds kIdle{10};
+
+bool stages_remain(const std::vector<RunRecord>& runs) {
+  return std::any_of(runs.begin(), runs.end(), [](const RunRecord& run) {
+    return run.state != RunState::completed && run.state != RunState::failed;
+  });
+}
+
+/// Sleeps, in short naps. Returns whether a signal ended it.
+bool sleep_or_stop(double seconds) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (!stop_requested() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return stop_requested();
+}
+
+/// Prints the status every `interval` seconds until the campaign has ended or a signal comes.
 void watch(Context& context, double interval) {
   catch_stop_signals();
   const bool terminal = terminal_columns(stdout).has_value();
+  auto busy_at = std::chrono::steady_clock::now();
   while (true) {
     const Store store(context.store, Access::read);
+    const std::vector<RunRecord> runs = store.runs();
     const std::map<std::string, Lease> by_run = holders(store);
     if (terminal) fmt::print("\x1b[H\x1b[2J");
     const QueueView queue = look_at_queue(store);
-    print(store.runs(), by_run, queue);
+    print(store, runs, by_run, queue);
     std::fflush(stdout);
-    if (by_run.empty() && !queue.busy()) return;
-    // A cluster's queue serves many, and is not asked so often.
-    const double pause = queue.submissions.empty() ? interval : std::max(interval, 10.0);
-    for (double waited = 0; waited < pause; waited += 0.05) {
-      if (stop_requested()) return;
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    const auto now = std::chrono::steady_clock::now();
+    if (!by_run.empty() || queue.busy()) {
+      busy_at = now;
+    } else if (!stages_remain(runs) || now - busy_at > kIdle) {
+      return;
     }
+    // A cluster's queue serves many, and is not asked so often.
+    if (sleep_or_stop(queue.submissions.empty() ? interval : std::max(interval, 10.0))) return;
   }
+}
+
+/// Seconds of `--watch`, from 0.1 to 86400; nothing when the text is no such number.
+std::optional<double> read_interval(const std::string& text) {
+  double seconds = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, seconds);
+  const bool valid = error == std::errc() && stop == end && seconds >= 0.1 && seconds <= 86400;
+  return valid ? std::optional(seconds) : std::nullopt;
+}
+
+std::string unfit_interval(const std::string& text) {
+  if (text.empty() || read_interval(text)) return "";
+  return fmt::format("'{}' is not a number of seconds from 0.1 to 86400", text);
 }
 
 }  // namespace
@@ -201,21 +244,21 @@ void watch(Context& context, double interval) {
 void add_status(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand("status", "List the runs of the store");
   add_common_options(*command, context, true);
-  auto interval = std::make_shared<double>(2.0);
-  CLI::Option* watched = command->add_option("--watch", *interval, "Show again, every so often")
+  auto interval = std::make_shared<std::string>();
+  CLI::Option* watched = command->add_option("--watch", *interval, "Repeat every so many seconds")
                              ->type_name("SECONDS=2")
                              ->expected(0, 1)
-                             ->check(CLI::Range(0.1, 86400.0))
+                             ->check(unfit_interval)
                              ->excludes("--json");
   command->footer(
       "M/s is million particle-steps per second over all recorded work. A run that is running and\n"
-      "held by nobody was killed; `resume` goes on with it. --watch ends when nobody holds a run\n"
-      "and nothing is queued. Runs that were handed to a cluster show where they are in its "
-      "queue,\n"
-      "and how far their tasks say that they are.\n"
+      "held by nobody was killed; `resume` continues it. --watch ends when no stage is left, or\n"
+      "nobody has worked for 10 s and nothing is queued. Runs on a cluster show their place in "
+      "its\n"
+      "queue and the progress that their tasks report.\n"
       "Examples:\n  shearcell status\n  shearcell status --watch\n  shearcell status --json");
   command->callback([watched, interval, &context] {
-    watched->count() > 0 ? watch(context, *interval) : status(context);
+    watched->count() > 0 ? watch(context, read_interval(*interval).value_or(2)) : status(context);
   });
 }
 

@@ -30,7 +30,7 @@ constexpr double kWarningResolution = 30;
 struct SubmitOptions {
   std::vector<std::string> manifests;
   ExpandOptions expand;
-  std::string engine = "slurm";
+  std::string scheduler = "slurm";
   JobOptions job;
   std::size_t array_size = kMostTasks;
   bool dry_run = false;
@@ -196,7 +196,7 @@ nlohmann::json event_facts(const SubmitOptions& options, const Proposal& proposa
   nlohmann::json scales = nlohmann::json::array();
   for (const Plan& plan : loaded.plans) scales.push_back(plan.scale);
   const JobOptions& job = proposal.job;
-  return {{"engine", options.engine},
+  return {{"scheduler", options.scheduler},
           {"manifests", shas},
           {"scales", scales},
           {"options",
@@ -280,9 +280,19 @@ void check_time(const JobOptions& job) {
 
 void add_job_options(CLI::App& command, SubmitOptions& options) {
   JobOptions& job = options.job;
-  command.add_option("--engine", options.engine, "What queues the jobs")
-      ->check(CLI::IsMember({"slurm"}))
+  const auto schedulers = CLI::IsMember({"slurm"});
+  command.add_option("--scheduler", options.scheduler, "What queues the jobs")
+      ->check(schedulers)
       ->capture_default_str();
+  // Its name in earlier versions.
+  command
+      .add_option_function<std::string>(
+          "--engine",
+          [](const std::string&) {
+            fmt::print(stderr, "warning: --engine slurm is now called --scheduler slurm\n");
+          })
+      ->check(schedulers)
+      ->group("");
   command.add_option("--partition,-p", job.partition, "Partition")->check(check_value);
   command.add_option("--account,-A", job.account, "Account")->check(check_value);
   command
@@ -290,27 +300,21 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
                   "Time limit of one start of a task; it goes on until it is done")
       ->check(check_value)
       ->type_name("HH:MM:SS");
-  command.add_option("--array-size", options.array_size, "Most tasks (default: one per packing)")
-      ->check(CLI::Range(1, 100000))
-      ->type_name("K");
-  command
-      .add_option("--cpus-per-task,-c", job.cpus,
-                  "Cores, and so runs at a time, of a task (default: one per run, at most 16)")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("C");
-  command.add_option("--threads,-t", job.threads, "Threads inside each run, for large cells")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("T");
+  add_count(command, "--array-size", options.array_size, "Most tasks (default: one per packing)",
+            "K", 1, 100000);
+  add_count(command, "--cpus-per-task,-c", job.cpus,
+            "Cores, and so runs at a time, of a task (default: one per run, at most 16)", "C", 1,
+            1024);
+  add_threads_option(command, job.threads, "Threads inside each run, for large cells");
   command
       .add_option("--scratch", job.scratch,
                   "Folder on each node's own disk to work in; the stores are saved every five "
                   "minutes")
       ->type_name("DIR");
-  command
-      .add_option("--warn", job.warn_seconds,
-                  "Seconds before the time limit at which tasks write checkpoints and queue "
-                  "themselves again")
-      ->check(CLI::Range(10, 3600))
+  add_count(command, "--warn", job.warn_seconds,
+            "Seconds before the time limit at which tasks write checkpoints and queue themselves "
+            "again",
+            "S", 10, 3600)
       ->capture_default_str();
   command.add_option("--sbatch", job.sbatch, "Further option of sbatch, as --sbatch=--mem=2G")
       ->check(check_sbatch)
@@ -325,17 +329,17 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
 void add_submit(CLI::App& app, Context& context) {
   auto options = std::make_shared<SubmitOptions>();
   CLI::App* command =
-      app.add_subcommand("submit", "Hand the runs of manifests to a cluster as an array job");
+      app.add_subcommand("submit", "Queue the runs of manifests on a cluster as an array job");
   command->add_option("manifest", options->manifests, "YAML manifests")->required();
   add_expand_options(*command, options->expand);
   add_job_options(*command, *options);
   add_common_options(*command, context, true);
   command->footer(
       "Each task computes the runs of some packings in a store of its own, under\n"
-      "STORE/submissions, and a job after the array folds these stores into STORE. A task that is\n"
-      "warned of its time limit writes checkpoints and queues itself again. What the store holds,\n"
-      "and what is queued already, is not submitted: submit again at any time, as after a\n"
-      "cancellation. STORE must be on a disk that all nodes see.\n"
+      "STORE/submissions; a job after the array folds these stores into STORE. Near its time limit "
+      "a\n"
+      "task writes checkpoints and queues itself again. Runs that are done or queued are not\n"
+      "submitted, so submit again at any time. STORE must be on a disk that all nodes see.\n"
       "Examples:\n"
       "  shearcell submit experiments/drag.yaml --scale paper --partition long --time 24:00:00\n"
       "  shearcell submit experiments/*.yaml --scale desk --scratch /scratch --sbatch=--mem=4G\n"

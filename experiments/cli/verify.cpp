@@ -92,7 +92,7 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
     if (why_not_again(run)) left_out += store.checkpoints(run.id, true).size();
   }
   if (!context.json && left_out > 0) {
-    fmt::print("{} checkpoints that LAMMPS made are left out: it does not repeat bits\n", left_out);
+    fmt::print("{} checkpoints of LAMMPS are left out: it does not repeat bits\n", left_out);
   }
   if (!context.json) {
     tell("replaying up to {} of {} checkpoints, --seed {}\n", chosen.size(), all.size(), seed);
@@ -156,20 +156,17 @@ void add_verify(CLI::App& app, Context& context) {
   auto options = std::make_shared<VerifyOptions>();
   CLI::App* command =
       app.add_subcommand("verify", "Check the event chain, every file's hash and the projections");
-  command->add_option("--against", options->against, "A head that `verify` told earlier")
+  command->add_option("--against", options->against, "A head that an earlier `verify` printed")
       ->expected(1, 2)
       ->type_name("SEQ HASH");
-  command->add_option("--replay", options->replay, "Compute K sampled checkpoints again")
-      ->check(CLI::Range(1, 1'000'000'000))
-      ->type_name("K");
-  command->add_option("--seed", options->seed, "Of the sample (default: from the head)");
-  command->add_option("--threads,-t", options->threads, "Threads of a replay, for large cells")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("T");
+  add_count(*command, "--replay", options->replay, "Recompute K sampled checkpoints", "K", 1,
+            1'000'000'000);
+  add_count(*command, "--seed", options->seed, "Seed of the sample (default: from the head)");
+  add_threads_option(*command, options->threads, "Threads of a replay, for large cells");
   add_common_options(*command, context, true);
   command->footer(
-      "--against proves that the log still begins with what it was then. --replay steps from the\n"
-      "checkpoint before each sampled one, compares every bit, and records the outcome.\n"
+      "--against proves that the log extends the earlier one. --replay steps from the checkpoint\n"
+      "before each sampled one, compares every bit, and records the outcome.\n"
       "Examples:\n  shearcell verify --json\n  shearcell verify --replay 5\n"
       "  shearcell verify --against 16 4358ffe4f2a9...");
   command->callback([options, &context] { verify(*options, context); });

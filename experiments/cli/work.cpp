@@ -145,14 +145,8 @@ void add_work(CLI::App& app, Context& context) {
   auto options = std::make_shared<WorkOptions>();
   CLI::App* command =
       app.add_subcommand("work", "Compute one task's share of what `submit` handed to a cluster");
-  command->add_option("--jobs,-j", options->jobs, "Runs at a time")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("J")
-      ->capture_default_str();
-  command->add_option("--threads,-t", options->threads, "Threads inside each run")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("T")
-      ->capture_default_str();
+  add_count(*command, "--jobs,-j", options->jobs, "Runs at a time (default: 1)", "J", 1, 1024);
+  add_threads_option(*command, options->threads, "Threads inside each run (default: 1)");
   command
       ->add_option("--scratch", options->scratch,
                    "Work on a copy of the store in this folder, on the node's own disk")

@@ -13,12 +13,9 @@ namespace {
 std::optional<double> left_of(const PlannedRun& run, const StageSpec& stage,
                               const std::map<std::string, const RunRecord*>& known) {
   const auto found = known.find(stage.key);
-  const double cycle = found == known.end() ? 0 : found->second->cycle;
-  const bool reached = stage.stage == Stage::prepare || cycle >= static_cast<double>(run.cycles);
-  if (found != known.end() && found->second->state == RunState::completed && reached) {
-    return std::nullopt;
-  }
-  return stage_cost(run, stage, cycle).particle_steps;
+  const auto cycle = cycle_to_continue(run, stage, found == known.end() ? nullptr : found->second);
+  if (!cycle) return std::nullopt;
+  return stage_cost(run, stage, *cycle).particle_steps;
 }
 
 }  // namespace

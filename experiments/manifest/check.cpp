@@ -161,6 +161,27 @@ void check_scale_against_sweep(const Manifest& manifest, const Scale& scale,
 
 }  // namespace
 
+std::string without_effect(const Field& field, const Parameters& p) {
+  const Identity& identity = field.identity;
+  const bool stiffens = last_stage(p.protocol) == Stage::stiffen;
+  if (stiffens && (identity.stage == Stage::shear || field.name == "cycles") &&
+      field.name != "protocol") {
+    return "not under protocol stiffen";
+  }
+  if (!stiffens && (identity.stage == Stage::stiffen || field.name == "stiffness_decades")) {
+    return "only under protocol stiffen";
+  }
+  if (identity.under && identity.under != p.protocol)
+    return fmt::format("only under protocol {}", name_of(*identity.under));
+  if (field.name.starts_with("wall_grain_") && p.walls == WallTexture::smooth) {
+    return "only with rough walls";
+  }
+  if (field.name == "pressure_at" && !feels_pressure_at(p)) {
+    return "only with gravity and a moving bottom wall";
+  }
+  return "";
+}
+
 std::vector<ManifestProblem> check_variants(const Manifest& manifest) {
   std::vector<ManifestProblem> problems;
   std::uint64_t runs = 0;

@@ -13,6 +13,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "provenance/sha256.hpp"
 
 namespace shearcell {
 namespace {
@@ -115,6 +116,46 @@ void warn_of_pressure(const Variant& variant, Plan& plan) {
   plan.warnings.push_back(std::move(warning));
 }
 
+// Stated keys that no variant feels, with the line where each was written.
+class WithoutEffect {
+ public:
+  explicit WithoutEffect(const AtScale& scale) {
+    for (const auto& [key, setting] : scale.settings) unfelt_[key] = {setting.at, ""};
+    for (const auto* axes : {&scale.sweep->grid, &scale.sweep->zip}) {
+      for (const SweepAxis& axis : *axes) unfelt_[axis.key] = {axis.at, ""};
+    }
+  }
+  void visit(const Parameters& parameters) {
+    for (auto stated = unfelt_.begin(); stated != unfelt_.end();) {
+      stated->second.when = without_effect(*find_field(stated->first), parameters);
+      stated = stated->second.when.empty() ? unfelt_.erase(stated) : std::next(stated);
+    }
+  }
+  void warn(const std::string& file, Plan& plan) const {
+    for (const auto& [key, stated] : unfelt_) {
+      plan.warnings.push_back(ManifestProblem{
+          file, stated.at, key, fmt::format("has no effect: {}", stated.when), "", "Leave it out."}
+                                  .text());
+    }
+  }
+
+ private:
+  struct Stated {
+    Position at;
+    std::string when;
+  };
+  std::map<std::string, Stated> unfelt_;
+};
+
+void warn_of_until(const Manifest& manifest, const AtScale& scale, Plan& plan) {
+  const auto ends = [](const PlannedRun& run) { return run.until.has_value(); };
+  if (!scale.until.until || std::ranges::any_of(plan.runs, ends)) return;
+  plan.warnings.push_back(ManifestProblem{manifest.file, scale.until.at, "until",
+                                          "has no effect: not under protocol stiffen", "",
+                                          "Leave it out."}
+                              .text());
+}
+
 }  // namespace
 
 Plan expand(const Manifest& manifest, const ExpandOptions& options) {
@@ -141,7 +182,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
 
   Plan plan{manifest.experiment, scale == nullptr ? "" : scale->name, {}, {}};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
+  WithoutEffect without_effect(resolved);
+  const std::string manifest_sha = sha256_hex(manifest.text);
   for_each_variant(resolved, [&](const Variant& variant) {
+    without_effect.visit(variant.parameters);
     warn_of_pressure(variant, plan);
     warn_of_time_steps(variant, plan);
     if (options.engine && asks_lammps_to_stiffen(variant.parameters)) {
@@ -164,7 +208,9 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       run.prepare = prepare_stage(variant.parameters, seed);
       run.last = last_stage(variant.parameters, seed, run.prepare);
       run.cycles = target_cycles(variant.parameters);
+      run.manifest = manifest_sha;
       run.checkpoint_every = resolved.checkpoint_every;
+      if (run.last.stage == Stage::shear) run.until = resolved.until.until;
       run.grains = static_cast<std::size_t>(variant.parameters.grains);
       run.parameters = variant.parameters;
       const std::string& same = variant_of.emplace(run.last.key, run.variant).first->second;
@@ -176,6 +222,8 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       plan.runs.push_back(std::move(run));
     }
   });
+  without_effect.warn(manifest.file, plan);
+  warn_of_until(manifest, resolved, plan);
   return plan;
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/limits.hpp"
+#include "experiments/manifest/until.hpp"
 
 namespace shearcell {
 
@@ -72,6 +73,12 @@ struct Seeds {
   bool counted = true;
 };
 
+/// `until`, or `until: none` in a scale, and where it was written.
+struct StatedUntil {
+  std::optional<Until> until;
+  Position at;
+};
+
 /// A named size of the experiment. What it does not state is as in the manifest itself.
 struct Scale {
   std::string name;
@@ -80,6 +87,7 @@ struct Scale {
   std::optional<Sweep> sweep;
   std::optional<Seeds> seeds;
   std::optional<std::uint64_t> checkpoint_every;
+  std::optional<StatedUntil> until;
 };
 
 struct Manifest {
@@ -93,7 +101,8 @@ struct Manifest {
   Sweep sweep;
   Seeds seeds;
   std::uint64_t checkpoint_every = 1;  ///< cycles
-  std::vector<Scale> scales;           ///< in the order of the text
+  StatedUntil until;
+  std::vector<Scale> scales;  ///< in the order of the text
 };
 
 /// Reads a file. Throws ManifestError.

@@ -19,6 +19,18 @@ using std::string_view;
 // Counts that a reader of the store in any language holds exactly.
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
+// As rows of the schema that no Parameters holds.
+std::span<const Field> until_fields() {
+  constexpr double Parameters::*real = nullptr;
+  constexpr std::uint64_t Parameters::*whole = nullptr;
+  static const std::array<Field, 4> fields = {
+      Field{"crystalline_percent", "", "%", real, 0, 100, true, {}, ""},
+      Field{"largest_crystallite", "", "1", whole, 1, 1e8, false, {}, ""},
+      Field{"phi", "", "1", real, 0, 1, true, {}, ""},
+      Field{"extra_cycles", "", "1", whole, 0, 1e6, false, {}, ""}};
+  return fields;
+}
+
 std::optional<SweepAxis> read_axis(const Node& key, const Node& values, const string& path,
                                    ProblemList& problems) {
   const string full = join_path(path, key.text);
@@ -162,6 +174,43 @@ Sweep read_sweep(const Node& node, const string& path, ProblemList& problems) {
   check_grid(sweep, path, problems);
   check_zip(sweep.zip, path, problems);
   return sweep;
+}
+
+StatedUntil read_until(const Node& node, const string& key, ProblemList& problems) {
+  StatedUntil stated{{}, node.at};
+  if (node.kind == Node::Kind::scalar && node.text == "none") return stated;
+  const string remedy = "It takes `{crystalline_percent: 10, extra_cycles: 15}`, or `none`.";
+  if (node.kind != Node::Kind::map || node.entries.empty()) {
+    problems.add_type(node, key, "a measure with its value", remedy);
+    return stated;
+  }
+  std::vector<string_view> allowed;
+  for (const Field& field : until_fields()) allowed.push_back(field.name);
+  std::uint64_t extra_cycles = 0;
+  bool unknown = false;
+  for (const auto& [name, value] : node.entries) {
+    const auto field = std::ranges::find(until_fields(), name.text, &Field::name);
+    if (field == until_fields().end()) {
+      problems.add_unknown(name, key, allowed);
+      unknown = true;
+      continue;
+    }
+    const auto read = read_parameter(*field, value, join_path(key, name.text), problems);
+    const auto measure = value_of<StopMeasure>(name.text);
+    if (!measure) {
+      extra_cycles = read.value_or(0).get<std::uint64_t>();
+    } else if (stated.until) {
+      problems.add(name.at, key, "names two measures", "", "Keep one of them.");
+    } else {
+      stated.until = Until{*measure, read.value_or(0).get<double>()};
+    }
+  }
+  if (stated.until) {
+    stated.until->extra_cycles = extra_cycles;
+  } else if (!unknown) {
+    problems.add(node.at, key, "names no measure", "", remedy);
+  }
+  return stated;
 }
 
 Seeds read_seeds(const Node& node, const string& key, ProblemList& problems) {

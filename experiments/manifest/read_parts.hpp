@@ -31,6 +31,8 @@ std::span<const Node> read_list(const Node& node, const std::string& key, std::s
 
 Sweep read_sweep(const Node& node, const std::string& path, ProblemList& problems);
 
+StatedUntil read_until(const Node& node, const std::string& key, ProblemList& problems);
+
 Seeds read_seeds(const Node& node, const std::string& key, ProblemList& problems);
 
 }  // namespace shearcell

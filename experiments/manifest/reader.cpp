@@ -7,9 +7,11 @@
 #include <array>
 #include <set>
 
+#include "analysis/figure.hpp"
 #include "experiments/manifest/problems.hpp"
 #include "experiments/manifest/read_parts.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/suggest.hpp"
 
 namespace shearcell {
 namespace {
@@ -18,12 +20,12 @@ using std::string;
 using std::string_view;
 
 // What a scale may state beside parameters.
-constexpr std::array<string_view, 3> kScaleSections = {"sweep", "seeds", "checkpoints"};
+constexpr std::array<string_view, 4> kScaleSections = {"sweep", "seeds", "checkpoints", "until"};
 constexpr std::size_t kLongestName = 64;
 constexpr std::size_t kLongestQuestion = 2'000;
 constexpr std::uint64_t kLargestCadence = 1'000'000;
 
-bool contains(std::span<const string_view> names, string_view name) {
+bool contains(const auto& names, string_view name) {
   return std::ranges::find(names, name) != names.end();
 }
 
@@ -54,6 +56,7 @@ class Reader {
  private:
   void read_sections(const Node& root) {
     std::set<string_view> seen;
+    manifest_.base_at = root.at;
     for (const auto& [key, value] : root.entries) {
       if (contains(manifest_sections(), key.text)) {
         seen.insert(key.text);
@@ -64,9 +67,6 @@ class Reader {
     }
     if (!seen.contains("experiment")) {
       problems_.add(root.at, "experiment", "is missing", "", "Begin with `experiment: NAME`.");
-    }
-    if (!seen.contains("base")) {
-      problems_.add(root.at, "base", "is missing", "", "State the parameters under `base:`.");
     }
   }
 
@@ -86,6 +86,8 @@ class Reader {
       manifest_.seeds = read_seeds(value, key.text, problems_);
     } else if (key.text == "checkpoints") {
       manifest_.checkpoint_every = read_checkpoints(value, key.text);
+    } else if (key.text == "until") {
+      manifest_.until = read_until(value, key.text, problems_);
     } else {
       read_scales(value);
     }
@@ -113,12 +115,24 @@ class Reader {
   void read_figures(const Node& node) {
     for (const Node& item : read_list(node, "figures", "[S2]", problems_)) {
       const string figure = read_name(item, "figures");
-      if (!figure.empty() &&
-          std::ranges::find(manifest_.figures, figure) != manifest_.figures.end()) {
+      if (figure.empty()) continue;
+      if (contains(manifest_.figures, figure)) {
         problems_.add(item.at, "figures", "names a figure twice", figure, "Keep one of them.");
+      } else if (find_figure(figure) == nullptr) {
+        add_unknown_figure(item);
       }
       manifest_.figures.push_back(figure);
     }
+  }
+
+  void add_unknown_figure(const Node& item) {
+    std::vector<string_view> known;
+    for (const Figure& figure : all_figures()) known.push_back(figure.name);
+    const string near = suggest_name(item.text, known).name;
+    problems_.add(item.at, "figures",
+                  near.empty() ? "names an unknown figure"
+                               : fmt::format("names an unknown figure, the nearest is {}", near),
+                  shown(item), "`shearcell figures --help` lists them.");
   }
 
   // The parameters of `base`, or of a scale, which may have sections of its own.
@@ -151,6 +165,8 @@ class Reader {
       scale.seeds = read_seeds(value, path, problems_);
     } else if (name == "sweep") {
       scale.sweep = read_sweep(value, path, problems_);
+    } else if (name == "until") {
+      scale.until = read_until(value, path, problems_);
     } else {
       scale.checkpoint_every = read_checkpoints(value, path);
     }

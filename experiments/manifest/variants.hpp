@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "experiments/manifest/manifest.hpp"
-#include "experiments/manifest/parameters.hpp"
+#include "experiments/manifest/schema.hpp"
 
 namespace shearcell {
 
@@ -20,6 +20,7 @@ struct AtScale {
   const Sweep* sweep = nullptr;
   const Seeds* seeds = nullptr;
   std::uint64_t checkpoint_every = 1;
+  StatedUntil until;
 };
 
 /// `scale` may be null: the manifest without any.
@@ -38,6 +39,10 @@ std::uint64_t variant_count(const Sweep& sweep);
 
 /// In manifest order: the first grid axis varies slowest, the rows of the zip fastest.
 void for_each_variant(const AtScale& scale, const std::function<void(const Variant&)>& visit);
+
+/// When a variant feels the parameter, as "only under protocol paused", if this variant does not;
+/// else "".
+std::string without_effect(const Field& field, const Parameters& parameters);
 
 /// Time steps, units and geometry of every variant of every scale, and how many runs there are.
 /// Only for a manifest that is well formed otherwise.

@@ -15,6 +15,7 @@
 #include "core/filling.hpp"
 #include "core/threads.hpp"
 #include "experiments/runner/engine_error.hpp"
+#include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
 
@@ -180,7 +181,7 @@ class Campaign {
     const RunRecord run = store_.run(job.id);
     if (stage_done(store_, run)) {
       if (was_held) {
-        finish(job, &CampaignResult::elsewhere, "done by another program");
+        finish(job, &CampaignResult::elsewhere, "done by another program", true);
       } else {
         const std::lock_guard lock(mutex_);
         ++result_.already;
@@ -196,14 +197,14 @@ class Campaign {
     const StageOutcome outcome = run_stage(store_, job.id, options_of(job));
     switch (outcome) {
       case StageOutcome::completed:
-        finish(job, &CampaignResult::completed, "done");
+        finish(job, &CampaignResult::completed, done_text(job), true);
         return JobState::done;
       case StageOutcome::interrupted:
-        finish(job, &CampaignResult::interrupted, "interrupted, checkpoint written");
+        finish(job, &CampaignResult::interrupted, "interrupted, checkpoint written", false);
         return JobState::ended;
       case StageOutcome::failed:
         note(job, &CampaignResult::failed, store_.run(job.id).error);
-        progress_.end(job.name, "FAILED");
+        progress_.end(job.name, "FAILED", false);
         return JobState::ended;
       case StageOutcome::held:
       case StageOutcome::lost:
@@ -220,7 +221,6 @@ class Campaign {
 
   StageOptions options_of(const StageJob& job) {
     StageOptions options;
-    options.checkpoint_every = job.checkpoint_every;
     options.threads = parallel_.threads;
     options.ranks = parallel_.ranks;
     options.damaged = [&](const std::string& what) {
@@ -230,12 +230,18 @@ class Campaign {
     return options;
   }
 
-  void finish(const StageJob& job, std::size_t CampaignResult::*count, const char* how) {
+  std::string done_text(const StageJob& job) const {
+    const std::string why = describe_end(end_of(store_, store_.run(job.id)));
+    return why.empty() ? "done" : "done, " + why;
+  }
+
+  void finish(const StageJob& job, std::size_t CampaignResult::*count, const std::string& how,
+              bool done) {
     {
       const std::lock_guard lock(mutex_);
       ++(result_.*count);
     }
-    progress_.end(job.name, how);
+    progress_.end(job.name, how, done);
   }
 
   void note(const StageJob& job, std::size_t CampaignResult::*count, const std::string& why) {
@@ -268,11 +274,8 @@ std::string job_name(const Membership& membership, const std::string& kind) {
 }
 
 StageJob job_of(const RunRecord& run) {
-  if (run.memberships.empty()) return {run.id, run.parent, run.kind, 1};
-  // The densest cadence that an experiment asks for serves all of them.
-  std::uint64_t every = run.memberships.front().checkpoint_every;
-  for (const Membership& m : run.memberships) every = std::min(every, m.checkpoint_every);
-  return {run.id, run.parent, job_name(run.memberships.front(), run.kind), every};
+  if (run.memberships.empty()) return {run.id, run.parent, run.kind};
+  return {run.id, run.parent, job_name(run.memberships.front(), run.kind)};
 }
 
 }  // namespace
@@ -301,10 +304,11 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
       declaration.membership.seed = run.seed;
       declaration.membership.manifest = sha;
       declaration.membership.checkpoint_every = run.checkpoint_every;
+      if (!prepare && run.until) declaration.membership.until = to_json(*run.until);
       if (!known.insert(stage->key).second) continue;
       store.declare_run(declaration);
-      jobs.push_back({stage->key, stage->parent, job_name(declaration.membership, declaration.kind),
-                      run.checkpoint_every});
+      jobs.push_back(
+          {stage->key, stage->parent, job_name(declaration.membership, declaration.kind)});
     }
   }
   return jobs;

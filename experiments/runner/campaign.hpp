@@ -17,7 +17,6 @@ struct StageJob {
   std::string id;
   std::string parent;  ///< id, or ""
   std::string name;    ///< for people
-  std::uint64_t checkpoint_every = 1;
 };
 
 /// How much of the machine one stage takes.

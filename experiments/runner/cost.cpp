@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/cost.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -59,6 +60,20 @@ double checkpoint_bytes(const Geometry& shape) {
           ? 0
           : shape.wall_grain_area_fraction / 0.785 * (2 * fill_height * width + 2 * width * width);
   return kBytesPerFile + kBytesPerGrain * grains + kBytesPerWallGrain * wall_grains;
+}
+
+std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& stage,
+                                        const RunRecord* known) {
+  if (known == nullptr) return 0;
+  if (known->state != RunState::completed) return known->cycle;
+  if (stage.stage == Stage::prepare || known->cycle >= static_cast<double>(run.cycles)) {
+    return std::nullopt;
+  }
+  // It ended early, as this manifest asked for.
+  const bool asked = std::ranges::any_of(known->memberships, [&](const Membership& m) {
+    return m.manifest == run.manifest && m.target_cycles >= run.cycles;
+  });
+  return asked ? std::nullopt : std::optional(known->cycle);
 }
 
 StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle) {

@@ -2,6 +2,7 @@
 // What stages that are still to do will take, estimated before they run.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/filling.hpp"
@@ -22,6 +23,11 @@ struct StageCost {
   double particle_steps = 0;
   double bytes = 0;  ///< of checkpoint files
 };
+
+/// Cycle from which the stage is left to compute; nothing when `known`, the store's record of it or
+/// null, shows that it is done.
+std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& stage,
+                                        const RunRecord* known);
 
 /// Cost of a planned stage from `cycle` on. Settling is estimated from what it took at N = 600 to
 /// 18200; checkpoints by checkpoint_bytes.

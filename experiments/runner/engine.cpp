@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/drive.hpp"
-#include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 
 namespace shearcell {
 namespace {
@@ -38,7 +38,7 @@ class LammpsEngine final : public Engine {
  public:
   LammpsEngine(const StagePlan& plan, Beginning&& beginning, const EngineOptions& options)
       : plan_(plan),
-        stride_(options.checkpoint_every * cycle_steps(plan.protocol->drive())),
+        stride_(plan.checkpoint_every * cycle_steps(plan.protocol->drive())),
         cell_(std::move(beginning.cell)),
         state_(std::move(beginning.state)),
         first_(state_.step),

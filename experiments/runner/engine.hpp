@@ -11,9 +11,8 @@
 namespace shearcell {
 
 struct EngineOptions {
-  std::size_t threads = 1;             ///< inside our own simulation
-  std::size_t ranks = 1;               ///< processes of LAMMPS, under mpirun when more than one
-  std::uint64_t checkpoint_every = 1;  ///< cycles
+  std::size_t threads = 1;  ///< inside our own simulation
+  std::size_t ranks = 1;    ///< processes of LAMMPS, under mpirun when more than one
 };
 
 class Engine {

@@ -29,9 +29,11 @@ std::string describe(const StageStatus& status) {
 std::string format_duration(double seconds) {
   if (!std::isfinite(seconds)) return "?";
   const auto total = static_cast<long long>(std::llround(seconds));
-  const auto hours = total / 3600;
-  if (hours > 0) return fmt::format("{}:{:02}:{:02}", hours, total / 60 % 60, total % 60);
-  return fmt::format("{}:{:02}", total / 60, total % 60);
+  if (total < 60) return fmt::format("{} s", total);
+  if (total < 3600) return fmt::format("{} min {:02} s", total / 60, total % 60);
+  const auto minutes = std::llround(seconds / 60);
+  if (minutes < 48 * 60) return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+  return fmt::format("{} d {:02} h", minutes / 1440, minutes / 60 % 24);
 }
 
 Progress::Progress(std::size_t stages, bool quiet)
@@ -62,14 +64,14 @@ void Progress::update(const std::string& name, const StageStatus& status) {
   fmt::print(stderr, "{}: {}\n", for_terminal(name), running_[name]);
 }
 
-void Progress::end(const std::string& name, const std::string& how) {
+void Progress::end(const std::string& name, const std::string& how, bool done) {
   const std::lock_guard lock(mutex_);
   running_.erase(name);
-  ++ended_;
+  if (done) ++done_;
   if (quiet_) return;
   erase();
-  fmt::print(stderr, "{}: {} ({} of {} stages)\n", for_terminal(name), for_terminal(how), ended_,
-             stages_);
+  fmt::print(stderr, "{}: {} ({} of {} stages done)\n", for_terminal(name), for_terminal(how),
+             done_, stages_);
   if (terminal_) draw();
 }
 

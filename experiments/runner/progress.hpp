@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tells people on standard error how the runs of a campaign come along.
+// Shows the progress of a campaign on standard error.
 #pragma once
 
 #include <chrono>
@@ -21,8 +21,9 @@ class Progress {
 
   void begin(const std::string& name);
   void update(const std::string& name, const StageStatus& status);
-  void end(const std::string& name, const std::string& how);
-  /// It was begun and is left to another program.
+  /// `done` counts it among the stages that are done.
+  void end(const std::string& name, const std::string& how, bool done);
+  /// The stage is left to another program.
   void drop(const std::string& name);
   /// A line that stays, unless progress is not wanted.
   void note(const std::string& line);
@@ -34,14 +35,14 @@ class Progress {
   void draw();
 
   std::mutex mutex_;
-  std::size_t stages_, ended_ = 0;
+  std::size_t stages_, done_ = 0;
   bool quiet_, terminal_;
   std::size_t drawn_ = 0;  ///< lines on the screen that the next drawing replaces
   std::map<std::string, std::string> running_;
   std::map<std::string, std::chrono::steady_clock::time_point> said_at_;
 };
 
-/// "1:02:03", "4:05" or "0:07".
+/// "7 s", "4 min 05 s", "1 h 02 min" or "3 d 07 h".
 std::string format_duration(double seconds);
 
 }  // namespace shearcell

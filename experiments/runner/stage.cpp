@@ -12,6 +12,7 @@
 #include "core/memory.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/cost.hpp"
+#include "experiments/runner/run_end.hpp"
 #include "protocols/cyclic_shear.hpp"
 #include "protocols/settle.hpp"
 #include "protocols/stiffen.hpp"
@@ -59,7 +60,7 @@ std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t 
 
 }  // namespace
 
-StagePlan plan_stage(RunRecord run, std::uint64_t checkpoint_every) {
+StagePlan plan_stage(RunRecord run) {
   if (stage_key(run.resolved) != run.id) {
     throw StoreDamaged("run " + run.id.substr(0, 12) +
                        ": its recorded parameters are not those that it is named after");
@@ -67,8 +68,9 @@ StagePlan plan_stage(RunRecord run, std::uint64_t checkpoint_every) {
   StageRecord stage = read_stage(run.resolved);
   require_memory(stage);
   const Scene scene = make_scene(stage);
-  auto protocol = make_protocol(stage, run.target_cycles, checkpoint_every);
-  return {std::move(run), std::move(stage), scene, std::move(protocol)};
+  const std::uint64_t every = checkpoint_cadence(run);
+  auto protocol = make_protocol(stage, run.target_cycles, every);
+  return {std::move(run), std::move(stage), scene, std::move(protocol), every};
 }
 
 Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>& damage) {

@@ -22,10 +22,11 @@ struct StagePlan {
   StageRecord stage;
   Scene scene;
   std::unique_ptr<Protocol> protocol;
+  std::uint64_t checkpoint_every = 1;  ///< cycles
 };
 
 /// Throws StoreDamaged when the recorded parameters are not those that the run is named after.
-StagePlan plan_stage(RunRecord run, std::uint64_t checkpoint_every);
+StagePlan plan_stage(RunRecord run);
 
 /// The state from which a stage is stepped on.
 struct Beginning {

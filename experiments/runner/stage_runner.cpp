@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/stage_runner.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "experiments/runner/engine.hpp"
 #include "experiments/runner/engine_error.hpp"
 #include "experiments/runner/host.hpp"
+#include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
@@ -25,9 +27,7 @@ double seconds_since(Clock::time_point start) {
 class Attempt {
  public:
   Attempt(Store& store, RunRecord run, const StageOptions& options)
-      : store_(store),
-        options_(options),
-        plan_(plan_stage(std::move(run), options.checkpoint_every)) {}
+      : store_(store), options_(options), plan_(plan_stage(std::move(run))) {}
 
   StageOutcome run() {
     std::vector<std::string> damage;
@@ -36,18 +36,21 @@ class Attempt {
       if (options_.damaged) options_.damaged(what);
     }
     const bool fresh = !beginning.from;
-    const EngineOptions engine_options{options_.threads, options_.ranks, options_.checkpoint_every};
+    const EngineOptions engine_options{options_.threads, options_.ranks};
     nlohmann::json facts = host_facts();
     if (auto engine = engine_facts(plan_, engine_options); !engine.is_null()) {
       facts["engine"] = std::move(engine);
     }
     store_.start_run(id(), facts, fresh ? std::nullopt : std::optional(beginning.from->sha256),
                      beginning.parent_checkpoint);
+    if (asks_for_early_end()) end_.emplace(store_, plan_.run, fresh ? 0 : beginning.from->step);
+    if (ends_early()) return StageOutcome::completed;
     try {
       const auto engine = make_engine(plan_, std::move(beginning), engine_options);
       first_step_ = engine->step();
       // The settled packing is cycle 0 of what follows.
       if (fresh && plan_.stage.stage != Stage::prepare) record(*engine, 0);
+      if (ends_early()) return StageOutcome::completed;
       return advance(*engine);
     } catch (const EngineError& error) {
       store_.fail_run(id(), error.what(), nlohmann::json::object());
@@ -71,9 +74,10 @@ class Attempt {
       if (stop && !progress.checkpoint_due) progress = engine.halt();
       if (stop || progress.checkpoint_due) record(engine, progress.cycle);
       if (progress.finished) {
-        store_.complete_run(id(), nlohmann::json::object(), plan_.run.target_cycles);
+        complete({{"by", plan_.stage.stage == Stage::prepare ? "settled" : "cycles"}});
         return StageOutcome::completed;
       }
+      if (progress.checkpoint_due && ends_early()) return StageOutcome::completed;
       if (stop) {
         store_.interrupt_run(id(), "stopped by a signal");
         return StageOutcome::interrupted;
@@ -83,14 +87,31 @@ class Attempt {
     }
   }
 
+  bool asks_for_early_end() const {
+    return std::ranges::any_of(asks_of(store_, id()),
+                               [](const RunAsk& ask) { return ask.until.has_value(); });
+  }
+
+  // Completes the run when what is recorded is all that the experiments ask for.
+  bool ends_early() {
+    const auto why = end_ ? end_->ended() : std::nullopt;
+    if (why) complete(*why);
+    return why.has_value();
+  }
+
+  void complete(const nlohmann::json& ended) {
+    store_.complete_run(id(), {{"ended", ended}}, plan_.run.target_cycles);
+  }
+
   const std::string& id() const { return plan_.run.id; }
 
   void record(const Engine& engine, double cycle) {
     const Checkpoint checkpoint = engine.checkpoint(cycle);
     const auto steps = static_cast<double>(engine.evaluations() - recorded_evaluations_);
-    store_.record_checkpoint(
+    const CheckpointRecord recorded = store_.record_checkpoint(
         id(), checkpoint,
         {seconds_since(recorded_at_), steps * static_cast<double>(engine.grains())});
+    if (end_) end_->add(recorded, checkpoint);
     recorded_at_ = Clock::now();
     recorded_evaluations_ = engine.evaluations();
   }
@@ -119,6 +140,7 @@ class Attempt {
   Store& store_;
   const StageOptions& options_;
   StagePlan plan_;
+  std::optional<RunEnd> end_;  ///< where an experiment asks for `until`
   std::uint64_t first_step_ = 0, recorded_evaluations_ = 0, reported_evaluations_ = 0;
   Clock::time_point started_at_ = Clock::now(), recorded_at_ = started_at_,
                     reported_at_ = started_at_;

@@ -26,7 +26,6 @@ struct StageStatus {
 };
 
 struct StageOptions {
-  std::uint64_t checkpoint_every = 1;               ///< cycles
   std::size_t threads = 1;                          ///< inside this one simulation
   std::size_t ranks = 1;                            ///< processes of another engine
   std::function<void(const std::string&)> damaged;  ///< told of each checkpoint passed over

@@ -5,8 +5,8 @@
 
 #include <fstream>
 
-#include "provenance/io/child_process.hpp"
 #include "experiments/cluster/job_script.hpp"
+#include "provenance/io/child_process.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
 namespace shearcell {
@@ -139,9 +139,22 @@ TEST_F(JobScript, EndsWithTheProgramsCode) {
   }
 }
 
-TEST_F(JobScript, QueuesItsOwnTaskAgainWhenTheTimeIsOver) {
-  EXPECT_EQ(run_task("trap 'exit 85' USR1; kill -USR1 $PPID; while :; do sleep 0.05; done"), 85);
-  EXPECT_EQ(calls(), work() + "scontrol requeue 17_3\n") << messages_;
+TEST_F(JobScript, QueuesItsOwnTaskAgainOnlyWhenItsTimeIsOverAndWorkIsLeft) {
+  const std::string wait = "while :; do sleep 0.05; done";
+  struct Case {
+    std::string program;
+    int code;
+    std::string after;  // calls after the first
+  };
+  for (const Case& c :
+       {Case{"trap 'exit 85' USR1; kill -USR1 $PPID; ", 85, "scontrol requeue 17_3\n"},
+        Case{"trap 'exit 0' USR1; kill -USR1 $PPID; ", 0, ""},
+        Case{"trap 'exit 85' TERM; kill -TERM $PPID; ", 85, ""},  // cancelled
+        Case{"trap 'sleep 0.5; echo saved >> \"$SAID\"; exit 85' USR1; kill -USR1 $PPID; ", 85,
+             "saved\nscontrol requeue 17_3\n"}}) {  // it waits for the program to end
+    EXPECT_EQ(run_task(c.program + wait), c.code) << c.program;
+    EXPECT_EQ(calls(), work() + c.after) << messages_;
+  }
 }
 
 TEST_F(JobScript, PassesOnASignalThatComesWhileTheProgramStarts) {
@@ -156,23 +169,6 @@ TEST_F(JobScript, PassesOnASignalThatComesWhileTheProgramStarts) {
               signal == std::string("USR1"))
         << calls();
   }
-}
-
-TEST_F(JobScript, IsDoneWhenAllWasDoneBeforeTheTimeWasOver) {
-  EXPECT_EQ(run_task("trap 'exit 0' USR1; kill -USR1 $PPID; while :; do sleep 0.05; done"), 0);
-  EXPECT_EQ(calls(), work()) << messages_;
-}
-
-TEST_F(JobScript, StaysAwayWhenItWasCancelled) {
-  EXPECT_EQ(run_task("trap 'exit 85' TERM; kill -TERM $PPID; while :; do sleep 0.05; done"), 85);
-  EXPECT_EQ(calls(), work()) << messages_;
-}
-
-TEST_F(JobScript, WaitsForTheProgramToEnd) {
-  EXPECT_EQ(run_task("trap 'sleep 0.5; echo saved >> \"$SAID\"; exit 85' USR1; kill -USR1 $PPID; "
-                     "while :; do sleep 0.05; done"),
-            85);
-  EXPECT_EQ(calls(), work() + "saved\nscontrol requeue 17_3\n") << messages_;
 }
 
 TEST_F(JobScript, BeginsAKilledProgramAgainAFewTimes) {

@@ -7,6 +7,7 @@
 
 #include "experiments/cluster/proposal.hpp"
 #include "experiments/cluster/queue_view.hpp"
+#include "experiments/runner/run_end.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
 namespace shearcell {
@@ -92,6 +93,22 @@ TEST_F(Submitted, ATaskGoesOnFromWhatTheStoreHolds) {
   }
 }
 
+TEST_F(Submitted, TasksEndRunsWhereUntilSays) {
+  const Manifest manifest =
+      parse_manifest(tiny_manifest("", "until: {phi: 0.1, extra_cycles: 1}\n"), "tiny.yaml");
+  const Plan plan = expand(manifest);
+  declare(store_, manifest, plan);
+  const Submission made = submit(share_out(work_left({plan}, store_.runs()), 1));
+  Store own(made.task_store(store_.folder(), 1), Access::write);
+  EXPECT_EQ(resume(own).completed, 2U);
+  fold(store_, made);
+  const RunRecord run = runs_of_kind(store_, "shear").front();
+  EXPECT_EQ(run.state, RunState::completed);
+  EXPECT_EQ(run.cycle, 1);
+  EXPECT_EQ(describe_end(end_of(store_, run)), "phi >= 0.1 at cycle 0 and 1 cycles more");
+  EXPECT_TRUE(work_left({plan}, store_.runs()).empty());
+}
+
 TEST_F(Submitted, RunsInTheQueueAreBusyWithTheirPackings) {
   const Submission made = submit(shares());
   EXPECT_TRUE(busy_runs(store_, {{made, {}}}).empty()) << "its jobs have ended";
@@ -161,15 +178,12 @@ TEST_F(Submitted, IsReadBackFromTheLog) {
   EXPECT_TRUE(unfinished_submissions(store_).empty()) << "it is not of this folder";
 }
 
-TEST_F(Submitted, RefusesAnEventThatNamesAPath) {
-  store_.record_submission("CampaignSubmitted",
-                           {{"submission", "../../../x"}, {"tasks", nlohmann::json::array()}});
-  EXPECT_THROW(read_submissions(store_), StoreDamaged);
-}
-
-TEST_F(Submitted, RefusesAnEventWithoutTasks) {
-  store_.record_submission("CampaignSubmitted", {{"submission", "0123456789ab"}});
-  EXPECT_THROW(read_submissions(store_), StoreDamaged);
+TEST_F(Submitted, RefusesAnEventThatNamesAPathOrHasNoTasks) {
+  for (const char* id : {"../../../x", "0123456789ab"}) {
+    Store store(folder_.path() / std::to_string(id[0]), Access::create);
+    store.record_submission("CampaignSubmitted", {{"submission", id}});
+    EXPECT_THROW(read_submissions(store), StoreDamaged);
+  }
 }
 
 TEST(Queue, IsReadLineByLine) {

@@ -107,6 +107,17 @@ TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
   EXPECT_TRUE(contains(refused.out, "LAMMPS made it")) << refused.out;
 }
 
+TEST_F(EngineRun, EndsWhereUntilSays) {
+  if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
+  write("m.yaml", tiny_manifest("  cycles: 4\n", "until: {phi: 0.1, extra_cycles: 1}\n"));
+  ASSERT_EQ(run({"run", "m.yaml", "--engine", "lammps", "-q"}).code, 0);
+  const auto done = run_of("engine=lammps");
+  EXPECT_EQ(done["state"], "completed");
+  EXPECT_EQ(cycles(done["id"]), (std::vector<double>{0, 1}));
+  EXPECT_EQ(done["ended"]["by"], "until");
+  EXPECT_TRUE(contains(run({"status"}).out, "ended at cycle 1: phi >= 0.1 at cycle 0"));
+}
+
 TEST_F(EngineRun, GoesOnWhereASignalStoppedIt) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   const std::string manifest = write("m.yaml", tiny_manifest("  cycles: 6\n"));

@@ -19,7 +19,7 @@ bool contains(const std::string& text, const std::string& part) {
 
 class Care : public ProgramTest {
  protected:
-  std::string manifest() { return write("m.yaml", tiny_manifest("", kBothFluids)); }
+  const std::string manifest_ = tiny_manifest("", kBothFluids);
 
   std::string head() {
     const nlohmann::json told = json({"verify", "--json"}).at("head");
@@ -29,7 +29,7 @@ class Care : public ProgramTest {
 };
 
 TEST_F(Care, PruneShowsFirstAndRegenerateBringsBack) {
-  ASSERT_EQ(run({"run", manifest(), "--cycles", "4", "-q"}).code, 0);
+  campaign(manifest_, {"--cycles", "4"});
   EXPECT_EQ(run({"prune"}).code, 2) << "nothing was said to go";
   EXPECT_EQ(run({"prune", "--state", "lost"}).code, 2);
   const std::size_t files = objects();
@@ -63,7 +63,7 @@ TEST_F(Care, PruneShowsFirstAndRegenerateBringsBack) {
 }
 
 TEST_F(Care, VerifyReplaysAndHoldsAgainstAHead) {
-  ASSERT_EQ(run({"run", manifest(), "-q"}).code, 0);
+  campaign(manifest_);
   const std::string before = head();
   const nlohmann::json told = json({"verify", "--replay", "3", "--seed", "5", "--json"});
   ASSERT_EQ(told.at("replay").at("replayed").size(), 3U);
@@ -82,7 +82,7 @@ TEST_F(Care, VerifyReplaysAndHoldsAgainstAHead) {
 }
 
 TEST_F(Care, RebuildMendsATableThatWasChanged) {
-  ASSERT_EQ(run({"run", manifest(), "--cycles", "0", "-q"}).code, 0);
+  campaign(manifest_, {"--cycles", "0"});
   sqlite::Database(path("shearcell-store/store.sqlite"), sqlite::Open::existing)
       .execute("UPDATE runs SET state = 'failed'");
   const Outcome damaged = run({"verify"});
@@ -93,13 +93,12 @@ TEST_F(Care, RebuildMendsATableThatWasChanged) {
 }
 
 TEST_F(Care, MergesAndRefusesConflicts) {
-  ASSERT_EQ(run({"run", manifest(), "-q", "--store", "whole"}).code, 0);
-  const std::string still = write("still.yaml", tiny_manifest());
-  ASSERT_EQ(run({"run", still, "--cycles", "1", "-q", "--store", "a"}).code, 0);
-  ASSERT_EQ(run({"run", manifest(), "-q", "--store", "b"}).code, 0);
+  campaign(tiny_manifest(), {"--cycles", "1"}, "a");
+  campaign(manifest_, {}, "b");
+  const auto whole = hashes("b");
   const Outcome merged = run({"merge", "a", "b", "--store", "all"});
   EXPECT_EQ(merged.code, 0) << merged.err;
-  EXPECT_EQ(hashes("all"), hashes("whole"));
+  EXPECT_EQ(hashes("all"), whole);
   EXPECT_EQ(run({"verify", "--store", "all"}).code, 0);
   EXPECT_EQ(run({"verify", "--replay", "2", "--store", "all"}).code, 0);
   EXPECT_EQ(run({"merge", "all", "--store", "all"}).code, 2);
@@ -123,11 +122,11 @@ TEST_F(Care, MergesAndRefusesConflicts) {
   const Outcome refused = run({"merge", "odd", "--store", "all"});
   EXPECT_EQ(refused.code, 4);
   EXPECT_TRUE(contains(refused.err, "Nothing was merged")) << refused.err;
-  EXPECT_EQ(hashes("all"), hashes("whole"));
+  EXPECT_EQ(hashes("all"), whole);
 }
 
 TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
-  ASSERT_EQ(run({"run", manifest(), "--cycles", "1", "-q"}).code, 0);
+  campaign(manifest_, {"--cycles", "1"});
   const auto stage = [](const nlohmann::json& plan, const std::string& kind,
                         std::uint64_t seed) -> nlohmann::json {
     for (const auto& line : plan.at("stages")) {

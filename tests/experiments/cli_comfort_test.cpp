@@ -158,7 +158,7 @@ TEST_F(Comfort, TheDoctorSaysWhatThereIs) {
 }
 
 TEST_F(Comfort, TablesFitTheTerminalAndHaveColoursThereAlone) {
-  ASSERT_EQ(run({"run", write("tiny.yaml", tiny_manifest()), "--quiet"}).code, 0);
+  campaign(tiny_manifest());
   const std::string piped = run({"status"}).out;
   EXPECT_EQ(piped.find('\x1b'), std::string::npos);
   EXPECT_NE(piped.find("completed"), std::string::npos);
@@ -176,7 +176,7 @@ TEST_F(Comfort, TablesFitTheTerminalAndHaveColoursThereAlone) {
 }
 
 TEST_F(Comfort, ExportsTheCyclesThatAreAskedFor) {
-  ASSERT_EQ(run({"run", write("tiny.yaml", tiny_manifest()), "--quiet"}).code, 0);
+  campaign(tiny_manifest());
   std::string id;
   const nlohmann::json runs = json({"status", "--json"}).at("runs");
   for (const nlohmann::json& one : runs) {
@@ -208,7 +208,7 @@ TEST_F(Comfort, ExportsTheCyclesThatAreAskedFor) {
 }
 
 TEST_F(Comfort, WatchingEndsWhenNobodyIsAtWork) {
-  ASSERT_EQ(run({"run", write("tiny.yaml", tiny_manifest()), "--quiet"}).code, 0);
+  campaign(tiny_manifest());
   const Outcome watched = run({"status", "--watch", "0.1"});
   EXPECT_EQ(watched.code, 0);
   EXPECT_EQ(watched.out, run({"status"}).out);

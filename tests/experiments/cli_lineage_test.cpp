@@ -17,8 +17,7 @@ bool contains(const std::string& text, const std::string& part) {
 class CommandLineLineage : public ProgramTest {
  protected:
   void SetUp() override {
-    const std::string manifest = write("m.yaml", tiny_manifest("", kBothFluids));
-    ASSERT_EQ(run({"run", manifest, "--cycles", "1", "-q"}).code, 0);
+    campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"});
     ASSERT_EQ(run({"figures", "S2", "--out", "out"}).code, 0);
   }
 };

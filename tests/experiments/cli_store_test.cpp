@@ -28,46 +28,9 @@ class CommandLineStore : public ProgramTest {
   }
 };
 
-TEST_F(CommandLineStore, RefusesAPlainFile) {
-  write("shearcell-store", "not a store\n");
-  const std::string manifest = write("m.yaml", tiny_manifest());
-  for (const Arguments& words :
-       {Arguments{"run", manifest}, Arguments{"status"}, Arguments{"plan", manifest},
-        Arguments{"resume"}, Arguments{"verify"}, Arguments{"figures"}}) {
-    expect_damage(words, "shearcell-store");
-  }
-  EXPECT_EQ(read_bytes(path("shearcell-store")), "not a store\n");
-}
-
-TEST_F(CommandLineStore, RefusesANewerSchema) {
-  const std::string manifest = write("m.yaml", tiny_manifest());
-  ASSERT_EQ(run({"run", manifest, "--cycles", "0", "-q"}).code, 0);
-  {
-    // SQLite's user_version is the big-endian number at byte 60 of the file.
-    std::fstream file(path("shearcell-store/store.sqlite"),
-                      std::ios::in | std::ios::out | std::ios::binary);
-    file.seekp(60);
-    file.write("\x00\x00\x03\xe7", 4);
-    ASSERT_TRUE(file.good());
-  }
-  const std::string before = read_bytes(path("shearcell-store/store.sqlite"));
-  for (const Arguments& words : {Arguments{"status"}, Arguments{"run", manifest},
-                                 Arguments{"resume"}, Arguments{"verify"}}) {
-    expect_damage(words, "999");
-  }
-  EXPECT_EQ(read_bytes(path("shearcell-store/store.sqlite")), before);
-}
-
-TEST_F(CommandLineStore, RefusesALogThatIsNoDatabase) {
-  fs::create_directory(path("shearcell-store"));
-  write("shearcell-store/store.sqlite", std::string(8192, 'x'));
-  expect_damage({"status"}, "store.sqlite");
-  expect_damage({"run", write("m.yaml", tiny_manifest())}, "store.sqlite");
-}
-
 TEST_F(CommandLineStore, NamesATruncatedCheckpointAndGoesOnWithTheOthers) {
-  const std::string manifest = write("m.yaml", tiny_manifest());
-  ASSERT_EQ(run({"run", manifest, "--cycles", "1", "--seeds", "2", "-q"}).code, 0);
+  const std::string manifest = "m.yaml";
+  campaign(tiny_manifest(), {"--cycles", "1", "--seeds", "2"});
   const auto expected = hashes();
   std::string victim;
   const nlohmann::json status = json({"status", "--json"});
@@ -86,22 +49,6 @@ TEST_F(CommandLineStore, NamesATruncatedCheckpointAndGoesOnWithTheOthers) {
   EXPECT_EQ(run({"verify"}).code, 0);
 }
 
-TEST_F(CommandLineStore, VerifyAndFiguresNameADamagedFile) {
-  const std::string manifest = write("m.yaml", tiny_manifest("", kBothFluids));
-  ASSERT_EQ(run({"run", manifest, "--cycles", "1", "-q"}).code, 0);
-  const nlohmann::json status = json({"status", "--json"});
-  const std::string file = newest_file(status.at("runs").back().at("id"));
-  std::string bytes = read_bytes(path(file));
-  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
-  write(file, bytes);
-  const std::string name = fs::path(file).filename();
-  const Outcome verified = run({"verify"});
-  EXPECT_EQ(verified.code, 4);
-  EXPECT_TRUE(contains(verified.out, name)) << verified.out;
-  expect_damage({"figures", "S2"}, name);
-  EXPECT_TRUE(fs::exists(path("shearcell-figures/S2a.csv")));
-}
-
 TEST_F(CommandLineStore, SaysWhyARunFailed) {
   const std::string manifest =
       write("m.yaml", tiny_manifest("", "sweep: {grid: {max_overlap_diameters: [0.1, 0.02]}}\n"));
@@ -116,43 +63,28 @@ TEST_F(CommandLineStore, SaysWhyARunFailed) {
 // Long enough that a signal finds it at work: about a second.
 const std::string kCycles = "20";
 
-class Signals : public CommandLineStore {
- protected:
-  void expect_no_trace(int signal) {
-    const std::string manifest = write("m.yaml", tiny_manifest());
-    ASSERT_EQ(run({"run", manifest, "--cycles", kCycles, "-q", "--store", "whole"}).code, 0);
-    const Outcome stopped = run_until({"run", manifest, "--cycles", kCycles, "-q"}, 4, signal);
-    if (signal == SIGKILL) {
-      EXPECT_EQ(stopped.signal, SIGKILL);
-    } else {
-      EXPECT_EQ(stopped.code, 85) << stopped.err;
-      EXPECT_TRUE(contains(stopped.err, "shearcell resume --store")) << stopped.err;
-    }
-    const nlohmann::json runs = json({"status", "--json"}).at("runs");
-    const nlohmann::json& sheared = runs.back();
-    std::printf("stopped at cycle %g of %s\n", sheared.at("cycle").get<double>(), kCycles.c_str());
-    EXPECT_EQ(sheared.at("state"), signal == SIGKILL ? "running" : "interrupted");
-    EXPECT_LT(sheared.at("cycle"), 20);
-    EXPECT_GE(sheared.at("cycle"), 1);
-    EXPECT_EQ(run({"verify"}).code, 0);
+class Signals : public CommandLineStore, public testing::WithParamInterface<int> {};
 
-    EXPECT_EQ(run({"resume", "-q"}).code, 0);
-    EXPECT_EQ(hashes(), hashes("whole"));
-    EXPECT_EQ(run({"verify"}).code, 0);
+TEST_P(Signals, LeaveNoTrace) {
+  campaign(tiny_manifest(), {"--cycles", kCycles}, "whole");
+  const Outcome stopped = run_until({"run", "m.yaml", "--cycles", kCycles, "-q"}, 4, GetParam());
+  const bool killed = GetParam() == SIGKILL;
+  if (killed) {
+    EXPECT_EQ(stopped.signal, SIGKILL);
+  } else {
+    EXPECT_EQ(stopped.code, 85) << stopped.err;
+    EXPECT_TRUE(contains(stopped.err, "shearcell resume --store")) << stopped.err;
   }
-};
-
-TEST_F(Signals, AnInterruptLeavesNoTrace) {
-  expect_no_trace(SIGINT);
+  const nlohmann::json sheared = json({"status", "--json"}).at("runs").back();
+  EXPECT_EQ(sheared.at("state"), killed ? "running" : "interrupted");
+  EXPECT_LT(sheared.at("cycle"), 20);
+  EXPECT_GE(sheared.at("cycle"), 1);
+  EXPECT_EQ(run({"resume", "-q"}).code, 0);
+  EXPECT_EQ(hashes(), hashes("whole"));
+  EXPECT_EQ(run({"verify"}).code, 0);
 }
 
-TEST_F(Signals, ATerminationLeavesNoTrace) {
-  expect_no_trace(SIGTERM);
-}
-
-TEST_F(Signals, AKillLeavesNoTrace) {
-  expect_no_trace(SIGKILL);
-}
+INSTANTIATE_TEST_SUITE_P(Of, Signals, testing::Values(SIGINT, SIGTERM, SIGKILL));
 
 // One cycle of the smoke scale: what it takes on disk, against what the plan says.
 TEST_F(CommandLineStore, DragTakesTheDiskThatItsPlanSays) {

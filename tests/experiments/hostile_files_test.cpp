@@ -18,26 +18,6 @@ namespace fs = std::filesystem;
 
 class HostileManifest : public ProgramTest {};
 
-/// Every file of tests/data/manifests/bad says in its first lines what is to be expected.
-TEST_F(HostileManifest, EachEndsWithCode2AndItsMessageAndWritesNothing) {
-  const fs::path bad = fs::path(SHEARCELL_TEST_DATA) / "manifests" / "bad";
-  std::size_t count = 0;
-  for (const auto& entry : fs::directory_iterator(bad)) {
-    std::istringstream lines(read_bytes(entry.path()));
-    std::string expected = "shearcell: ";
-    for (std::string line; std::getline(lines, line) && line.starts_with("# expect ");) {
-      expected += entry.path().string() + ":" + line.substr(9) + "\n";
-    }
-    const char* command = ++count % 2 == 0 ? "plan" : "run";
-    const Outcome outcome = run({command, entry.path().string()});
-    EXPECT_EQ(outcome.code, 2) << entry.path();
-    EXPECT_EQ(outcome.err, expected);
-    EXPECT_EQ(outcome.out, "");
-  }
-  EXPECT_GE(count, 60U);
-  EXPECT_TRUE(listing().empty()) << "nothing is written for a manifest that is refused";
-}
-
 TEST_F(HostileManifest, MoreGrainsThanTheMachineHoldsAreRefusedBeforeTheyAreMade) {
   if (machine_memory() > 60e9) GTEST_SKIP() << "this machine holds them";
   write("m.yaml", tiny_manifest("  grains: 100000000\n"));
@@ -49,10 +29,7 @@ TEST_F(HostileManifest, MoreGrainsThanTheMachineHoldsAreRefusedBeforeTheyAreMade
 class Outputs : public ProgramTest {
  protected:
   void SetUp() override {
-    ASSERT_EQ(run({"run", write("m.yaml", tiny_manifest("  grains: 200\n", kBothFluids)),
-                   "--cycles", "1", "-q"})
-                  .code,
-              0);
+    campaign(tiny_manifest("  grains: 200\n", kBothFluids), {"--cycles", "1"});
     id_ = json({"status", "--json"})["runs"].back()["id"];
     fs::create_directory(path("out"));
   }

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -76,61 +75,34 @@ TEST(BadManifestFile, ThereAreEnoughOfThem) {
   EXPECT_GE(bad_manifests().size(), 60U);
 }
 
-class BadFile : public testing::Test {
- protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "shearcell-manifest-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
+TEST(BadFile, IsRefused) {
+  std::string folder = (fs::temp_directory_path() / "shearcell-manifest-XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const auto at = [&](const char* name) { return fs::path(folder) / name; };
+  const auto write = [&](const char* name, const std::string& text) {
+    std::ofstream(at(name), std::ios::binary) << text;
+  };
+  write("file", "experiment: a");
+  write("empty", "");
+  write("large", "#" + std::string(ManifestLimits::bytes, 'x'));
+  ASSERT_EQ(mkfifo(at("pipe").c_str(), 0600), 0);
+  struct Case {
+    fs::path path;
+    const char* says;
+  };
+  for (const auto& [path, says] :
+       {Case{folder, ": is a directory. Name a manifest file in it."},
+        Case{at("none"), ": there is no such file"}, Case{at("file/none"), ": "},
+        Case{at("pipe"), ": is not a regular file"}, Case{at("empty"), "the manifest is empty"},
+        Case{at("large"), "is larger than 1048576 bytes"},
+        Case{"/no\x1b[31m", "/no\\x1b[31m: there is no such file"}}) {
+    EXPECT_NE(message_for(path).find(says), std::string::npos) << message_for(path);
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path write(const std::string& text) const {
-    fs::path path = folder_ / "m.yaml";
-    std::ofstream(path, std::ios::binary) << text;
-    return path;
+  fs::permissions(at("file"), fs::perms::none);
+  if (geteuid() != 0) {  // root reads everything
+    EXPECT_EQ(message_for(at("file")), at("file").string() + ": cannot be read");
   }
-
-  fs::path folder_;
-};
-
-TEST_F(BadFile, IsADirectory) {
-  EXPECT_EQ(message_for(folder_),
-            folder_.string() + ": is a directory. Name a manifest file in it.");
-}
-
-TEST_F(BadFile, IsMissing) {
-  const fs::path path = folder_ / "none.yaml";
-  EXPECT_EQ(message_for(path), path.string() + ": there is no such file");
-  const fs::path through_file = write("experiment: a") / "none.yaml";
-  EXPECT_NE(message_for(through_file), "");
-}
-
-TEST_F(BadFile, IsAPipeThatNobodyWritesTo) {
-  const fs::path path = folder_ / "pipe";
-  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-  EXPECT_EQ(message_for(path), path.string() + ": is not a regular file");
-}
-
-TEST_F(BadFile, CannotBeRead) {
-  if (geteuid() == 0) GTEST_SKIP() << "root reads everything";
-  const fs::path path = write("experiment: a");
-  fs::permissions(path, fs::perms::none);
-  EXPECT_EQ(message_for(path), path.string() + ": cannot be read");
-}
-
-TEST_F(BadFile, IsEmpty) {
-  const fs::path path = write("");
-  EXPECT_NE(message_for(path).find("the manifest is empty"), std::string::npos);
-}
-
-TEST_F(BadFile, IsTooLarge) {
-  const fs::path path = write("#" + std::string(ManifestLimits::bytes, 'x'));
-  EXPECT_NE(message_for(path).find("is larger than 1048576 bytes"), std::string::npos);
-}
-
-TEST_F(BadFile, HasTerminalEscapesInItsName) {
-  EXPECT_EQ(message_for("/no\x1b[31m"), "/no\\x1b[31m: there is no such file");
+  fs::remove_all(folder);
 }
 
 TEST(BadText, IsNotUtf8) {
@@ -186,32 +158,6 @@ TEST(BadText, NamesTheSmallestNumberOfStepsThatWorks) {
   };
   EXPECT_EQ(with_steps(16175), "");
   EXPECT_NE(with_steps(16174).find("Use at least 16175 steps per cycle."), std::string::npos);
-}
-
-// Either outcome will do; anything else (another exception, a crash, a hang) fails the test.
-TEST(BadText, DamagedManifestsNeverEscapeUncaught) {
-  const fs::path drag = fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments" / "drag.yaml";
-  std::vector<std::string> seeds = {contents(drag)};
-  ASSERT_FALSE(seeds.front().empty());
-  for (const std::string& name : bad_manifests())
-    seeds.push_back(contents(kBad / (name + ".yaml")));
-  for (std::size_t length = 0; length < seeds.front().size(); length += 7) {
-    EXPECT_NO_FATAL_FAILURE(message_for_text(seeds.front().substr(0, length)));
-  }
-  std::mt19937 random(7);
-  const std::string alphabet = "{}[]:,-&*!|>'\"%@`#?~<\t\n \\0129.eExyz_";
-  for (int round = 0; round < 3000; ++round) {
-    std::string text = seeds[random() % seeds.size()];
-    for (int change = 0; change < 4 && !text.empty(); ++change) {
-      const std::size_t at = random() % text.size();
-      if (random() % 3 == 0) {
-        text.erase(at, 1 + random() % 8);
-      } else {
-        text.insert(at, 1, alphabet[random() % alphabet.size()]);
-      }
-    }
-    EXPECT_NO_FATAL_FAILURE(message_for_text(text)) << text;
-  }
 }
 
 }  // namespace

@@ -189,5 +189,44 @@ TEST(Expand, WarnsOfACellThatThePressureCannotLift) {
   EXPECT_TRUE(warnings("grains: 30000, moving_wall: top").empty());
 }
 
+TEST(Expand, WarnsOfKeysThatNoVariantFeels) {
+  const auto warnings = [](const std::string& base, const std::string& rest = "") {
+    return expand(parse("experiment: a\nbase: {" + base + "}\n" + rest)).warnings;
+  };
+  using Case = std::pair<std::string, std::string>;
+  for (const auto& [base, warning] :
+       {Case{"pause_s: 1",
+             "2:17: pause_s: has no effect: only under protocol paused. Leave it out."},
+        Case{"protocol: stiffen, amplitude_rad: 0.1",
+             "2:42: amplitude_rad: has no effect: not under protocol stiffen. Leave it out."},
+        Case{"protocol: stiffen, cycles: 3",
+             "2:35: cycles: has no effect: not under protocol stiffen. Leave it out."},
+        Case{"stiffness_decades: 3",
+             "2:27: stiffness_decades: has no effect: only under protocol stiffen. Leave it out."},
+        Case{"walls: smooth, wall_grain_draw: 2",
+             "2:40: wall_grain_draw: has no effect: only with rough walls. Leave it out."}}) {
+    EXPECT_EQ(warnings(base), Strings{"test.yaml:" + warning}) << base;
+  }
+  EXPECT_TRUE(warnings("pause_s: 1", "sweep: {grid: {protocol: [continuous, paused]}}\n").empty());
+  EXPECT_EQ(warnings("protocol: stiffen", "until: {phi: 0.6}\n").size(), 1U);
+}
+
+TEST(Expand, AnUntilIsReadOverriddenAndPartOfNoIdentity) {
+  const std::string text =
+      "experiment: a\nscales:\n  one: {}\n  two: {until: {phi: 0.65}}\n"
+      "  none: {until: none}\n";
+  const Manifest manifest = parse(text + "until: {crystalline_percent: 10, extra_cycles: 15}\n");
+  const PlannedRun one = at(manifest, "one").runs[0];
+  EXPECT_EQ(one.until, (Until{StopMeasure::crystalline_percent, 10, 15}));
+  EXPECT_EQ(at(manifest, "two").runs[0].until, (Until{StopMeasure::phi, 0.65, 0}));
+  EXPECT_EQ(at(manifest, "none").runs[0].until, std::nullopt);
+  EXPECT_EQ(one.last.key, at(parse(text), "one").runs[0].last.key);
+  EXPECT_EQ(until_from_json(to_json(*one.until)), *one.until);
+  for (const char* bad : {"{}", "[]", "{\"phi\":1}", "{\"phi\":\"1\",\"extra_cycles\":1}",
+                          "{\"phi\":1,\"extra_cycles\":-1}"}) {
+    EXPECT_THROW(until_from_json(nlohmann::json::parse(bad)), std::runtime_error) << bad;
+  }
+}
+
 }  // namespace
 }  // namespace shearcell

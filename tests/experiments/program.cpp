@@ -4,11 +4,14 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/file.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <functional>
 #include <thread>
 
 extern char** environ;
@@ -79,6 +82,33 @@ Outcome ProgramTest::run_until(const Arguments& arguments, std::size_t files, in
   }
   kill(child, signal);
   return wait_for(program);
+}
+
+void ProgramTest::campaign(const std::string& manifest, const Arguments& options,
+                           const std::string& store) {
+  const std::string file = write("m.yaml", manifest);
+  std::string identity = manifest;
+  for (const std::string& option : options) identity += " " + option;
+  // Beside the program, by its date: another build computes it again.
+  const fs::path program = SHEARCELL_PROGRAM;
+  const auto date = fs::last_write_time(program).time_since_epoch().count();
+  const fs::path shared = program.parent_path() / "test-campaigns" / std::to_string(date);
+  const fs::path kept = shared / std::to_string(std::hash<std::string>{}(identity));
+  fs::create_directories(shared);
+  const int lock = open((kept.string() + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  ASSERT_GE(lock, 0);
+  flock(lock, LOCK_EX);
+  if (!fs::exists(kept)) {
+    Arguments words = {"run", file, "-q", "--store", "being-shared"};
+    words.insert(words.end(), options.begin(), options.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    fs::copy(path("being-shared"), kept.string() + ".part", fs::copy_options::recursive);
+    fs::rename(kept.string() + ".part", kept);
+    fs::remove_all(path("being-shared"));
+  }
+  close(lock);
+  fs::copy(kept, path(store), fs::copy_options::recursive);
 }
 
 nlohmann::json ProgramTest::json(const Arguments& arguments) {

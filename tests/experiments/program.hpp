@@ -41,6 +41,11 @@ class ProgramTest : public testing::Test {
   Running start_beside(const Arguments& arguments, const std::string& name);
   static Outcome wait_for(const Running& program);
 
+  /// Leaves m.yaml and the store as `run m.yaml OPTIONS -q` does in an empty folder. Each campaign
+  /// is computed once per build and shared by all test processes.
+  void campaign(const std::string& manifest, const Arguments& options = {},
+                const std::string& store = "shearcell-store");
+
   /// Output of a command that must succeed, read as JSON.
   nlohmann::json json(const Arguments& arguments);
 

@@ -13,9 +13,9 @@ BELOW = {
     "provenance/io": [],
     "provenance": ["core/cell.hpp", "core/scene.hpp", "core/memory.hpp", "core/state.hpp", "provenance/io"],
     "analysis": ["core", "provenance", "provenance/io"],
-    "experiments/manifest": ["core", "protocols", "provenance", "provenance/io"],
+    "experiments/manifest": ["analysis", "core", "protocols", "provenance", "provenance/io"],
 }
-BELOW["experiments/runner"] = ["analysis", "experiments/manifest", *BELOW["experiments/manifest"]]
+BELOW["experiments/runner"] = ["experiments/manifest", *BELOW["experiments/manifest"]]
 BELOW["experiments/figures"] = ["experiments/runner", *BELOW["experiments/runner"]]
 BELOW["experiments/report"] = ["experiments/figures", *BELOW["experiments/figures"]]
 for folder in ("bench", "cluster", "export"):

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// When a run ends before its last cycle (`until` of a manifest).
+//
+// The decision depends on the recorded checkpoints alone, so every process that continues a run
+// ends it at the same checkpoint. Checkpoints off the cadence, which an interruption leaves, have
+// no part in it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "analysis/measures.hpp"
+#include "experiments/manifest/until.hpp"
+#include "provenance/derived.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+struct MeasuredCycle {
+  double cycle = 0;
+  Measures measures;
+};
+
+/// What one experiment asks of a run.
+struct RunAsk {
+  std::uint64_t target_cycles = 0;
+  std::optional<Until> until;
+};
+
+/// One for each membership of the run, from its declarations. Throws StoreDamaged when an `until`
+/// is not as this program writes it.
+std::vector<RunAsk> asks_of(const Store& store, const std::string& run);
+
+/// The densest cadence [cycles] that an experiment asks for.
+std::uint64_t checkpoint_cadence(const RunRecord& run);
+
+/// Why the run ends at the last of `measured` (its checkpoints on the cadence, in order): every
+/// experiment that shares it has reached the end that it asks for. Nothing while the run continues.
+/// {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle", "memberships"}.
+std::optional<nlohmann::json> ended_early(std::span<const RunAsk> asks,
+                                          std::span<const MeasuredCycle> measured);
+
+/// The reason recorded with the end of a run that is complete before its last cycle; else null.
+nlohmann::json end_of(const Store& store, const RunRecord& run);
+
+/// "crystalline_percent >= 10 at cycle 25 and 15 cycles more"; "" for null.
+std::string describe_end(const nlohmann::json& ended);
+
+/// Mean cycle at which runs of the store with this `until` ended; nothing when there are none.
+std::optional<double> expected_end(const Store& store, const Until& until);
+
+/// Measures the checkpoints of one run and keeps the results in the store's derived.sqlite, where
+/// figures find them.
+class RunEnd {
+ public:
+  /// Takes the checkpoints up to `step` that are recorded already; those that can no longer be read
+  /// are left out.
+  RunEnd(const Store& store, const RunRecord& run, std::uint64_t step);
+
+  /// A checkpoint that has just been recorded.
+  void add(const CheckpointRecord& record, const Checkpoint& checkpoint);
+
+  std::optional<nlohmann::json> ended() const;
+
+ private:
+  std::optional<Measures> kept(const CheckpointRecord& record);
+  Measures measure(const CheckpointRecord& record, const Checkpoint& checkpoint);
+  bool on_cadence(double cycle) const;
+
+  const Store& store_;
+  std::string run_;
+  std::uint64_t cadence_;
+  DerivedCache cache_;
+  std::vector<MeasuredCycle> measured_;
+};
+
+}  // namespace shearcell

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `until`: a run ends where a measure says, at the same checkpoint whoever computes it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "analysis/derived_measures.hpp"
+#include "experiments/runner/run_end.hpp"
+#include "provenance/derived.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
+RunAsk ask(std::uint64_t cycles, std::optional<Until> until = std::nullopt) {
+  return {cycles, until};
+}
+
+// Checkpoints at cycles 0, 2, 4, ... with these percentages.
+std::vector<MeasuredCycle> measured(std::initializer_list<double> percentages) {
+  std::vector<MeasuredCycle> list;
+  for (const double percent : percentages) {
+    MeasuredCycle& next = list.emplace_back();
+    next.cycle = 2 * static_cast<double>(list.size() - 1);
+    next.measures.crystalline_percent = percent;
+  }
+  return list;
+}
+
+TEST(RunEnd, IsTheLongestThatAnyExperimentAsksFor) {
+  const Until ten{StopMeasure::crystalline_percent, 10, 0};
+  const Until later{StopMeasure::crystalline_percent, 10, 3};
+  const Until twenty{StopMeasure::crystalline_percent, 20, 0};
+  struct Case {
+    std::vector<RunAsk> asks;
+    std::vector<MeasuredCycle> measured;
+    double reached;  // cycle; -1: the run continues
+  };
+  const std::vector<Case> cases = {
+      {{ask(50, ten)}, {}, -1},
+      {{ask(50, ten)}, measured({1, 9.99}), -1},
+      {{ask(50, ten)}, measured({1, 10}), 2},
+      {{ask(50, ten)}, measured({1, 12, 3}), 2},        // reached once is reached
+      {{ask(50, later)}, measured({1, 10, 11}), -1},    // cycle 4 of 5
+      {{ask(50, later)}, measured({1, 10, 11, 9}), 2},  // the first checkpoint at or after 5
+      {{ask(50, ten), ask(50, twenty)}, measured({1, 10}), -1},
+      {{ask(50, ten), ask(50, twenty)}, measured({1, 10, 20}), 4},
+      {{ask(50, ten), ask(4)}, measured({1, 10}), -1},  // another wants four cycles
+      {{ask(50, ten), ask(4)}, measured({1, 10, 10}), 2},
+      {{ask(4, twenty)}, measured({1, 10, 10}), -1},  // its last cycle, as without `until`
+      {{}, measured({99}), -1},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(&c - cases.data());
+    const auto why = ended_early(c.asks, c.measured);
+    ASSERT_EQ(why.has_value(), c.reached >= 0);
+    EXPECT_EQ(why ? why->at("reached_at_cycle").get<double>() : -1, c.reached);
+  }
+}
+
+TEST(RunEnd, IsDescribed) {
+  const auto why = ended_early(std::vector{ask(9, Until{StopMeasure::crystalline_percent, 10, 2})},
+                               measured({1, 10, 20}));
+  ASSERT_TRUE(why);
+  EXPECT_EQ(describe_end(*why), "crystalline_percent >= 10 at cycle 2 and 2 cycles more");
+  EXPECT_EQ(describe_end(nullptr), "");
+}
+
+// The packing densifies, so phi ends the runs. One run of six cycles tells where.
+class UntilTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    whole_folder_ = new TemporaryFolder;
+    Store store(whole_folder_->path() / "store", Access::create);
+    compute(store, manifest(""));
+    const RunRecord run = runs_of_kind(store, "shear").front();
+    whole_ = new std::vector<CheckpointRecord>(store.checkpoints(run.id));
+    ASSERT_EQ(whole_->size(), 7U);
+    std::vector<double> phi;
+    for (const CheckpointRecord& record : *whole_) {
+      phi.push_back(measure(store.load_checkpoint(record)).phi);
+    }
+    // Reached at the densest of the first three checkpoints under shear, or before.
+    value_ = *std::max_element(phi.begin() + 1, phi.begin() + 4);
+    const auto first = std::find_if(phi.begin(), phi.end(), [](double p) { return p >= value_; });
+    end_ = static_cast<std::size_t>(first - phi.begin()) + 1;
+    ASSERT_LE(end_, 4U);
+  }
+  static void TearDownTestSuite() {
+    delete whole_;
+    delete whole_folder_;
+  }
+
+  static std::string manifest(const std::string& rest) {
+    return tiny_manifest("  cycles: 6\n", rest);
+  }
+  static std::string until(std::uint64_t extra_cycles = 1) {
+    return fmt::format("until: {{phi: {}, extra_cycles: {}}}\n", value_, extra_cycles);
+  }
+
+  // The checkpoints on the cadence are those of the whole run, up to where this one ended.
+  static void expect_end(const Store& store, std::size_t last) {
+    const RunRecord run = runs_of_kind(store, "shear").front();
+    EXPECT_EQ(run.state, RunState::completed);
+    std::vector<CheckpointRecord> whole_cycles = store.checkpoints(run.id);
+    std::erase_if(whole_cycles,
+                  [](const CheckpointRecord& c) { return c.cycle != std::floor(c.cycle); });
+    ASSERT_EQ(whole_cycles.size(), last + 1);
+    for (std::size_t i = 0; i <= last; ++i) {
+      EXPECT_EQ(whole_cycles[i].state_hash, (*whole_)[i].state_hash) << "cycle " << i;
+      EXPECT_EQ(whole_cycles[i].sha256, (*whole_)[i].sha256) << "cycle " << i;
+    }
+    EXPECT_TRUE(store.verify().ok());
+  }
+
+  static inline TemporaryFolder* whole_folder_ = nullptr;
+  static inline std::vector<CheckpointRecord>* whole_ = nullptr;
+  static inline double value_ = 0;
+  static inline std::size_t end_ = 0;  // cycle
+
+  TemporaryFolder folder_;
+  StopWish wish_;
+  Store store_{folder_.path() / "store", Access::create};
+};
+
+TEST_F(UntilTest, EndsTheRunSaysWhyAndKeepsTheMeasures) {
+  EXPECT_EQ(compute(store_, manifest(until())).completed, 2U);
+  expect_end(store_, end_);
+  const RunRecord run = runs_of_kind(store_, "shear").front();
+  const nlohmann::json why = end_of(store_, run);
+  EXPECT_EQ(why.at("measure"), "phi");
+  EXPECT_EQ(why.at("reached_at_cycle"), static_cast<double>(end_ - 1));
+  EXPECT_EQ(why.at("extra_cycles"), 1U);
+  EXPECT_EQ(expected_end(store_, {StopMeasure::phi, value_, 1}), static_cast<double>(end_));
+  EXPECT_EQ(expected_end(store_, {StopMeasure::phi, value_, 2}), std::nullopt);
+
+  DerivedCache cache(store_.folder());
+  for (const CheckpointRecord& record : store_.checkpoints(run.id)) {
+    for (const DerivedMeasure* measure : {&scalar_measures(), &crystallite_measure()}) {
+      const DerivedKey key{record.sha256, measure->key(), analysis_version};
+      EXPECT_TRUE(cache.get(std::span(&key, 1)).front()) << record.cycle;
+    }
+  }
+  // Asking again asks for nothing.
+  const Head head = store_.head();
+  EXPECT_EQ(compute(store_, manifest(until())).already, 2U);
+  EXPECT_EQ(store_.head().hash, head.hash);
+  // The projections of such a run can be rebuilt.
+  store_.rebuild();
+  expect_end(store_, end_);
+}
+
+TEST_F(UntilTest, IsExtendedWithoutOneOrWithALaterOne) {
+  compute(store_, manifest(until(0)));
+  expect_end(store_, end_ - 1);
+  EXPECT_EQ(compute(store_, manifest(until(2))).completed, 1U);
+  expect_end(store_, end_ + 1);
+  EXPECT_EQ(compute(store_, manifest(until(1))).completed, 1U) << "nothing is stepped";
+  expect_end(store_, end_ + 1);
+  EXPECT_EQ(compute(store_, manifest("")).completed, 1U);
+  expect_end(store_, 6);
+  EXPECT_TRUE(end_of(store_, runs_of_kind(store_, "shear").front()).is_null());
+}
+
+TEST_F(UntilTest, OfTwoExperimentsTheLongestCounts) {
+  std::string twin = tiny_manifest("  cycles: 5\n");
+  twin.replace(twin.find("tiny"), 4, "twin");
+  for (const std::string& text : {manifest(until(0)), twin}) {
+    const Manifest read = parse_manifest(text, "t");
+    declare(store_, read, expand(read));
+  }
+  EXPECT_EQ(resume(store_).completed, 2U);
+  expect_end(store_, 5);
+}
+
+TEST_F(UntilTest, IsTheSameAfterInterruptionsWithinCycles) {
+  const Manifest read = parse_manifest(manifest(until()), "t");
+  const std::vector<StageJob> jobs = declare(store_, read, expand(read));
+  run_stage(store_, jobs[0].id, {});
+  request_stop(true);  // each attempt ends after one chunk of steps
+  std::size_t interrupted = 0;
+  while (run_stage(store_, jobs[1].id, {}) == StageOutcome::interrupted) {
+    ASSERT_LT(++interrupted, 1000U);
+    // Whoever continues may have to measure again.
+    if (interrupted % 2 == 0) std::filesystem::remove(store_.folder() / DerivedCache::kFile);
+  }
+  EXPECT_GE(interrupted, 3U);
+  request_stop(false);
+  expect_end(store_, end_);
+}
+
+TEST_F(UntilTest, IsTheSameForTwoProgramsOnOneStore) {
+  std::thread other([&] {
+    Store same(folder_.path() / "store", Access::write);
+    compute(same, manifest(until()), {}, 1);
+  });
+  const CampaignResult result = compute(store_, manifest(until()), {}, 1);
+  other.join();
+  EXPECT_EQ(result.failed + result.damaged, 0U);
+  expect_end(store_, end_);
+}
+
+}  // namespace
+}  // namespace shearcell
