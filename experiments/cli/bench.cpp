@@ -51,8 +51,8 @@ void speed(const SpeedOptions& options, Context& context) {
                "B/grain"},
               rows);
   fmt::print(
-      "M/s: million particle-steps/s, median of {}. Shares of one thread's time; search: outer\n"
-      "neighbour list, prune: inner one.\n",
+      "M/s: million particle-steps/s, median of {}. Shares of one thread's time; search: building\n"
+      "the outer neighbour list, prune: the inner one.\n",
       options.repeats);
 }
 
@@ -71,13 +71,14 @@ void add_bench(CLI::App& app, Context& context) {
   rate->add_option("--threads", options->threads, "Threads inside one run")
       ->check(CLI::Range(1, 1024))
       ->type_name("T");
-  rate->add_option("--repeats", options->repeats, "Timings of which the median is told")
+  rate->add_option("--repeats", options->repeats, "Number of timings; the median is printed")
       ->check(CLI::Range(1, 1000));
   rate->add_option("--seconds", options->seconds_per_repeat, "Length of one timing")
       ->check(CLI::Range(0.01, 60.0));
   rate->add_flag("--json", context.json, "Print JSON for programs");
   rate->footer(
-      "Every kernel of the machine is timed, after it gave the same state as the others.\n"
+      "Every kernel that this machine can run is timed, after a check that all give the same "
+      "state.\n"
       "Examples:\n  shearcell bench speed --size 600 5200\n"
       "  shearcell bench speed --size 18200 --threads 1 2 --json");
   rate->callback([options, &context] {

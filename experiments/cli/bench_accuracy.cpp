@@ -35,7 +35,7 @@ nlohmann::json facts(const accuracy::Section& section) {
   return {{"name", section.table.name}, {"title", section.title}, {"rows", rows}};
 }
 
-// All data before the first drawing, which needs gnuplot.
+// All data before the first figure, which needs gnuplot.
 void write(const std::vector<accuracy::Section>& sections, const std::filesystem::path& folder) {
   for (const accuracy::Section& section : sections) require_own_files(section.table, folder);
   for (const accuracy::Section& section : sections) write_csv(section.table, folder);
@@ -51,7 +51,7 @@ void print(const std::vector<accuracy::Section>& sections) {
 }
 
 void measure(const AccuracyOptions& options, Context& context) {
-  // A folder that cannot be made is told before minutes of measuring.
+  // A folder that cannot be created is an error before minutes of measuring, not after.
   if (!options.out.empty()) std::filesystem::create_directories(options.out);
   const std::vector<accuracy::Section> sections = accuracy::measure_accuracy(options.measure);
   if (context.json) {
@@ -70,15 +70,16 @@ void add_bench_accuracy(CLI::App& bench, Context& context) {
   auto options = std::make_shared<AccuracyOptions>();
   options->measure.jobs = std::max(1U, std::thread::hardware_concurrency());
   CLI::App* command = bench.add_subcommand(
-      "accuracy", "Error against cost of integrators, time steps, stiffness and bond order");
-  command->add_flag("--quick", options->measure.quick, "Seconds instead of minutes: less of all");
+      "accuracy", "Error against cost of integrators, time steps and stiffness");
+  command->add_flag("--quick", options->measure.quick,
+                    "Seconds instead of minutes: the same tables from fewer runs");
   command->add_option("--jobs", options->measure.jobs, "Runs computed at once")
       ->check(CLI::Range(1, 1024))
       ->type_name("J");
   command->add_option("--out", options->out, "Folder for CSV files and figures")->type_name("DIR");
   command->add_flag("--json", context.json, "Print JSON for programs");
   command->footer(
-      "What the tables mean, and what follows for a time step: core/ACCURACY.md.\n"
+      "core/ACCURACY.md explains the tables and how to choose a time step.\n"
       "Examples:\n  shearcell bench accuracy --quick\n  shearcell bench accuracy --out accuracy");
   command->callback([options, &context] {
     options->measure.report = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `bench engines`: our engine beside LAMMPS.
+// `bench engines`: our engine and LAMMPS compared.
 #include <fmt/format.h>
 
 #include <memory>
@@ -129,8 +129,9 @@ void print(const EngineCheck& check) {
   }
   print_table({"engine", "M/s", "memory"}, rows);
   fmt::print(
-      "M/s: million particle-steps/s, of LAMMPS in its time loop. Memory: of our simulation; of "
-      "LAMMPS's\nlargest process.\n{}\n",
+      "M/s: million particle-steps/s, of LAMMPS in its time loop. Memory: of our simulation, or "
+      "of\n"
+      "the largest process of LAMMPS.\n{}\n",
       check.agree() ? "The engines agree." : "The engines do NOT agree.");
 }
 
@@ -140,7 +141,7 @@ void add_bench_engines(CLI::App& bench, Context& context) {
   auto options = std::make_shared<EngineCheckOptions>();
   auto weightless = std::make_shared<bool>(false);
   CLI::App* command = bench.add_subcommand(
-      "engines", "LAMMPS beside our engine: trajectories, means over seeds, speed");
+      "engines", "LAMMPS and our engine compared: trajectories, means over seeds, speed");
   command->add_option("--size", options->grains, "Number of grains")
       ->check(CLI::Range(100, 100'000'000))
       ->type_name("N");
@@ -153,7 +154,8 @@ void add_bench_engines(CLI::App& bench, Context& context) {
   command->add_option("--seeds", options->seeds, "Packings of the means")
       ->check(CLI::Range(3, 1000))
       ->type_name("K");
-  command->add_option("--mpi", options->ranks, "Also LAMMPS with so many processes, by mpirun")
+  command
+      ->add_option("--mpi", options->ranks, "Run LAMMPS also with this many processes, by mpirun")
       ->check(CLI::Range(1, 65536))
       ->type_name("N");
   command->add_flag("--settle", options->settle,
@@ -167,10 +169,9 @@ void add_bench_engines(CLI::App& bench, Context& context) {
   command->add_flag("--no-gravity", *weightless, "Without gravity, for cells that P cannot lift");
   command->add_flag("--json", context.json, "Print JSON for programs");
   command->footer(
-      "Ends with code 3 if the engines do not agree: trajectories as far as rounding lets them,\n"
-      "means within their scatter over seeds. Shear begins from our packings in both; --settle "
-      "shows\n"
-      "that LAMMPS's own are alike. Means of three cycles at N = 2000 take minutes.\n"
+      "Ends with code 3 if the engines do not agree: trajectories within the effect of rounding,\n"
+      "means within their scatter over seeds. Both shear our packings; --settle compares LAMMPS's\n"
+      "own with them. Means of three cycles at N = 2000 take minutes.\n"
       "Examples:\n  shearcell bench engines --size 600 --cycles 1 --settle\n"
       "  shearcell bench engines --size 100000 --no-gravity --cycles 0 --mpi 2");
   command->callback([options, weightless, &context] {

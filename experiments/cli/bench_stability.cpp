@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `bench stability`: the map of hard cases.
+// `bench stability`: hard cases and their outcomes.
 #include <fmt/format.h>
 
 #include <memory>
@@ -44,18 +44,18 @@ void stability(const StabilityOptions& options, Context& context) {
 void add_bench_stability(CLI::App& bench, Context& context) {
   auto options = std::make_shared<StabilityOptions>();
   CLI::App* command = bench.add_subcommand(
-      "stability", "Hard cases: each must give the right answer, or be stopped with the numbers");
+      "stability", "Hard cases: each must give the right answer or be stopped with the reason");
   command->add_option("--only", options->only, "Names of cases, or their beginnings")
       ->type_name("NAME")
       ->check(unknown_case, "");
-  command->add_flag("--quick", options->quick, "Fewer steps where there are ten million");
+  command->add_flag("--quick", options->quick, "Fewer steps in the very long cases");
   command
       ->add_option("--seconds", options->seconds_per_case,
-                   "A case that takes longer is taken for one that hangs")
+                   "A case that takes longer counts as hanging")
       ->check(CLI::Range(0.1, 86400.0));
   command->add_flag("--json", context.json, "Print JSON for programs");
   command->footer(
-      "Ends with code 3 if a case did not end as expected.\n"
+      "Ends with code 3 if a case does not end as expected.\n"
       "Examples:\n  shearcell bench stability --quick\n"
       "  shearcell bench stability --only vacancy limit --json");
   command->callback([options, &context] {
