@@ -9,6 +9,7 @@
 #include "analysis/plot.hpp"
 #include "experiments/bench/accuracy/accuracy.hpp"
 #include "experiments/cli/command.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -38,7 +39,11 @@ nlohmann::json facts(const accuracy::Section& section) {
 // All data before the first figure, which needs gnuplot.
 void write(const std::vector<accuracy::Section>& sections, const std::filesystem::path& folder) {
   for (const accuracy::Section& section : sections) require_own_files(section.table, folder);
-  for (const accuracy::Section& section : sections) write_csv(section.table, folder);
+  for (const accuracy::Section& section : sections) {
+    write_csv(section.table, folder);
+    write_output(folder / (section.table.name + ".chart.json"),
+                 chart_json(section.table).dump() + "\n");
+  }
   for (const accuracy::Section& section : sections) draw_svg(section.table, folder);
 }
 

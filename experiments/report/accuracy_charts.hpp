@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The diagrams of error against cost, from the CSV files that `bench accuracy --out` left.
+// The charts of error against cost that `bench accuracy --out` wrote.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +9,9 @@
 
 namespace shearcell {
 
-/// A panel for each CSV file of the folder, by name. Files whose columns this program does not know
-/// how to draw give their numbers only. Throws NotFound, naming file and line, when a file is no
-/// table or is larger than a report should hold, and when there is no CSV file.
+/// A panel for each CSV file of the folder, by name: the numbers, the chart of NAME.chart.json and the
+/// drawing of NAME.svg, if there are such files. Files are not trusted. Throws NotFound for a file
+/// that is unreadable or too large, a chart that is malformed, and a folder without a CSV file.
 std::vector<ReportPanel> read_accuracy_charts(const std::filesystem::path& folder);
 
 }  // namespace shearcell

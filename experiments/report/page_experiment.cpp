@@ -124,14 +124,14 @@ std::string figure_html(const ReportData& data, const ReportFigure& figure) {
 std::string panel_html(const ReportData& data, const ReportPanel& panel) {
   const std::string name = escape_html(panel.name);
   std::string plot;
-  if (!panel.drawing.empty()) {
-    plot = fmt::format("<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">", name,
-                       base64(std::as_bytes(std::span(panel.drawing))));
-  } else if (data.interactive && !panel.chart.is_null()) {
+  if (data.interactive && !panel.chart.is_null()) {
     plot = fmt::format(
         "<div class=\"plot\" data-chart=\"{}\"><noscript>Plots need JavaScript; "
         "the numbers are below.</noscript></div>",
         name);
+  } else if (!panel.drawing.empty()) {
+    plot = fmt::format("<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">", name,
+                       base64(std::as_bytes(std::span(panel.drawing))));
   } else if (!panel.text.rows.empty()) {
     plot = table_html(panel);
   } else if (!data.interactive) {

@@ -21,14 +21,15 @@ struct Place {
   }
 };
 
-/// The CSV, and after a NUL the lineage file beside it.
+/// The CSV, and after a NUL the lineage file and the chart beside it.
 void run(Input input) {
   static const Place place;
   const std::string_view text = text_of(input);
   const std::size_t end = std::min(text.find('\0'), text.size());
   test::write_bytes(place.published / "S2a.csv", std::string(text.substr(0, end)));
-  test::write_bytes(place.published / "S2.lineage.json",
-                    std::string(text.substr(std::min(end + 1, text.size()))));
+  const std::string second(text.substr(std::min(end + 1, text.size())));
+  test::write_bytes(place.published / "S2.lineage.json", second);
+  test::write_bytes(place.published / "S2a.chart.json", second);
   for (const char* name : {"S2a.csv", "S2.lineage.json"}) {
     const auto found = find_published(place.store, place.published / name);
     require(found.has_value(), "the figure that the file is named after is found");
