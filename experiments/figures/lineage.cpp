@@ -85,32 +85,27 @@ json stage_json(const RunLineage& stage) {
       {"grains", stage.run.grains}, {"resolved", stage.run.resolved}, {"attempts", attempts}};
 }
 
-// Of a lineage file beside the published one, or "".
-std::string hash_in_lineage_beside(const std::filesystem::path& file, const std::string& figure) {
-  const auto text =
-      read_plain(file.parent_path() / (figure + ".lineage.json"), StoreLimits::value_bytes);
-  if (!text) return "";
-  const json lineage = parse_json(*text);
-  if (!lineage.is_object() || !lineage.contains("outputs")) return "";
-  const json& outputs = lineage["outputs"];
-  const std::string name = file.filename().string();
-  if (!outputs.is_object() || !outputs.contains(name) || !outputs[name].is_string()) return "";
-  return outputs[name].get<std::string>();
-}
-
-std::map<std::string, std::string> outputs_of(const FigureRecord& record) {
+// File name -> SHA-256. The JSON is not trusted.
+std::map<std::string, std::string> outputs_of(const json& provenance) {
   std::map<std::string, std::string> outputs;
-  const auto found = record.provenance.find("outputs");
-  if (found == record.provenance.end() || !found->is_object()) return outputs;
-  for (const auto& [name, sha256] : found->items()) {
+  const json found = provenance.is_object() ? provenance.value("outputs", json()) : json();
+  if (!found.is_object()) return outputs;
+  for (const auto& [name, sha256] : found.items()) {
     if (sha256.is_string()) outputs[name] = sha256.get<std::string>();
   }
   return outputs;
 }
 
-// The same and the lineage file, which is the record without the host and build.
+// The hash of the file in a lineage file beside it, or "".
+std::string hash_in_lineage_beside(const std::filesystem::path& file, const std::string& figure) {
+  const auto text =
+      read_plain(file.parent_path() / (figure + ".lineage.json"), StoreLimits::value_bytes);
+  return text ? outputs_of(parse_json(*text))[file.filename().string()] : "";
+}
+
+// The outputs and the lineage file, which is the record without the host and build.
 std::map<std::string, std::string> files_of(const FigureRecord& record) {
-  std::map<std::string, std::string> files = outputs_of(record);
+  std::map<std::string, std::string> files = outputs_of(record.provenance);
   files[record.name + ".lineage.json"] = sha256_hex(lineage_text(record.provenance));
   return files;
 }
@@ -136,7 +131,7 @@ std::vector<FigureRecord> figure_records(const Store& store) {
 }
 
 FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
-  FigureLineage lineage{record, {}, outputs_of(record), {}, {}};
+  FigureLineage lineage{record, {}, outputs_of(record.provenance), {}, {}};
   try {
     const std::string scale = record.provenance.value("scale", "");
     for (const json& entry : record.provenance.at("inputs")) {

@@ -86,7 +86,7 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
   return chosen;
 }
 
-/// How large a checkpoint of each run is, from its newest that can be read; runs without any go.
+/// Sizes of the checkpoints of each run, from its newest readable one; drops runs without one.
 void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings) {
   for (ChosenRun& run : runs) {
     while (!run.checkpoints.empty() && run.bytes == 0) {
