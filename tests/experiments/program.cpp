@@ -94,7 +94,11 @@ void ProgramTest::campaign(const std::string& manifest, const Arguments& options
   const auto date = fs::last_write_time(program).time_since_epoch().count();
   const fs::path shared = program.parent_path() / "test-campaigns" / std::to_string(date);
   const fs::path kept = shared / std::to_string(std::hash<std::string>{}(identity));
-  fs::create_directories(shared);
+  if (fs::create_directories(shared)) {
+    for (const auto& old : fs::directory_iterator(shared.parent_path())) {
+      if (old.path() != shared) fs::remove_all(old.path());
+    }
+  }
   const int lock = open((kept.string() + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   ASSERT_GE(lock, 0);
   flock(lock, LOCK_EX);
@@ -103,6 +107,7 @@ void ProgramTest::campaign(const std::string& manifest, const Arguments& options
     words.insert(words.end(), options.begin(), options.end());
     const Outcome outcome = run(words);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
+    fs::remove_all(kept.string() + ".part");
     fs::copy(path("being-shared"), kept.string() + ".part", fs::copy_options::recursive);
     fs::rename(kept.string() + ".part", kept);
     fs::remove_all(path("being-shared"));

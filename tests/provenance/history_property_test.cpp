@@ -93,6 +93,8 @@ struct Told {
   double particle_steps = 0;
   std::map<std::string, std::pair<std::uint64_t, std::string>> checkpoints;  // step and state
 
+  std::map<std::uint64_t, double> cycle_of;  // of a step
+
   std::uint64_t step() const {
     std::uint64_t furthest = 0;
     for (const auto& [sha256, known] : checkpoints) {
@@ -106,7 +108,9 @@ struct Told {
     const std::string sha256 = body.value("sha256", "");
     if (event.type == "RunDeclared") {
       const auto asked = body.at("target_cycles").get<std::uint64_t>();
-      if (state == "completed" && asked > target) state = "declared";
+      // A run may have ended before its target.
+      const bool longer = step() > 0 && static_cast<double>(asked) > cycle_of[step()];
+      if (state == "completed" && (asked > target || longer)) state = "declared";
       target = std::max(target, asked);
     } else if (event.type == "RunStarted" || event.type == "RunResumed") {
       state = "running";
@@ -119,6 +123,7 @@ struct Told {
       state = all ? "completed" : "declared";
     } else if (event.type == "CheckpointRecorded") {
       checkpoints[sha256] = {body.at("step").get<std::uint64_t>(), "recorded"};
+      cycle_of[body.at("step")] = body.at("cycle");
       particle_steps += body.at("particle_steps").get<double>();
     } else if (event.type == "CheckpointRejected") {
       if (state == "completed" && checkpoints[sha256].first == step()) state = "declared";
