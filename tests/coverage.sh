@@ -1,8 +1,8 @@
 #!/bin/sh
 # Which lines and branches the tests reach, folder by folder: sh tests/coverage.sh [ctest arguments]
-# Builds with clang (preset coverage; Debian: clang, llvm) and runs the suite, but for what the build would
-# only repeat or what other programs are measured by: installing, the documents' commands, Slurm, Chromium.
-# Ends with the table; build/coverage/coverage.json has each file. Half an hour on two cores.
+# Builds with clang (preset coverage; Debian: clang, llvm) and runs the tests, except the installation, the
+# documents' commands, Slurm and Chromium. Prints the table; build/coverage/coverage.json has each file.
+# Takes half an hour on two cores.
 set -eu
 cd "$(dirname "$0")/.."
 for tool in clang++ llvm-profdata llvm-cov; do
@@ -14,7 +14,7 @@ export LLVM_PROFILE_FILE
 [ -f "$build/build.ninja" ] || cmake --preset coverage > /dev/null
 cmake --build "$build" >&2
 
-# Processes of one program share a file; one that is killed leaves nothing.
+# Processes of one program share a file; a killed process writes nothing.
 rm -rf "$build/profiles"
 LLVM_PROFILE_FILE="$build/profiles/%2m.profraw"
 export LLVM_PROFILE_FILE
@@ -28,7 +28,7 @@ objects=""
 for program in "$build"/tests/*/test_*; do
   [ ! -x "$program" ] || [ -d "$program" ] || objects="$objects -object $program"
 done
-# shellcheck disable=SC2086  # one word an object
+# shellcheck disable=SC2086  # one word per object
 llvm-cov export -summary-only -instr-profile "$build/coverage.profdata" "$build/shearcell" $objects \
   > "$build/coverage.json"
 python3 tests/coverage.py "$build/coverage.json" "$PWD"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# How long a figure over 2000 checkpoints takes, the first time and again, and whether it has the
-# same bytes: sh tests/bench/figures.sh [GRAINS]
+# Times a figure over 2000 checkpoints, first and again, and compares the bytes:
+#   sh tests/bench/figures.sh [GRAINS]
 # Needs build/release/shearcell; simulates for some minutes first, in a temporary folder.
 set -eu
 cd "$(dirname "$0")/../.."

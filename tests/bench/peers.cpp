@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One packing for three programs: `bench_peers prepare DIR N` writes it for LAMMPS and LIGGGHTS,
-// `ours DIR N` times the same steps here, `compare DIR N` sets their positions beside ours.
-// peers.sh ties them up.
+// `ours DIR N` times the same steps here, `compare DIR N` compares their positions with ours.
+// peers.sh runs them.
 //
-// The scene: the rough cell of Table I, pressed, then upright with all walls held fast (a moving
-// wall of huge mass), grains kicked to random velocities, no gravity.
+// The scene: the rough cell of Table I, pressed, then upright with all walls fixed (a moving wall of
+// huge mass), random velocities, no gravity.
 #include <fmt/format.h>
 
 #include <algorithm>

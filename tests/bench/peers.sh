@@ -1,8 +1,8 @@
 #!/bin/sh
-# Our engine beside LAMMPS (gran/hooke) and LIGGGHTS (hooke/stiffness), Debian's packages, on one
-# settled packing, one core each:
+# Compares our engine with LAMMPS (gran/hooke) and LIGGGHTS (hooke/stiffness), Debian's packages, on one
+# packing and one core each:
 #   sh tests/bench/peers.sh [N] [rounds]
-# First whether the trajectories agree, then the speed, in turn, with the ratios of the medians.
+# First the trajectories, then the speed, in turn, with the ratios of the medians.
 set -eu
 cd "$(dirname "$0")/../.."
 grains=${1:-5200}
@@ -14,7 +14,7 @@ command -v liggghts >/dev/null 2>&1 || missing="$missing liggghts"
 if [ -n "$missing" ]; then
   if [ "$(id -u)" -eq 0 ]; then sudo=""; else sudo="sudo"; fi
   $sudo apt-get update -q >&2
-  # shellcheck disable=SC2086  # one word a package
+  # shellcheck disable=SC2086  # one word per package
   $sudo apt-get install -q -y --no-install-recommends $missing >&2
 fi
 cmake --preset release -DSHEARCELL_TESTS=ON >/dev/null

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the store fares with 100 runs of 100 checkpoints: bench_store [RUNS] [CHECKPOINTS] [FOLDER].
+// Times the store with 100 runs of 100 checkpoints: bench_store [RUNS] [CHECKPOINTS] [FOLDER].
 //
-// Each number is the time of the call that the program's command makes, the opening of the store
-// included; the slowest of three, where it can be repeated. Every result is checked before it is
-// told. The store is removed afterwards, unless a folder is named for it.
+// Each number is the time of the call that a command of the program makes, including the opening of
+// the store; the slowest of three if it can be repeated. Every result is checked before its time is
+// printed. The store is removed afterwards, unless FOLDER is given.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>

@@ -4,7 +4,7 @@
 
     python3 results_table.py README.md RESULTS_FOLDER [--write]
 
-Without --write it ends with code 1 when the table between the marks differs from the verdicts.
+Without --write it ends with code 1 if the table between the marks differs from the verdicts.
 """
 import json
 import pathlib

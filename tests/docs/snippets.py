@@ -5,7 +5,7 @@
     python3 snippets.py FILE PROGRAM_FOLDER SOURCE_FOLDER
 
 The folder holds the project's experiments/ as a link, and PROGRAM_FOLDER comes first in PATH. Stops
-with code 1 at the first block that fails, with its line and what it said.
+with code 1 at the first block that fails, and prints its line and its output.
 """
 import os
 import pathlib

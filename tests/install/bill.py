@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The bill of materials: what CycloneDX 1.5 asks for, and that nothing of the program is missing in it.
+"""Checks the bill of materials: the fields that CycloneDX 1.5 requires, and that it lists every part of the program.
    python3 bill.py BUILD_FOLDER SOURCE_FOLDER"""
 import hashlib
 import json

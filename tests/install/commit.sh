@@ -1,5 +1,5 @@
 #!/bin/sh
-# Which commit a build says that it is: of a repository, changed, archived, and of neither.
+# Checks the commit that a build reports: of a clean repository, a changed one, an archive, and of neither.
 #   sh commit.sh SOURCE_FOLDER
 set -eu
 script=$1/experiments/runner/commit.cmake

@@ -1,9 +1,9 @@
 #!/bin/sh
 # Builds a commit twice, in folders of different names and depths, and compares every installed byte:
 #   sh tests/install/reproducible.sh [COMMIT]          HEAD unless another is named
-#   sh tests/install/reproducible.sh COMMIT BUILD      builds once: is BUILD what that commit gives?
-# The first build is of an archive, the second of a clone and outside of it; BUILD has preset release. The
-# same compiler, libraries and npm packages, and no compiler cache. Takes two builds: ten minutes on two cores.
+#   sh tests/install/reproducible.sh COMMIT BUILD      builds once and compares with BUILD (preset release)
+# The first build is of an archive, the second of a clone, in a folder outside of it. Both use the same compiler,
+# libraries and npm packages, and no compiler cache. Two builds take ten minutes on two cores.
 set -eu
 cd "$(dirname "$0")/../.."
 commit=$(git rev-parse "${1:-HEAD}^{commit}")

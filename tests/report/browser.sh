@@ -1,5 +1,5 @@
 #!/bin/sh
-# Looks in Chromium at the report that campaign.sh left in FOLDER:
+# Tests in Chromium the report that campaign.sh wrote to FOLDER:
 #   sh tests/report/browser.sh FRONT_END FOLDER
 # FRONT_END is the build's folder of the front end, with its node_modules. Screenshots stay in FOLDER.
 # Exit code 77: something is not installed, and nothing was tested.

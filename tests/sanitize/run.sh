@@ -1,11 +1,11 @@
 #!/bin/sh
-# What only instruments find: sanitizers, a second compiler, static analysis. One line a part:
+# Sanitizers, a second compiler and static analysis. Prints one line per part:
 #   sh tests/sanitize/run.sh                  # every part; without anything cached, an hour or two on two cores
 #   sh tests/sanitize/run.sh tidy cppcheck    # some parts
 #   SUITES="provenance manifest" sh tests/sanitize/run.sh asan     # some test programs alone
-# Installs nothing. Ends with 1 at the first finding and shows it, with 2 where a program is missing.
-# All that a part said is in build/sanitize/PART.log. JOBS: how many at once (all cores).
-# The sanitizers' own options are in CMakePresets.json, what is not looked at in the files beside this one.
+# Installs nothing. Ends with 1 at the first finding and shows it, with 2 if a program is missing.
+# The output of a part is in build/sanitize/PART.log. JOBS: number of jobs at once (default: all cores).
+# The sanitizers' options are in CMakePresets.json; suppressions are in the files beside this one.
 set -eu
 cd "$(dirname "$0")/../.."
 jobs="${JOBS:-$(nproc)}"
@@ -13,10 +13,10 @@ logs="$PWD/build/sanitize"
 beside="tests/sanitize"
 mkdir -p "$logs"
 
-# Tests of a sanitized build that are left out. (What starts Slurm, installs, or types the documentation's
-# commands is no part of such a build: tests/*/CMakeLists.txt.)
-#   report.Campaign   every manifest at scale smoke, too long when instrumented; each protocol and figure has smaller tests
-#   report.Browser    says how soon Chromium shows that report, a time; other tests make and read reports
+# Tests that are left out here. (tests/*/CMakeLists.txt leave Slurm, the installation and the documentation's
+# commands out of every sanitized build.)
+#   report.Campaign   every manifest at scale smoke: too slow; each protocol and figure has smaller tests
+#   report.Browser    measures how soon Chromium shows that report; other tests make and read reports
 left_out='^report\.(Campaign|Browser)$'
 
 need() {  # need PROGRAM PACKAGE
@@ -35,7 +35,7 @@ build() {  # build PRESET: all of it, or the test programs of SUITES
   cmake --preset "$1" -DSHEARCELL_WERROR=ON >"$logs/$part.log" 2>&1 || finding 'CMake Error'
   targets="all"
   [ -z "$suites" ] || targets="$(echo "$suites" | sed 's/[^ ]*/test_&/g')"
-  # shellcheck disable=SC2086  # one word a target
+  # shellcheck disable=SC2086  # one word per target
   cmake --build --preset "$1" -j "$jobs" --target $targets >>"$logs/$part.log" 2>&1 ||
     finding 'error:|FAILED:'
 }
@@ -80,8 +80,8 @@ run_cppcheck() {
   said="nothing found"
 }
 
-# valgrind has no AVX-512 and says so to the program, which takes its AVX2 kernel. It cannot read what
-# clang 14 writes as DWARF 5, so the preset asks for DWARF 4. Properties get a tenth of their inputs.
+# valgrind has no AVX-512, so the program uses its AVX2 kernel. It cannot read the DWARF 5 of clang 14, so the
+# preset asks for DWARF 4. Properties get a tenth of their inputs.
 run_valgrind() {
   need valgrind valgrind
   need clang++ clang
