@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writing a checkpoint; checkpoint_read.cpp reads it.
+// Writes a checkpoint; checkpoint_read.cpp reads it.
 #include "provenance/checkpoint.hpp"
 
 #include <bit>
@@ -8,9 +8,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "core/limits.hpp"
-#include "provenance/hdf5_handle.hpp"
+#include "provenance/hdf5_read.hpp"
 #include "provenance/hdf5_write.hpp"
+#include "provenance/limits.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -26,9 +26,9 @@ using hdf5::put_strings;
 using hdf5::require;
 using hdf5::Shape;
 
-static_assert(std::endian::native == std::endian::little, "hashes and files hold native numbers");
+static_assert(std::endian::native == std::endian::little, "hashes and files use native numbers");
 
-/// An H5MD element at the one instant of the checkpoint: {step, time, value}.
+/// An H5MD element with one time step: {step, time, value}.
 void put_element(const Handle& parent, const std::string& name, const Checkpoint& checkpoint,
                  const double* value, const Shape& shape, const std::string& unit) {
   const Handle group = make_group(parent, name);
@@ -45,8 +45,7 @@ void put_metadata(const Handle& file) {
   put_attribute(author, "name", std::string("shearcell"));
   const Handle creator = make_group(h5md, "creator");
   put_attribute(creator, "name", std::string("shearcell"));
-  // The version of the layout, not of the program: the same state gives the same bytes in the next
-  // release too. The log records the program.
+  // The version of the layout, not of the program: equal states give equal bytes in every release.
   put_attribute(creator, "version", std::to_string(hdf5::kRestartFormat));
   const Handle modules = make_group(h5md, "modules");
   const Handle units = make_group(modules, "units");
@@ -67,7 +66,7 @@ void put_box(const Handle& all, const Checkpoint& checkpoint, const WallPose& po
   put_dataset(box, "edges", H5T_IEEE_F64LE, edges, {3}, "m");
 }
 
-/// The grains in SI units and after them the wall grains where their walls are, for other programs.
+/// The grains and then the wall grains at their current positions, in SI units, for other programs.
 void put_particles(const Handle& file, const Checkpoint& checkpoint) {
   const Handle particles = make_group(file, "particles");
   const Handle all = make_group(particles, "all");
@@ -125,7 +124,7 @@ void put_cell(const Handle& restart, const Cell& cell) {
   put_dataset(group, "wall_grain_position", H5T_IEEE_F64LE, position.data(), {side.size(), 3});
 }
 
-/// The exact state in the engine's own units: what a run continues from.
+/// The exact state in the engine's units, from which a run continues.
 void put_restart(const Handle& file, const Checkpoint& checkpoint) {
   const Handle restart = make_group(file, "restart");
   const State& state = checkpoint.state;
@@ -152,7 +151,7 @@ void require_sound(const Checkpoint& c) {
   if (c.run.size() > StoreLimits::text || c.run.find('\0') != std::string::npos)
     refuse("bad run id");
   if (c.state.position.cols() != c.state.velocity.cols()) {
-    refuse("there are not as many velocities as positions");
+    refuse("the numbers of velocities and positions differ");
   }
   if (!c.state.position.allFinite() || !c.state.velocity.allFinite()) {
     refuse("a position or velocity is not finite");
@@ -175,7 +174,7 @@ void require_sound(const Checkpoint& c) {
   }
 }
 
-/// The HDF5 part, as it stands in a file after the frame.
+/// The bytes of the file, with an empty frame.
 std::vector<std::byte> framed_image(const Handle& file) {
   require(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "the buffers");
   const ssize_t size = H5Fget_file_image(file.get(), nullptr, 0);
@@ -197,7 +196,7 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
     const hdf5::Quiet quiet;
     const Handle access(require(H5Pcreate(H5P_FILE_ACCESS), "a property list"), H5Pclose);
     require(H5Pset_fapl_core(access.get(), 1 << 20, false), "a memory file");
-    // The oldest superblock has no checksum of its own: HDF5 1.10 gives wrong ones in file images.
+    // The oldest superblock has no checksum; HDF5 1.10 writes wrong checksums into file images.
     require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "version");
     const Handle creation = creation_list(H5P_FILE_CREATE);
     require(H5Pset_userblock(creation.get(), hdf5::kFrameSize), "a user block");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One checkpoint as one immutable HDF5 file (H5MD 1.1 plus /restart).
+// One checkpoint as one immutable HDF5 file (H5MD 1.1 plus /restart). provenance/README.md has the
+// layout.
 #pragma once
 
 #include <cstddef>
@@ -14,25 +15,31 @@
 
 namespace shearcell {
 
-/// What a checkpoint file holds: enough to continue the run and to analyse it without the log.
+/// The content of a checkpoint file: enough to continue the run and to analyse it without the log.
 struct Checkpoint {
-  std::string run;    ///< id of the run (stage) that made it
+  std::string run;    ///< id of the run (stage)
   double time_s = 0;  ///< simulated time since the stage began [s]
   double cycle = 0;   ///< cycles since the stage began; whole at the end of a cycle
   double theta = 0;   ///< tilt of the side walls [rad]
   Units units;
   Cell cell;
   State state;
-  std::map<std::string, double> observables;  ///< name (with its unit) -> value
+  std::map<std::string, double> observables;  ///< name with unit -> value
 };
 
-/// The bytes of the file: the same checkpoint gives the same bytes.
+/// The bytes of the file; equal checkpoints give equal bytes. Throws std::invalid_argument for a
+/// checkpoint that could not be read again (NaN, bad names, too many observables).
 std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint);
 
-/// Reads a file image. Throws StoreDamaged when it is not a whole, consistent checkpoint.
+/// Reads the bytes of a file. Throws StoreDamaged when they are not a complete, consistent
+/// checkpoint.
 Checkpoint decode_checkpoint(std::span<const std::byte> image);
 
-/// SHA-256 (hex) over the exact state and cell: equal exactly when a run would go on equally.
+/// Throws StoreDamaged, naming the place in the file, when a length, position or tilt is outside
+/// the range of any cell. A run or an analysis could otherwise overflow or never end.
+void require_plausible(const Checkpoint& checkpoint);
+
+/// SHA-256 (hex) of the exact state and cell. Runs continue identically if and only if it is equal.
 std::string state_hash(const Checkpoint& checkpoint);
 
 }  // namespace shearcell

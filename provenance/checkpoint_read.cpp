@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading a checkpoint from bytes that nobody vouches for: each claim is checked before it is used.
+// Reads a checkpoint from untrusted bytes.
 #include <algorithm>
 #include <cmath>
 
 #include "provenance/checkpoint.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/hdf5_handle.hpp"
 #include "provenance/hdf5_read.hpp"
 #include "provenance/sha256.hpp"
 
@@ -29,14 +28,14 @@ Eigen::Matrix3Xd vectors(const Object& group, const std::string& where, const st
 }
 
 void require_frame(std::span<const std::byte> image) {
-  if (image.size() <= hdf5::kFrameSize) fail("file", "it is cut short");
+  if (image.size() <= hdf5::kFrameSize) fail("file", "it is truncated");
   const std::string_view frame(reinterpret_cast<const char*>(image.data()), hdf5::kFrameSize);
   if (!frame.starts_with(hdf5::kFrameTitle)) {
-    fail("file", "it does not begin as a checkpoint of this version does");
+    fail("file", "it is not a checkpoint of a known version");
   }
   std::string expected = hdf5::frame_text(sha256_hex(image.subspan(hdf5::kFrameSize)));
   expected.resize(hdf5::kFrameSize, '\0');
-  if (frame != expected) fail("file", "it is cut short or changed: its SHA-256 does not fit");
+  if (frame != expected) fail("file", "it is truncated or changed: its SHA-256 does not match");
 }
 
 Cell read_cell(const Object& group) {
@@ -46,15 +45,15 @@ Cell read_cell(const Object& group) {
   cell.bottom = group.number("bottom");
   cell.top = group.number("top");
   const std::uint64_t moving = group.count("moving");
-  if (moving > 1) fail("/restart/cell/moving", "names no wall");
+  if (moving > 1) fail("/restart/cell/moving", "is not a wall");
   cell.moving = static_cast<MovingWall>(moving);
   const auto side = group.bytes("wall_grain_side");
   const Eigen::Matrix3Xd position = vectors(group, "/restart/cell", "wall_grain_position");
   if (static_cast<std::size_t>(position.cols()) != side.size()) {
-    fail("/restart/cell/wall_grain_position", "has another length than wall_grain_side");
+    fail("/restart/cell/wall_grain_position", "does not have the length of wall_grain_side");
   }
   for (std::size_t i = 0; i < side.size(); ++i) {
-    if (side[i] > 3) fail("/restart/cell/wall_grain_side", "names no wall");
+    if (side[i] > 3) fail("/restart/cell/wall_grain_side", "is not a wall");
     cell.wall_grains.push_back(
         {static_cast<WallSide>(side[i]), position.col(static_cast<Eigen::Index>(i))});
   }
@@ -63,7 +62,7 @@ Cell read_cell(const Object& group) {
 
 void read_restart(const Object& restart, Checkpoint& checkpoint) {
   if (restart.count("format") != hdf5::kRestartFormat) {
-    fail("/restart/format", "this program does not know the format; use the one that wrote it");
+    fail("/restart/format", "unknown format; use the program version that wrote it");
   }
   checkpoint.run = restart.text("run");
   checkpoint.time_s = restart.number("time_s");
@@ -77,7 +76,7 @@ void read_restart(const Object& restart, Checkpoint& checkpoint) {
   checkpoint.state.position = vectors(restart, "/restart", "position");
   checkpoint.state.velocity = vectors(restart, "/restart", "velocity");
   if (checkpoint.state.position.cols() != checkpoint.state.velocity.cols()) {
-    fail("/restart/velocity", "has another length than position");
+    fail("/restart/velocity", "does not have the length of position");
   }
   checkpoint.cell = read_cell(restart.child("cell"));
 }
@@ -98,6 +97,26 @@ Checkpoint decode_checkpoint(std::span<const std::byte> image) {
     checkpoint.observables[name] = value[0];
   }
   return checkpoint;
+}
+
+void require_plausible(const Checkpoint& checkpoint) {
+  constexpr double kFarthest = 1e9;  // [d]; grains may drift along the period
+  constexpr double kSteepest = 1.5;  // [rad]
+  const Cell& cell = checkpoint.cell;
+  if (!(cell.width > 0 && cell.depth > 0)) fail("/restart/cell", "has no width or no depth");
+  for (const double length :
+       {cell.width, cell.depth, cell.bottom, cell.top, checkpoint.state.wall_height}) {
+    if (std::abs(length) > kFarthest) fail("/restart/cell", "is larger than any cell");
+  }
+  if (std::abs(checkpoint.theta) > kSteepest) fail("/restart/theta", "is not a tilt of a cell");
+  if (!(checkpoint.state.position.array().abs() <= kFarthest).all()) {
+    fail("/restart/position", "has a grain far outside of any cell");
+  }
+  for (const WallGrain& grain : cell.wall_grains) {
+    if (grain.position.cwiseAbs().maxCoeff() > kFarthest) {
+      fail("/restart/cell/wall_grain_position", "has a grain far outside of any cell");
+    }
+  }
 }
 
 }  // namespace shearcell

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "shcd" in ASCII: tells this file from any other SQLite file.
+/// "shcd" in ASCII: identifies the file.
 constexpr std::int64_t kApplicationId = 0x73686364;
 constexpr std::int64_t kLayout = 1;
 
@@ -29,17 +29,11 @@ CREATE TABLE derived(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// Over key and content, each field as a netstring, so that an object cannot stand for another.
+/// Hash of key and content, so that an object cannot be stored under another key.
 std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
   Sha256 sha;
-  const auto field = [&sha](std::string_view text) {
-    sha.add(fmt::format("{}:", text.size())).add(text).add(",");
-  };
-  field("shearcell derived 1");
-  field(key.checkpoint);
-  field(key.measure);
-  field(fmt::format("{}", key.version));
-  return sha.add(content).hex();
+  sha.add_field("shearcell derived 1").add_field(key.checkpoint).add_field(key.measure);
+  return sha.add_field(std::to_string(key.version)).add(content).hex();
 }
 
 }  // namespace
@@ -57,12 +51,13 @@ DerivedCache::DerivedCache(const fs::path& store_folder) : file_(store_folder / 
 void DerivedCache::open() {
   const auto type = fs::symlink_status(file_).type();
   if (type != fs::file_type::regular && type != fs::file_type::not_found) {
-    return give_up(file_.string() +
-                   ": a folder, link or device stands where measures are kept; remove it");
+    return give_up(
+        file_.string() +
+        ": measures are kept in this file, but it is a folder, link or device; remove it");
   }
   database_.emplace(file_, sqlite::Open::create);
   sqlite::Database& database = *database_;
-  // What a power cut may spoil here is found by its hash and computed again: no syncs.
+  // No syncs: damage by a power cut is found by the hash, and the object is computed again.
   database.execute("PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA synchronous=OFF;");
   if (database.integer("PRAGMA page_count") == 0) {
     sqlite::WriteTransaction lock(database);
@@ -79,15 +74,16 @@ void DerivedCache::open() {
   if (database.integer("PRAGMA user_version") != kLayout) {
     throw StoreDamaged(file_.string() + ": another layout");
   }
-  // A trigger or view of a stranger would run whenever something is kept.
-  sqlite::Statement odd(database, "SELECT 1 FROM sqlite_schema WHERE instr(?1, sql) = 0");
-  if (odd.bind(1, kDerivedTable).step()) throw StoreDamaged(file_.string() + ": another schema");
+  // A foreign trigger or view would run at every insert.
+  sqlite::Statement odd(database, "SELECT 1 FROM sqlite_schema WHERE instr(?1, sql) = 0",
+                        kDerivedTable);
+  if (odd.step()) throw StoreDamaged(file_.string() + ": another schema");
 }
 
 void DerivedCache::start_over() {
   database_.reset();
   std::error_code ignored;
-  // A journal that outlives its database would be played back into the new one.
+  // A journal left behind would be played back into the new database.
   fs::remove(file_.string() + "-journal", ignored);
   fs::remove(file_, ignored);
   try {
@@ -127,7 +123,7 @@ std::vector<std::optional<std::vector<std::byte>>> DerivedCache::get(
                             "SELECT content, sha256 FROM derived WHERE checkpoint = ? AND "
                             "measure = ? AND version = ?");
     for (std::size_t k = 0; k < keys.size(); ++k) {
-      query.bind(1, keys[k].checkpoint).bind(2, keys[k].measure).bind(3, keys[k].version);
+      query.bind_all(keys[k].checkpoint, keys[k].measure, keys[k].version);
       if (query.step()) {
         std::vector<std::byte> content = query.blob(0);
         if (digest(keys[k], content) == query.text(1)) found[k] = std::move(content);
@@ -144,9 +140,10 @@ void DerivedCache::put(std::span<const DerivedObject> objects) {
     sqlite::WriteTransaction lock(database);
     sqlite::Statement insert(database, "INSERT OR REPLACE INTO derived VALUES(?,?,?,?,?)");
     for (const DerivedObject& object : objects) {
-      insert.bind(1, object.key.checkpoint).bind(2, object.key.measure);
-      insert.bind(3, object.key.version).bind(4, digest(object.key, object.content));
-      insert.bind(5, object.content).run();
+      const DerivedKey& key = object.key;
+      insert.bind_all(key.checkpoint, key.measure, key.version, digest(key, object.content),
+                      object.content);
+      insert.run();
     }
     lock.commit();
   });

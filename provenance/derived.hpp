@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was computed from checkpoints, kept so that it need not be computed again: derived.sqlite.
-// Not part of the record: it may be deleted at any time, and nothing in it is trusted.
+// A cache of results computed from checkpoints: derived.sqlite. It is not part of the record and
+// may be deleted at any time.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@
 
 namespace shearcell {
 
-/// Says wholly what an object is computed from.
+/// Everything that determines an object.
 struct DerivedKey {
   std::string checkpoint;     ///< SHA-256 of the checkpoint's file
-  std::string measure;        ///< what was computed and with which parameters, as a text
+  std::string measure;        ///< name of the computation with its parameters
   std::uint64_t version = 0;  ///< of the code that computes it
 };
 
@@ -29,20 +29,20 @@ struct DerivedObject {
 
 /// Derived objects of one store. For one thread at a time; several processes may use one store.
 ///
-/// No function throws for what the file is: an object that is missing, damaged or stands for
-/// another key is not given, a file that is no sound database is begun anew, and where nothing can
-/// be kept (no space, no permission, a foreign file) `trouble` says why and nothing is.
+/// The content of the file never causes an exception: an object that is missing, damaged or stored
+/// under another key is not returned, and a file that is not a valid database is replaced. If
+/// nothing can be stored (no space, no permission, a foreign file), `trouble` gives the reason.
 class DerivedCache {
  public:
   explicit DerivedCache(const std::filesystem::path& store_folder);
 
-  /// In the order of `keys`; nothing for those that are not kept.
+  /// In the order of `keys`; nothing for those that are not stored.
   std::vector<std::optional<std::vector<std::byte>>> get(std::span<const DerivedKey> keys);
 
-  /// Keeps all or none; replaces what has the same key.
+  /// Stores all or none; replaces objects with the same key.
   void put(std::span<const DerivedObject> objects);
 
-  /// Why nothing is kept; "" when all is well.
+  /// Why nothing can be stored; "" without trouble.
   const std::string& trouble() const { return trouble_; }
 
   static constexpr const char* kFile = "derived.sqlite";

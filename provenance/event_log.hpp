@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The append-only log: events in streams, chained by SHA-256 so that any later change shows.
+// The append-only log: events in streams, chained by SHA-256 so that any later change is detected.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ struct Event {
   std::string prev_hash;
   std::string hash;
 
-  /// The payload parsed, in the newest layout of its type (upcast.hpp). Throws StoreDamaged when it
-  /// is not a JSON object or newer than this program.
+  /// The payload in the newest layout of its type (events.hpp). Throws StoreDamaged when it is not
+  /// a JSON object or its layout is unknown.
   nlohmann::json body() const;
 };
 
@@ -37,17 +37,17 @@ struct NewEvent {
   nlohmann::json payload;  ///< in the newest layout of its type
 };
 
-/// Names one state of the log: the same head means the same log, event by event.
+/// Identifies the content of a log: equal heads mean equal logs.
 struct Head {
   std::uint64_t seq = 0;  ///< 0 when the log is empty
   std::string hash;       ///< 64 zeros when the log is empty
 };
 
-/// The first event at which the chain does not hold.
+/// The first event at which the chain is broken.
 struct ChainFault {
   std::uint64_t seq = 0;
-  /// "seq", "version", "prev_hash", "hash", or "content": one of stream, type, schema,
-  /// recorded_at and payload, which the chain covers together.
+  /// "seq", "version", "prev_hash", "hash", or "content" (stream, type, schema, recorded_at or
+  /// payload).
   std::string field;
   std::string message;
 };
@@ -62,25 +62,25 @@ class EventLog {
   explicit EventLog(sqlite::Database& database);
 
   /// Appends all events to one stream, or none. Throws ConcurrencyConflict when the stream's
-  /// version is not `expected_version` (0 for a stream that does not exist yet). The transaction
-  /// proves that the write lock is held, so that seq and version cannot be given twice.
+  /// version is not `expected_version` (0 for a new stream). The parameter `lock` requires the
+  /// caller to hold the write lock, so that no seq or version is assigned twice.
   std::vector<Event> append(const sqlite::WriteTransaction& lock, std::string_view stream,
                             std::uint64_t expected_version, std::span<const NewEvent> events);
 
-  /// Appends an event of another log at the end of its stream, as it stands there: type, layout,
-  /// time and payload. Its place in the chain is new.
+  /// Appends an event of another log to its stream, with type, layout, time and payload unchanged
+  /// and a new place in the chain.
   Event append_copy(const sqlite::WriteTransaction& lock, const Event& original);
 
   /// Number of events in the stream.
   std::uint64_t version(std::string_view stream) const;
   Head head() const;
-  /// Hash of the event with this number: 64 zeros for 0, "" when there is none.
+  /// Hash of the event with this number: 64 zeros for 0, "" for an unknown one.
   std::string hash_at(std::uint64_t seq) const;
   /// Events of one stream after a version, or of the whole log ("") in order of seq.
   std::vector<Event> events(std::string_view stream = "", std::uint64_t after_version = 0) const;
-  /// The same, one by one, for logs that are better not held in memory.
+  /// Visits all events without holding the log in memory.
   void for_each(const std::function<void(const Event&)>& visit) const;
-  /// Recomputes every hash. Nothing is returned when the chain holds.
+  /// Recomputes every hash. Returns nothing when the chain is valid.
   std::optional<ChainFault> verify_chain() const;
 
  private:

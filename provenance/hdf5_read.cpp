@@ -7,8 +7,8 @@
 #include <cstring>
 #include <utility>
 
-#include "core/limits.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell::hdf5 {
 
@@ -48,10 +48,10 @@ constexpr std::byte kFixedText{0x13};
   throw StoreDamaged("checkpoint: " + where + ": " + why);
 }
 
-/// The bytes end before what they should hold.
+/// The bytes end too early.
 struct Short {};
 
-/// Takes numbers from the front of some bytes. Throws Short.
+/// Reads from the front of a block. Throws Short.
 class Cursor {
  public:
   explicit Cursor(Bytes bytes) : rest_(bytes) {}
@@ -66,7 +66,7 @@ class Cursor {
     std::memcpy(&value, take(bytes).data(), bytes);
     return value;
   }
-  /// Bytes that version 1 of the format fills up to a multiple of eight.
+  /// Version 1 of the format pads to a multiple of eight bytes.
   Bytes take_padded(std::uint64_t size) {
     const Bytes front = take(size);
     take((8 - size % 8) % 8);
@@ -82,13 +82,13 @@ class Cursor {
   Bytes rest_;
 };
 
-/// Whether a datatype message is this one; zeros may follow it.
+/// Compares a datatype message; zeros may follow it.
 bool is_type(Bytes found, std::string_view wanted) {
   return found.size() >= wanted.size() &&
          std::memcmp(found.data(), wanted.data(), wanted.size()) == 0;
 }
 
-/// Sizes along each dimension: none for a single value. Nothing when it is no such message.
+/// Size of each dimension, empty for a single value; nothing for an unsupported message.
 std::optional<std::vector<std::uint64_t>> shape_of(Bytes space) {
   if (space.size() < 8) return std::nullopt;
   Cursor cursor(space);
@@ -113,9 +113,9 @@ Object::Bytes Object::at(std::uint64_t address, std::uint64_t size) const {
 
 Object Object::root(Bytes file, std::size_t user_block) {
   constexpr std::size_t superblock_size = 96;
-  if (file.size() < superblock_size) refuse("file", "it is cut short");
+  if (file.size() < superblock_size) refuse("file", "it is truncated");
   Cursor cursor(file);
-  if (cursor.text(8) != "\x89HDF\r\n\x1a\n") refuse("file", "it is no HDF5");
+  if (cursor.text(8) != "\x89HDF\r\n\x1a\n") refuse("file", "it is not HDF5");
   const bool known =
       cursor.number(5) == 0 && cursor.number(2) == 0x0808;  // versions, address sizes
   cursor.take(9);
@@ -123,7 +123,8 @@ Object Object::root(Bytes file, std::size_t user_block) {
     refuse("file", "its superblock is not one that this program writes");
   }
   cursor.take(8);
-  if (cursor.number(8) != user_block + file.size()) refuse("file", "it is cut short or has a tail");
+  if (cursor.number(8) != user_block + file.size())
+    refuse("file", "it does not have the size that it states");
   cursor.take(16);
   return {file, cursor.number(8), ""};
 }
@@ -132,24 +133,24 @@ Object::Object(Bytes file, std::uint64_t address, std::string path)
     : file_(file), path_(std::move(path)) {
   try {
     Cursor prefix(at(address, 16));
-    if (prefix.number(1) != 1) fail("is not laid out as this program writes it");
+    if (prefix.number(1) != 1) fail("has an unsupported object header");
     prefix.take(1);
     std::uint64_t messages = prefix.number(2);
     if (messages > kMostMessages) fail("has too many messages");
     prefix.take(4);
     std::vector<Bytes> blocks = {at(address + 16, prefix.number(4))};
-    // The vector grows while it is read.
+    // read_block may append to the vector.
     for (std::size_t b = 0; b < blocks.size(); ++b) read_block(blocks[b], blocks, messages);
-    if (messages != 0) fail("has fewer messages than it claims");
+    if (messages != 0) fail("has fewer messages than stated");
   } catch (const Short&) {
-    fail("is cut short");
+    fail("is truncated");
   }
 }
 
-/// Messages left to read are counted down, so that blocks which point at each other come to an end.
+/// `messages` counts down, so blocks that point at each other cannot loop forever.
 void Object::read_block(Bytes block, std::vector<Bytes>& blocks, std::uint64_t& messages) {
   for (Cursor cursor(block); cursor.rest().size() >= 8;) {
-    if (messages == 0) fail("has more messages than it claims");
+    if (messages == 0) fail("has more messages than stated");
     --messages;
     const auto type = static_cast<unsigned>(cursor.number(2));
     const std::uint64_t size = cursor.number(2);
@@ -249,20 +250,20 @@ Object Object::child(const std::string& name) const {
   const auto found = links_.find(name);
   if (found == links_.end()) {
     refuse(below(name),
-           plain_ ? "is missing" : "is missing, or its group is not laid out as this program does");
+           plain_ ? "is missing" : "is missing, or its group has an unsupported layout");
   }
-  if (!found->second.hard) refuse(below(name), "is a link to elsewhere");
+  if (!found->second.hard) refuse(below(name), "is not a hard link");
   return {file_, found->second.address, below(name)};
 }
 
 std::vector<std::string> Object::names() const {
-  if (!plain_ || layout_) fail("is not a group as this program writes it");
+  if (!plain_ || layout_) fail("is not a group of a supported layout");
   std::vector<std::string> found;
   for (const auto& [name, link] : links_) found.push_back(name);
   return found;
 }
 
-/// The bytes of an attribute that holds one value of this type (any type when it is empty).
+/// The bytes of an attribute with one value of this type (any type when it is empty).
 Object::Bytes Object::attribute(const std::string& name, std::string_view type,
                                 std::size_t size) const {
   const auto found = attributes_.find(name);
@@ -272,7 +273,7 @@ Object::Bytes Object::attribute(const std::string& name, std::string_view type,
   if (!shape || !shape->empty()) refuse(below(name), "is not a single value");
   if (!type.empty() && !is_type(attribute.type, type))
     refuse(below(name), "has another number type");
-  if (attribute.data.size() < size) refuse(below(name), "is cut short");
+  if (attribute.data.size() < size) refuse(below(name), "is truncated");
   return attribute.data.first(size);
 }
 
@@ -290,7 +291,7 @@ std::uint64_t Object::count(const std::string& name) const {
 }
 
 std::string Object::text(const std::string& name) const {
-  attribute(name, "", 0);  // it is there, and one value
+  attribute(name, "", 0);  // checks that it exists and is one value
   Cursor type(attributes_.at(name).type);
   if (type.rest().size() < 8 || type.take(1).front() != kFixedText) {
     refuse(below(name), "is not a text of fixed length");
@@ -303,23 +304,23 @@ std::string Object::text(const std::string& name) const {
   return value.substr(0, value.find('\0'));
 }
 
-/// The block of a dataset, once its shape is the expected one and the block lies in this very file.
+/// The data of a dataset, after its shape and place in this file were checked.
 Object::Bytes Object::values(const std::string& name, std::string_view type, std::uint64_t columns,
                              std::size_t bytes_each) const {
   const Object dataset = child(name);
   if (!dataset.plain_ || !dataset.layout_ || !dataset.links_.empty()) {
-    dataset.fail("is not stored as one plain block of this file");
+    dataset.fail("is not stored contiguously in this file");
   }
   if (!dataset.type_ || !is_type(*dataset.type_, type)) dataset.fail("has another number type");
   const auto shape = dataset.space_ ? shape_of(*dataset.space_) : std::nullopt;
   if (!shape || shape->size() != (columns == 0 ? 1 : 2) ||
       (columns != 0 && shape->back() != columns)) {
-    dataset.fail("has another shape");
+    dataset.fail("has a wrong shape");
   }
-  if (shape->front() > StoreLimits::grains) dataset.fail("claims too many rows");
+  if (shape->front() > StoreLimits::grains) dataset.fail("has too many rows");
   const std::uint64_t size = shape->front() * std::max<std::uint64_t>(columns, 1) * bytes_each;
   if (size == 0) return {};
-  if (dataset.layout_->size != size) dataset.fail("does not have the bytes that it claims");
+  if (dataset.layout_->size != size) dataset.fail("does not have the size of its shape");
   return dataset.at(dataset.layout_->address, size);
 }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading the HDF5 that checkpoint.cpp writes, and no other, from bytes that nobody vouches for.
+// Reads the part of HDF5 that checkpoint.cpp writes, from untrusted bytes. The HDF5 library is not
+// used because version 1.10 crashes on some forged files.
 //
-// The HDF5 library is not made for hostile files: 1.10 is known to crash on forged ones. A
-// checkpoint needs little of the format: superblock 0, object headers of version 1, links and
-// attributes kept in them, and data in one plain block each. That much is read here, with every
-// address, length and count checked against the file before it is used; whatever else HDF5 allows
-// (soft and external links, chunks, filters, dense groups, shared types) is refused.
-// Format: https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
+// Supported: superblock 0, object headers of version 1 with links and attributes in them,
+// contiguous data. Every address, length and count is checked before use. Everything else (soft and
+// external links, chunks, filters, dense groups, shared types) is refused. Format:
+// https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
 #pragma once
 
 #include <cstddef>
@@ -20,24 +19,37 @@
 
 namespace shearcell::hdf5 {
 
-/// A group or a dataset. It refers to the image, which must outlive it. Every function throws
-/// StoreDamaged, naming the path within the file, when something is not as it must be.
+/// The frame of a checkpoint is the HDF5 user block: two lines of text padded with zeros. It holds
+/// the SHA-256 of all bytes after it, so damage is found before HDF5 is interpreted.
+inline constexpr std::size_t kFrameSize = 512;
+inline constexpr const char* kFrameTitle = "shearcell checkpoint 1\n";
+
+/// Version of the layout of /restart.
+inline constexpr std::uint64_t kRestartFormat = 1;
+
+/// The text of the frame for a digest, without padding.
+inline std::string frame_text(const std::string& sha256) {
+  return kFrameTitle + ("sha256 of all bytes after the first 512: " + sha256 + "\n");
+}
+
+/// A group or a dataset. It refers to the file's bytes, which must outlive it. All functions throw
+/// StoreDamaged, which names the path within the file.
 class Object {
  public:
   using Bytes = std::span<const std::byte>;
 
-  /// The root group of the HDF5 part of a file, which is all of it after `user_block` bytes.
+  /// The root group; `hdf5_part` is the file after `user_block` bytes.
   static Object root(Bytes hdf5_part, std::size_t user_block);
 
   Object child(const std::string& name) const;
-  std::vector<std::string> names() const;  ///< of what is in the group, sorted
+  std::vector<std::string> names() const;  ///< of the members of a group, sorted
 
-  // Attributes that hold one value.
+  // Attributes with one value.
   double number(const std::string& name) const;        ///< finite
   std::uint64_t count(const std::string& name) const;  ///< 64 bits, unsigned
   std::string text(const std::string& name) const;     ///< of fixed length, at most 4096 bytes
 
-  // All values of a dataset with this many columns (0: a plain list), row by row.
+  // All values of a dataset with this number of columns (0: one-dimensional), row by row.
   std::vector<double> numbers(const std::string& name, std::uint64_t columns) const;
   std::vector<std::uint8_t> bytes(const std::string& name) const;
 
@@ -72,7 +84,7 @@ class Object {
   std::map<std::string, Attribute> attributes_;
   std::optional<Bytes> type_, space_;  ///< of a dataset
   std::optional<Layout> layout_;
-  bool plain_ = true;  ///< no filter, no external file, no dense storage
+  bool plain_ = true;  ///< without filter, external file and dense storage
 };
 
 }  // namespace shearcell::hdf5

@@ -6,11 +6,10 @@
 namespace shearcell::hdf5 {
 
 hid_t require(hid_t result, const std::string& what) {
-  if (result < 0) throw std::runtime_error("HDF5 cannot write " + what + "");
+  if (result < 0) throw std::runtime_error("HDF5 cannot write " + what);
   return result;
 }
 
-/// Neither files nor groups record the time of writing, and links are stored compactly.
 Handle creation_list(hid_t kind) {
   Handle list(require(H5Pcreate(kind), "a property list"), H5Pclose);
   H5Pset_obj_track_times(list.get(), false);
@@ -20,7 +19,7 @@ Handle creation_list(hid_t kind) {
 
 Handle make_group(const Handle& parent, const std::string& name, std::size_t links) {
   const Handle list = creation_list(H5P_GROUP_CREATE);
-  // More than eight links would go into a heap, which hdf5_read.cpp does not read.
+  // By default more than eight links are stored in a heap, which hdf5_read.cpp does not read.
   if (links > 8) H5Pset_link_phase_change(list.get(), 65535, 0);
   return {require(H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
                   "group " + name),
@@ -52,7 +51,6 @@ void put_attribute(const Handle& object, const std::string& name, std::uint64_t 
   put_attribute(object, name, H5T_STD_U64LE, &value);
 }
 
-/// Strings of one fixed length, cells.size() / length of them.
 void put_strings(const Handle& object, const std::string& name, const std::string& cells,
                  std::size_t length, const Shape& shape) {
   const Handle type(require(H5Tcopy(H5T_C_S1), "a text type"), H5Tclose);

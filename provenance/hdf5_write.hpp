@@ -1,25 +1,67 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writing groups, attributes and datasets so that equal content gives equal bytes. Each throws
-// std::runtime_error that names what HDF5 could not write.
+// Writes groups, attributes and datasets with the HDF5 library; equal content gives equal bytes.
+// Functions throw std::runtime_error, which names the object that could not be written.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
+#include <hdf5.h>
 
-#include "provenance/hdf5_handle.hpp"
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace shearcell::hdf5 {
 
+/// To be held around all calls of the library: it may be built without thread safety.
+inline std::mutex& library_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// Stops HDF5 from printing errors to standard error; they are reported as exceptions.
+class Quiet {
+ public:
+  Quiet() {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// Owns an HDF5 identifier; a negative one is the result of a failed call.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&&) = delete;
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  hid_t get() const { return id_; }
+  bool valid() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
 using Shape = std::vector<hsize_t>;
 
-/// The result of a call, when it did not fail.
+/// Returns the result of a call; throws if it failed.
 hid_t require(hid_t result, const std::string& what);
 
-/// Property list for creating files, groups or datasets without times of writing.
+/// Property list for creating files, groups or datasets without modification times.
 Handle creation_list(hid_t kind);
 
-/// For so many members.
+/// `links`: the number of members, if more than 8.
 Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0);
 
 /// A scalar when the shape is empty.

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "core/limits.hpp"
 #include "provenance/event_log.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell {
 
@@ -28,7 +28,7 @@ bool is_too_deep(std::string_view text) {
   return false;
 }
 
-/// Gives up at the first value that is nested too deeply.
+/// Stops at the first value that is nested too deeply.
 class Depth : public nlohmann::json::json_sax_t {
  public:
   bool null() override { return true; }
@@ -82,8 +82,8 @@ std::uint64_t count_at(const nlohmann::json& object, const char* key) {
 }
 
 StoreDamaged damaged_payload(const Event& event, const nlohmann::json::exception& problem) {
-  return StoreDamaged(fmt::format("event {} ({} of {}): its payload is not as it must be: {}",
-                                  event.seq, event.type, event.stream, problem.what()));
+  return StoreDamaged(fmt::format("event {} ({} of {}): its payload is invalid: {}", event.seq,
+                                  event.type, event.stream, problem.what()));
 }
 
 }  // namespace shearcell

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <chrono>
 #include <fstream>
 #include <random>
 #include <sstream>
@@ -36,7 +35,7 @@ constexpr std::string_view kLeaseColumns =
     "SELECT run, host, place, pid, started, token, attempt, renewed_at_ms, expires_at_ms FROM "
     "leases ";
 
-// Clocks are corrected by a little now and then; that is no reason to take a run from its holder.
+// Small corrections of the clock must not end a lease.
 constexpr std::uint64_t kClockSlackMs = 5000;
 
 bool has_table(const Database& database) {
@@ -45,40 +44,36 @@ bool has_table(const Database& database) {
 }
 
 Lease read_lease(const Statement& row) {
-  return {.run = row.text(0),
-          .holder = {.host = row.text(1),
-                     .place = row.text(2),
-                     .pid = row.u64(3),
-                     .started = row.u64(4),
-                     .token = row.text(5)},
-          .attempt = row.u64(6),
-          .renewed_at_ms = row.u64(7),
-          .expires_at_ms = row.u64(8)};
+  Lease lease;
+  Holder& h = lease.holder;
+  row.get(lease.run, h.host, h.place, h.pid, h.started, h.token, lease.attempt, lease.renewed_at_ms,
+          lease.expires_at_ms);
+  return lease;
 }
 
-/// This boot and this space of process ids: within both, a process id means one process.
+/// Boot id and process-id namespace: within both, a process id identifies one process.
 std::string this_place() {
   std::string boot;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id") >> std::ws, boot);
   std::array<char, 64> space{};
   const ssize_t length = readlink("/proc/self/ns/pid", space.data(), space.size() - 1);
-  if (boot.empty() || length <= 0) return {};  // without /proc nothing is known of the others
+  if (boot.empty() || length <= 0) return {};  // no /proc: processes cannot be checked
   return boot + " " + std::string(space.data(), static_cast<std::size_t>(length));
 }
 
-/// When a process began, in clock ticks since boot; nothing when it has ended.
+/// Start time of a process [clock ticks since boot]; nothing when it has ended.
 std::optional<std::uint64_t> start_of(std::uint64_t pid) {
   std::ifstream file(fmt::format("/proc/{}/stat", pid));
   std::string line;
   if (!std::getline(file, line)) return std::nullopt;
-  // The second field is the program's name in brackets, which may hold anything.
+  // The second field is the program's name in brackets and may contain any character.
   const auto end_of_name = line.rfind(')');
   if (end_of_name == std::string::npos) return std::nullopt;
   std::istringstream fields(line.substr(end_of_name + 1));
   std::string state, skipped;
   fields >> state;
-  if (state == "Z" || state == "X") return std::nullopt;  // dead, and not yet waited for
-  constexpr int kBetween = 18;                            // fields 4 to 21; field 22 is the start
+  if (state == "Z" || state == "X") return std::nullopt;  // dead, not yet reaped
+  constexpr int kBetween = 18;  // fields 4 to 21; field 22 is the start time
   for (int i = 0; i < kBetween; ++i) fields >> skipped;
   std::uint64_t started = 0;
   if (!(fields >> started)) return std::nullopt;
@@ -110,12 +105,6 @@ Holder this_process() {
   return holder;
 }
 
-std::uint64_t now_ms() {
-  using namespace std::chrono;
-  return static_cast<std::uint64_t>(
-      duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count());
-}
-
 bool lapsed(const Lease& lease, std::uint64_t now) {
   return now >= lease.expires_at_ms || lease.renewed_at_ms > now + kClockSlackMs ||
          known_dead(lease.holder);
@@ -131,8 +120,7 @@ void create_leases(Database& database) {
 
 std::optional<Lease> query_lease(const Database& database, std::string_view run) {
   if (!has_table(database)) return std::nullopt;
-  Statement query(database, std::string(kLeaseColumns) + "WHERE run = ?");
-  query.bind(1, run);
+  Statement query(database, std::string(kLeaseColumns) + "WHERE run = ?", run);
   if (!query.step()) return std::nullopt;
   return read_lease(query);
 }
@@ -146,15 +134,15 @@ std::vector<Lease> query_leases(const Database& database) {
 }
 
 void put_lease(Database& database, const Lease& lease) {
-  Statement put(database, "INSERT OR REPLACE INTO leases VALUES(?,?,?,?,?,?,?,?,?)");
-  put.bind(1, lease.run).bind(2, lease.holder.host).bind(3, lease.holder.place);
-  put.bind(4, lease.holder.pid).bind(5, lease.holder.started).bind(6, lease.holder.token);
-  put.bind(7, lease.attempt).bind(8, lease.renewed_at_ms).bind(9, lease.expires_at_ms).run();
+  const Holder& h = lease.holder;
+  Statement(database, "INSERT OR REPLACE INTO leases VALUES(?,?,?,?,?,?,?,?,?)", lease.run, h.host,
+            h.place, h.pid, h.started, h.token, lease.attempt, lease.renewed_at_ms,
+            lease.expires_at_ms)
+      .run();
 }
 
 void drop_lease(Database& database, std::string_view run, std::string_view token) {
-  Statement drop(database, "DELETE FROM leases WHERE run = ? AND token = ?");
-  drop.bind(1, run).bind(2, token).run();
+  Statement(database, "DELETE FROM leases WHERE run = ? AND token = ?", run, token).run();
 }
 
 }  // namespace shearcell

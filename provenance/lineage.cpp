@@ -7,7 +7,7 @@
 #include <set>
 
 #include "provenance/errors.hpp"
-#include "provenance/json_text.hpp"
+#include "provenance/events.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -16,52 +16,51 @@ namespace {
 
 using nlohmann::json;
 
-/// Folds the events of one run. Types that say nothing about attempts or checkpoints change
-/// nothing.
-class Folding {
+/// Folds the events of one run into its lineage. Other events change nothing.
+class Fold {
  public:
-  explicit Folding(RunLineage& lineage) : lineage_(lineage) {}
+  explicit Fold(RunLineage& lineage) : lineage_(lineage) {}
 
   void take(const Event& event) {
-    try {
-      const json body = event.body();
-      if (event.type == "RunStarted" || event.type == "RunResumed") begin(event, body);
-      if (event.type == "RunCompleted") end(event, AttemptOutcome::completed, "");
-      if (event.type == "RunInterrupted") {
-        end(event, AttemptOutcome::interrupted, body.at("why").get<std::string>());
-      }
-      if (event.type == "RunFailed") {
-        end(event, AttemptOutcome::failed, body.at("why").get<std::string>());
-      }
-      if (event.type == "CheckpointRecorded") record(event, body);
-      if (event.type == "CheckpointRejected") {
-        if (CheckpointHistory* known = find(body)) known->rejected = true;
-      }
-      if (event.type == "CheckpointPruned" || event.type == "CheckpointRegenerated") {
-        if (CheckpointHistory* known = find(body)) known->pruned = event.type == "CheckpointPruned";
-      }
-    } catch (const json::exception& problem) {
-      throw damaged_payload(event, problem);
-    }
+    std::visit(events::Overloaded{
+                   [&](const events::RunStarted& e) {
+                     begin(event, e.host, lineage_.run.parent, e.parent_checkpoint.value_or(""));
+                   },
+                   [&](const events::RunResumed& e) {
+                     begin(event, e.host, lineage_.run.id, e.from.sha256);
+                   },
+                   [&](const events::RunCompleted&) { end(event, AttemptOutcome::completed, ""); },
+                   [&](const events::RunInterrupted& e) {
+                     end(event, AttemptOutcome::interrupted, e.why);
+                   },
+                   [&](const events::RunFailed& e) { end(event, AttemptOutcome::failed, e.why); },
+                   [&](const events::CheckpointRecorded& e) { record(event, e); },
+                   [&](const events::CheckpointRejected& e) {
+                     mark(e.sha256, &CheckpointHistory::rejected, true);
+                   },
+                   [&](const events::CheckpointPruned& e) {
+                     mark(e.sha256, &CheckpointHistory::pruned, true);
+                   },
+                   [&](const events::CheckpointRegenerated& e) {
+                     mark(e.sha256, &CheckpointHistory::pruned, false);
+                   },
+                   [](const auto&) {}},
+               events::decode(event));
   }
 
  private:
-  void begin(const Event& event, const json& body) {
+  void begin(const Event& event, const json& host, const std::string& from_run,
+             const std::string& from_checkpoint) {
     if (!lineage_.attempts.empty() && lineage_.attempts.back().outcome == AttemptOutcome::running) {
       lineage_.attempts.back().outcome = AttemptOutcome::lost;
     }
-    Attempt attempt;
+    Attempt& attempt = lineage_.attempts.emplace_back();
     attempt.seq = event.seq;
     attempt.started_at = event.recorded_at;
-    if (body.contains("host") && body["host"].is_object()) attempt.host = body["host"];
-    if (body.contains("from")) {
-      attempt.from_run = lineage_.run.id;
-      attempt.from_checkpoint = body["from"].at("sha256").get<std::string>();
-    } else if (body.contains("parent_checkpoint") && body["parent_checkpoint"].is_string()) {
-      attempt.from_run = lineage_.run.parent;
-      attempt.from_checkpoint = body["parent_checkpoint"].get<std::string>();
-    }
-    lineage_.attempts.push_back(std::move(attempt));
+    if (host.is_object()) attempt.host = host;
+    if (from_checkpoint.empty()) return;
+    attempt.from_run = from_run;
+    attempt.from_checkpoint = from_checkpoint;
   }
 
   void end(const Event& event, AttemptOutcome outcome, const std::string& why) {
@@ -72,36 +71,39 @@ class Folding {
     attempt.why = why;
   }
 
-  void record(const Event& event, const json& body) {
-    CheckpointHistory checkpoint;
-    CheckpointRecord& c = checkpoint.record;
-    c.run = lineage_.run.id;
-    c.step = count_at(body, "step");
-    body.at("cycle").get_to(c.cycle);
-    body.at("time_s").get_to(c.time_s);
-    c.size = count_at(body, "size");
-    body.at("sha256").get_to(c.sha256);
-    body.at("state_hash").get_to(c.state_hash);
-    if (!is_sha256_hex(c.sha256)) {
-      throw StoreDamaged(fmt::format("event {} ({} of {}): '{:.64}' is no SHA-256", event.seq,
-                                     event.type, event.stream, c.sha256));
+  void record(const Event& event, const events::CheckpointRecorded& e) {
+    if (!is_sha256_hex(e.sha256)) {
+      throw StoreDamaged(fmt::format("event {} ({} of {}): '{:.64}' is not a SHA-256", event.seq,
+                                     event.type, event.stream, e.sha256));
     }
-    c.file = ObjectStore::file_of(c.sha256);
-    c.seq = event.seq;
+    CheckpointHistory checkpoint;
+    checkpoint.record = {.run = lineage_.run.id,
+                         .step = e.step,
+                         .cycle = e.cycle,
+                         .time_s = e.time_s,
+                         .file = ObjectStore::file_of(e.sha256),
+                         .size = e.size,
+                         .sha256 = e.sha256,
+                         .state_hash = e.state_hash,
+                         .observables = {},
+                         .seq = event.seq};
     checkpoint.recorded_at = event.recorded_at;
     if (!lineage_.attempts.empty()) {
       checkpoint.attempt = lineage_.attempts.size() - 1;
-      lineage_.attempts.back().checkpoints.push_back(c.sha256);
+      lineage_.attempts.back().checkpoints.push_back(e.sha256);
     }
-    if (CheckpointHistory* known = find(body)) {
+    if (CheckpointHistory* known = find(e.sha256)) {
       *known = std::move(checkpoint);  // recorded again after it was rejected
     } else {
       lineage_.checkpoints.push_back(std::move(checkpoint));
     }
   }
 
-  CheckpointHistory* find(const json& body) {
-    const auto& sha256 = body.at("sha256").get_ref<const std::string&>();
+  void mark(const std::string& sha256, bool CheckpointHistory::*property, bool value) {
+    if (CheckpointHistory* known = find(sha256)) known->*property = value;
+  }
+
+  CheckpointHistory* find(const std::string& sha256) {
     for (CheckpointHistory& known : lineage_.checkpoints) {
       if (known.record.sha256 == sha256) return &known;
     }
@@ -111,13 +113,13 @@ class Folding {
   RunLineage& lineage_;
 };
 
-/// The state of the run from which another stage would have begun just before event `seq`.
+/// The newest checkpoint of the run that had a file just before event `seq`; "" without any.
 std::string newest_before(const RunRecord& run, const std::vector<Event>& events,
                           std::uint64_t seq) {
   RunLineage then{run, {}, {}};
-  Folding folding(then);
+  Fold fold(then);
   for (const Event& event : events) {
-    if (event.seq < seq) folding.take(event);
+    if (event.seq < seq) fold.take(event);
   }
   const CheckpointHistory* newest = nullptr;
   for (const CheckpointHistory& c : then.checkpoints) {
@@ -128,22 +130,6 @@ std::string newest_before(const RunRecord& run, const std::vector<Event>& events
 }
 
 }  // namespace
-
-const char* name_of(AttemptOutcome outcome) {
-  switch (outcome) {
-    case AttemptOutcome::running:
-      return "running";
-    case AttemptOutcome::completed:
-      return "completed";
-    case AttemptOutcome::interrupted:
-      return "interrupted";
-    case AttemptOutcome::failed:
-      return "failed";
-    case AttemptOutcome::lost:
-      return "lost";
-  }
-  return "unknown";
-}
 
 const CheckpointHistory* RunLineage::find(std::string_view sha256) const {
   const auto found =
@@ -165,8 +151,8 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
   for (const RunRecord& run : chain) {
     RunLineage stage{run, {}, {}};
     std::vector<Event> events = store.events("run/" + run.id);
-    Folding folding(stage);
-    for (const Event& event : events) folding.take(event);
+    Fold fold(stage);
+    for (const Event& event : events) fold.take(event);
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;
       attempt.from_checkpoint = newest_before(stages.back().run, before, attempt.seq);
@@ -180,19 +166,15 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
 
 std::optional<ManifestText> find_manifest(const Store& store, const std::string& sha256) {
   for (const Event& event : store.events("manifest/" + sha256)) {
-    if (event.type != "ManifestRegistered") continue;
-    const json body = event.body();
-    const auto text = [&](const char* key) {
-      return body.contains(key) && body[key].is_string() ? body[key].get<std::string>() : "";
-    };
-    ManifestText manifest{sha256, text("path"), text("text"), event.recorded_at};
-    if (sha256_hex(manifest.text) != sha256) {
+    if (event.type != events::ManifestRegistered::kType) continue;
+    auto found = std::get<events::ManifestRegistered>(events::decode(event));
+    if (sha256_hex(found.text) != sha256) {
       throw StoreDamaged(fmt::format(
-          "event {} (ManifestRegistered): its text has another SHA-256 than the manifest's; run "
+          "event {} (ManifestRegistered): its text has another SHA-256 than the manifest; run "
           "`verify`",
           event.seq));
     }
-    return manifest;
+    return ManifestText{sha256, std::move(found.path), std::move(found.text), event.recorded_at};
   }
   return std::nullopt;
 }

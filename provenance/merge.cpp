@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "provenance/errors.hpp"
+#include "provenance/events.hpp"
 #include "provenance/merge_run.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/queries.hpp"
@@ -21,14 +22,11 @@ namespace {
 
 using sqlite::Database;
 
-/// What makes two events of different logs the same event.
+/// Equal for events of different logs that are the same event.
 std::string content_key(const Event& event) {
   Sha256 sha;
-  for (const std::string& field : {event.stream, event.type, fmt::format("{}", event.schema),
-                                   event.recorded_at, event.payload}) {
-    sha.add(fmt::format("{}:", field.size())).add(field).add(",");
-  }
-  return sha.hex();
+  sha.add_field(event.stream).add_field(event.type).add_field(std::to_string(event.schema));
+  return sha.add_field(event.recorded_at).add_field(event.payload).hex();
 }
 
 std::set<std::string> content_keys(const EventLog& log) {
@@ -59,8 +57,8 @@ void require_equal_states(const Database& a, const std::string& a_name, const Da
     const auto same_step = known.find(step);
     if (same_step == known.end() || share(same_step->second, states)) continue;
     throw MergeConflict(fmt::format(
-        "run {} at step {}: {} has state {:.12} and {} has state {:.12}; one of them was computed "
-        "wrongly: `shearcell verify --replay` in each tells which. Nothing was merged",
+        "run {} at step {}: {} has state {:.12} and {} has state {:.12}; one of them is wrong: "
+        "run `shearcell verify --replay` in each. Nothing was merged",
         step.first, step.second, a_name, *same_step->second.begin(), b_name, *states.begin()));
   }
 }
@@ -77,14 +75,14 @@ void require_equal_runs(const Database& a, const std::string& a_name, const Data
         other.grains == run.grains) {
       continue;
     }
-    throw MergeConflict(
-        fmt::format("run {}: {} and {} know it with different parameters; one of them was changed "
-                    "by hand. Nothing was merged",
-                    run.id, a_name, b_name));
+    throw MergeConflict(fmt::format(
+        "run {}: {} and {} have different parameters for it; one of them was changed by "
+        "hand. Nothing was merged",
+        run.id, a_name, b_name));
   }
 }
 
-/// Records of the source whose files the store will need.
+/// Checkpoints of the source whose files must be copied.
 std::vector<CheckpointRecord> needed_objects(const Database& into, const Database& tables) {
   std::vector<CheckpointRecord> needed;
   for (CheckpointRecord& record : query_checkpoints(tables)) {
@@ -104,16 +102,18 @@ std::vector<std::byte> read_object(const MergeSource& source, const CheckpointRe
   }
 }
 
+constexpr std::string_view kMergeStream = "store/merge";
+
 bool merged_before(const EventLog& log, const Head& head) {
-  for (const Event& event : log.events("store/merge")) {
-    const nlohmann::json known = event.body().value("/head/hash"_json_pointer, nlohmann::json());
-    if (known == head.hash) return true;
+  for (const Event& event : log.events(kMergeStream)) {
+    const events::Any decoded = events::decode(event);
+    const auto* merged = std::get_if<events::StoreMerged>(&decoded);
+    if (merged != nullptr && merged->head.is_object() &&
+        merged->head.value("hash", nlohmann::json()) == head.hash) {
+      return true;
+    }
   }
   return false;
-}
-
-bool is_empty(const EventLog& log, const std::string& stream) {
-  return log.version(stream) == 0;
 }
 
 }  // namespace
@@ -189,7 +189,7 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   }
   std::set<std::string> new_streams;
   for (const Event& event : source.events) {
-    if (event.stream.starts_with("manifest/") && is_empty(log, event.stream)) {
+    if (event.stream.starts_with("manifest/") && log.version(event.stream) == 0) {
       new_streams.insert(event.stream);
     }
   }
@@ -210,15 +210,12 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
     if (const auto closing = run.closing_event(into)) take(*closing);
   }
   if (merged_before(log, source.head)) return;
-  const NewEvent merged{"StoreMerged",
-                        {{"source", source.folder.string()},
-                         {"head", {{"seq", source.head.seq}, {"hash", source.head.hash}}},
-                         {"events", report.events},
-                         {"checkpoints", report.checkpoints}}};
-  for (const Event& event :
-       log.append(lock, "store/merge", log.version("store/merge"), std::span(&merged, 1))) {
-    apply(into, event);
-  }
+  const NewEvent merged = events::encode(
+      events::StoreMerged{.source = source.folder.string(),
+                          .head = {{"seq", source.head.seq}, {"hash", source.head.hash}},
+                          .events = report.events,
+                          .checkpoints = report.checkpoints});
+  log.append(lock, kMergeStream, log.version(kMergeStream), std::span(&merged, 1));
 }
 
 }  // namespace shearcell

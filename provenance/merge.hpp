@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Folds the events and checkpoints of other stores into one.
+// Merges the events and checkpoints of other stores into one.
 //
-// Both logs are sets of facts about the same runs, so merging is a union: an event that the store
-// has already (equal stream, type, layout, time and payload) is passed over, and so is a checkpoint
-// that it has, with whatever led to nothing but such checkpoints. What is taken keeps its time and
-// payload, and gets a new place in the chain. Merging twice changes nothing. The furthest state of
-// a run wins: completed before interrupted, a later step before an earlier one.
+// The result is the union: events that the store already has (equal stream, type, layout, time and
+// payload) and checkpoints that it already has are skipped, and so are attempts that recorded
+// nothing else. Copied events keep time and payload and get a new place in the chain. The furthest
+// state of a run wins: a later step first, then completed before failed, interrupted, running,
+// declared. Merging the same store again changes nothing.
 #pragma once
 
 #include <cstdint>
@@ -22,15 +22,15 @@
 namespace shearcell {
 
 struct MergeReport {
-  std::string source;             ///< folder, as it was named
+  std::string source;             ///< folder, as given
   Head head;                      ///< of the source when it was read
-  std::uint64_t events = 0;       ///< that were taken
-  std::uint64_t checkpoints = 0;  ///< whose files were copied
-  std::uint64_t bytes = 0;        ///< of these files
+  std::uint64_t events = 0;       ///< number of copied events
+  std::uint64_t checkpoints = 0;  ///< number of copied files
+  std::uint64_t bytes = 0;        ///< size of these files
 };
 
-/// One snapshot of a store to merge from, found sound: chain and events. Reading does not change
-/// it, nor its schema.
+/// A snapshot of a store to merge from, whose chain and events were checked. The store itself is
+/// not changed.
 struct MergeSource {
   std::filesystem::path folder;
   Head head;
@@ -39,8 +39,8 @@ struct MergeSource {
   ObjectStore objects;
 };
 
-/// With `runs`, of these runs and the manifests only. Throws NotFound when there is no store and
-/// StoreDamaged when its chain does not hold.
+/// If `runs` is not empty, only these runs and the manifests. Throws NotFound when there is no
+/// store and StoreDamaged when its chain does not hold.
 MergeSource read_merge_source(const std::filesystem::path& folder,
                               const std::set<std::string>& runs = {});
 
@@ -52,11 +52,12 @@ void require_agreement(const sqlite::Database& into, const std::string& name,
 /// Reads and hashes every file that `copy_objects` would copy. Throws StoreDamaged.
 void check_objects(const sqlite::Database& into, const MergeSource& source);
 
-/// Puts the files there that the source has and the store's records lack.
+/// Copies the files of checkpoints that the store lacks.
 void copy_objects(const sqlite::Database& into, ObjectStore& objects, const MergeSource& source,
                   MergeReport& report);
 
-/// Appends the source's news and StoreMerged, and applies them; the files must be there.
+/// Appends the events that the store lacks, then StoreMerged, and applies them. The files must have
+/// been copied.
 void merge_events(sqlite::Database& into, EventLog& log, const sqlite::WriteTransaction& lock,
                   const MergeSource& source, MergeReport& report);
 

@@ -3,64 +3,37 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
-#include <tuple>
+#include <utility>
 
-#include "provenance/json_text.hpp"
+#include "provenance/events.hpp"
 #include "provenance/queries.hpp"
 
 namespace shearcell {
 
 namespace {
 
+using events::CheckpointRecorded;
 using sqlite::Database;
 using sqlite::Statement;
 
-bool begins_attempt(const Event& event) {
-  return event.type == "RunStarted" || event.type == "RunResumed";
+/// The checkpoint that the event rejects, prunes or regenerates; nothing for other events.
+std::optional<std::string> subject_of(const Event& event) {
+  const events::Any decoded = events::decode(event);
+  if (const auto* e = std::get_if<events::CheckpointRejected>(&decoded)) return e->sha256;
+  if (const auto* e = std::get_if<events::CheckpointPruned>(&decoded)) return e->sha256;
+  if (const auto* e = std::get_if<events::CheckpointRegenerated>(&decoded)) return e->sha256;
+  return std::nullopt;
 }
 
-bool ends_attempt(const Event& event) {
-  return event.type == "RunInterrupted" || event.type == "RunFailed" ||
-         event.type == "RunCompleted";
-}
-
-bool about_checkpoint(const Event& event) {
-  constexpr std::array<std::string_view, 3> kTypes = {"CheckpointRejected", "CheckpointPruned",
-                                                      "CheckpointRegenerated"};
-  return std::find(kTypes.begin(), kTypes.end(), event.type) != kTypes.end();
-}
-
-int rank(RunState state) {
-  switch (state) {
-    case RunState::completed:
-      return 4;
-    case RunState::failed:
-      return 3;
-    case RunState::interrupted:
-      return 2;
-    case RunState::running:
-      return 1;
-    case RunState::declared:
-      return 0;
-  }
-  return 0;
-}
-
-/// Whether it says a place in an experiment, or a target, that the store does not know.
+/// Whether the event adds a place in an experiment, or raises its target.
 bool declares_news(const Database& into, const Event& event) {
-  const nlohmann::json body = event.body();
-  const nlohmann::json& m = body.at("membership");
+  const auto declared = std::get<events::RunDeclared>(events::decode(event));
+  const Membership& m = declared.membership;
   Statement same(into,
-                 "SELECT target_cycles, checkpoint_every FROM memberships WHERE run = ? AND "
-                 "experiment = ? AND scale = ? AND variant = ? AND seed = ? AND manifest = ?");
-  same.bind(1, event.stream.substr(4));
-  same.bind(2, m.at("experiment").get_ref<const std::string&>());
-  same.bind(3, m.at("scale").get_ref<const std::string&>());
-  same.bind(4, m.at("variant").get_ref<const std::string&>());
-  same.bind(5, count_at(m, "seed"));
-  same.bind(6, m.at("manifest").get_ref<const std::string&>());
-  return !same.step() || same.u64(0) < count_at(body, "target_cycles");
+                 "SELECT target_cycles FROM memberships WHERE run = ? AND experiment = ? AND "
+                 "scale = ? AND variant = ? AND seed = ? AND manifest = ?",
+                 event.stream.substr(4), m.experiment, m.scale, m.variant, m.seed, m.manifest);
+  return !same.step() || same.u64(0) < declared.target_cycles;
 }
 
 /// Events of one run's stream in the order of the log.
@@ -73,7 +46,7 @@ std::vector<const Event*> stream_of(const std::vector<Event>& events, const std:
   return found;
 }
 
-/// Splits a run into attempts and marks those that are to be taken.
+/// The events (by seq) of the attempts to copy.
 std::set<std::uint64_t> attempts_to_take(const std::vector<const Event*>& stream,
                                          const RunMerge& plan) {
   std::set<std::uint64_t> taken, attempt;
@@ -86,15 +59,15 @@ std::set<std::uint64_t> attempts_to_take(const std::vector<const Event*>& stream
     news = false;
   };
   for (const Event* event : stream) {
-    if (begins_attempt(*event)) {
+    if (events::begins_attempt(*event)) {
       close(false);
       attempt.insert(event->seq);
-    } else if (event->type == "CheckpointRecorded") {
-      const std::string sha256 = event->body().at("sha256");
-      if (plan.known.contains(sha256)) continue;
+    } else if (event->type == CheckpointRecorded::kType) {
+      const auto recorded = std::get<CheckpointRecorded>(events::decode(*event));
+      if (plan.known.contains(recorded.sha256)) continue;
       attempt.insert(event->seq);
       news = true;
-    } else if (ends_attempt(*event)) {
+    } else if (events::ends_attempt(*event)) {
       attempt.insert(event->seq);
     }
   }
@@ -107,8 +80,8 @@ std::set<std::uint64_t> attempts_to_take(const std::vector<const Event*>& stream
 bool is_news(const Database& into, const CheckpointRecord& record) {
   Statement same(into,
                  "SELECT state, sha256 FROM checkpoints WHERE run = ? AND (sha256 = ? OR (step = ? "
-                 "AND state_hash = ? AND state <> 'rejected'))");
-  same.bind(1, record.run).bind(2, record.sha256).bind(3, record.step).bind(4, record.state_hash);
+                 "AND state_hash = ? AND state <> 'rejected'))",
+                 record.run, record.sha256, record.step, record.state_hash);
   bool damaged_here = false;
   while (same.step()) {
     if (same.text(0) != "rejected") return false;
@@ -118,15 +91,13 @@ bool is_news(const Database& into, const CheckpointRecord& record) {
 }
 
 bool RunMerge::wants(const Database& into, const Event& event) const {
-  if (event.type == "RunDeclared") return !before || declares_news(into, event);
-  if (begins_attempt(event) || ends_attempt(event) || event.type == "CheckpointRecorded") {
+  if (event.type == events::RunDeclared::kType) return !before || declares_news(into, event);
+  if (events::begins_attempt(event) || events::ends_attempt(event) ||
+      event.type == CheckpointRecorded::kType) {
     return attempts.contains(event.seq);
   }
-  if (about_checkpoint(event)) {
-    const nlohmann::json body = event.body();
-    return !known.contains(body.at("sha256").get<std::string>());
-  }
-  return true;
+  const auto subject = subject_of(event);
+  return !subject || !known.contains(*subject);
 }
 
 std::optional<Event> RunMerge::closing_event(const Database& into) const {
@@ -145,11 +116,12 @@ RunMerge plan_run(const Database& into, const EventLog& log, const Database& sou
   if (!here.empty()) {
     plan.before = here.front();
     for (Event& event : log.events("run/" + source_run.id)) {
-      if (begins_attempt(event) || ends_attempt(event)) plan.last_claim = std::move(event);
+      if (events::begins_attempt(event) || events::ends_attempt(event))
+        plan.last_claim = std::move(event);
     }
   }
-  plan.source_wins = !plan.before || std::pair(source_run.step, rank(source_run.state)) >
-                                         std::pair(plan.before->step, rank(plan.before->state));
+  plan.source_wins = !plan.before || std::pair(source_run.step, source_run.state) >
+                                         std::pair(plan.before->step, plan.before->state);
   for (const CheckpointRecord& record : query_checkpoints(source_tables, source_run.id)) {
     if (!is_news(into, record)) plan.known.insert(record.sha256);
   }

@@ -19,32 +19,32 @@ struct ObjectInfo {
   std::uint64_t size = 0;  ///< [bytes]
 };
 
-/// Below one store folder. Several threads and processes may put and get at the same time: an
-/// object appears under its name whole or not at all. No link inside the store is followed.
+/// The objects of one store folder. Several threads and processes may use it at the same time: an
+/// object appears under its name complete or not at all. Links inside the store are not followed.
 class ObjectStore {
  public:
-  /// The folder must exist; `objects` below it is made by the first put.
+  /// The folder must exist; the first put creates `objects` in it.
   explicit ObjectStore(std::filesystem::path store_folder);
 
-  /// The bytes are on the disk, under their final name, when this returns. An object that is there
-  /// already is kept if it is sound and replaced if it is not. Throws std::runtime_error when the
-  /// machine fails and StoreDamaged when the folders are not folders.
+  /// When this returns, the bytes are on the disk under their final name. An existing object is
+  /// kept if it is valid and replaced if not. Throws std::system_error, and StoreDamaged when
+  /// `objects` or a folder in it is not a folder.
   ObjectInfo put(std::span<const std::byte> bytes);
 
-  /// Throws StoreDamaged, naming the file, unless it has this size and hash.
+  /// Throws StoreDamaged, which names the file, unless it has this size and hash.
   std::vector<std::byte> get(std::string_view sha256, std::uint64_t size) const;
 
-  /// Whether something has the object's name; its bytes are not looked at.
+  /// Whether a file of this name exists; its content is not checked.
   bool contains(std::string_view sha256) const;
 
-  /// Frees the bytes for good; false when there was no such file. Throws std::system_error.
+  /// Deletes the file; false when it did not exist. Throws std::system_error.
   bool remove(std::string_view sha256);
 
-  /// Files under `objects` that are not in `known` (SHA-256 digests), temporaries of interrupted
-  /// writes included; relative to the store's folder, sorted.
+  /// Files below `objects` that are not in `known` (SHA-256 digests), including temporary files of
+  /// interrupted writes; relative to the store's folder, sorted.
   std::vector<std::string> strangers(const std::set<std::string>& known) const;
 
-  /// Where an object lies, relative to the store's folder.
+  /// The path of an object, relative to the store's folder.
   static std::string file_of(std::string_view sha256);
 
  private:

@@ -7,14 +7,12 @@
 #include <array>
 #include <string_view>
 
-#include "provenance/errors.hpp"
-#include "provenance/json_text.hpp"
+#include "provenance/events.hpp"
 
 namespace shearcell {
 
 namespace {
 
-using nlohmann::json;
 using sqlite::Database;
 using sqlite::Statement;
 
@@ -76,152 +74,123 @@ CREATE TABLE figures(
 constexpr std::array<std::string_view, 4> kTableNames = {"runs", "memberships", "checkpoints",
                                                          "figures"};
 
-std::string after_slash(const std::string& stream) {
-  return stream.substr(stream.find('/') + 1);
-}
+/// Applies the events of one stream to the tables.
+class Projector {
+ public:
+  Projector(Database& database, const Event& event)
+      : database_(database), event_(event), id_(event.stream.substr(event.stream.find('/') + 1)) {}
 
-void declare_run(Database& database, const Event& event, const json& body) {
-  const std::string id = after_slash(event.stream);
-  const auto target = count_at(body, "target_cycles");
-  // An upsert would also count as an insert of a second ordinal, so the two cases are apart.
-  Statement known(database, "SELECT 1 FROM runs WHERE id = ?");
-  if (known.bind(1, id).step()) {
-    Statement grow(database,
-                   // The run may also have ended early, as other experiments asked for.
-                   "UPDATE runs SET state = CASE WHEN state = 'completed' AND (target_cycles < ?2 "
-                   "OR (step > 0 AND cycle < ?2)) "
-                   "THEN 'declared' ELSE state END, target_cycles = max(target_cycles, ?2) "
-                   "WHERE id = ?1");
-    grow.bind(1, id).bind(2, target).run();
-  } else {
-    Statement insert(database,
-                     "INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, "
-                     "target_cycles, updated_at) VALUES(?,?,?,?,?,'declared',?,?,?)");
-    insert.bind(1, id).bind(2, event.seq);
-    insert.bind_or_null(3, body.at("parent").get_ref<const std::string&>());
-    insert.bind(4, body.at("kind").get_ref<const std::string&>());
-    insert.bind(5, body.at("resolved").dump()).bind(6, count_at(body, "grains"));
-    insert.bind(7, target).bind(8, event.recorded_at).run();
+  void operator()(const events::RunDeclared& e) const {
+    // An upsert would also count as an insert of a second ordinal.
+    if (Statement(database_, "SELECT 1 FROM runs WHERE id = ?", id_).step()) {
+      // A completed run may also have ended early, as other experiments asked for.
+      run("UPDATE runs SET state = CASE WHEN state = 'completed' AND (target_cycles < ?2 OR "
+          "(step > 0 AND cycle < ?2)) THEN 'declared' ELSE state END, target_cycles = "
+          "max(target_cycles, ?2) WHERE id = ?1",
+          id_, e.target_cycles);
+    } else {
+      run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
+          "updated_at) VALUES(?,?,?,?,?,'declared',?,?,?)",
+          id_, event_.seq, sqlite::OrNull{e.parent}, e.kind, e.resolved.dump(), e.grains,
+          e.target_cycles, event_.recorded_at);
+    }
+    const Membership& m = e.membership;
+    run("INSERT INTO memberships(run, experiment, scale, variant, seed, manifest, labels, "
+        "target_cycles, checkpoint_every, ordinal) VALUES(?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO "
+        "UPDATE SET target_cycles = max(target_cycles, excluded.target_cycles), "
+        "checkpoint_every = excluded.checkpoint_every",
+        id_, m.experiment, m.scale, m.variant, m.seed, m.manifest, m.labels.dump(), e.target_cycles,
+        m.checkpoint_every, event_.seq);
   }
-  const json& membership = body.at("membership");
-  Statement member(database,
-                   "INSERT INTO memberships(run, experiment, scale, variant, seed, manifest, "
-                   "labels, target_cycles, checkpoint_every, ordinal) VALUES(?,?,?,?,?,?,?,?,?,?) "
-                   "ON CONFLICT DO UPDATE SET target_cycles = max(target_cycles, "
-                   "excluded.target_cycles), checkpoint_every = excluded.checkpoint_every");
-  member.bind(1, id);
-  member.bind(2, membership.at("experiment").get_ref<const std::string&>());
-  member.bind(3, membership.at("scale").get_ref<const std::string&>());
-  member.bind(4, membership.at("variant").get_ref<const std::string&>());
-  member.bind(5, count_at(membership, "seed"));
-  member.bind(6, membership.at("manifest").get_ref<const std::string&>());
-  member.bind(7, membership.at("labels").dump()).bind(8, target);
-  member.bind(9, count_at(membership, "checkpoint_every")).bind(10, event.seq).run();
-}
 
-void set_state(Database& database, const Event& event, std::string_view state,
-               const std::string& error, std::uint64_t new_attempts) {
-  Statement update(
-      database, "UPDATE runs SET state = ?2, error = ?3, attempts = attempts + ?4 WHERE id = ?1");
-  update.bind(1, after_slash(event.stream)).bind(2, state).bind(3, error);
-  update.bind(4, new_attempts).run();
-}
+  void operator()(const events::RunStarted&) const { begin_attempt(); }
+  void operator()(const events::RunResumed&) const { begin_attempt(); }
+  void operator()(const events::RunInterrupted& e) const { set_state("interrupted", e.why); }
+  void operator()(const events::RunFailed& e) const { set_state("failed", e.why); }
 
-/// A target that was raised, or an early end (`until`) that did not consider every experiment of
-/// the run, leaves work to do.
-void complete_run(Database& database, const Event& event, const json& body) {
-  const json& reached = body.at("target_cycles");
-  const json asked = body.value("/summary/ended/memberships"_json_pointer, json());
-  Statement update(database,
-                   "UPDATE runs SET error = '', state = CASE WHEN (?2 AND target_cycles > ?3) OR "
-                   "?4 < (SELECT count(*) FROM memberships WHERE run = ?1) THEN "
-                   "'declared' ELSE 'completed' END WHERE id = ?1");
-  update.bind(4,
-              asked.is_number_unsigned() ? asked.get<std::uint64_t>() : std::uint64_t{INT64_MAX});
-  update.bind(1, after_slash(event.stream)).bind(2, std::uint64_t{!reached.is_null()});
-  update.bind(3, reached.is_null() ? 0 : count_at(body, "target_cycles")).run();
-}
-
-void move_to_furthest_checkpoint(Database& database, const std::string& run) {
-  Statement update(database,
-                   "UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
-                   "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM "
-                   "checkpoints WHERE run = ?1 AND state = 'recorded' ORDER BY step DESC, seq DESC "
-                   "LIMIT 1)) WHERE id = ?1");
-  update.bind(1, run).run();
-}
-
-void record_checkpoint(Database& database, const Event& event, const json& body) {
-  const std::string run = after_slash(event.stream);
-  Statement insert(database,
-                   "INSERT INTO checkpoints(run, sha256, step, cycle, time_s, file, size, "
-                   "state_hash, observables, state, seq) VALUES(?,?,?,?,?,?,?,?,?,'recorded',?) "
-                   "ON CONFLICT DO UPDATE SET state = 'recorded', seq = excluded.seq");
-  insert.bind(1, run).bind(2, body.at("sha256").get_ref<const std::string&>());
-  insert.bind(3, count_at(body, "step")).bind(4, body.at("cycle").get<double>());
-  insert.bind(5, body.at("time_s").get<double>());
-  insert.bind(6, body.at("file").get_ref<const std::string&>());
-  insert.bind(7, count_at(body, "size"));
-  insert.bind(8, body.at("state_hash").get_ref<const std::string&>());
-  insert.bind(9, body.at("observables").dump()).bind(10, event.seq).run();
-  Statement effort(database,
-                   "UPDATE runs SET wall_seconds = wall_seconds + ?2, particle_steps = "
-                   "particle_steps + ?3 WHERE id = ?1");
-  effort.bind(1, run).bind(2, body.at("wall_seconds").get<double>());
-  effort.bind(3, body.at("particle_steps").get<double>()).run();
-  move_to_furthest_checkpoint(database, run);
-}
-
-void reject_checkpoint(Database& database, const Event& event, const json& body) {
-  const std::string run = after_slash(event.stream);
-  // A completed run that loses its last state has work left.
-  Statement reopen(database,
-                   "UPDATE runs SET state = 'declared' WHERE id = ?1 AND state = 'completed' AND "
-                   "step = (SELECT step FROM checkpoints WHERE run = ?1 AND sha256 = ?2)");
-  reopen.bind(1, run).bind(2, body.at("sha256").get_ref<const std::string&>()).run();
-  Statement update(database,
-                   "UPDATE checkpoints SET state = 'rejected' WHERE run = ? AND sha256 = ?");
-  update.bind(1, run).bind(2, body.at("sha256").get_ref<const std::string&>()).run();
-  move_to_furthest_checkpoint(database, run);
-}
-
-void move_checkpoint(Database& database, const Event& event, const json& body,
-                     std::string_view state) {
-  const std::string run = after_slash(event.stream);
-  Statement update(database, "UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2");
-  update.bind(1, run).bind(2, body.at("sha256").get_ref<const std::string&>());
-  update.bind(3, state).run();
-  move_to_furthest_checkpoint(database, run);
-}
-
-void record_figure(Database& database, const Event& event, const json& body) {
-  // The one that was made last; a merge brings in older ones after it.
-  Statement insert(database,
-                   "INSERT INTO figures VALUES(?,?,?,?) ON CONFLICT DO UPDATE SET seq = "
-                   "excluded.seq, recorded_at = excluded.recorded_at, provenance = "
-                   "excluded.provenance WHERE excluded.recorded_at >= figures.recorded_at");
-  insert.bind(1, after_slash(event.stream)).bind(2, event.seq).bind(3, event.recorded_at);
-  insert.bind(4, body.dump()).run();
-}
-
-void apply_to_run(Database& database, const Event& event, const json& body) {
-  if (event.type == "RunDeclared") declare_run(database, event, body);
-  if (event.type == "RunStarted") set_state(database, event, "running", "", 1);
-  if (event.type == "RunResumed") set_state(database, event, "running", "", 1);
-  if (event.type == "CheckpointRecorded") record_checkpoint(database, event, body);
-  if (event.type == "CheckpointRejected") reject_checkpoint(database, event, body);
-  if (event.type == "CheckpointPruned") move_checkpoint(database, event, body, "pruned");
-  if (event.type == "CheckpointRegenerated") move_checkpoint(database, event, body, "recorded");
-  if (event.type == "RunInterrupted") {
-    set_state(database, event, "interrupted", body.at("why").get<std::string>(), 0);
+  void operator()(const events::RunCompleted& e) const {
+    // Work is left when the target was raised while the run was computed, or when the run ended
+    // early (`until`) without considering all its experiments.
+    const auto asked = e.summary.is_object()
+                           ? e.summary.value("/ended/memberships"_json_pointer, nlohmann::json())
+                           : nlohmann::json();
+    run("UPDATE runs SET error = '', state = CASE WHEN (?2 AND target_cycles > ?3) OR "
+        "?4 < (SELECT count(*) FROM memberships WHERE run = ?1) THEN 'declared' ELSE 'completed' "
+        "END WHERE id = ?1",
+        id_, std::uint64_t{e.target_cycles.has_value()}, e.target_cycles.value_or(0),
+        asked.is_number_unsigned() ? asked.get<std::uint64_t>() : std::uint64_t{INT64_MAX});
   }
-  if (event.type == "RunFailed") {
-    set_state(database, event, "failed", body.at("why").get<std::string>(), 0);
+
+  void operator()(const events::CheckpointRecorded& e) const {
+    run("INSERT INTO checkpoints(run, sha256, step, cycle, time_s, file, size, state_hash, "
+        "observables, state, seq) VALUES(?,?,?,?,?,?,?,?,?,'recorded',?) ON CONFLICT DO UPDATE "
+        "SET state = 'recorded', seq = excluded.seq",
+        id_, e.sha256, e.step, e.cycle, e.time_s, e.file, e.size, e.state_hash,
+        e.observables.dump(), event_.seq);
+    run("UPDATE runs SET wall_seconds = wall_seconds + ?2, particle_steps = particle_steps + ?3 "
+        "WHERE id = ?1",
+        id_, e.wall_seconds, e.particle_steps);
+    move_to_furthest_checkpoint();
   }
-  if (event.type == "RunCompleted") complete_run(database, event, body);
-  Statement touch(database, "UPDATE runs SET updated_at = ?2 WHERE id = ?1");
-  touch.bind(1, after_slash(event.stream)).bind(2, event.recorded_at).run();
-}
+
+  void operator()(const events::CheckpointRejected& e) const {
+    // A completed run that loses its last state has work left.
+    run("UPDATE runs SET state = 'declared' WHERE id = ?1 AND state = 'completed' AND "
+        "step = (SELECT step FROM checkpoints WHERE run = ?1 AND sha256 = ?2)",
+        id_, e.sha256);
+    move_checkpoint(e.sha256, "rejected");
+  }
+
+  void operator()(const events::CheckpointPruned& e) const { move_checkpoint(e.sha256, "pruned"); }
+  void operator()(const events::CheckpointRegenerated& e) const {
+    move_checkpoint(e.sha256, "recorded");
+  }
+
+  void operator()(const events::FigureGenerated& e) const {
+    // The figure that was generated last stays; a merge may append older ones after it.
+    run("INSERT INTO figures VALUES(?,?,?,?) ON CONFLICT DO UPDATE SET seq = excluded.seq, "
+        "recorded_at = excluded.recorded_at, provenance = excluded.provenance "
+        "WHERE excluded.recorded_at >= figures.recorded_at",
+        id_, event_.seq, event_.recorded_at, e.facts.dump());
+  }
+
+  void operator()(const auto&) const {}  // changes no table
+
+  void touch() const {
+    run("UPDATE runs SET updated_at = ?2 WHERE id = ?1", id_, event_.recorded_at);
+  }
+
+ private:
+  template <class... Values>
+  void run(std::string_view sql, const Values&... values) const {
+    Statement(database_, sql, values...).run();
+  }
+
+  void begin_attempt() const {
+    run("UPDATE runs SET state = 'running', error = '', attempts = attempts + 1 WHERE id = ?", id_);
+  }
+
+  void set_state(std::string_view state, const std::string& error) const {
+    run("UPDATE runs SET state = ?2, error = ?3 WHERE id = ?1", id_, state, error);
+  }
+
+  void move_checkpoint(const std::string& sha256, std::string_view state) const {
+    run("UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2", id_, sha256, state);
+    move_to_furthest_checkpoint();
+  }
+
+  void move_to_furthest_checkpoint() const {
+    run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
+        "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "
+        "WHERE run = ?1 AND state = 'recorded' ORDER BY step DESC, seq DESC LIMIT 1)) "
+        "WHERE id = ?1",
+        id_);
+  }
+
+  Database& database_;
+  const Event& event_;
+  std::string id_;
+};
 
 }  // namespace
 
@@ -230,12 +199,13 @@ void create_projections(Database& database) {
 }
 
 void apply(Database& database, const Event& event) {
-  try {
-    if (event.stream.starts_with("run/")) apply_to_run(database, event, event.body());
-    if (event.stream.starts_with("figure/")) record_figure(database, event, event.body());
-  } catch (const json::exception& problem) {
-    throw damaged_payload(event, problem);
-  }
+  const bool of_run = event.stream.starts_with("run/");
+  if (!of_run && !event.stream.starts_with("figure/")) return;
+  const events::Any decoded = events::decode(event);
+  const bool of_figure = std::holds_alternative<events::FigureGenerated>(decoded);
+  const Projector projector(database, event);
+  if (of_run != of_figure) std::visit(projector, decoded);
+  if (of_run) projector.touch();
 }
 
 void rebuild_projections(Database& database, const EventLog& log) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables derived from the events, for quick answers. Every row can be dropped and derived again.
+// Tables derived from the events, for fast queries. They can be dropped and derived again.
 #pragma once
 
 #include <map>
@@ -11,14 +11,14 @@
 
 namespace shearcell {
 
-/// Makes the empty tables runs, memberships, checkpoints and figures.
+/// Creates the empty tables runs, memberships, checkpoints and figures.
 void create_projections(sqlite::Database& database);
 
-/// What one event changes in the tables; the only code that writes to them. Events of unknown type
-/// change nothing. Throws StoreDamaged when a payload does not hold what its type must.
+/// Applies one event to the tables; no other code writes to them. Events of unknown type change
+/// nothing. Throws StoreDamaged when the payload lacks what its type requires.
 void apply(sqlite::Database& database, const Event& event);
 
-/// Drops the tables and derives them from the whole log, all or nothing.
+/// Drops the tables and derives them from the whole log in one transaction.
 void rebuild_projections(sqlite::Database& database, const EventLog& log);
 
 /// Every row of every table as text, to compare two derivations.

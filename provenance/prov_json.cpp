@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "provenance/prov_json.hpp"
-
 #include <fmt/format.h>
 
 #include <string>
 
-#include "provenance/sha256.hpp"
+#include "provenance/ro_crate.hpp"
 
 namespace shearcell {
 
@@ -42,7 +40,7 @@ class Document {
       for (const CheckpointHistory& checkpoint : stage.checkpoints) add_checkpoint(checkpoint);
       for (std::size_t a = 0; a < stage.attempts.size(); ++a) add_attempt(stage, a);
     }
-    // A section without content says nothing, and some readers stumble over it.
+    // Some readers fail on empty sections.
     for (auto section = document_.begin(); section != document_.end();) {
       section = section->empty() ? document_.erase(section) : std::next(section);
     }
@@ -74,7 +72,7 @@ class Document {
                    {"shearcell:step", c.step}};
     if (checkpoint.rejected) entity["shearcell:rejected"] = true;
     if (checkpoint.pruned) entity["shearcell:pruned"] = true;
-    if (!checkpoint.rejected && !checkpoint.pruned) {
+    if (checkpoint.kept()) {
       entity["prov:location"] = crate_path_of_checkpoint(c.sha256);
     }
     document_["entity"][checkpoint_id(c.sha256)] = std::move(entity);
@@ -83,7 +81,7 @@ class Document {
   std::string add_agent(const json& host) {
     const json build = host.value("build", json::object());
     const json libraries = host.value("libraries", json::object());
-    std::string id = "shearcell:build-" + sha256_hex(build.dump() + libraries.dump()).substr(0, 16);
+    std::string id = "shearcell:build-" + build_digest(host);
     document_["agent"][id] = {{"prov:type", qualified("prov:SoftwareAgent")},
                               {"prov:label", "shearcell"},
                               {"shearcell:build", build.dump()},
@@ -115,7 +113,7 @@ class Document {
     relate("used",
            {{"prov:activity", id}, {"prov:entity", "shearcell:parameters-" + stage.run.id}});
     std::string before;
-    if (known(attempt)) {
+    if (facts_.initial_state(attempt) != nullptr) {
       before = checkpoint_id(attempt.from_checkpoint);
       relate("used", {{"prov:activity", id}, {"prov:entity", before}});
     }
@@ -125,13 +123,6 @@ class Document {
       if (checkpoint.attempt == a) add_generation(checkpoint, id, before);
       before = made;
     }
-  }
-
-  bool known(const Attempt& attempt) const {
-    for (const RunLineage& stage : facts_.stages) {
-      if (stage.run.id == attempt.from_run) return stage.find(attempt.from_checkpoint) != nullptr;
-    }
-    return false;
   }
 
   void add_generation(const CheckpointHistory& checkpoint, const std::string& activity,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading the projections as plain records.
+// Reads the projections into plain records.
 #pragma once
 
 #include <optional>
@@ -14,10 +14,12 @@
 namespace shearcell {
 
 NotFound unknown_run(std::string_view id);
+NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
+std::string run_stream(std::string_view id);  ///< "run/<id>"
 
 /// One run, or all in the order of their declaration ("").
 std::vector<RunRecord> query_runs(const sqlite::Database& database, std::string_view id = "");
-/// Ids that begin so, at most `limit`.
+/// Ids with this prefix, at most `limit`.
 std::vector<std::string> query_run_ids(const sqlite::Database& database, std::string_view prefix,
                                        std::size_t limit);
 /// Checkpoints of one run, or of all (""), in ascending order of step.
@@ -25,7 +27,7 @@ std::vector<CheckpointRecord> query_checkpoints(const sqlite::Database& database
                                                 std::string_view run = "");
 std::optional<CheckpointRecord> query_checkpoint(const sqlite::Database& database,
                                                  std::string_view run, std::string_view sha256);
-/// Checkpoints whose SHA-256 begins so, at most `limit`.
+/// Checkpoints whose SHA-256 has this prefix, at most `limit`.
 std::vector<CheckpointRecord> query_checkpoints_by_prefix(const sqlite::Database& database,
                                                           std::string_view prefix,
                                                           std::size_t limit);

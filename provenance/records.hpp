@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the store is told about runs and what it tells back: plain values, no behaviour.
+// Plain values that the store takes and returns.
 #pragma once
 
 #include <cstdint>
@@ -9,26 +9,36 @@
 #include <string>
 #include <vector>
 
+#include "core/named.hpp"
+
 namespace shearcell {
 
-/// One place of a run in an experiment. A run that two experiments share has two of them.
+/// The place of a run in an experiment. A run shared by two experiments has two of them.
 struct Membership {
   std::string experiment;
   std::string scale;
-  std::string variant;                               ///< label of the swept values, as "drag=still"
+  std::string variant;                               ///< the swept values: "drag=still"
   nlohmann::json labels = nlohmann::json::object();  ///< swept key -> value
   std::uint64_t seed = 0;
   std::string manifest;                ///< SHA-256 of the manifest's text
-  std::uint64_t checkpoint_every = 1;  ///< cycles between checkpoints that it asks for
-  std::uint64_t target_cycles = 0;     ///< what this experiment asks of the run; set by the store
+  std::uint64_t checkpoint_every = 1;  ///< requested cycles between checkpoints
+  std::uint64_t target_cycles = 0;     ///< requested length of the run; set by the store
+
   /// Measure that may end the run before that; null for none. Recorded, but not read back.
   nlohmann::json until = nullptr;
+
+  /// What an event records of it, without `until`.
+  static void fields(auto& m, auto field) {
+    field("experiment", m.experiment), field("scale", m.scale), field("variant", m.variant);
+    field("labels", m.labels), field("seed", m.seed), field("manifest", m.manifest);
+    field("checkpoint_every", m.checkpoint_every);
+  }
 };
 
-/// A run (one stage) as the expansion of a manifest gives it.
+/// One stage of a run, from the expansion of a manifest.
 struct RunDeclaration {
   std::string id;      ///< 64 hex digits
-  std::string parent;  ///< id of the stage whose last state this one starts from, or ""
+  std::string parent;  ///< id of the stage whose last state is the initial state, or ""
   std::string kind;    ///< "prepare", "shear", ...
   nlohmann::json resolved = nlohmann::json::object();  ///< every parameter, in canonical form
   std::uint64_t grains = 0;
@@ -36,23 +46,27 @@ struct RunDeclaration {
   Membership membership;
 };
 
+/// In the order in which a merge prefers them when two attempts reached the same step.
 enum class RunState { declared, running, interrupted, failed, completed };
 
-const char* name_of(RunState state);
+template <>
+inline constexpr auto kNames<RunState> = names_in_order<RunState>("declared", "running",
+                                                                  "interrupted", "failed",
+                                                                  "completed");
 
-/// A run as its events tell it.
+/// A stage of a run as its events describe it.
 struct RunRecord {
   std::string id;
   std::string parent;  ///< "" when there is none
   std::string kind;
   nlohmann::json resolved;
-  /// `declared`: there is work and nobody has begun it, or a completed run was given a longer
-  /// target. `running`: begun and not ended; after a kill it stays so until it is resumed.
+  /// `declared`: not started, or completed and then given a longer target. `running`: started and
+  /// not ended; after a kill this remains until the run is resumed.
   RunState state = RunState::declared;
   std::uint64_t grains = 0;
-  std::uint64_t target_cycles = 0;      ///< the largest that was declared
-  std::uint64_t attempts = 0;           ///< how often it was started or resumed
-  double cycle = 0;                     ///< of the furthest checkpoint that was not rejected
+  std::uint64_t target_cycles = 0;      ///< the largest declared target
+  std::uint64_t attempts = 0;           ///< number of starts and resumes
+  double cycle = 0;                     ///< of the furthest checkpoint with a file
   std::uint64_t step = 0;               ///< of that checkpoint
   std::string state_hash;               ///< of that checkpoint; "" before the first
   double wall_seconds = 0;              ///< sum over recorded efforts
@@ -62,11 +76,11 @@ struct RunRecord {
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
-/// Which checkpoints need no file any more. Choices narrow each other down.
+/// Selects checkpoints to prune; all conditions must hold.
 struct PruneChoice {
   std::vector<std::string> runs;  ///< ids; empty for all
   std::optional<RunState> state;  ///< only runs in this state
-  std::uint64_t keep_every = 0;   ///< keep cycles 0, K, 2K, ...; 0 keeps none of them
+  std::uint64_t keep_every = 0;   ///< K > 0 keeps cycles 0, K, 2K, ...
 };
 
 /// Work spent since the previous record of the same attempt.
@@ -75,10 +89,12 @@ struct Effort {
   double particle_steps = 0;  ///< grains times time steps
 };
 
-/// `pruned`: the file was removed to free its bytes, and the record stays.
+/// `rejected`: its file is damaged. `pruned`: its file was deleted to free space; the record stays.
 enum class CheckpointState { recorded, rejected, pruned };
-
-const char* name_of(CheckpointState state);
+template <>
+inline constexpr auto kNames<CheckpointState> = names_in_order<CheckpointState>("recorded",
+                                                                                "rejected",
+                                                                                "pruned");
 
 struct CheckpointRecord {
   std::string run;
@@ -98,7 +114,7 @@ struct FigureRecord {
   std::string name;
   std::uint64_t seq = 0;      ///< the event that recorded it
   std::string recorded_at;    ///< UTC
-  nlohmann::json provenance;  ///< inputs and SHA-256 of the outputs, as they were recorded
+  nlohmann::json provenance;  ///< inputs and SHA-256 of the outputs
 };
 
 }  // namespace shearcell

@@ -26,10 +26,6 @@ std::string text_at(const json& object, const char* key) {
   return object[key].is_string() ? object[key].get<std::string>() : object[key].dump();
 }
 
-json part(const json& object, const char* key) {
-  return object.is_object() ? object.value(key, json::object()) : json::object();
-}
-
 /// The entities of the crate, each id once.
 class Graph {
  public:
@@ -57,7 +53,7 @@ json file_entity(const std::string& path, const std::string& name, const std::st
 }
 
 json add_manifest(Graph& graph, const ManifestText& manifest) {
-  // Only the last part of the path: where it lay on somebody's machine is nobody's business.
+  // Only the file name: the rest of the path is private.
   const std::string name = std::filesystem::path(manifest.path).filename().string();
   json entity = file_entity(crate_path_of_manifest(manifest.sha256), "Manifest " + name,
                             "application/yaml", manifest.text.size(), manifest.sha256);
@@ -68,39 +64,33 @@ json add_manifest(Graph& graph, const ManifestText& manifest) {
 
 json add_checkpoint(Graph& graph, const CheckpointHistory& checkpoint) {
   const CheckpointRecord& c = checkpoint.record;
-  const std::string name = fmt::format("State of run {:.12} at cycle {:g}", c.run, c.cycle);
-  const std::string identifier = "urn:x-shearcell:state:" + c.state_hash;
-  if (checkpoint.rejected || checkpoint.pruned) {
-    return graph.add(
-        {{"@id", "#checkpoint-" + c.sha256},
-         {"@type", "CreativeWork"},
-         {"name", name},
-         {"description", checkpoint.pruned ? "Not in this crate: its bytes were given up on purpose"
-                                           : "Not in this crate: it was rejected as damaged"},
-         {"dateCreated", checkpoint.recorded_at},
-         {"identifier", identifier},
-         {"contentSize", std::to_string(c.size)},
-         {"sha256", c.sha256}});
-  }
-  json entity =
-      file_entity(crate_path_of_checkpoint(c.sha256), name, "application/x-hdf5", c.size, c.sha256);
+  json entity = file_entity(crate_path_of_checkpoint(c.sha256),
+                            fmt::format("State of run {:.12} at cycle {:g}", c.run, c.cycle),
+                            "application/x-hdf5", c.size, c.sha256);
   entity["description"] = fmt::format(
       "H5MD 1.1 file with the exact state after {} time steps, {:.9g} s", c.step, c.time_s);
   entity["dateCreated"] = checkpoint.recorded_at;
-  entity["identifier"] = identifier;
+  entity["identifier"] = "urn:x-shearcell:state:" + c.state_hash;
+  if (!checkpoint.kept()) {
+    entity["@id"] = "#checkpoint-" + c.sha256;
+    entity["@type"] = "CreativeWork";
+    entity["description"] = checkpoint.pruned ? "Not in this crate: its file was pruned"
+                                              : "Not in this crate: it was rejected as damaged";
+    entity.erase("encodingFormat");
+  }
   return graph.add(std::move(entity));
 }
 
-/// The program as it was built for this attempt.
+/// The program that computed the attempt.
 json add_software(Graph& graph, const json& host) {
-  const json build = part(host, "build"), libraries = part(host, "libraries");
+  const json build = host.value("build", json::object());
+  const json libraries = host.value("libraries", json::object());
   json needs = json::array();
   for (const auto& [name, version] : libraries.items()) {
     needs.push_back(name + " " + text_at(libraries, name.c_str()));
   }
-  const std::string digest = sha256_hex(build.dump() + libraries.dump());
   return graph.add(
-      {{"@id", "#shearcell-" + digest.substr(0, 16)},
+      {{"@id", "#shearcell-" + build_digest(host)},
        {"@type", "SoftwareApplication"},
        {"name", "shearcell"},
        {"softwareVersion",
@@ -124,7 +114,7 @@ json add_host(Graph& graph, const json& host) {
                                                 text_at(host, "simd"))}});
 }
 
-/// Seed and resolved parameters of a run, as what its attempts were given.
+/// Seed and resolved parameters of a run.
 json add_parameters(Graph& graph, const RunRecord& run) {
   json given = json::array();
   const auto add = [&](const std::string& name, const json& value) {
@@ -135,8 +125,10 @@ json add_parameters(Graph& graph, const RunRecord& run) {
   };
   for (const auto& [key, value] : run.resolved.items()) {
     if (key == "parent") continue;  // its checkpoint is an object of its own
-    if (!value.is_object()) add(key, value);
-    if (!value.is_object()) continue;
+    if (!value.is_object()) {
+      add(key, value);
+      continue;
+    }
     for (const auto& [name, inner] : value.items()) add(name, inner);
   }
   return given;
@@ -155,12 +147,12 @@ json status_of(const Attempt& attempt) {
 
 std::string error_of(const Attempt& attempt) {
   if (attempt.outcome == AttemptOutcome::lost) {
-    return "ended without a record (a kill or a power cut); a later attempt went on";
+    return "ended without a record (a kill or a power cut); a later attempt continued";
   }
   return attempt.why;
 }
 
-/// What every attempt of a run is given.
+/// Inputs of every attempt of a run.
 struct Given {
   json manifests = json::array();
   json parameters = json::array();
@@ -171,11 +163,8 @@ json add_attempt(Graph& graph, const CrateFacts& facts, std::size_t stage_number
   const RunLineage& stage = facts.stages[stage_number];
   const Attempt& attempt = stage.attempts[a];
   json objects = given.manifests;
-  for (const RunLineage& source : facts.stages) {
-    if (source.run.id != attempt.from_run) continue;
-    if (const auto* from = source.find(attempt.from_checkpoint)) {
-      objects.push_back(add_checkpoint(graph, *from));
-    }
+  if (const auto* from = facts.initial_state(attempt)) {
+    objects.push_back(add_checkpoint(graph, *from));
   }
   objects.insert(objects.end(), given.parameters.begin(), given.parameters.end());
   json results = json::array();
@@ -208,8 +197,8 @@ json add_licence(Graph& graph, const std::string& licence) {
                     {"@type", "CreativeWork"},
                     {"name", "No licence was chosen"},
                     {"description",
-                     "Who exported these data chose no licence; ask them before you "
-                     "use the data."}});
+                     "The exporter of these data chose no licence; ask them before you use the "
+                     "data."}});
 }
 
 std::string title_of(const RunRecord& run) {
@@ -257,6 +246,19 @@ std::string crate_path_of_checkpoint(const std::string& sha256) {
 
 std::string crate_path_of_manifest(const std::string& sha256) {
   return "manifests/" + sha256 + ".yaml";
+}
+
+std::string build_digest(const json& host) {
+  const json nothing = json::object();
+  const json build = host.value("build", nothing), libraries = host.value("libraries", nothing);
+  return sha256_hex(build.dump() + libraries.dump()).substr(0, 16);
+}
+
+const CheckpointHistory* CrateFacts::initial_state(const Attempt& attempt) const {
+  for (const RunLineage& stage : stages) {
+    if (stage.run.id == attempt.from_run) return stage.find(attempt.from_checkpoint);
+  }
+  return nullptr;
 }
 
 std::string crate_identifier(const std::string& run) {

@@ -6,10 +6,9 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "core/limits.hpp"
-#include "provenance/json_text.hpp"
 #include "provenance/io/plain_file.hpp"
-#include "provenance/prov_json.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/limits.hpp"
 #include "provenance/ro_crate.hpp"
 #include "provenance/sha256.hpp"
 
@@ -20,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Recorded text may hold bytes that are not UTF-8, and JSON may not.
+/// Bytes that are not UTF-8 are replaced.
 std::string dump(const json& value) {
   return value.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
 }
@@ -39,27 +38,26 @@ bool is_crate_of(const fs::path& folder, const std::string& run) {
   return false;
 }
 
-/// A folder below the crate; a link to elsewhere is refused.
-fs::path subfolder(const fs::path& crate, const char* name) {
-  fs::path path = crate / name;
+/// Creates a folder in the crate; a link is refused.
+void make_subfolder(const fs::path& crate, const char* name) {
+  const fs::path path = crate / name;
   const fs::file_status status = fs::symlink_status(path);
   if (fs::exists(status) && !fs::is_directory(status)) {
-    throw std::invalid_argument(
-        path.string() + ": a folder should stand here, and a file or a link does; remove it");
+    throw std::invalid_argument(path.string() +
+                                ": this must be a folder, but it is a file or a link; remove it");
   }
   fs::create_directory(path);
-  return path;
 }
 
 std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const fs::path& folder) {
   const ObjectStore objects(store.folder());
   std::vector<std::string> written;
-  subfolder(folder, "checkpoints");
-  subfolder(folder, "manifests");
+  make_subfolder(folder, "checkpoints");
+  make_subfolder(folder, "manifests");
   std::set<std::string> done;
   for (const RunLineage& stage : facts.stages) {
     for (const CheckpointHistory& c : stage.checkpoints) {
-      if (c.rejected || c.pruned || !done.insert(c.record.sha256).second) continue;
+      if (!c.kept() || !done.insert(c.record.sha256).second) continue;
       const std::vector<std::byte> bytes = objects.get(c.record.sha256, c.record.size);
       const std::string path = crate_path_of_checkpoint(c.record.sha256);
       write_output(folder / path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
@@ -73,13 +71,13 @@ std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const
   const std::string prov = dump(prov_json(facts));
   write_output(folder / kCrateProv, prov);
   written.emplace_back(kCrateProv);
-  // Last: what it describes is there.
+  // Last, because it describes the other files.
   write_output(folder / kCrateMetadata, dump(ro_crate_metadata(facts, prov)));
   written.emplace_back(kCrateMetadata);
   return written;
 }
 
-/// Beside the folder, so that it can be renamed to it.
+/// On the same file system as the folder, to be renamed to it.
 fs::path temporary_beside(const fs::path& folder) {
   const fs::path parent = folder.parent_path();
   if (!parent.empty()) fs::create_directories(parent);
@@ -91,24 +89,23 @@ fs::path temporary_beside(const fs::path& folder) {
 std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
                                         const fs::path& where, const std::string& licence) {
   const CrateFacts facts = crate_facts(store, run, licence);
-  // "crate/" and "crate" are the same folder; only the second has a name to put a dot before.
+  // "crate/" has no file name; "crate" is the same folder.
   const fs::path folder = where.has_filename() ? where : where.parent_path();
   const fs::file_status status = fs::symlink_status(folder);
   if (fs::exists(status) && !fs::is_directory(status)) {
     throw std::invalid_argument(folder.string() +
-                                ": a file or a link stands there; name another folder");
+                                ": this is a file or a link; name another folder");
   }
   if (fs::exists(status) && !fs::is_empty(folder)) {
     if (!is_crate_of(folder, run)) {
-      throw std::invalid_argument(
-          folder.string() +
-          ": the folder holds something that is no export of this run; name another one");
+      throw std::invalid_argument(folder.string() +
+                                  ": the folder is not an export of this run; name another one");
     }
     return fill(store, facts, folder);
   }
   const fs::path temporary = temporary_beside(folder);
   if (!fs::create_directory(temporary)) {
-    throw std::invalid_argument(temporary.string() + ": left by another export; remove it");
+    throw std::invalid_argument(temporary.string() + ": left behind by another export; remove it");
   }
   try {
     std::vector<std::string> written = fill(store, facts, temporary);

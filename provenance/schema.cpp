@@ -34,7 +34,7 @@ CREATE TRIGGER events_are_never_deleted BEFORE DELETE ON events
 BEGIN SELECT RAISE(ABORT, 'events are never deleted'); END;
 )sql";
 
-/// What takes a store from schema `from` to the next one. It may change every table but `events`.
+/// Converts a store from schema `from` to the next one. It never changes the table `events`.
 struct Migration {
   std::int64_t from;
   void (*migrate)(sqlite::Database&);
@@ -50,15 +50,15 @@ void require_plain_file(const std::filesystem::path& file) {
   if (type != std::filesystem::file_type::regular &&
       type != std::filesystem::file_type::not_found) {
     throw StoreDamaged(fmt::format(
-        "{}: the log of a store is a regular file, and a folder, link or device stands there; "
-        "remove it or name another store folder",
+        "{}: the log of a store is a regular file, but this is a folder, link or device; remove it "
+        "or name another store folder",
         file.string()));
   }
 }
 
 void create_tables(sqlite::Database& database) {
   sqlite::WriteTransaction lock(database);
-  // Another process may have made them while this one waited for the lock.
+  // Another process may have created them while this one waited for the lock.
   if (database.integer("SELECT count(*) FROM sqlite_schema") == 0) {
     database.execute(kEvents);
     create_projections(database);
@@ -69,12 +69,12 @@ void create_tables(sqlite::Database& database) {
   lock.commit();
 }
 
-/// A forged schema could run statements of its own whenever a table is read or written, so every
-/// statement of it must be one that this program writes. What is missing shows when it is used.
+/// A forged schema could run its own statements whenever a table is read or written, so all schema
+/// statements must be ones that this program writes. Missing tables fail when they are used.
 void require_own_schema(const sqlite::Database& database) {
   sqlite::Database own = sqlite::Database::in_memory();
   create_tables(own);
-  own.execute("ANALYZE");  // somebody may have; its tables hold estimates alone
+  own.execute("ANALYZE");  // its tables are allowed; they hold only estimates
   constexpr const char* statements = "SELECT sql, name FROM sqlite_schema WHERE sql IS NOT NULL";
   std::set<std::string> known;
   for (sqlite::Statement row(own, statements); row.step();) known.insert(row.text(0));
@@ -108,7 +108,7 @@ void require_known_schema(sqlite::Database& database) {
   }
 }
 
-/// One transaction for each step: one that is cut short leaves the version before it.
+/// One transaction for each step, so an interrupted migration leaves the previous version.
 void migrate(sqlite::Database& database) {
   for (const Migration& step : kMigrations) {
     if (database.integer("PRAGMA user_version") > step.from) continue;
@@ -128,14 +128,14 @@ sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open m
                                bool read_only) {
   require_plain_file(file);
   sqlite::Database database(file, mode);
-  // The rollback journal rather than WAL: SQLite before 3.51.3 can lose committed transactions when
+  // Rollback journal instead of WAL: SQLite before 3.51.3 can lose committed transactions when
   // several connections checkpoint a WAL at once. EXTRA also syncs the folder after the journal is
   // deleted, so that a committed event survives a power cut.
   database.execute(
       "PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
       "PRAGMA synchronous=EXTRA;");
   if (database.integer("PRAGMA page_count") == 0) {
-    // An empty file is how a new store begins; beside objects it is a log that was lost.
+    // A new store starts with an empty file; with objects beside it, the log was lost.
     if (mode != sqlite::Open::create || std::filesystem::exists(file.parent_path() / "objects")) {
       throw StoreDamaged(file.string() +
                          ": the log is empty; restore it from a backup, or name another store");

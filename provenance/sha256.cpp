@@ -41,6 +41,10 @@ Sha256& Sha256::add(std::string_view text) {
   return add(std::as_bytes(std::span(text.data(), text.size())));
 }
 
+Sha256& Sha256::add_field(std::string_view text) {
+  return add(std::to_string(text.size()) + ":").add(text).add(",");
+}
+
 Sha256& Sha256::add_u64(std::uint64_t value) {
   std::array<std::byte, 8> bytes;
   for (std::byte& b : bytes) {

@@ -7,18 +7,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/limits.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell::sqlite {
 
 namespace {
 
 constexpr int kBusyTimeoutMs = 30'000;
-
-std::int64_t as_signed(std::uint64_t value) {
-  return static_cast<std::int64_t>(value);
-}
 
 }  // namespace
 
@@ -36,7 +32,7 @@ Database::Database(const std::filesystem::path& file, Open mode) : name_(file.st
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, static_cast<int>(StoreLimits::value_bytes));
   sqlite3_limit(handle, SQLITE_LIMIT_ATTACHED, 0);
-  // What a forged schema may hold: views and triggers that never end, or that reach for files.
+  // A forged schema could hold views and triggers that never end or that open other files.
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
@@ -51,14 +47,14 @@ void Database::fail(int code, std::string_view doing) const {
   switch (code & 0xff) {
     case SQLITE_NOTADB:
       throw StoreDamaged(fmt::format(
-          "{}: this is not an SQLite database, so not the log of a store; put the right file there "
+          "{}: this is not an SQLite database, so it is not the log of a store; restore the file "
           "from a backup, or name another store folder",
           name_));
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       throw StoreBusy(fmt::format(
-          "{}: another process kept the store locked for {} s; wait until it ends, then run again",
-          name_, kBusyTimeoutMs / 1000));
+          "{}: another process kept the store locked for {} s; run again when it has ended", name_,
+          kBusyTimeoutMs / 1000));
     case SQLITE_TOOBIG:
       throw StoreDamaged(fmt::format(
           "{}: a value of the database is larger than {} MiB, more than this program writes or "
@@ -66,7 +62,7 @@ void Database::fail(int code, std::string_view doing) const {
           name_, StoreLimits::value_bytes >> 20));
     case SQLITE_CORRUPT:
     case SQLITE_CONSTRAINT:
-    case SQLITE_ERROR:  // our SQL is fixed, so it fails only on tables that are not ours
+    case SQLITE_ERROR:  // our SQL is fixed: it fails only on tables that are not ours
     case SQLITE_MISMATCH:
       throw StoreDamaged(
           fmt::format("{}: the database is damaged (cannot {}: {}); restore it from a backup",
@@ -106,7 +102,7 @@ Statement::Statement(const Database& database, std::string_view sql)
 Statement::~Statement() {
   constexpr std::size_t kMostIdle = 64;
   if (!handle_ || database_->idle_.size() >= kMostIdle) return;
-  // An unfinished statement would hold its lock on the file.
+  // An unfinished statement holds a lock on the file.
   sqlite3_reset(handle_.get());
   sqlite3_clear_bindings(handle_.get());
   database_->idle_.emplace(std::move(sql_), std::move(handle_));
@@ -123,7 +119,7 @@ Statement& Statement::bind(int parameter, std::string_view text) {
 }
 
 Statement& Statement::bind(int parameter, std::uint64_t value) {
-  check(sqlite3_bind_int64(handle_.get(), parameter, as_signed(value)));
+  check(sqlite3_bind_int64(handle_.get(), parameter, static_cast<std::int64_t>(value)));
   return *this;
 }
 
@@ -140,8 +136,8 @@ Statement& Statement::bind(int parameter, std::span<const std::byte> blob) {
   return *this;
 }
 
-Statement& Statement::bind_or_null(int parameter, std::string_view text) {
-  if (!text.empty()) return bind(parameter, text);
+Statement& Statement::bind(int parameter, OrNull value) {
+  if (!value.text.empty()) return bind(parameter, value.text);
   check(sqlite3_bind_null(handle_.get(), parameter));
   return *this;
 }
@@ -206,7 +202,7 @@ WriteTransaction::WriteTransaction(Database& database) : database_(database) {
 }
 
 WriteTransaction::~WriteTransaction() {
-  // A failed statement may have rolled back already; then there is nothing to undo.
+  // After a failed statement SQLite may have rolled back already; then this does nothing.
   if (open_) sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The little of SQLite that the store needs, with lifetimes and errors in C++ terms.
+// A small C++ interface to SQLite: ownership, typed binding and reading, exceptions.
 #pragma once
 
 #include <cstddef>
@@ -19,21 +19,21 @@ namespace shearcell::sqlite {
 
 enum class Open { existing, create };
 
-/// One connection, for one thread at a time. Its functions throw StoreDamaged when the file is not
-/// a sound database, StoreBusy when another process kept it locked, and std::runtime_error when the
-/// machine fails (disk full, no permission); each message names the file.
+/// One connection, for one thread at a time. All functions throw StoreDamaged when the file is not
+/// a valid database, StoreBusy when another process kept it locked, and std::runtime_error when the
+/// machine fails (disk full, no permission). Messages name the file.
 class Database {
  public:
   Database(const std::filesystem::path& file, Open mode);
   static Database in_memory();
 
-  /// Runs statements that return nothing of interest.
+  /// Runs statements and ignores their rows.
   void execute(const std::string& sql);
-  /// The one number that a query gives.
+  /// The first column of the first row of a query.
   std::int64_t integer(const std::string& sql);
   const std::string& name() const { return name_; }
   sqlite3* handle() const { return handle_.get(); }
-  /// Throws the exception that fits an SQLite result code.
+  /// Throws the exception for an SQLite result code.
   [[noreturn]] void fail(int code, std::string_view doing) const;
 
  private:
@@ -48,25 +48,41 @@ class Database {
   using Prepared = std::unique_ptr<sqlite3_stmt, Finalize>;
   std::string name_;
   std::unique_ptr<sqlite3, Close> handle_;
-  /// Statements that are not in use, by their text: preparing one takes longer than running it.
+  /// Prepared statements that are not in use, by their text: preparing takes longer than running.
   mutable std::unordered_map<std::string, Prepared> idle_;
 };
 
-/// A prepared statement, for less long than its database. Columns are read by position after `step`
-/// returned true.
+/// Bound as NULL when the text is empty.
+struct OrNull {
+  std::string_view text;
+};
+
+/// A prepared statement; the database must outlive it. Parameters count from 1, columns from 0.
 class Statement {
  public:
   Statement(const Database& database, std::string_view sql);
+  /// Binds the values to parameters 1, 2, ...
+  template <class... Values>
+  Statement(const Database& database, std::string_view sql, const Values&... values)
+      : Statement(database, sql) {
+    bind_all(values...);
+  }
   ~Statement();
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
+  template <class... Values>
+  Statement& bind_all(const Values&... values) {
+    int parameter = 0;
+    (bind(++parameter, values), ...);
+    return *this;
+  }
   Statement& bind(int parameter, std::string_view text);
   Statement& bind(int parameter, std::uint64_t value);
   Statement& bind(int parameter, double value);
   Statement& bind(int parameter, std::span<const std::byte> blob);
-  /// NULL when the text is empty.
-  Statement& bind_or_null(int parameter, std::string_view text);
+  Statement& bind(int parameter, OrNull value);
+
   /// Moves to the next row; false when there is none.
   bool step();
   /// Runs a statement that gives no rows and makes it ready to run again.
@@ -74,22 +90,32 @@ class Statement {
   /// Makes it ready to run again before its last row was read.
   void reset();
 
+  // The current row. A value of another type is converted as SQLite does; NULL is empty or 0.
   std::string text(int column) const;
   std::uint64_t u64(int column) const;
   double f64(int column) const;
   std::vector<std::byte> blob(int column) const;
+  /// Reads columns 0, 1, ... into strings, std::uint64_t and double.
+  template <class... Values>
+  void get(Values&... values) const {
+    int column = 0;
+    (get_one(column++, values), ...);
+  }
   int columns() const;
-  /// The value as SQL would write it, to compare rows with.
+  /// The value as an SQL literal with all digits, to compare rows.
   std::string literal(int column) const;
 
  private:
   void check(int code) const;
+  void get_one(int column, std::string& value) const { value = text(column); }
+  void get_one(int column, std::uint64_t& value) const { value = u64(column); }
+  void get_one(int column, double& value) const { value = f64(column); }
   const Database* database_;
   std::string sql_;
   Database::Prepared handle_;
 };
 
-/// Holds the write lock from its construction (BEGIN IMMEDIATE); undone unless committed.
+/// Holds the write lock from its construction (BEGIN IMMEDIATE); rolled back unless committed.
 class WriteTransaction {
  public:
   explicit WriteTransaction(Database& database);
@@ -103,7 +129,7 @@ class WriteTransaction {
   bool open_ = true;
 };
 
-/// All reads within its life see the same state of the database.
+/// All reads during its life see the same state of the database.
 class ReadTransaction {
  public:
   explicit ReadTransaction(Database& database);

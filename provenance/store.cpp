@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
+#include "provenance/events.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/queries.hpp"
 #include "provenance/schema.hpp"
@@ -16,56 +16,39 @@ namespace shearcell {
 
 namespace {
 
+using events::encode;
 using nlohmann::json;
 
 constexpr const char* kLogFile = "store.sqlite";
 
-std::string run_stream(const std::string& id) {
-  return "run/" + id;
-}
-
-/// The folder, checked or made, so that its log can be opened.
+/// Checks the folder, or creates it, so that its log can be opened.
 std::filesystem::path prepare_folder(std::filesystem::path folder, Access access) {
   namespace fs = std::filesystem;
   const std::string name = folder.string();
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw StoreDamaged(fmt::format(
-        "{}: a store is a folder, and this is a file; remove it or name another store", name));
+        "{}: a store is a folder, but this is a file; remove it or name another store", name));
   }
   if (fs::exists(folder / kLogFile)) return folder;
   if (fs::exists(folder / "objects")) {
     throw StoreDamaged(
-        fmt::format("{}: there are objects and no {}, so the log is lost; restore it from a backup",
+        fmt::format("{}: there are objects but no {}: the log is lost; restore it from a backup",
                     name, kLogFile));
   }
   if (access != Access::create) {
     throw NotFound(fmt::format(
-        "{}: there is no store here; make one with `shearcell run`, or name another with --store",
+        "{}: there is no store here; create one with `shearcell run`, or name another with --store",
         name));
   }
   fs::create_directories(folder);
   return folder;
 }
 
-/// Events that only the holder of a run writes. Others (a new membership, a rejected checkpoint, a
-/// replay) say nothing about who runs it and so conflict with nobody.
+/// Events that only the holder of a run writes. All others (a new membership, a rejected
+/// checkpoint, a replay) may be appended at any time.
 bool claims_run(const Event& event) {
-  constexpr std::array<std::string_view, 6> kClaims = {"RunStarted",         "RunResumed",
-                                                       "CheckpointRecorded", "RunInterrupted",
-                                                       "RunFailed",          "RunCompleted"};
-  return std::find(kClaims.begin(), kClaims.end(), event.type) != kClaims.end();
-}
-
-json membership_json(const Membership& m) {
-  json written = {{"experiment", m.experiment},
-                  {"scale", m.scale},
-                  {"variant", m.variant},
-                  {"labels", m.labels},
-                  {"seed", m.seed},
-                  {"manifest", m.manifest},
-                  {"checkpoint_every", m.checkpoint_every}};
-  if (!m.until.is_null()) written["until"] = m.until;
-  return written;
+  return events::begins_attempt(event) || events::ends_attempt(event) ||
+         event.type == events::CheckpointRecorded::kType;
 }
 
 bool adds_something(const RunRecord& known, const RunDeclaration& declared) {
@@ -100,7 +83,7 @@ Store::~Store() {
     for (const auto& [id, held] : held_) drop_lease(database_, id, self_.token);
     lock.commit();
   } catch (const std::exception&) {
-    // They expire.
+    // The leases expire by themselves.
   }
 }
 
@@ -117,14 +100,25 @@ void Store::must_write() const {
   if (access_ == Access::read) throw std::logic_error("this store was opened for reading only");
 }
 
-void Store::append(std::string_view stream, std::uint64_t expected_version, NewEvent event,
-                   const sqlite::WriteTransaction& lock) {
-  for (const Event& e : log_.append(lock, stream, expected_version, std::span(&event, 1))) {
-    apply(database_, e);
-  }
+std::uint64_t Store::append(std::string_view stream, const NewEvent& event,
+                            const sqlite::WriteTransaction& lock,
+                            std::optional<std::uint64_t> expected_version) {
+  const std::vector<Event> appended = log_.append(
+      lock, stream, expected_version.value_or(log_.version(stream)), std::span(&event, 1));
+  apply(database_, appended.front());
+  return appended.front().version;
 }
 
-void Store::append_held(const std::string& id, NewEvent event, bool release) {
+void Store::record(std::string_view stream, const NewEvent& event,
+                   std::optional<std::uint64_t> expected_version) {
+  must_write();
+  const std::scoped_lock guard(mutex_);
+  sqlite::WriteTransaction lock(database_);
+  append(stream, event, lock, expected_version);
+  lock.commit();
+}
+
+void Store::append_held(const std::string& id, const NewEvent& event, bool release) {
   const auto held = held_.find(id);
   if (held == held_.end()) {
     throw ConcurrencyConflict(
@@ -135,21 +129,19 @@ void Store::append_held(const std::string& id, NewEvent event, bool release) {
   if (lease && lease->holder.token != self_.token) {
     held_.erase(held);
     throw ConcurrencyConflict(
-        fmt::format("run {}: its lease expired and another program took it ({}); leave it to that "
-                    "one",
-                    id, describe(lease->holder)));
+        fmt::format("run {}: its lease expired and another program took the run ({})", id,
+                    describe(lease->holder)));
   }
   std::uint64_t version = held->second.version;
   for (const Event& e : log_.events(run_stream(id), version)) {
     if (claims_run(e)) {
       held_.erase(held);
-      throw ConcurrencyConflict(
-          fmt::format("run {}: another process went on with it ({} at {}); leave it to that one",
-                      id, e.type, e.recorded_at));
+      throw ConcurrencyConflict(fmt::format("run {}: another process continued it ({} at {})", id,
+                                            e.type, e.recorded_at));
     }
     version = e.version;
   }
-  append(run_stream(id), version, std::move(event), lock);
+  version = append(run_stream(id), event, lock, version);
   if (release) {
     drop_lease(database_, id, self_.token);
   } else {
@@ -159,7 +151,7 @@ void Store::append_held(const std::string& id, NewEvent event, bool release) {
   if (release) {
     held_.erase(held);
   } else {
-    held->second.version = version + 1;
+    held->second.version = version;
   }
 }
 
@@ -171,9 +163,8 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   const std::scoped_lock guard(mutex_);
   sqlite::WriteTransaction lock(database_);
   if (log_.version(stream) == 0) {
-    append(stream, 0,
-           {"ManifestRegistered",
-            {{"sha256", sha256}, {"path", path}, {"text", text}, {"info", info}}},
+    append(stream,
+           encode(events::ManifestRegistered{sha256, std::string(path), std::string(text), info}),
            lock);
     lock.commit();
   }
@@ -183,7 +174,7 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
 void Store::declare_run(const RunDeclaration& declared) {
   must_write();
   if (!is_sha256_hex(declared.id)) {
-    throw std::invalid_argument(fmt::format("'{}' is no run id", declared.id));
+    throw std::invalid_argument(fmt::format("'{}' is not a run id", declared.id));
   }
   const std::scoped_lock guard(mutex_);
   sqlite::WriteTransaction lock(database_);
@@ -198,18 +189,13 @@ void Store::declare_run(const RunDeclaration& declared) {
     if (old.parent != declared.parent || old.kind != declared.kind ||
         old.resolved != declared.resolved || old.grains != declared.grains) {
       throw std::invalid_argument(
-          fmt::format("run {}: the store knows this id with other parameters", declared.id));
+          fmt::format("run {}: the store has this id with other parameters", declared.id));
     }
     if (!adds_something(old, declared)) return;
   }
-  append(run_stream(declared.id), log_.version(run_stream(declared.id)),
-         {"RunDeclared",
-          {{"parent", declared.parent},
-           {"kind", declared.kind},
-           {"resolved", declared.resolved},
-           {"grains", declared.grains},
-           {"target_cycles", declared.target_cycles},
-           {"membership", membership_json(declared.membership)}}},
+  append(run_stream(declared.id),
+         encode(events::RunDeclared{declared.parent, declared.kind, declared.resolved,
+                                    declared.grains, declared.target_cycles, declared.membership}),
          lock);
   lock.commit();
 }
@@ -220,7 +206,7 @@ std::uint64_t Store::start_run(const std::string& id, const json& host,
   must_write();
   const std::scoped_lock guard(mutex_);
   if (held_.contains(id)) {
-    throw ConcurrencyConflict(fmt::format("run {}: this program is running it already", id));
+    throw ConcurrencyConflict(fmt::format("run {}: this program computes it already", id));
   }
   sqlite::WriteTransaction lock(database_);
   const std::vector<RunRecord> known = query_runs(database_, id);
@@ -228,35 +214,34 @@ std::uint64_t Store::start_run(const std::string& id, const json& host,
   const auto lease = query_lease(database_, id);
   if (lease && lease->holder.token != self_.token && !lapsed(*lease, now_ms())) {
     throw RunHeld(
-        fmt::format("run {}: another program is at work on it ({})", id, describe(lease->holder)));
+        fmt::format("run {}: another program computes it ({})", id, describe(lease->holder)));
   }
   if (known.front().state == RunState::completed) {
-    throw ConcurrencyConflict(fmt::format("run {}: it is completed; nothing is left to do", id));
+    throw ConcurrencyConflict(fmt::format("run {}: it is completed", id));
   }
   const std::uint64_t attempt = known.front().attempts + 1;
-  json payload = {{"attempt", attempt},
-                  {"host", host},
-                  {"process", {{"host", self_.host}, {"pid", self_.pid}, {"token", self_.token}}}};
+  const json process = {{"host", self_.host}, {"pid", self_.pid}, {"token", self_.token}};
+  events::Any begun;
   std::uint64_t from_step = 0;
   if (from_sha256) {
     const auto from = query_checkpoint(database_, id, *from_sha256);
-    if (!from) {
-      throw NotFound(fmt::format("run {}: it has no checkpoint {}", id, *from_sha256));
-    }
+    if (!from) throw unknown_checkpoint(id, *from_sha256);
     from_step = from->step;
-    payload["from"] = {{"sha256", from->sha256}, {"step", from->step}, {"cycle", from->cycle}};
+    begun = events::RunResumed{attempt, host, process, {from->sha256, from->step, from->cycle}};
   } else {
-    payload["parent_checkpoint"] = parent_checkpoint.empty() ? json() : json(parent_checkpoint);
+    events::RunStarted started{attempt, host, process, std::nullopt};
+    if (!parent_checkpoint.empty()) started.parent_checkpoint = parent_checkpoint;
+    begun = std::move(started);
   }
   if (known.front().step > from_step) {
-    throw ConcurrencyConflict(fmt::format(
-        "run {}: step {} was recorded meanwhile; go on from there", id, known.front().step));
+    throw ConcurrencyConflict(
+        fmt::format("run {}: another program has recorded step {}; continue from there", id,
+                    known.front().step));
   }
-  const std::uint64_t version = log_.version(run_stream(id));
-  append(run_stream(id), version, {from_sha256 ? "RunResumed" : "RunStarted", payload}, lock);
+  const std::uint64_t version = append(run_stream(id), encode(begun), lock);
   hold(id, attempt);
   lock.commit();
-  held_[id] = {version + 1, attempt};
+  held_[id] = {version, attempt};
   return attempt;
 }
 
@@ -286,8 +271,8 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
     throw std::invalid_argument(
         fmt::format("run {}: the checkpoint names run '{}'", id, checkpoint.run));
   }
-  // The slow part, and the file before the event: a crash in between leaves a file that no event
-  // names, never an event without its file.
+  // The file is written before the event: a crash in between leaves a file without an event, never
+  // an event without its file.
   const std::string state = state_hash(checkpoint);
   const std::vector<std::byte> bytes = encode_checkpoint(checkpoint);
   const ObjectInfo object = objects_.put(bytes);
@@ -295,41 +280,39 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
   const auto old = query_checkpoint(database_, id, object.sha256);
   if (old && old->state == CheckpointState::recorded && held_.contains(id)) return *old;
   append_held(id,
-              {"CheckpointRecorded",
-               {{"step", checkpoint.state.step},
-                {"cycle", checkpoint.cycle},
-                {"time_s", checkpoint.time_s},
-                {"file", object.file},
-                {"size", object.size},
-                {"sha256", object.sha256},
-                {"state_hash", state},
-                {"observables", checkpoint.observables},
-                {"wall_seconds", effort.wall_seconds},
-                {"particle_steps", effort.particle_steps}}},
+              encode(events::CheckpointRecorded{.step = checkpoint.state.step,
+                                                .cycle = checkpoint.cycle,
+                                                .time_s = checkpoint.time_s,
+                                                .file = object.file,
+                                                .size = object.size,
+                                                .sha256 = object.sha256,
+                                                .state_hash = state,
+                                                .observables = checkpoint.observables,
+                                                .wall_seconds = effort.wall_seconds,
+                                                .particle_steps = effort.particle_steps}),
               false);
-  // A `prune` at work may have removed the file; now that it is recorded again it stays.
+  // A concurrent `prune` may have deleted the file before this event.
   if (old && !objects_.contains(object.sha256)) objects_.put(bytes);
   return query_checkpoint(database_, id, object.sha256).value();
 }
 
 void Store::interrupt_run(const std::string& id, const std::string& why) {
-  must_write();
-  const std::scoped_lock guard(mutex_);
-  append_held(id, {"RunInterrupted", {{"why", why}}}, true);
+  end_run(id, encode(events::RunInterrupted{why}));
 }
 
 void Store::fail_run(const std::string& id, const std::string& why, const json& numbers) {
-  must_write();
-  const std::scoped_lock guard(mutex_);
-  append_held(id, {"RunFailed", {{"why", why}, {"numbers", numbers}}}, true);
+  end_run(id, encode(events::RunFailed{why, numbers}));
 }
 
 void Store::complete_run(const std::string& id, const json& summary,
                          std::optional<std::uint64_t> target_cycles) {
+  end_run(id, encode(events::RunCompleted{summary, target_cycles}));
+}
+
+void Store::end_run(const std::string& id, const NewEvent& event) {
   must_write();
   const std::scoped_lock guard(mutex_);
-  const json reached = target_cycles ? json(*target_cycles) : json();
-  append_held(id, {"RunCompleted", {{"summary", summary}, {"target_cycles", reached}}}, true);
+  append_held(id, event, true);
 }
 
 void Store::reject_checkpoint(const std::string& id, const std::string& sha256,
@@ -338,29 +321,22 @@ void Store::reject_checkpoint(const std::string& id, const std::string& sha256,
   const std::scoped_lock guard(mutex_);
   sqlite::WriteTransaction lock(database_);
   const auto record = query_checkpoint(database_, id, sha256);
-  if (!record) throw NotFound(fmt::format("run {}: it has no checkpoint {}", id, sha256));
+  if (!record) throw unknown_checkpoint(id, sha256);
   if (record->state != CheckpointState::recorded) return;
-  append(run_stream(id), log_.version(run_stream(id)),
-         {"CheckpointRejected", {{"sha256", sha256}, {"step", record->step}, {"why", why}}}, lock);
+  append(run_stream(id), encode(events::CheckpointRejected{sha256, record->step, why}), lock);
   lock.commit();
 }
 
 void Store::record_figure(const std::string& name, const json& provenance) {
-  must_write();
-  const std::string stream = "figure/" + name;
-  const std::scoped_lock guard(mutex_);
-  sqlite::WriteTransaction lock(database_);
-  append(stream, log_.version(stream), {"FigureGenerated", provenance}, lock);
-  lock.commit();
+  record("figure/" + name, encode(events::FigureGenerated{provenance}));
 }
 
 void Store::record_submission(const std::string& type, const json& facts,
                               std::optional<std::uint64_t> seen) {
-  must_write();
-  const std::scoped_lock guard(mutex_);
-  sqlite::WriteTransaction lock(database_);
-  append(kSubmissions, seen.value_or(log_.version(kSubmissions)), {type, facts}, lock);
-  lock.commit();
+  const bool queued = type == events::JobQueued::kType;
+  record(kSubmissions,
+         queued ? encode(events::JobQueued{facts}) : encode(events::CampaignSubmitted{facts}),
+         seen);
 }
 
 }  // namespace shearcell

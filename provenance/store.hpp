@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The store as the rest of the program sees it: one folder that remembers every run.
+// The store as the rest of the program uses it: one folder with the log and the checkpoint files.
 #pragma once
 
 #include <filesystem>
@@ -24,17 +24,16 @@
 namespace shearcell {
 
 enum class Access {
-  create,  ///< read and write; the folder is made when it is missing
+  create,  ///< read and write; a missing folder is created
   write,   ///< read and write; the store must exist
-  read     ///< the store must exist; the recording functions throw std::logic_error
+  read     ///< the store must exist; functions that write throw std::logic_error
 };
 
 struct StoreOptions {
-  /// After this long without a sign of life of its holder a run may be taken by others.
-  double lease_seconds = 60;
+  double lease_seconds = 60;  ///< a lease that is not renewed for so long expires
 };
 
-/// The stream of what `record_submission` records.
+/// The stream of record_submission.
 inline constexpr std::string_view kSubmissions = "store/submission";
 
 struct LoadedCheckpoint {
@@ -42,20 +41,17 @@ struct LoadedCheckpoint {
   Checkpoint checkpoint;
 };
 
-/// Thread-safe: any thread may call any function at any time. Several processes may open one store
-/// on a local disk; the log decides who came first.
+/// Thread-safe. Several processes may open one store on a local disk; the log decides who was
+/// first. Every function may throw StoreDamaged, StoreBusy and std::runtime_error (disk full, ...).
 ///
-/// Between `start_run` and `interrupt_run`, `fail_run` or `complete_run` this object holds the run,
-/// by a lease that every record and `renew_leases` prolong. Others may take the run when the lease
-/// has expired, at once when the holder's process is dead; then the next record throws
-/// ConcurrencyConflict and the run is no longer held: stop stepping it. A Store that goes away
-/// gives its leases back.
-///
-/// Every function may throw StoreDamaged, StoreBusy and std::runtime_error (disk full, ...).
+/// Between `start_run` and the end of the attempt this object holds the run by a lease, which every
+/// record and `renew_leases` renew. Another program may take the run when the lease has expired, or
+/// at once when the holder's process is dead. The previous holder's next record then throws
+/// ConcurrencyConflict, and it must stop stepping the run. The destructor releases all leases.
 class Store {
  public:
-  /// Throws StoreDamaged when the folder is a plain file, holds something else or has a newer
-  /// schema; NotFound when it is missing and `access` does not create it.
+  /// Throws StoreDamaged when the folder is not a store or has a newer schema, NotFound when it is
+  /// missing and `access` does not create it.
   Store(std::filesystem::path folder, Access access, const StoreOptions& options = {});
   ~Store();
   Store(const Store&) = delete;
@@ -63,124 +59,125 @@ class Store {
 
   const std::filesystem::path& folder() const { return folder_; }
 
-  // --- What happened ---
+  // --- Recording ---
 
-  /// Keeps the text once; returns its SHA-256.
+  /// Stores the text once; returns its SHA-256.
   std::string register_manifest(std::string_view text, std::string_view path,
                                 const nlohmann::json& info);
 
-  /// Nothing is recorded when the run is known with this membership and at least this target. A
-  /// longer target makes a completed run `declared` again. Throws std::invalid_argument when the id
-  /// is no digest, stands for other parameters, or its parent was never declared.
+  /// Records nothing when the run is known with this membership and at least this target. A longer
+  /// target makes a completed run `declared` again. Throws std::invalid_argument when the id is not
+  /// a SHA-256, belongs to other parameters, or the parent was never declared.
   void declare_run(const RunDeclaration& declaration);
 
-  /// Begins an attempt, from `from_sha256` (the checkpoint of this run that it continues) when
-  /// given; else from `parent_checkpoint`, which is only noted. Returns the attempt's number, 1 for
-  /// the first. Throws NotFound when the run or the checkpoint is unknown, RunHeld when another
-  /// program is at work on it, and ConcurrencyConflict when this object holds the run already, when
-  /// nothing is left to do, or when somebody recorded a later checkpoint than `from_sha256`.
+  /// Starts an attempt and returns its number, from 1. With `from_sha256` it continues from this
+  /// checkpoint of the run; `parent_checkpoint` is only recorded. Throws NotFound when the run or
+  /// the checkpoint is unknown, RunHeld when another program computes the run, ConcurrencyConflict
+  /// when this object holds it, when it is completed, or when a later checkpoint was recorded.
   std::uint64_t start_run(const std::string& id, const nlohmann::json& host,
                           const std::optional<std::string>& from_sha256 = std::nullopt,
                           const std::string& parent_checkpoint = "");
 
-  /// Shows that this program is still at work on what it holds; call it a few times within
-  /// `lease_seconds`. A run that somebody else took is held no longer.
+  /// Renews the leases of all held runs; call it several times within `lease_seconds`. Runs that
+  /// another program took are no longer held.
   void renew_leases();
   double lease_seconds() const { return static_cast<double>(lease_ms_) / 1000; }
   bool holds(const std::string& id) const;
 
-  /// Writes the file, then the event. A checkpoint that is recorded already gives its old record.
-  /// Throws std::invalid_argument when the checkpoint names another run or holds NaN.
+  /// Writes the file, then the event. A checkpoint that is already recorded returns its record.
+  /// Throws std::invalid_argument when the checkpoint belongs to another run or holds NaN.
   CheckpointRecord record_checkpoint(const std::string& id, const Checkpoint& checkpoint,
                                      const Effort& effort = {});
   void interrupt_run(const std::string& id, const std::string& why);
   void fail_run(const std::string& id, const std::string& why,
                 const nlohmann::json& numbers = nlohmann::json::object());
-  /// `target_cycles` is the length that was reached: a run whose target is longer by now is
-  /// declared again.
+  /// `target_cycles` is the length that was reached; a run whose target is longer is declared
+  /// again.
   void complete_run(const std::string& id, const nlohmann::json& summary = nlohmann::json::object(),
                     std::optional<std::uint64_t> target_cycles = std::nullopt);
 
-  /// From now on the checkpoint is passed over; its file stays.
+  /// Excludes the checkpoint from now on; its file is kept.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
-  /// The newest checkpoint from which the run can go on. Those that are missing or damaged are
-  /// rejected (only skipped with Access::read) and the next older one is tried.
-  /// What was wrong with each of those is appended to `damage`, when given.
+  /// The newest checkpoint that can be loaded. Missing or damaged ones are rejected (with
+  /// Access::read: skipped) and their errors appended to `damage`.
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr);
 
   /// `provenance` holds the inputs and the SHA-256 of the outputs.
   void record_figure(const std::string& name, const nlohmann::json& provenance);
 
-  /// Work that was handed to a cluster ("CampaignSubmitted", "JobQueued"). Throws
-  /// ConcurrencyConflict when `seen`, the number of such events that the caller has read, is not
-  /// all.
+  /// `type` is "CampaignSubmitted" or "JobQueued". Throws ConcurrencyConflict when the stream does
+  /// not hold exactly `seen` events.
   void record_submission(const std::string& type, const nlohmann::json& facts,
                          std::optional<std::uint64_t> seen = std::nullopt);
 
-  // --- What is known ---
+  // --- Reading ---
 
-  std::vector<RunRecord> runs() const;  ///< in the order in which they were declared
+  std::vector<RunRecord> runs() const;  ///< in the order of their declaration
   RunRecord run(const std::string& id) const;
-  /// Who works on which run now. Leases that anybody may take are left out.
-  std::vector<Lease> leases() const;
-  /// The run whose id begins so. Throws NotFound, listing the candidates when there are several.
+  std::vector<Lease> leases() const;  ///< that have not lapsed
+  /// The run with this prefix of the id. Throws NotFound, with the candidates if it is ambiguous.
   RunRecord find_run(std::string_view prefix) const;
-  /// In ascending order of step: those that can be read, or all that were ever recorded.
+  /// In ascending order of step: the recorded ones; with `all`, rejected and pruned ones too.
   std::vector<CheckpointRecord> checkpoints(const std::string& id, bool all = false) const;
-  /// The checkpoint whose SHA-256 begins so, whatever its state. Throws as find_run does.
+  /// The checkpoint with this prefix of the SHA-256, in any state. Throws like find_run.
   CheckpointRecord find_checkpoint(std::string_view prefix) const;
-  /// Reads, verifies and decodes. Throws StoreDamaged naming the file, and CheckpointPruned.
+  /// Reads, verifies and decodes. Throws StoreDamaged, which names the file, or CheckpointPruned.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
   std::vector<FigureRecord> figures() const;  ///< the newest of each name, by name
-  /// Of one stream ("run/<id>", ...), or of all ("").
+  /// Events of one stream ("run/<id>", ...), or all ("").
   std::vector<Event> events(std::string_view stream = "") const;
   Head head() const;
 
-  // --- Care ---
+  // --- Maintenance ---
 
-  /// Drops what was derived from the events and derives it again.
+  /// Derives the tables again from the events.
   void rebuild();
-  /// `against` is a head that `verify` told earlier: the log must extend it.
+  /// With `against`, a head of earlier, the log must extend it.
   VerifyReport verify(const std::optional<Head>& against = std::nullopt) const;
 
-  /// The checkpoints that `prune` would free. Left out are the newest checkpoint of each run, the
-  /// newest that can be read, and those that another stage started from.
+  /// The checkpoints that `prune` would free. Never among them: the newest checkpoint of a run, the
+  /// newest that can be read, and initial states of other stages.
   std::vector<CheckpointRecord> prunable(const PruneChoice& choice) const;
-  /// Files of pruned checkpoints that a crash left behind.
+  /// Pruned checkpoints whose files a crash left behind.
   std::vector<CheckpointRecord> prune_leftovers() const;
-  /// Records that they are pruned and then removes their files; a crash in between leaves files
-  /// that `verify` notes and the next `prune` removes. What became unfit to be pruned since is
-  /// kept. Returns the bytes that were freed.
+  /// Records the checkpoints as pruned, then deletes their files. Checkpoints that may no longer be
+  /// pruned are skipped. Returns the number of bytes freed.
   std::uint64_t prune(const std::vector<CheckpointRecord>& records);
-  /// Keeps what was computed again for a record whose file is gone. Throws StoreDamaged when it is
-  /// not the same, byte for byte.
+  /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
-  /// ReplayVerified or ReplayDiverged: what came of computing a part of the run again.
+  /// Appends ReplayVerified or ReplayDiverged.
   void record_replay(const std::string& id, bool same, const nlohmann::json& facts);
 
-  /// Folds the events and checkpoints of other stores in (merge.hpp); with `runs`, only of these
-  /// runs, which must hold the parents of each. Throws StoreDamaged or MergeConflict, naming what
-  /// is wrong, before anything is changed.
+  /// Merges other stores (merge.hpp); with `runs`, only these runs, which must include the parents
+  /// of each. Throws StoreDamaged or MergeConflict before anything is changed.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 
  private:
-  void append(std::string_view stream, std::uint64_t expected_version, NewEvent event,
-              const sqlite::WriteTransaction& lock);
-  void append_held(const std::string& id, NewEvent event, bool release);
+  /// Appends one event and applies it; returns its version. Without `expected_version`, at the end
+  /// of the stream.
+  std::uint64_t append(std::string_view stream, const NewEvent& event,
+                       const sqlite::WriteTransaction& lock,
+                       std::optional<std::uint64_t> expected_version = std::nullopt);
+  /// The same in a transaction of its own.
+  void record(std::string_view stream, const NewEvent& event,
+              std::optional<std::uint64_t> expected_version = std::nullopt);
+  /// Appends an event that only the holder may write; with `release`, ends the lease.
+  void append_held(const std::string& id, const NewEvent& event, bool release);
+  void end_run(const std::string& id, const NewEvent& event);
   void hold(const std::string& id, std::uint64_t attempt);
   void must_write() const;
 
   std::filesystem::path folder_;
   Access access_;
   ObjectStore objects_;
-  mutable std::mutex mutex_;  ///< guards everything below
+  mutable std::mutex mutex_;  ///< guards all members below
   mutable sqlite::Database database_;
   EventLog log_;
   struct Held {
-    std::uint64_t version = 0;  ///< of the run's stream when last seen
+    std::uint64_t version = 0;  ///< of the run's stream after the last own event
     std::uint64_t attempt = 0;
   };
   Holder self_;

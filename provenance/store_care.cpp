@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The store's care for what it holds: proving, freeing, restoring, merging.
+// Maintenance of the store: verify, rebuild, prune, regenerate, merge.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "provenance/json_text.hpp"
+#include "provenance/events.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/queries.hpp"
 #include "provenance/sha256.hpp"
@@ -16,20 +16,13 @@ namespace shearcell {
 
 namespace {
 
-using nlohmann::json;
-
-/// Checkpoints from which other stages began, as their attempts noted.
-std::set<std::string> beginnings_of_others(const EventLog& log) {
+/// Checkpoints that are initial states of other stages.
+std::set<std::string> initial_states(const EventLog& log) {
   std::set<std::string> found;
   log.for_each([&found](const Event& event) {
-    if (event.type != "RunStarted") return;
-    try {
-      const json body = event.body();
-      const json& parent = body.at("parent_checkpoint");
-      if (parent.is_string()) found.insert(parent.get<std::string>());
-    } catch (const json::exception& problem) {
-      throw damaged_payload(event, problem);
-    }
+    if (event.type != events::RunStarted::kType) return;
+    const auto started = std::get<events::RunStarted>(events::decode(event));
+    if (started.parent_checkpoint) found.insert(*started.parent_checkpoint);
   });
   return found;
 }
@@ -42,11 +35,6 @@ bool chosen(const PruneChoice& choice, const RunRecord& run) {
 bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) {
   return choice.keep_every > 0 &&
          std::fmod(record.cycle, static_cast<double>(choice.keep_every)) == 0;
-}
-
-json describe_checkpoint(const CheckpointRecord& record) {
-  return {{"sha256", record.sha256}, {"step", record.step}, {"cycle", record.cycle},
-          {"file", record.file},     {"size", record.size}, {"state_hash", record.state_hash}};
 }
 
 }  // namespace
@@ -66,14 +54,14 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   std::set<std::string> needed;
   {
     const std::scoped_lock guard(mutex_);
-    needed = beginnings_of_others(log_);
+    needed = initial_states(log_);
   }
   std::vector<CheckpointRecord> found;
   for (const RunRecord& run : runs()) {
     if (!chosen(choice, run)) continue;
     std::vector<CheckpointRecord> records = checkpoints(run.id);
     if (records.empty()) continue;
-    // The newest, and from it backwards to the newest that can be read.
+    // The newest is kept, and all back to the newest that can be read.
     while (!records.empty()) {
       const CheckpointRecord newest = std::move(records.back());
       records.pop_back();
@@ -81,7 +69,7 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
         load_checkpoint(newest);
         break;
       } catch (const StoreDamaged&) {
-        // Kept as well, because it is for `resume` to say what is wrong with it.
+        // Kept as well: `resume` reports it.
       }
     }
     for (CheckpointRecord& record : records) {
@@ -108,20 +96,19 @@ std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records) {
   must_write();
   const std::scoped_lock guard(mutex_);
   {
-    // One transaction for all: the choice is recorded whole or not at all.
+    // One transaction: all checkpoints are recorded as pruned, or none.
     sqlite::WriteTransaction lock(database_);
     for (const CheckpointRecord& record : records) {
       const auto now = query_checkpoint(database_, record.run, record.sha256);
       const RunRecord run = query_runs(database_, record.run).at(0);
       if (!now || now->state != CheckpointState::recorded || now->step >= run.step) continue;
-      const std::string stream = "run/" + record.run;
-      append(stream, log_.version(stream), {"CheckpointPruned", describe_checkpoint(*now)}, lock);
+      append(run_stream(record.run), events::encode(events::CheckpointPruned(*now)), lock);
     }
     lock.commit();
   }
   std::uint64_t freed = 0;
   for (const CheckpointRecord& record : records) {
-    // Under the lock, so that nobody records the file anew between the look and the removal.
+    // Under the lock, so that the file is not recorded again between the check and the removal.
     sqlite::WriteTransaction lock(database_);
     const auto now = query_checkpoint(database_, record.run, record.sha256);
     if (!now || now->state != CheckpointState::pruned) continue;
@@ -135,35 +122,30 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
   const std::vector<std::byte> bytes = encode_checkpoint(checkpoint);
   const std::string state = state_hash(checkpoint), sha256 = sha256_hex(bytes);
   if (checkpoint.run != record.run || state != record.state_hash || sha256 != record.sha256) {
-    throw StoreDamaged(fmt::format(
-        "checkpoint {:.12} of run {:.12}: computed again it has state {:.12} instead of {:.12} and "
-        "file {:.12}; it was not kept",
-        record.sha256, record.run, state, record.state_hash, sha256));
+    throw StoreDamaged(
+        fmt::format("checkpoint {:.12} of run {:.12}: the regenerated one has state {:.12} instead "
+                    "of {:.12} and "
+                    "file {:.12}; it was not stored",
+                    record.sha256, record.run, state, record.state_hash, sha256));
   }
   for (;;) {
     objects_.put(bytes);
     const std::scoped_lock guard(mutex_);
     sqlite::WriteTransaction lock(database_);
-    if (!objects_.contains(sha256)) continue;  // a `prune` at work removed it just now
+    if (!objects_.contains(sha256)) continue;  // a concurrent `prune` deleted it
     const auto now = query_checkpoint(database_, record.run, sha256);
-    if (!now) throw NotFound(fmt::format("run {}: it has no checkpoint {}", record.run, sha256));
+    if (!now) throw unknown_checkpoint(record.run, sha256);
     if (now->state == CheckpointState::recorded) return;
-    const std::string stream = "run/" + record.run;
-    append(stream, log_.version(stream), {"CheckpointRegenerated", describe_checkpoint(*now)},
-           lock);
+    append(run_stream(record.run), events::encode(events::CheckpointRegenerated(*now)), lock);
     lock.commit();
     return;
   }
 }
 
-void Store::record_replay(const std::string& id, bool same, const json& facts) {
-  must_write();
-  const std::scoped_lock guard(mutex_);
-  sqlite::WriteTransaction lock(database_);
-  if (query_runs(database_, id).empty()) throw unknown_run(id);
-  append("run/" + id, log_.version("run/" + id),
-         {same ? "ReplayVerified" : "ReplayDiverged", facts}, lock);
-  lock.commit();
+void Store::record_replay(const std::string& id, bool same, const nlohmann::json& facts) {
+  run(id);  // throws when it is unknown
+  record(run_stream(id), same ? events::encode(events::ReplayVerified{facts})
+                              : events::encode(events::ReplayDiverged{facts}));
 }
 
 std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& folders,
@@ -172,22 +154,21 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
   const auto require_idle = [this] {
     for (const Lease& lease : query_leases(database_)) {
       if (lapsed(lease, now_ms())) continue;
-      throw StoreBusy(
-          fmt::format("{}: a program is at work on run {:.12} ({}); merge when it has ended",
-                      folder_.string(), lease.run, describe(lease.holder)));
+      throw StoreBusy(fmt::format("{}: a program computes run {:.12} ({}); merge when it has ended",
+                                  folder_.string(), lease.run, describe(lease.holder)));
     }
   };
   std::vector<MergeSource> sources;
   for (const std::filesystem::path& folder : folders) {
     std::error_code ignored;
     if (std::filesystem::equivalent(folder, folder_, ignored)) {
-      throw NotFound(folder.string() + ": a store is not merged into itself; name another one");
+      throw NotFound(folder.string() + ": a store cannot be merged into itself; name another one");
     }
     sources.push_back(read_merge_source(folder, runs));
   }
   const std::scoped_lock guard(mutex_);
   require_idle();
-  // Everything that may be refused is looked at before the first byte is written.
+  // All checks are made before the first byte is written.
   require_agreement(database_, folder_.string(), sources);
   for (const MergeSource& source : sources) check_objects(database_, source);
   std::vector<MergeReport> reports;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the store knows, as plain records.
+// Reading functions of the store.
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "provenance/plausible.hpp"
 #include "provenance/queries.hpp"
 #include "provenance/store.hpp"
 
@@ -12,7 +11,7 @@ namespace shearcell {
 
 namespace {
 
-constexpr std::size_t kListed = 10;  // candidates for an ambiguous name
+constexpr std::size_t kListed = 10;  // candidates of an ambiguous prefix
 
 NotFound ambiguous(const char* what, std::string_view prefix,
                    const std::vector<std::string>& candidates) {
@@ -116,8 +115,8 @@ Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
     const auto now = query_checkpoint(database_, record.run, record.sha256);
     if (!now || now->state != CheckpointState::pruned) return;
     throw CheckpointPruned(fmt::format(
-        "{}: checkpoint {:.12} (run {:.12}, cycle {:g}) was pruned; `shearcell regenerate {:.12}` "
-        "makes it again",
+        "{}: checkpoint {:.12} (run {:.12}, cycle {:g}) was pruned; restore it with `shearcell "
+        "regenerate {:.12}`",
         file, record.sha256, record.run, record.cycle, record.sha256));
   };
   if (record.state == CheckpointState::pruned) require_kept();
@@ -125,7 +124,7 @@ Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
   try {
     bytes = objects_.get(record.sha256, record.size);
   } catch (const StoreDamaged&) {
-    require_kept();  // somebody may have pruned it since the record was read
+    require_kept();  // it may have been pruned since the record was read
     throw;
   }
   Checkpoint checkpoint;
@@ -137,7 +136,8 @@ Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
   }
   if (checkpoint.run != record.run || state_hash(checkpoint) != record.state_hash) {
     throw StoreDamaged(fmt::format(
-        "{}: it holds another state than the log says; `resume` goes on from an older one", file));
+        "{}: its state is not the recorded one; `resume` continues from an older checkpoint",
+        file));
   }
   return checkpoint;
 }

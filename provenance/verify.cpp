@@ -36,26 +36,28 @@ void check_chain(const EventLog& log, VerifyReport& report) {
   }
 }
 
-/// The chain proves that no event before a head was changed while the head stays what it was.
+/// An unchanged head proves that no event before it was changed.
 void check_extends(const EventLog& log, const Head& earlier, VerifyReport& report) {
   const auto damaged = [&](const std::string& message) {
     report.findings.push_back({Severity::error, fmt::format("event {}", earlier.seq), "", message});
   };
   if (report.head.seq < earlier.seq) {
     return damaged(
-        fmt::format("the log was cut off: it ends at event {}, and the head that was kept is event "
-                    "{}; restore the log from a backup",
+        fmt::format("the log was cut off: it ends at event {}, but the given head is event {}; "
+                    "restore the log from a backup",
                     report.head.seq, earlier.seq));
   }
   const std::string found = log.hash_at(earlier.seq);
   if (found == earlier.hash) return;
-  damaged(fmt::format(
-      "the log was rewritten: event {} has hash {}, and the head that was kept says {}; "
-      "restore the log from a backup",
-      earlier.seq, found, earlier.hash));
+  damaged(
+      fmt::format("the log was rewritten: event {} has hash {}, but the given head has {}; restore "
+                  "the log from "
+                  "a backup",
+                  earlier.seq, found, earlier.hash));
 }
 
-/// The tables as the events alone give them. Events that cannot be applied are named and left out.
+/// The tables derived from the events alone. Events that cannot be applied are reported and
+/// skipped.
 sqlite::Database derive(const EventLog& log, VerifyReport& report) {
   sqlite::Database fresh = sqlite::Database::in_memory();
   fresh.execute("PRAGMA foreign_keys=ON");
@@ -80,15 +82,15 @@ void compare_tables(const Rows& stored, const Rows& derived, VerifyReport& repor
     if (a == rows.end() && b == found.end()) continue;
     report.findings.push_back(
         {Severity::error, "table " + table, "",
-         fmt::format("it is not what the events give: row {} should be ({}) and is ({}); run "
+         fmt::format("it is not what the events give: row {} should be ({}) but is ({}); run "
                      "`rebuild`",
                      a - rows.begin() + 1, a == rows.end() ? "absent" : *a,
                      b == found.end() ? "absent" : *b)});
   }
 }
 
-/// Whether another program has pruned it since the records were read. A table that was forged to
-/// say so differs from the events, and that is an error of its own.
+/// Whether another program has pruned the checkpoint since the records were read. A forged table
+/// does not hide damage: it differs from the events, which is an error.
 bool pruned_meanwhile(const sqlite::Database& database, const CheckpointRecord& record) {
   try {
     const auto now = query_checkpoint(database, record.run, record.sha256);
@@ -107,8 +109,8 @@ void check_objects(const std::vector<CheckpointRecord>& records, const sqlite::D
     if (record.state == CheckpointState::pruned) {
       if (objects.contains(record.sha256)) {
         report.findings.push_back({Severity::note, record.file, record.run,
-                                   "it was pruned and its file is still there, as a crash leaves "
-                                   "it; `shearcell prune` removes it"});
+                                   "it was pruned but its file still exists, probably because of a "
+                                   "crash; `shearcell prune` deletes it"});
       }
       continue;
     }
@@ -125,13 +127,14 @@ void check_objects(const std::vector<CheckpointRecord>& records, const sqlite::D
   }
   for (const std::string& file : objects.strangers(known)) {
     ++report.orphans;
-    report.findings.push_back({Severity::note, file, "",
-                               "no event names this file: a crash or a kill left it, or another "
-                               "process is writing it now; when none runs it can be deleted"});
+    report.findings.push_back(
+        {Severity::note, file, "",
+         "no event names this file: it was left by a crash or is being written "
+         "now; it can be deleted when no program uses the store"});
   }
 }
 
-/// The same step of the same run must be the same state, whoever computed it.
+/// All attempts of a run must reach the same state at the same step.
 void check_reproduced(const std::vector<CheckpointRecord>& records, VerifyReport& report) {
   std::map<std::pair<std::string, std::uint64_t>, std::string> states;
   for (const CheckpointRecord& record : records) {
@@ -140,7 +143,7 @@ void check_reproduced(const std::vector<CheckpointRecord>& records, VerifyReport
     if (fresh || first->second == record.state_hash) continue;
     report.findings.push_back(
         {Severity::note, record.file, record.run,
-         fmt::format("two attempts gave different states at step {}; compare the builds in "
+         fmt::format("two attempts have different states at step {}; compare their builds in "
                      "`shearcell log`",
                      record.step)});
   }
@@ -158,7 +161,7 @@ VerifyReport verify(sqlite::Database& database, const EventLog& log, const Objec
   VerifyReport report;
   std::vector<CheckpointRecord> records;
   try {
-    // One view of the log, while other processes may write; the files are read after it.
+    // One snapshot of the log; the files are read after it.
     const sqlite::ReadTransaction snapshot(database);
     check_file(database, report);
     check_chain(log, report);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the store still is what was written: chain, objects, projections.
+// Verification of a store: chain, objects, projections.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +13,28 @@
 namespace shearcell {
 
 struct Finding {
-  /// An error means that something recorded is lost or changed; a note does not.
+  /// An error: a record is lost or changed. A note: everything recorded is intact.
   enum class Severity { note, error };
   Severity severity = Severity::note;
-  std::string subject;  ///< file, event or table that it is about
-  std::string run;      ///< the run that it touches, or ""
-  std::string message;  ///< what is wrong and what to do
+  std::string subject;  ///< file, event or table
+  std::string run;      ///< affected run, or ""
+  std::string message;  ///< problem and remedy
 };
 
 struct VerifyReport {
   std::vector<Finding> findings;
   std::uint64_t events = 0;
-  std::uint64_t checkpoints = 0;  ///< whose bytes were hashed
-  std::uint64_t bytes = 0;        ///< that were hashed
+  std::uint64_t checkpoints = 0;  ///< number of checkpoint files hashed
+  std::uint64_t bytes = 0;        ///< size of these files
   std::uint64_t orphans = 0;      ///< files that no event names
-  Head head;                      ///< keep it elsewhere to prove later that the log only grew
+  Head head;                      ///< kept elsewhere, it proves later that the log only grew
 
-  /// No error was found.
+  /// Without errors.
   bool ok() const;
 };
 
-/// Damage becomes findings; the rest is still examined. With `against`, a head that was told
-/// earlier, a log that does not extend it is damaged as well. Throws only when the machine fails.
+/// Damage is reported as findings, and the check continues. With `against`, a head of earlier, a
+/// log that does not extend it is damaged. Throws only when the machine fails.
 VerifyReport verify(sqlite::Database& database, const EventLog& log, const ObjectStore& objects,
                     const std::optional<Head>& against = std::nullopt);
 

@@ -7,20 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "experiments/cli/exit_code.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/campaign.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell::cli {
-
-enum ExitCode : int {
-  kDone = 0,
-  kOtherError = 1,
-  kUsageError = 2,  ///< usage or manifest
-  kRunFailed = 3,   ///< a run failed numerically
-  kStoreDamaged = 4,
-  kInterrupted = 85,  ///< resumable
-};
 
 /// Filled in by the options, read by the subcommands.
 struct Context {

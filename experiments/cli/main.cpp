@@ -6,14 +6,9 @@
 #include <cstdlib>
 #include <exception>
 
-#include "core/filling.hpp"
-#include "core/watchdog.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/manifest/manifest.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/terminal.hpp"
-#include "provenance/errors.hpp"
-#include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -75,27 +70,14 @@ int run(int argc, char** argv) {
     return context.exit_code;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kUsageError;
-  } catch (const ManifestError& error) {
-    return complain(kUsageError, error.what());
-  } catch (const NotFound& error) {
-    return complain(kUsageError, error.what());
-  } catch (const NotOurs& error) {
-    return complain(kUsageError, error.what());
-  } catch (const GeometryError& error) {
-    return complain(kUsageError, error.what());
-  } catch (const NumericalFailure& error) {
-    return complain(kRunFailed, error.what());
-  } catch (const StoreDamaged& error) {
-    return complain(kStoreDamaged, error.what());
   } catch (const nlohmann::json::exception& error) {
-    // What is read from elsewhere says so itself; what is left are records of a store.
     const std::string why = fmt::format(
         "{}: a record is not as this program writes it ({}); run `shearcell verify`, and restore "
         "the store from a backup",
         context.store, error.what());
-    return complain(kStoreDamaged, why.c_str());
+    return complain(exit_code_of(error), why.c_str());
   } catch (const std::exception& error) {
-    return complain(kOtherError, error.what());
+    return complain(exit_code_of(error), error.what());
   }
 }
 

@@ -30,10 +30,7 @@ PruneChoice choice_of(const PruneOptions& options, const Store& store) {
   PruneChoice choice;
   for (const std::string& prefix : options.runs) choice.runs.push_back(store.find_run(prefix).id);
   choice.keep_every = options.keep_every;
-  for (const RunState state : {RunState::declared, RunState::running, RunState::interrupted,
-                               RunState::failed, RunState::completed}) {
-    if (options.state == name_of(state)) choice.state = state;
-  }
+  choice.state = value_of<RunState>(options.state);
   return choice;
 }
 
@@ -49,7 +46,7 @@ void print_plan(const Store& store, const std::vector<CheckpointRecord>& records
   std::vector<std::vector<std::string>> rows;
   for (const auto& [id, of_run] : by_run) {
     const RunRecord run = store.run(id);
-    rows.push_back({id.substr(0, 8), name_of(run.state), std::to_string(of_run.size()),
+    rows.push_back({id.substr(0, 8), std::string(name_of(run.state)), std::to_string(of_run.size()),
                     std::to_string(store.checkpoints(id).size()), format_bytes(bytes_of(of_run))});
   }
   print_table({"run", "state", "to free", "of", "bytes"}, rows);

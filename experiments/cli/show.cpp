@@ -93,7 +93,7 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   for (const CheckpointRecord& c : checkpoints) {
     rows.push_back({fmt::format("{:g}", c.cycle), std::to_string(c.step), c.sha256.substr(0, 12),
                     c.state_hash.substr(0, 12), format_bytes(static_cast<double>(c.size)),
-                    c.state == CheckpointState::recorded ? "" : name_of(c.state)});
+                    c.state == CheckpointState::recorded ? "" : std::string(name_of(c.state))});
   }
   print_table({"cycle", "step", "checkpoint", "state", "size", ""}, rows);
 }

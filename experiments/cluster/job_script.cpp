@@ -7,6 +7,8 @@
 #include <array>
 #include <charconv>
 
+#include "provenance/io/child_process.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -69,18 +71,6 @@ std::string directives(const JobOptions& options, const std::vector<std::string>
 }
 
 }  // namespace
-
-std::string shell_quoted(std::string_view text) {
-  std::string quoted = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      quoted += "'\\''";
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + "'";
-}
 
 std::optional<std::string> unfit_path(const std::filesystem::path& path) {
   const std::string text = path.string();

@@ -29,9 +29,6 @@ struct JobPlaces {
   std::filesystem::path folder;   ///< of the submission; holds task-1, task-2, ...
 };
 
-/// A word for a POSIX shell that stands for exactly this text.
-std::string shell_quoted(std::string_view text);
-
 /// Why Slurm cannot be given the path: it would read a backslash or a control character otherwise.
 std::optional<std::string> unfit_path(const std::filesystem::path& path);
 

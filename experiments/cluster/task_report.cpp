@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/cluster/task_report.hpp"
 
-#include <algorithm>
-#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -11,10 +9,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr std::array<RunState, 5> kStates = {RunState::declared, RunState::running,
-                                             RunState::interrupted, RunState::failed,
-                                             RunState::completed};
 
 fs::path report_file(fs::path folder) {
   return folder += ".progress.json";
@@ -42,10 +36,8 @@ std::map<std::string, ReportedRun> read_task_report(const fs::path& folder) {
   const json facts = json::parse(in, nullptr, false);
   try {
     for (const json& run : facts.at("runs")) {
-      const std::string name = run.at("state");
-      const auto state = std::find_if(kStates.begin(), kStates.end(),
-                                      [&name](RunState known) { return name == name_of(known); });
-      if (state == kStates.end()) continue;
+      const auto state = value_of<RunState>(run.at("state").get_ref<const std::string&>());
+      if (!state) continue;
       reported[run.at("id").get<std::string>()] = {*state, run.at("cycle").get<double>()};
     }
   } catch (const json::exception&) {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/limits.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/plain_file.hpp"
 #include "provenance/json_text.hpp"
+#include "provenance/limits.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -202,7 +202,7 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
     throw NotFound(file.string() + ": there is no such regular file");
   }
   if (std::filesystem::file_size(file) > StoreLimits::published_bytes) {
-    throw NotFound(file.string() + ": larger than any file of a figure");
+    throw UsageError(file.string() + ": larger than any file of a figure");
   }
   const std::string sha256 = sha256_hex_of_file(file);
   const std::string name = file.filename().string();

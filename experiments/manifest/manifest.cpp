@@ -74,8 +74,7 @@ std::string ManifestProblem::text() const {
 }
 
 ManifestError::ManifestError(std::vector<ManifestProblem> problems)
-    : std::runtime_error(join(in_text_order(problems))),
-      problems_(in_text_order(std::move(problems))) {}
+    : UsageError(join(in_text_order(problems))), problems_(in_text_order(std::move(problems))) {}
 
 Manifest load_manifest(const std::filesystem::path& path) {
   const std::string name = path.string();

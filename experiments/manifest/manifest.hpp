@@ -13,8 +13,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/limits.hpp"
+#include "experiments/manifest/limits.hpp"
 #include "experiments/manifest/until.hpp"
+#include "provenance/errors.hpp"
 
 namespace shearcell {
 
@@ -37,7 +38,7 @@ struct ManifestProblem {
 };
 
 /// All problems of one manifest; what() has one per line, in the order of the text.
-class ManifestError : public std::runtime_error {
+class ManifestError : public UsageError {
  public:
   explicit ManifestError(std::vector<ManifestProblem> problems);
   const std::vector<ManifestProblem>& problems() const { return problems_; }

@@ -24,7 +24,7 @@ std::optional<std::string> read_beside(const std::filesystem::path& csv, const c
   file.replace_extension(ending);
   if (!std::filesystem::exists(file)) return std::nullopt;
   auto text = read_plain(file, largest_file);
-  if (!text) throw NotFound(file.string() + ": not a readable file of at most 2 MB");
+  if (!text) throw UsageError(file.string() + ": not a readable file of at most 2 MB");
   return text;
 }
 
@@ -81,7 +81,7 @@ ReportPanel read_panel(const std::filesystem::path& csv) {
   if (const auto text = read_beside(csv, ".chart.json")) {
     panel.chart = parse_json(*text);
     if (!is_chart(panel.chart)) {
-      throw NotFound((csv.parent_path() / panel.name).string() +
+      throw UsageError((csv.parent_path() / panel.name).string() +
                      ".chart.json: not a chart of `bench accuracy --out`");
     }
   }
@@ -97,9 +97,9 @@ std::vector<ReportPanel> read_accuracy_charts(const std::filesystem::path& folde
   for (const auto& entry : std::filesystem::directory_iterator(folder, problem)) {
     if (entry.is_regular_file() && entry.path().extension() == ".csv") files.push_back(entry);
   }
-  if (problem) throw NotFound(folder.string() + ": " + problem.message());
+  if (problem) throw UsageError(folder.string() + ": " + problem.message());
   if (files.empty() || files.size() > most_files) {
-    throw NotFound(
+    throw UsageError(
         fmt::format("{}: {} CSV files; name the folder that `shearcell bench accuracy "
                     "--out` wrote",
                     folder.string(), files.size()));

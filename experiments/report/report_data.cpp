@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/report/report_data.hpp"
 
-#include <stdlib.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +13,7 @@
 #include "experiments/report/accuracy_charts.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/io/temporary_folder.hpp"
 
 namespace shearcell {
 namespace {
@@ -43,29 +42,7 @@ std::vector<ReportExperiment> experiments_of(const Store& store) {
   return found;
 }
 
-/// A temporary folder for gnuplot.
-class DrawingFolder {
- public:
-  DrawingFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "shearcell-report-XXXXXX");
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw std::runtime_error(pattern + ": a temporary folder cannot be made");
-    }
-    path_ = pattern;
-  }
-  ~DrawingFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  DrawingFolder(const DrawingFolder&) = delete;
-  DrawingFolder& operator=(const DrawingFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string draw(const FigureTable& table, const DrawingFolder& folder) {
+std::string draw(const FigureTable& table, const TemporaryFolder& folder) {
   write_csv(table, folder.path());
   std::ifstream svg(draw_svg(table, folder.path()), std::ios::binary);
   return {std::istreambuf_iterator<char>(svg), {}};
@@ -98,7 +75,7 @@ ReportFigure figure_of(const Store& store, const Figure& figure, const ReportOpt
   made.summary = std::move(computed.summary);
   made.recorded = record_of(records, made.name, computed.lineage);
   made.lineage = figure_lineage(store, {made.name, 0, "", computed.lineage});
-  const DrawingFolder folder;
+  const TemporaryFolder folder("shearcell-report-");
   for (const FigureTable& table : computed.result.tables) {
     ReportPanel panel{table.name, {}, to_csv(table), table.text, ""};
     if (!table.chart.series.empty()) panel.chart = chart_json(table);

@@ -158,6 +158,8 @@ class Campaign {
       note(job, &CampaignResult::failed, error.what());
     } catch (const EngineError& error) {
       note(job, &CampaignResult::failed, error.what());
+    } catch (const TooLittleMemory& error) {
+      note(job, &CampaignResult::failed, error.what());
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();

@@ -36,7 +36,7 @@ Scene make_scene(const StageRecord& stage) {
 void require_memory(const StageRecord& stage) {
   const double needed = kRunBytesPerGrain * static_cast<double>(stage.parameters.grains);
   if (needed <= machine_memory()) return;
-  throw GeometryError(fmt::format(
+  throw TooLittleMemory(fmt::format(
       "{} grains take about {:.3g} GB, and this machine has {:.3g} GB; use fewer grains",
       stage.parameters.grains, needed / 1e9, machine_memory() / 1e9));
 }

@@ -2,7 +2,6 @@
 #include "experiments/runner/stage_runner.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <utility>
 
@@ -13,15 +12,10 @@
 #include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/io/stopwatch.hpp"
 
 namespace shearcell {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // A stage in progress, and what has not been recorded of it yet.
 class Attempt {
@@ -110,14 +104,14 @@ class Attempt {
     const auto steps = static_cast<double>(engine.evaluations() - recorded_evaluations_);
     const CheckpointRecord recorded = store_.record_checkpoint(
         id(), checkpoint,
-        {seconds_since(recorded_at_), steps * static_cast<double>(engine.grains())});
+        {recorded_.seconds(), steps * static_cast<double>(engine.grains())});
     if (end_) end_->add(recorded, checkpoint);
-    recorded_at_ = Clock::now();
+    recorded_.restart();
     recorded_evaluations_ = engine.evaluations();
   }
 
   void report(const Engine& engine, double cycle) {
-    const double since = seconds_since(reported_at_);
+    const double since = reported_.seconds();
     if (!options_.report || since < 0.2) return;
     StageStatus status;
     status.cycle = cycle;
@@ -128,12 +122,11 @@ class Attempt {
     status.grains = engine.grains();
     status.step = engine.step();
     const std::uint64_t end = plan_.protocol->expected_steps();
-    const double mean_rate =
-        static_cast<double>(engine.step() - first_step_) / seconds_since(started_at_);
+    const double mean_rate = static_cast<double>(engine.step() - first_step_) / started_.seconds();
     status.seconds_left =
         end == 0 || !(mean_rate > 0) ? -1 : static_cast<double>(end - engine.step()) / mean_rate;
     options_.report(status);
-    reported_at_ = Clock::now();
+    reported_.restart();
     reported_evaluations_ = engine.evaluations();
   }
 
@@ -142,8 +135,7 @@ class Attempt {
   StagePlan plan_;
   std::optional<RunEnd> end_;  ///< where an experiment asks for `until`
   std::uint64_t first_step_ = 0, recorded_evaluations_ = 0, reported_evaluations_ = 0;
-  Clock::time_point started_at_ = Clock::now(), recorded_at_ = started_at_,
-                    reported_at_ = started_at_;
+  Stopwatch started_, recorded_, reported_;
 };
 
 }  // namespace

@@ -19,6 +19,8 @@
 #include <string_view>
 #include <thread>
 
+#include "provenance/io/descriptor.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -39,7 +41,7 @@ std::vector<std::string> environment_with(const std::vector<std::string>& variab
   return all;
 }
 
-// As exec(3) takes words and variables; they hold as long as `texts` stays as it is.
+// Null-terminated array for exec(3), valid as long as `texts` is not changed.
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
   for (std::string& text : texts) pointers.push_back(text.data());
@@ -47,8 +49,8 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-// What the child needs, made before the fork: after it, only calls that are safe in a signal
-// handler.
+// Everything the child needs is prepared before the fork; after it only async-signal-safe calls are
+// allowed.
 struct Prepared {
   const char* program;
   char* const* words;
@@ -72,10 +74,10 @@ struct Prepared {
   _exit(127);
 }
 
-// A file in memory takes what a program says, however much that is.
-int memory_file() {
-  const int file = memfd_create("output", MFD_CLOEXEC);
-  if (file < 0) throw ProgramError(std::string("no room for output: ") + std::strerror(errno));
+// Collects output of any length.
+Descriptor memory_file() {
+  Descriptor file(memfd_create("output", MFD_CLOEXEC));
+  if (!file.valid()) throw ProgramError(std::string("no room for output: ") + std::strerror(errno));
   return file;
 }
 
@@ -84,7 +86,7 @@ std::string text_of(const Descriptor& file) {
   std::array<char, 4096> part;
   for (;;) {
     const ssize_t got =
-        pread(file.number, part.data(), part.size(), static_cast<off_t>(text.size()));
+        pread(file.get(), part.data(), part.size(), static_cast<off_t>(text.size()));
     if (got <= 0) return text;
     text.append(part.data(), static_cast<std::size_t>(got));
   }
@@ -92,8 +94,16 @@ std::string text_of(const Descriptor& file) {
 
 }  // namespace
 
-Descriptor::~Descriptor() {
-  if (number >= 0) close(number);
+std::string shell_quoted(std::string_view text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      quoted += "'\\''";
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "'";
 }
 
 std::optional<fs::path> find_program(const std::string& name) {
@@ -116,7 +126,7 @@ std::optional<fs::path> find_program(const std::string& name) {
 ChildProcess::ChildProcess(const Command& command) {
   const std::string& name = command.words.at(0);
   const auto program = find_program(name);
-  if (!program) throw ProgramError("there is no program " + name + " on PATH");
+  if (!program) throw ProgramError("the program " + name + " is not on PATH");
   std::vector<std::string> words = command.words;
   std::vector<std::string> variables = environment_with(command.variables);
   const std::vector<char*> word_pointers = pointers_to(words);
@@ -182,8 +192,8 @@ std::optional<ProgramOutcome> run_program(const std::vector<std::string>& words,
                                           const fs::path& folder,
                                           const std::vector<std::string>& variables) {
   if (!find_program(words.front())) return std::nullopt;
-  const Descriptor output(memory_file()), messages(memory_file());
-  ChildProcess program({words, folder, variables, output.number, messages.number});
+  const Descriptor output = memory_file(), messages = memory_file();
+  ChildProcess program({words, folder, variables, output.get(), messages.get()});
   const int code = program.wait();
   return ProgramOutcome{code, text_of(output), text_of(messages)};
 }

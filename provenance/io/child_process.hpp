@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Other programs, beside this one or run to their end: their words are passed as they are, and no
-// shell sees them.
+// Other programs, run in the background or to their end. Arguments are passed as they are; no shell
+// is involved.
 #pragma once
 
 #include <sys/types.h>
@@ -10,40 +10,35 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace shearcell {
 
-/// Another program that is needed is missing or went wrong; what() says what to do.
+/// A program is missing, cannot be started or failed; what() says what to do.
 class ProgramError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// An open file, closed in the end; a negative number is none.
-struct Descriptor {
-  explicit Descriptor(int file) : number(file) {}
-  ~Descriptor();
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number;
-};
+/// The text in single quotes: one word for a POSIX shell and for fish.
+std::string shell_quoted(std::string_view text);
 
-/// The file that a name stands for: itself with a slash, else the first on PATH; nothing where
-/// there is none that may be executed.
+/// The executable file of this name: the name itself if it has a slash, else the first on PATH.
+/// Nothing when there is no such file.
 std::optional<std::filesystem::path> find_program(const std::string& name);
 
 struct Command {
-  std::vector<std::string> words;      ///< the program, as a path or a name on PATH, and arguments
-  std::filesystem::path folder;        ///< in which it works
-  std::vector<std::string> variables;  ///< "NAME=value", over the environment
-  int output = -1;                     ///< open files that take its standard output
-  int messages = -1;                   ///< and its standard error
+  std::vector<std::string> words;      ///< the program (a path or a name on PATH) and arguments
+  std::filesystem::path folder;        ///< working folder
+  std::vector<std::string> variables;  ///< "NAME=value", added to the environment
+  int output = -1;                     ///< descriptor for its standard output
+  int messages = -1;                   ///< descriptor for its standard error
 };
 
-/// It has nothing to read and a process group of its own, so that Ctrl-C on a terminal does not
-/// reach it, and is told to end when this object goes away or the thread that made it ends, however
-/// that happens.
+/// A running program. Its standard input is empty. It has its own process group, so Ctrl-C on a
+/// terminal does not reach it. It gets SIGTERM when this object is destroyed or when the thread
+/// that started it ends for any reason.
 class ChildProcess {
  public:
   /// Throws ProgramError when it cannot be started.
@@ -52,13 +47,13 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// As a shell tells it: the exit code, or 128 + the signal that ended it; nothing while it runs.
+  /// The exit code, or 128 + the number of the signal that ended it; nothing while it runs.
   std::optional<int> exit_code();
 
-  /// Waits for its end.
+  /// Waits for its end and returns exit_code().
   int wait();
 
-  /// Memory of its largest process so far that ended [bytes]; 0 while it runs.
+  /// Peak memory of the ended process [bytes]; 0 while it runs.
   std::size_t peak_bytes() const { return peak_bytes_; }
 
  private:
@@ -70,13 +65,13 @@ class ChildProcess {
 };
 
 struct ProgramOutcome {
-  int code = 0;          ///< as ChildProcess::exit_code tells it
-  std::string output;    ///< what it wrote to its standard output
-  std::string messages;  ///< and to its standard error
+  int code = 0;          ///< as ChildProcess::exit_code
+  std::string output;    ///< its standard output
+  std::string messages;  ///< its standard error
 };
 
-/// Runs the program `words[0]` to its end, in `folder`, with `variables` ("NAME=value") over its
-/// environment. Nothing when it is not installed. Throws ProgramError when it cannot be started.
+/// Runs the program `words[0]` in `folder` and waits for its end. Nothing when it is not installed.
+/// Throws ProgramError when it cannot be started.
 std::optional<ProgramOutcome> run_program(const std::vector<std::string>& words,
                                           const std::filesystem::path& folder,
                                           const std::vector<std::string>& variables = {});

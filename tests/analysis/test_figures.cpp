@@ -17,6 +17,7 @@
 #include "analysis/figure.hpp"
 #include "analysis/plot.hpp"
 #include "tests/analysis/made_up_runs.hpp"
+#include "tests/support/files.hpp"
 
 namespace shearcell {
 namespace {
@@ -164,25 +165,9 @@ TEST(Csv, QuotingAndNumbers) {
   EXPECT_EQ(to_csv(table), "a b,\"c,d\"\n\"say \"\"x\"\"\",-3\n0.333333333,\n1e-20,\n0,\n");
 }
 
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 /// A temporary folder whose name has characters that are special in shell and gnuplot.
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "shear cell's $HOME-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
+struct Folder : TemporaryFolder {
+  Folder() : TemporaryFolder("shear cell's $HOME-") {}
 };
 
 bool has_gnuplot() {
@@ -195,13 +180,13 @@ TEST(Plot, SameTableSameSvg) {
   for (const FigureTable& table : s2(two_variants())) {
     write_csv(table, folder.path());
     const fs::path svg = draw_svg(table, folder.path());
-    const std::string first = bytes_of(svg);
+    const std::string first = test::read_bytes(svg);
     EXPECT_NE(first.find("</svg>"), std::string::npos);
     EXPECT_NE(first.find("ϕ"), std::string::npos);
     EXPECT_EQ(first.find(folder.path().string()), std::string::npos);
     EXPECT_EQ(first.find("<text>"), std::string::npos) << "librsvg would drop spaces";
     draw_svg(table, folder.path());
-    EXPECT_EQ(bytes_of(svg), first);
+    EXPECT_EQ(test::read_bytes(svg), first);
   }
 }
 
@@ -213,11 +198,11 @@ TEST(Plot, SameSvgSamePdf) {
   const fs::path svg = draw_svg(table, folder.path());
   const auto pdf = convert_to_pdf(svg);
   if (!pdf) GTEST_SKIP() << "rsvg-convert is not installed";
-  const std::string first = bytes_of(*pdf);
+  const std::string first = test::read_bytes(*pdf);
   EXPECT_EQ(first.substr(0, 5), "%PDF-");
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // a date in it would differ
   convert_to_pdf(svg);
-  EXPECT_EQ(bytes_of(*pdf), first);
+  EXPECT_EQ(test::read_bytes(*pdf), first);
 }
 
 TEST(Plot, UnnamedVariantsAndNoRunsAreDrawnToo) {

@@ -119,9 +119,9 @@ std::vector<Case> damaged_events() {
            "event ", "was changed", "from a backup"),
       told("payload_changed", "verify", 4,
            sql("UPDATE events SET payload = replace(payload, '\"seed\":1', '\"seed\":2')"),
-           "does not fit its content", "from a backup"),
+           "does not match its content", "from a backup"),
       told("event_removed", "verify", 4, sql("DELETE FROM events WHERE seq = 3"),
-           "event 3 should stand here and is missing"),
+           "event 3 is missing here"),
       told("events_swapped", "verify", 4,
            sql("UPDATE events SET seq = -1 WHERE seq = 2; UPDATE events SET seq = 2 WHERE seq = 3; "
                "UPDATE events SET seq = 3 WHERE seq = -1"),
@@ -226,7 +226,7 @@ std::vector<Case> damaged_objects() {
            object([](auto& f) { fs::resize_file(f, std::uintmax_t{1} << 40); }),
            "it has 1099511627776 bytes instead of"),
       told("object_is_link", "verify", 4, object(link_instead),
-           "a symbolic link stands in its place"),
+           "it is a symbolic link"),
       told("object_is_folder", "verify", 4, object(folder_instead), "it is not a regular file"),
       told("object_is_pipe", "verify", 4, object(pipe_instead), "it is not a regular file"),
       told("objects_folder_is_file", "verify", 4, object([](auto& f) {
@@ -234,10 +234,10 @@ std::vector<Case> damaged_objects() {
              fs::remove_all(d);
              write_file(d, "x");
            }),
-           "a folder of the store should stand here", "remove it"),
+           "this must be a folder of the store", "remove it"),
       told(
           "objects_is_link", "verify", 4, [](auto& s) { link_instead(s / "objects"); },
-          "a folder of the store should stand here"),
+          "this must be a folder of the store"),
       told(
           "no_objects", "figures S2 --fresh", 4, [](auto& s) { fs::remove_all(s / "objects"); },
           "left out: ", "the file is missing"),
@@ -246,7 +246,7 @@ std::vector<Case> damaged_objects() {
           [](auto& s) { write_file(s / "objects" / "note.txt", "x"); }, "no event names this file"),
       told(
           "checkpoints_forged_text", "figures S2 --fresh", 4,
-          [](auto& s) { forge_checkpoints(s, std::string(5000, 'x')); }, "it is no HDF5"),
+          [](auto& s) { forge_checkpoints(s, std::string(5000, 'x')); }, "it is not HDF5"),
       told(
           "checkpoints_forged_hdf5", "figures S2 --fresh", 4,
           [](auto& s) {
@@ -257,7 +257,7 @@ std::vector<Case> damaged_objects() {
           "left out: ", "checkpoint: "),
       told("checkpoint_names_a_parent_folder", "verify", 4,
            payload("CheckpointRecorded", [](auto& b) { b["sha256"] = "../../../etc/passwd"; }),
-           "no SHA-256"),
+           "is not a SHA-256"),
       told("checkpoint_of_a_terabyte", "verify", 4,
            payload("CheckpointRecorded", [](auto& b) { b["size"] = std::uint64_t{1} << 40; }),
            "bytes instead of 1099511627776"),

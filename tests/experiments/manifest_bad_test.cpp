@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "experiments/manifest/manifest.hpp"
+#include "tests/support/files.hpp"
 
 namespace shearcell {
 namespace {
@@ -76,9 +77,9 @@ TEST(BadManifestFile, ThereAreEnoughOfThem) {
 }
 
 TEST(BadFile, IsRefused) {
-  std::string folder = (fs::temp_directory_path() / "shearcell-manifest-XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
-  const auto at = [&](const char* name) { return fs::path(folder) / name; };
+  const TemporaryFolder temporary;
+  const fs::path folder = temporary.path();
+  const auto at = [&](const char* name) { return folder / name; };
   const auto write = [&](const char* name, const std::string& text) {
     std::ofstream(at(name), std::ios::binary) << text;
   };
@@ -102,7 +103,6 @@ TEST(BadFile, IsRefused) {
   if (geteuid() != 0) {  // root reads everything
     EXPECT_EQ(message_for(at("file")), at("file").string() + ": cannot be read");
   }
-  fs::remove_all(folder);
 }
 
 TEST(BadText, IsNotUtf8) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A campaign of a fraction of a second, run by the program under faults and kills, and what must
-// hold of the store afterwards.
+// A campaign of less than a second for the tests with faults and kills, and checks of the store
+// afterwards.
 #pragma once
 
 #include <sys/types.h>
@@ -22,7 +22,7 @@ struct Fault {
 
 using Words = std::vector<std::string>;
 
-/// Starts `shearcell WORDS --store FOLDER/store`, with the fault layer when a fault is named.
+/// Starts `shearcell WORDS --store FOLDER/store`, with the fault layer if `fault` has a kind.
 pid_t start_program(const std::filesystem::path& folder, Words words, const Fault& fault);
 
 /// `run` of the manifest in the folder.
@@ -31,18 +31,17 @@ pid_t start_campaign(const std::filesystem::path& folder, const Fault& fault);
 /// Waits for it: the exit code, or minus the signal that ended it.
 int wait_for_exit(pid_t program);
 
-/// Runs it to its end under the fault layer; the operations that it did on the store, one a line.
+/// Runs the command under the fault layer without a fault; its operations on the store.
 std::vector<std::string> list_operations(const std::filesystem::path& folder, const Words& words);
-std::vector<std::string> list_operations(const std::filesystem::path& folder);
 
-/// Every way in which each of the operations may go wrong.
+/// Every kind of fault at each of the operations.
 std::vector<Fault> fault_points(const std::vector<std::string>& operations);
 
-/// What must hold of the store as a fault left it: it opens, `verify` finds no error, and every
-/// recorded checkpoint is there. Each thing that does not hold is a line.
+/// Checks a store after a fault: it opens, `verify` finds no error, and every recorded checkpoint
+/// can be loaded. Returns the violations.
 std::vector<std::string> check_left_behind(const std::filesystem::path& folder);
 
-/// Runs on, undisturbed, and gives the final state hash of each run; "" for runs that do not
+/// Completes the campaign without faults; the final state hash of each run, "" for runs that do not
 /// complete.
 std::map<std::string, std::string> run_on(const std::filesystem::path& folder);
 

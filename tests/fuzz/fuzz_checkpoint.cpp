@@ -3,7 +3,6 @@
 #include "analysis/measures.hpp"
 #include "provenance/checkpoint.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/plausible.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/fuzz/targets.hpp"
 

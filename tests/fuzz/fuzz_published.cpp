@@ -13,7 +13,7 @@ namespace {
 
 /// A store that knows a figure, and a folder to put files into.
 struct Place {
-  test::Folder folder;
+  TemporaryFolder folder;
   std::filesystem::path published = folder.path() / "published";
   Store store;
   Place() : store(make_store(folder.path() / "store"), Access::read) {
@@ -36,7 +36,7 @@ void run(Input input) {
   }
   try {
     read_accuracy_charts(place.published);
-  } catch (const NotFound&) {
+  } catch (const UsageError&) {
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include "experiments/figures/lineage.hpp"
 #include "provenance/derived.hpp"
-#include "provenance/prov_json.hpp"
 #include "provenance/ro_crate.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/fuzz/targets.hpp"
@@ -16,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Place {
-  test::Folder folder;
+  TemporaryFolder folder;
   fs::path store = make_store(folder.path() / "store");
   fs::path log = store / "store.sqlite";
   std::string sound = test::read_bytes(log);

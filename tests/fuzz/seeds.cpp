@@ -7,7 +7,8 @@
 
 #include "analysis/crystallite_map.hpp"
 #include "analysis/derived_measures.hpp"
-#include "provenance/hdf5_handle.hpp"
+#include "provenance/events.hpp"
+#include "provenance/hdf5_read.hpp"
 #include "provenance/sha256.hpp"
 #include "tests/fuzz/targets.hpp"
 #include "tests/provenance/samples.hpp"
@@ -35,7 +36,7 @@ std::string text_of_events(const std::vector<Event>& events, const std::string& 
 }
 
 std::vector<Event> events_of_store() {
-  const test::Folder folder;
+  const TemporaryFolder folder;
   return Store(make_store(folder.path() / "store"), Access::read).events();
 }
 
@@ -136,17 +137,27 @@ std::vector<std::string> manifest_seeds() {
 }
 
 std::vector<std::string> event_seeds() {
-  const std::vector<Event> events = events_of_store();
+  const std::vector<Event> known = events_of_store();
   std::vector<std::string> seeds;
   for (const char* stream : {"", "run/", "figure/", "manifest/"}) {
-    seeds.push_back(text_of_events(events, stream));
+    seeds.push_back(text_of_events(known, stream));
   }
-  const std::string run = "run/" + test::run_id(1), sha = std::string(64, 'a');
-  seeds.push_back(seeds[1] + "RunFailed\t" + run + "\t1\t{\"why\":\"x\",\"numbers\":{}}\n" +
-                  "CheckpointPruned\t" + run + "\t1\t{\"sha256\":\"" + sha + "\"}\n" +
-                  "CheckpointRejected\t" + run + "\t1\t{\"sha256\":\"" + sha +
-                  "\",\"step\":1,\"why\":\"x\"}\n" + "RunResumed\t" + run +
-                  "\t1\t{\"attempt\":2,\"host\":{},\"from\":{\"sha256\":\"" + sha + "\"}}\n");
+  std::vector<Event> later;
+  const auto add = [&later](const events::Any& any) {
+    NewEvent encoded = events::encode(any);
+    Event& event = later.emplace_back();
+    event.stream = "run/" + test::run_id(1);
+    event.type = encoded.type;
+    event.schema = events::newest_schema(event.type);
+    event.payload = encoded.payload.dump();
+  };
+  CheckpointRecord checkpoint;
+  checkpoint.sha256 = std::string(64, 'a');
+  add(events::RunFailed{"x", nlohmann::json::object()});
+  add(events::CheckpointPruned(checkpoint));
+  add(events::CheckpointRejected{checkpoint.sha256, 1, "x"});
+  add(events::RunResumed{2, nlohmann::json::object(), {}, {checkpoint.sha256, 1, 1}});
+  seeds.push_back(seeds[1] + text_of_events(later, ""));
   return seeds;
 }
 

@@ -39,7 +39,7 @@ class DerivedCacheTest : public testing::Test {
   }
   fs::path file() const { return folder_.path() / DerivedCache::kFile; }
 
-  test::Folder folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(DerivedCacheTest, GivesBackWhatWasKept) {

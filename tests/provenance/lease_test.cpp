@@ -35,7 +35,7 @@ class LeaseTest : public ::testing::Test {
     return Store(path_, Access::write, {.lease_seconds = lease_seconds});
   }
 
-  test::Folder folder_;
+  TemporaryFolder folder_;
   std::filesystem::path path_ = folder_.path() / "store";
   const std::string id_ = run_id(1);
 };

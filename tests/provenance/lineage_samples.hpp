@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "provenance/events.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell::test {

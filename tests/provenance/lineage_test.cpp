@@ -11,7 +11,7 @@ namespace {
 
 class Lineage : public testing::Test {
  protected:
-  test::Folder folder_;
+  TemporaryFolder folder_;
   Store store_{folder_.path() / "store", Access::create};
   test::SampleHistory history_{store_};
 };
@@ -72,7 +72,7 @@ TEST_F(Lineage, ARejectedCheckpointIsKnownAsSuchUntilItIsMadeAgain) {
 TEST_F(Lineage, AStartMayNameTheStateItBeganWith) {
   const std::string packing = store_.checkpoints(history_.packing).at(0).sha256;
   test::append_to_run(store_, history_.sheared,
-                      {"RunStarted", {{"attempt", 5}, {"parent_checkpoint", packing}}});
+                      events::encode(events::RunStarted{5, {}, {}, packing}));
   const Attempt named = run_lineage(store_, history_.sheared).back().attempts.back();
   EXPECT_EQ(named.from_run, history_.packing);
   EXPECT_EQ(named.from_checkpoint, packing);

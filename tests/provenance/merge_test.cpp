@@ -72,7 +72,7 @@ class MergeTest : public ::testing::Test {
     return found;
   }
 
-  test::Folder folder_;
+  TemporaryFolder folder_;
 };
 
 // Run 0 is shared by all, run 1 by the first two, run 2 is the third one's own. The stores got to

@@ -44,7 +44,7 @@ class PruneTest : public ::testing::Test {
 
   bool there(const CheckpointRecord& record) const { return fs::exists(path_ / record.file); }
 
-  test::Folder folder_;
+  TemporaryFolder folder_;
   fs::path path_ = folder_.path() / "store";
   Store store_{path_, Access::create};
   std::vector<CheckpointRecord> records_;

@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "tests/provenance/lineage_samples.hpp"
 
@@ -35,7 +37,7 @@ class Crate : public testing::Test {
   }
   const json& at(const json& reference) const { return entities_.at(reference.at("@id")); }
 
-  test::Folder folder_;
+  TemporaryFolder folder_;
   Store store_{folder_.path() / "store", Access::create};
   test::SampleHistory history_{store_};
   fs::path crate_ = folder_.path() / "crate";
@@ -90,38 +92,19 @@ TEST_F(Crate, EveryEntityHasATypeAndEveryReferenceLeadsSomewhere) {
   }
 }
 
-// Of schema.org 10.0, which the context of RO-Crate 1.1 is made of; sha256 is the one term of the
-// workflow-run context.
+std::set<std::string> words(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+// Of schema.org 10.0, the context of RO-Crate 1.1; sha256 is from the workflow-run context.
 TEST_F(Crate, UsesOnlyTermsOfItsContexts) {
-  const std::set<std::string> terms = {"@id",
-                                       "@type",
-                                       "about",
-                                       "actionStatus",
-                                       "conformsTo",
-                                       "contentSize",
-                                       "dateCreated",
-                                       "datePublished",
-                                       "description",
-                                       "encodingFormat",
-                                       "endTime",
-                                       "error",
-                                       "hasPart",
-                                       "identifier",
-                                       "instrument",
-                                       "license",
-                                       "location",
-                                       "mentions",
-                                       "name",
-                                       "object",
-                                       "result",
-                                       "sha256",
-                                       "softwareRequirements",
-                                       "softwareVersion",
-                                       "startTime",
-                                       "value",
-                                       "version"};
-  const std::set<std::string> types = {"CreateAction",  "CreativeWork",        "Dataset", "File",
-                                       "PropertyValue", "SoftwareApplication", "Place"};
+  const auto terms = words(
+      "@id @type about actionStatus conformsTo contentSize dateCreated datePublished description "
+      "encodingFormat endTime error hasPart identifier instrument license location mentions name "
+      "object result sha256 softwareRequirements softwareVersion startTime value version");
+  const auto types =
+      words("CreateAction CreativeWork Dataset File PropertyValue SoftwareApplication Place");
   for (const auto& [id, entity] : entities_) {
     EXPECT_TRUE(types.contains(entity.at("@type"))) << entity.at("@type");
     for (const auto& [key, value] : entity.items()) EXPECT_TRUE(terms.contains(key)) << key;
@@ -280,15 +263,13 @@ TEST_F(Crate, APrunedCheckpointIsToldOfAndNotCopied) {
   fs::remove(store_.folder() / record.file);
   const fs::path pruned = folder_.path() / "pruned";
   EXPECT_THROW(write_ro_crate(store_, history_.sheared, pruned), StoreDamaged);
-  test::append_to_run(store_, history_.sheared,
-                      {"CheckpointPruned", {{"sha256", record.sha256}, {"step", record.step}}});
+  test::append_to_run(store_, history_.sheared, events::encode(events::CheckpointPruned(record)));
   write_ro_crate(store_, history_.sheared, pruned);
   EXPECT_FALSE(fs::exists(pruned / crate_path_of_checkpoint(record.sha256)));
   const std::string metadata = test::read_bytes(pruned / "ro-crate-metadata.json");
   EXPECT_NE(metadata.find("#checkpoint-" + record.sha256), std::string::npos);
-  test::append_to_run(
-      store_, history_.sheared,
-      {"CheckpointRegenerated", {{"sha256", record.sha256}, {"step", record.step}}});
+  test::append_to_run(store_, history_.sheared,
+                      events::encode(events::CheckpointRegenerated(record)));
   EXPECT_FALSE(run_lineage(store_, history_.sheared).back().find(record.sha256)->pruned);
 }
 

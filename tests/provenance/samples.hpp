@@ -1,48 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Folders, checkpoints and declarations for the tests of the store.
+// Checkpoints and declarations for the tests of the store.
 #pragma once
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "provenance/sha256.hpp"
 #include "provenance/store.hpp"
+#include "tests/support/files.hpp"
 
 namespace shearcell::test {
-
-/// An empty folder that goes away with the test.
-class Folder {
- public:
-  Folder() = default;
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  static std::filesystem::path fresh() {
-    std::string name = (std::filesystem::temp_directory_path() / "shearcell-test-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    return name;
-  }
-
-  std::filesystem::path path_ = fresh();
-};
 
 constexpr std::uint64_t kCycle = 45600;  ///< steps
 constexpr std::size_t kFrame = 512;      ///< bytes before a checkpoint's HDF5
 
-/// Puts the right digest into the frame.
+/// Writes the matching digest into the frame.
 inline void seal(std::vector<std::byte>& image) {
   const std::string title = "shearcell checkpoint 1\nsha256 of all bytes after the first 512: ";
   const std::string digest = sha256_hex(std::span(image).subspan(kFrame));
@@ -97,16 +74,7 @@ inline RunDeclaration sample_run(int number, std::uint64_t target = 5) {
   return d;
 }
 
-inline std::string read_bytes(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-inline void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
-  std::ofstream(file, std::ios::binary) << bytes;
-}
-
-/// Runs the statement and gives what the exception says, so that a test can look for words in it.
+/// The message of the exception that the statement throws.
 template <typename Exception, typename Statement>
 std::string message_of(Statement&& statement) {
   try {

@@ -27,7 +27,7 @@ class StoreTest : public ::testing::Test {
     return found;
   }
 
-  test::Folder folder_;
+  TemporaryFolder folder_;
   fs::path path_ = folder_.path() / "store";
   const std::string id_ = run_id(1);
 };
@@ -212,17 +212,6 @@ TEST_F(StoreTest, PassesOverADamagedNewestCheckpoint) {
   EXPECT_EQ(store.run(id_).step, 91200u);
 }
 
-TEST_F(StoreTest, NamesTheFileOfADamagedCheckpoint) {
-  Store store = open();
-  store.declare_run(sample_run(1));
-  store.start_run(id_, {});
-  const auto record = store.record_checkpoint(id_, sample_checkpoint(id_));
-  fs::resize_file(path_ / record.file, 100);
-  const std::string message = message_of<StoreDamaged>([&] { store.load_checkpoint(record); });
-  EXPECT_NE(message.find(record.file), std::string::npos) << message;
-  EXPECT_NE(message.find("100 bytes"), std::string::npos) << message;
-}
-
 TEST_F(StoreTest, FindsARunByItsPrefix) {
   Store store = open();
   for (int i = 0; i < 40; ++i) store.declare_run(sample_run(i));
@@ -289,21 +278,6 @@ TEST_F(StoreTest, TwoProcessesMayShareIt) {
   EXPECT_TRUE(store.verify().ok());
 }
 
-TEST_F(StoreTest, SaysWhatIsWrongWithAFolderThatIsNoStore) {
-  EXPECT_THROW(open(Access::read), NotFound);
-  EXPECT_THROW(open(Access::write), NotFound);
-  EXPECT_FALSE(fs::exists(path_));
-  test::write_bytes(path_, "text");
-  const std::string message = message_of<StoreDamaged>([this] { open(); });
-  EXPECT_NE(message.find(path_.string()), std::string::npos) << message;
-  EXPECT_NE(message.find("this is a file"), std::string::npos) << message;
-  fs::remove(path_);
-  fs::create_directories(path_ / "objects");
-  EXPECT_THROW(open(), StoreDamaged);  // its log is lost
-  fs::create_directories(path_ / "store.sqlite");
-  EXPECT_THROW(open(), StoreDamaged);
-}
-
 TEST_F(StoreTest, AReaderChangesNothing) {
   { open().declare_run(sample_run(1)); }
   const std::string before = test::read_bytes(path_ / "store.sqlite");
@@ -314,14 +288,6 @@ TEST_F(StoreTest, AReaderChangesNothing) {
   EXPECT_EQ(store.runs().size(), 1u);
   EXPECT_TRUE(store.verify().ok());
   EXPECT_EQ(test::read_bytes(path_ / "store.sqlite"), before);
-}
-
-TEST_F(StoreTest, RefusesALogThatWasLost) {
-  fs::create_directories(path_);
-  test::write_bytes(path_ / "store.sqlite", "");
-  EXPECT_THROW(open(Access::write), StoreDamaged);
-  fs::create_directories(path_ / "objects");
-  EXPECT_THROW(open(Access::create), StoreDamaged) << "its objects are still there";
 }
 
 TEST_F(StoreTest, StartsOverWhereItsCreationWasCutShort) {

@@ -50,7 +50,7 @@ TEST(WorkedExample, CommandsOfTheReadmeDoWhatItSays) {
                            "python3 -c 'import h5py'"}) {
     if (!has(tool)) GTEST_SKIP() << "this machine has no " << tool;
   }
-  const test::Folder folder;
+  const TemporaryFolder folder;
   Store store(folder.path() / "store", Access::create);
   const test::SampleHistory history(store);
   const fs::path script = folder.path() / "script";

@@ -21,7 +21,7 @@ class AccuracyCharts : public testing::Test {
   std::string trouble() const {
     try {
       read();
-    } catch (const NotFound& error) {
+    } catch (const UsageError& error) {
       return error.what();
     }
     return "";
@@ -86,7 +86,7 @@ TEST_F(AccuracyCharts, NameTheFileOrFolderThatIsWrong) {
   write("a.csv", std::string(3'000'000, '1'));
   EXPECT_NE(trouble().find("a.csv: not a readable file of at most 2 MB"), std::string::npos)
       << trouble();
-  EXPECT_THROW(read_accuracy_charts(folder_.path() / "none"), NotFound);
+  EXPECT_THROW(read_accuracy_charts(folder_.path() / "none"), UsageError);
 }
 
 }  // namespace

@@ -74,9 +74,9 @@ std::unique_ptr<ChildProcess> start(const LammpsProgram& program, const fs::path
   }
   const fs::path file = folder / "said";
   const Descriptor said(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-  if (said.number < 0) throw EngineError("cannot write " + file.string());
+  if (!said.valid()) throw EngineError("cannot write " + file.string());
   return std::make_unique<ChildProcess>(
-      Command{words, folder, variables(), said.number, said.number});
+      Command{words, folder, variables(), said.get(), said.get()});
 }
 
 }  // namespace

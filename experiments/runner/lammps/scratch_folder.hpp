@@ -1,32 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A temporary folder in which another program works; it does not outlive its owner for long.
 #pragma once
 
 #include <filesystem>
 
-#include "provenance/io/child_process.hpp"
+#include "provenance/io/descriptor.hpp"
+#include "provenance/io/temporary_folder.hpp"
 
 namespace shearcell {
 
-/// An empty folder `shearcell-lammps-XXXXXX` under the system's own for temporary files; it goes
-/// away with the object. A file `lock` in it is locked as long as its owner lives, so that what a
-/// killed one left behind can be told.
+/// A temporary folder `shearcell-lammps-XXXXXX` in which LAMMPS works. Its file `lock` is locked
+/// while the owner lives, so that folders of killed owners can be recognized.
 class ScratchFolder {
  public:
-  /// Throws EngineError.
+  /// Throws std::system_error.
   ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
-  std::filesystem::path path_;
+  TemporaryFolder folder_;
   Descriptor lock_;
 };
 
-/// Removes such folders of this user whose owners are gone: those whose lock can be taken. Links,
-/// other names and folders without a lock stay.
+/// Deletes leftover scratch folders of this user that are not locked. Links, other names and
+/// folders without a lock are kept.
 void remove_abandoned_folders();
 
 }  // namespace shearcell

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance/events.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
+
+namespace shearcell {
+
+using nlohmann::json;
+
+json Event::body() const {
+  json body = parse_json(payload);
+  if (!body.is_object()) {
+    throw StoreDamaged(fmt::format(
+        "event {} ({} of {}): its payload is not a JSON object, or is nested too deeply; run "
+        "`verify`",
+        seq, type, stream));
+  }
+  try {
+    return events::upcast(type, schema, std::move(body));
+  } catch (const StoreDamaged& newer) {
+    throw StoreDamaged(fmt::format("event {} ({}): {}", seq, type, newer.what()));
+  }
+}
+
+namespace events {
+namespace {
+
+/// Converts payloads of one type from layout `from` to the next. Null stands for values that the
+/// older layout did not record. Steps of one type are in ascending order.
+struct Step {
+  std::string_view type;
+  std::uint64_t from;
+  void (*convert)(json&);
+};
+
+constexpr std::array<Step, 3> kSteps = {{
+    {RunStarted::kType, 1,
+     [](json& payload) { payload["process"] = payload["parent_checkpoint"] = nullptr; }},
+    {RunResumed::kType, 1, [](json& payload) { payload["process"] = nullptr; }},
+    {RunCompleted::kType, 1, [](json& payload) { payload["target_cycles"] = nullptr; }},
+}};
+
+template <class T>
+constexpr bool has_fields = requires(T& value) {
+  T::fields(value, [](const char*, auto&) {});
+};
+template <class T>
+constexpr bool is_optional = requires(T& value) {
+  value.has_value();
+};
+
+/// Throws json::exception when a required value is missing or of another type.
+template <class T>
+void read(const json& from, const char* key, T& value) {
+  if constexpr (std::is_same_v<T, std::uint64_t>) {
+    value = count_at(from, key);
+  } else if constexpr (has_fields<T>) {
+    T::fields(value, [&inner = from.at(key)](const char* name, auto& v) { read(inner, name, v); });
+  } else if constexpr (is_optional<T>) {
+    if (!from.at(key).is_null()) read(from, key, value.emplace());
+  } else {
+    from.at(key).get_to(value);
+  }
+}
+
+template <class T>
+json written(const T& value) {
+  if constexpr (has_fields<T>) {
+    json inner;
+    T::fields(value, [&inner](const char* name, const auto& v) { inner[name] = written(v); });
+    return inner;
+  } else if constexpr (is_optional<T>) {
+    return value ? json(*value) : json();
+  } else {
+    return value;
+  }
+}
+
+/// Fills `result` when the event is of type E.
+template <class E>
+bool decode_as(const Event& event, json& body, Any& result) {
+  if constexpr (std::is_same_v<E, Unknown>) {
+    return false;
+  } else {
+    if (event.type != E::kType) return false;
+    E decoded;
+    if constexpr (has_fields<E>) {
+      E::fields(decoded, [&body](const char* name, auto& v) { read(body, name, v); });
+    } else {
+      decoded.facts = std::move(body);
+    }
+    result = std::move(decoded);
+    return true;
+  }
+}
+
+template <class... E>
+Any decode_any(const Event& event, json& body, const std::variant<E...>*) {
+  Any result;
+  (decode_as<E>(event, body, result) || ...);
+  return result;
+}
+
+}  // namespace
+
+Any decode(const Event& event) {
+  json body = event.body();
+  try {
+    return decode_any(event, body, static_cast<const Any*>(nullptr));
+  } catch (const json::exception& problem) {
+    throw damaged_payload(event, problem);
+  }
+}
+
+NewEvent encode(const Any& event) {
+  const auto encoded = []<class E>(const E& e) -> NewEvent {
+    if constexpr (std::is_same_v<E, Unknown>) {
+      throw std::logic_error("an event of unknown type cannot be written");
+    } else if constexpr (has_fields<E>) {
+      json payload = written(e);
+      if constexpr (std::is_same_v<E, RunDeclared>) {
+        if (!e.membership.until.is_null()) payload["membership"]["until"] = e.membership.until;
+      }
+      return {std::string(E::kType), std::move(payload)};
+    } else {
+      return {std::string(E::kType), e.facts};
+    }
+  };
+  return std::visit(encoded, event);
+}
+
+std::uint64_t newest_schema(std::string_view type) {
+  std::uint64_t newest = 1;
+  for (const Step& step : kSteps) {
+    if (step.type == type) newest = std::max(newest, step.from + 1);
+  }
+  return newest;
+}
+
+json upcast(std::string_view type, std::uint64_t schema, json payload) {
+  if (schema > newest_schema(type)) {
+    throw StoreDamaged(
+        fmt::format("its payload has layout {}, and this program knows layouts up to {}; use the "
+                    "newer shearcell that wrote it",
+                    schema, newest_schema(type)));
+  }
+  for (const Step& step : kSteps) {
+    if (step.type == type && step.from >= schema) step.convert(payload);
+  }
+  return payload;
+}
+
+}  // namespace events
+}  // namespace shearcell

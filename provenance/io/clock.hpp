@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The time of day.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <ctime>
+#include <string>
+
+namespace shearcell {
+
+/// Milliseconds since 1970, UTC.
+inline std::uint64_t now_ms() {
+  using namespace std::chrono;
+  return static_cast<std::uint64_t>(
+      duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count());
+}
+
+/// The time as ISO 8601 with milliseconds, UTC: "2026-11-22T09:55:45.123Z".
+inline std::string utc_now() {
+  const std::uint64_t now = now_ms();
+  const auto seconds = static_cast<std::time_t>(now / 1000);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char text[32];
+  const std::size_t length = std::strftime(text, sizeof text, "%FT%T", &utc);
+  std::snprintf(text + length, sizeof text - length, ".%03uZ", static_cast<unsigned>(now % 1000));
+  return text;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace shearcell {
+
+/// A new folder PREFIX + six random characters in the folder for temporary files (TMPDIR), readable
+/// by this user only; deleted with its content at the end of the object's life. The constructor
+/// throws std::system_error.
+class TemporaryFolder {
+ public:
+  static constexpr std::size_t kRandom = 6;
+
+  explicit TemporaryFolder(const std::string& prefix = "shearcell-");
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace shearcell

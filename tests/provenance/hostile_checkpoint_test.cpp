@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Our HDF5 reader compared with the HDF5 library, and checkpoint files that were truncated, damaged
+// or forged under a valid digest.
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <cstdio>
+#include <functional>
+#include <limits>
+
+#include "provenance/checkpoint.hpp"
+#include "provenance/errors.hpp"
+#include "provenance/limits.hpp"
+#include "tests/provenance/samples.hpp"
+
+namespace shearcell {
+namespace {
+
+using test::kFrame;
+using test::seal;
+
+/// A file image opened by the HDF5 library.
+class Library {
+ public:
+  explicit Library(std::vector<std::byte> image, unsigned flags = H5F_ACC_RDONLY) {
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_fapl_core(access, 1 << 20, false);
+    H5Pset_file_image(access, image.data(), image.size());
+    file_ = H5Fopen("image", flags, access);
+    H5Pclose(access);
+    EXPECT_GE(file_, 0);
+  }
+  ~Library() { H5Fclose(file_); }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+
+  hid_t file() const { return file_; }
+  std::vector<double> numbers(const std::string& path) const {
+    const hid_t set = H5Dopen2(file_, path.c_str(), H5P_DEFAULT);
+    EXPECT_GE(set, 0) << path;
+    const hid_t space = H5Dget_space(set);
+    std::vector<double> data(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    if (!data.empty()) {
+      EXPECT_GE(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()), 0);
+    }
+    H5Sclose(space);
+    H5Dclose(set);
+    return data;
+  }
+  double attribute(const char* group, const char* name) const {
+    double value = 0;
+    const hid_t read = H5Aopen_by_name(file_, group, name, H5P_DEFAULT, H5P_DEFAULT);
+    EXPECT_GE(H5Aread(read, H5T_NATIVE_DOUBLE, &value), 0) << name;
+    H5Aclose(read);
+    return value;
+  }
+
+ private:
+  hid_t file_ = -1;
+};
+
+std::vector<double> columns(const Eigen::Matrix3Xd& m) {
+  return {m.data(), m.data() + m.size()};
+}
+
+TEST(Hdf5Read, AgreesWithTheLibrary) {
+  for (const int observables : {0, 1, 8, 9, 40, 1000}) {
+    for (const Eigen::Index grains : {0, 1, 700}) {
+      Checkpoint written = test::sample_checkpoint("a", 7, grains);
+      written.observables.clear();
+      for (int k = 0; k < observables; ++k) {
+        written.observables["quantity " + std::to_string(k)] = 0.5 * k;
+      }
+      const std::vector<std::byte> image = encode_checkpoint(written);
+      const Checkpoint read = decode_checkpoint(image);
+      const Library library(image);
+      EXPECT_EQ(columns(read.state.position), library.numbers("/restart/position"));
+      EXPECT_EQ(columns(read.state.velocity), library.numbers("/restart/velocity"));
+      EXPECT_EQ(read.cell.wall_grains.size() * 3,
+                library.numbers("/restart/cell/wall_grain_position").size());
+      EXPECT_EQ(read.theta, library.attribute("/restart", "theta"));
+      EXPECT_EQ(static_cast<double>(read.state.step), library.attribute("/restart", "step"));
+      EXPECT_EQ(read.cell.width, library.attribute("/restart/cell", "width"));
+      EXPECT_EQ(read.observables, written.observables);
+      for (const auto& [name, value] : read.observables) {
+        EXPECT_EQ(library.numbers("/observables/" + name + "/value"), std::vector{value});
+      }
+      EXPECT_EQ(state_hash(read), state_hash(written));
+    }
+  }
+}
+
+// ---- Changes made with the HDF5 library; the digest is made valid again.
+
+using Change = std::function<void(hid_t file)>;
+
+std::vector<std::byte> forge(const Change& change) {
+  std::vector<std::byte> image = encode_checkpoint(test::sample_checkpoint("a", 1, 5));
+  const Library opened(image, H5F_ACC_RDWR);
+  change(opened.file());
+  H5Fflush(opened.file(), H5F_SCOPE_GLOBAL);
+  const ssize_t size = H5Fget_file_image(opened.file(), nullptr, 0);
+  image.resize(kFrame + static_cast<std::size_t>(size));
+  H5Fget_file_image(opened.file(), image.data() + kFrame, static_cast<std::size_t>(size));
+  seal(image);
+  return image;
+}
+
+Change without(const std::string& path) {
+  return [=](hid_t file) { EXPECT_GE(H5Ldelete(file, path.c_str(), H5P_DEFAULT), 0); };
+}
+
+Change without_attribute(const std::string& name) {
+  return [=](hid_t file) {
+    EXPECT_GE(H5Adelete_by_name(file, "/restart", name.c_str(), H5P_DEFAULT), 0);
+  };
+}
+
+/// `path` replaced by what `make` creates there.
+Change instead(const std::string& path, const Change& make) {
+  return [=](hid_t file) {
+    without(path)(file);
+    make(file);
+  };
+}
+
+Change dataset(
+    const char* path, hid_t type, const std::vector<hsize_t>& shape,
+    const std::function<void(hid_t list)>& storage = [](hid_t) {}) {
+  return instead(path, [=](hid_t file) {
+    const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
+    storage(list);
+    const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+    const hid_t set = H5Dcreate2(file, path, type, space, H5P_DEFAULT, list, H5P_DEFAULT);
+    EXPECT_GE(set, 0);
+    H5Dclose(set);
+    H5Sclose(space);
+    H5Pclose(list);
+  });
+}
+
+template <class T>
+Change values(const char* path, hid_t type, const std::vector<T>& data) {
+  return [=](hid_t file) {
+    const hid_t set = H5Dopen2(file, path, H5P_DEFAULT);
+    EXPECT_GE(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()), 0);
+    H5Dclose(set);
+  };
+}
+
+template <class T>
+Change attribute(const char* group, const char* name, hid_t type, T value) {
+  return [=](hid_t file) {
+    H5Adelete_by_name(file, group, name, H5P_DEFAULT);
+    const hid_t space = H5Screate(H5S_SCALAR);
+    const hid_t made =
+        H5Acreate_by_name(file, group, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    EXPECT_GE(H5Awrite(made, type, &value), 0);
+    H5Aclose(made);
+    H5Sclose(space);
+  };
+}
+
+struct Forgery {
+  const char* what;
+  std::string named;  ///< the object that the message must name
+  Change change;
+};
+
+std::vector<Forgery> forgeries() {
+  const char* p = "/restart/position";
+  const char* v = "/restart/velocity";
+  const char* sides = "/restart/cell/wall_grain_side";
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::uint64_t seven = 7;
+  std::vector<Forgery> all;
+  for (const char* path :
+       {"/restart", p, v, "/restart/cell", "/restart/cell/wall_grain_side", "/observables"}) {
+    all.push_back({"object missing", path, without(path)});
+  }
+  for (const std::string name : {"step", "run", "theta", "format", "wall_velocity"}) {
+    all.push_back({"attribute missing", "/restart/" + name, without_attribute(name)});
+  }
+  const hid_t f64 = H5T_IEEE_F64LE, u64 = H5T_STD_U64LE;
+  const std::vector<Forgery> more = {
+      {"32-bit numbers", p, dataset(p, H5T_IEEE_F32LE, {5, 3})},
+      {"integers", p, dataset(p, H5T_STD_I64LE, {5, 3})},
+      {"big-endian numbers", p, dataset(p, H5T_IEEE_F64BE, {5, 3})},
+      {"one dimension", p, dataset(p, f64, {5})},
+      {"four columns", p, dataset(p, f64, {5, 4})},
+      {"three dimensions", p, dataset(p, f64, {5, 3, 1})},
+      {"a group", p,
+       instead(p,
+               [=](hid_t file) {
+                 H5Gclose(H5Gcreate2(file, p, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+               })},
+      {"another length than position", v,
+       [=](hid_t file) {
+         dataset(v, f64, {4, 3})(file);
+         values(v, H5T_NATIVE_DOUBLE, std::vector<double>(12))(file);
+       }},
+      {"more rows than bytes", p, dataset(p, f64, {100, 3})},
+      {"10^8 rows", p, dataset(p, f64, {100'000'000, 3})},
+      {"2^50 rows", p, dataset(p, f64, {hsize_t{1} << 50, 3})},
+      {"link to another file", p,
+       instead(p,
+               [=](hid_t file) {
+                 H5Lcreate_external("/etc/passwd", "/", file, p, H5P_DEFAULT, H5P_DEFAULT);
+               })},
+      {"soft link", p,
+       instead(p, [=](hid_t file) { H5Lcreate_soft(v, file, p, H5P_DEFAULT, H5P_DEFAULT); })},
+      {"data in another file", p,
+       dataset(p, f64, {5, 3}, [](hid_t list) { H5Pset_external(list, "/etc/passwd", 0, 120); })},
+      {"compressed chunks", p,
+       dataset(p, f64, {1'000'000, 3},
+               [](hid_t list) {
+                 const hsize_t chunk[2] = {1000, 3};
+                 H5Pset_chunk(list, 2, chunk);
+                 H5Pset_deflate(list, 9);
+               })},
+      {"NaN", "/restart/theta", attribute("/restart", "theta", f64, nan)},
+      {"integer for a number", "/restart/theta", attribute("/restart", "theta", u64, seven)},
+      {"integer for a text", "/restart/run", attribute("/restart", "run", u64, seven)},
+      {"unknown format", "/restart/format", attribute("/restart", "format", u64, seven)},
+      {"unknown wall", "/restart/cell/moving", attribute("/restart/cell", "moving", u64, seven)},
+      {"unknown side", sides, values(sides, H5T_STD_U8LE, std::vector<std::uint8_t>{0, 1, 2, 4})},
+      {"NaN observable", "/observables/phi/value",
+       values("/observables/phi/value", f64, std::vector<double>{nan})}};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+TEST(HostileCheckpoint, AForgedObjectIsRefusedByName) {
+  const Checkpoint unchanged = decode_checkpoint(forge([](hid_t) {}));
+  EXPECT_EQ(state_hash(unchanged), state_hash(test::sample_checkpoint("a", 1, 5)));
+  for (const Forgery& forgery : forgeries()) {
+    SCOPED_TRACE(forgery.what);
+    const std::vector<std::byte> image = forge(forgery.change);
+    const std::string message =
+        test::message_of<StoreDamaged>([&image] { decode_checkpoint(image); });
+    EXPECT_NE(message.find(forgery.named), std::string::npos) << message;
+  }
+}
+
+// ---- Every byte and every length.
+
+TEST(HostileCheckpoint, EveryTruncationIsRefused) {
+  const std::vector<std::byte> whole = encode_checkpoint(test::sample_checkpoint("a", 1, 5));
+  for (std::size_t size = 0; size < whole.size(); size += (size < 1100 ? 1 : 37)) {
+    std::vector<std::byte> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    EXPECT_THROW(decode_checkpoint(cut), StoreDamaged) << size;
+    if (size <= kFrame) continue;
+    seal(cut);
+    EXPECT_THROW(decode_checkpoint(cut), StoreDamaged) << size << ", with a valid digest";
+  }
+}
+
+TEST(HostileCheckpoint, EveryChangedByteIsRefusedOrReadWithoutHarm) {
+  const std::vector<std::byte> whole = encode_checkpoint(test::sample_checkpoint("a", 1, 2));
+  std::size_t refused = 0, taken = 0;
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    for (const unsigned flip : {0x01U, 0x80U, 0xffU}) {
+      std::vector<std::byte> changed = whole;
+      changed[at] ^= static_cast<std::byte>(flip);
+      if (flip == 0x01U) {
+        EXPECT_THROW(decode_checkpoint(changed), StoreDamaged) << at;
+      }
+      if (at < kFrame) continue;
+      seal(changed);
+      try {
+        decode_checkpoint(changed);
+        ++taken;
+      } catch (const StoreDamaged&) {
+        ++refused;
+      }
+    }
+  }
+  std::printf("%zu forged files: %zu refused, %zu read\n", refused + taken, refused, taken);
+  EXPECT_GT(refused, 1000U);
+}
+
+}  // namespace
+}  // namespace shearcell
