@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -18,8 +19,13 @@ struct Cases {
 
 Cases cases_of(std::span<const GrowthBySize> runs, Vanished vanished) {
   Cases cases;
-  cases.log_size = Eigen::ArrayXd::LinSpaced(largest_size_fitted, 1, largest_size_fitted).log();
-  cases.grew.setZero(largest_size_fitted, static_cast<Eigen::Index>(runs.size()));
+  std::int32_t largest = 1;
+  for (const GrowthBySize& run : runs) {
+    if (!run.empty())
+      largest = std::max(largest, std::min(largest_size_fitted, run.rbegin()->first));
+  }
+  cases.log_size = Eigen::ArrayXd::LinSpaced(largest, 1, largest).log();
+  cases.grew.setZero(largest, static_cast<Eigen::Index>(runs.size()));
   cases.shrank = cases.grew;
   Eigen::Index column = 0;
   for (const GrowthBySize& run : runs) {
@@ -65,7 +71,7 @@ std::optional<Estimate> over_selections(std::span<const GrowthBySize> runs, Vani
                                         const Value& value) {
   const Cases cases = cases_of(runs, vanished);
   return bootstrapped(runs.size(), [&](std::span<const std::size_t> selection) {
-    Eigen::ArrayXd grew = Eigen::ArrayXd::Zero(largest_size_fitted);
+    Eigen::ArrayXd grew = Eigen::ArrayXd::Zero(cases.log_size.size());
     Eigen::ArrayXd shrank = grew;
     for (const std::size_t run : selection) {
       grew += cases.grew.col(static_cast<Eigen::Index>(run));

@@ -87,10 +87,14 @@ std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double dist
   constexpr std::size_t most = 10000;
   constexpr double power = 0.9;
   const double hit = both_sides ? (1 + power) / 2 : power;
-  for (std::size_t n = least_runs; n <= most; n += n < 100 ? 1 : n / 100) {
+  const double ratio = estimate.spread / distance;
+  // Student's quantiles exceed the normal ones, so no smaller number is enough.
+  const double least = std::pow((normal_quantile(upper) + normal_quantile(hit)) * ratio, 2);
+  if (!(least <= most)) return std::nullopt;
+  for (auto n = std::max(least_runs, static_cast<std::size_t>(least)); n <= most; ++n) {
     const auto freedom = static_cast<double>(estimate.groups * (n - 1));
     const double needed = student_quantile(upper, freedom) + student_quantile(hit, freedom);
-    if (needed * estimate.spread <= distance * std::sqrt(static_cast<double>(n))) return n;
+    if (needed * ratio <= std::sqrt(static_cast<double>(n))) return n;
   }
   return std::nullopt;
 }

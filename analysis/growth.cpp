@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include "analysis/statistics.hpp"
-
 namespace shearcell {
 namespace {
 
@@ -17,32 +15,6 @@ void add(const GrowthBySize& from, GrowthBySize& to) {
     sum.same += count.same;
     sum.undecided += count.undecided;
   }
-}
-
-struct Step {
-  double weight;
-  double size;   // mean
-  double delta;  // mean
-};
-
-/// Pool-adjacent-violators.
-std::vector<Step> isotonic(std::span<const GrowthRate> rates) {
-  std::vector<Step> steps;
-  for (const GrowthRate& rate : rates) {
-    if (rate.size > largest_size_for_zero) break;
-    steps.push_back(
-        {static_cast<double>(rate.counted), static_cast<double>(rate.size), rate.delta});
-    while (steps.size() > 1 && steps[steps.size() - 2].delta >= steps.back().delta) {
-      const Step last = steps.back();
-      steps.pop_back();
-      Step& into = steps.back();
-      const double weight = into.weight + last.weight;
-      into.size = (into.weight * into.size + last.weight * last.size) / weight;
-      into.delta = (into.weight * into.delta + last.weight * last.delta) / weight;
-      into.weight = weight;
-    }
-  }
-  return steps;
 }
 
 }  // namespace
@@ -117,25 +89,6 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs) {
     rates.push_back(rate);
   }
   return rates;
-}
-
-std::optional<double> critical_size(std::span<const GrowthRate> rates) {
-  const std::vector<Step> steps = isotonic(rates);
-  for (std::size_t k = 1; k < steps.size(); ++k) {
-    if (!(steps[k - 1].delta <= 0 && steps[k].delta > 0)) continue;
-    const double part = -steps[k - 1].delta / (steps[k].delta - steps[k - 1].delta);
-    return steps[k - 1].size + part * (steps[k].size - steps[k - 1].size);
-  }
-  return std::nullopt;
-}
-
-CriticalSize critical_size_over(std::span<const GrowthBySize> runs) {
-  const auto of = [&](std::span<const std::size_t> selection) {
-    std::vector<GrowthBySize> selected;
-    for (const std::size_t run : selection) selected.push_back(runs[run]);
-    return critical_size(growth_rates(selected));
-  };
-  return {critical_size(growth_rates(runs)), bootstrap_error(runs.size(), of)};
 }
 
 }  // namespace shearcell

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,19 +46,5 @@ struct GrowthRate {
 
 /// Over all runs, by size; sizes of which none was counted are left out.
 std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs);
-
-/// The size at which delta_rho turns positive: the zero of its isotonic regression (the
-/// non-decreasing function of the size that is nearest to it in weighted least squares, each size
-/// weighted by its count), linear between the mean sizes of its steps. Larger sizes than
-/// `largest_size_for_zero` are left out: there growth ends because all is one crystal. None when
-/// delta_rho is positive at all sizes or at none. [choice]
-inline constexpr std::int32_t largest_size_for_zero = 100;
-std::optional<double> critical_size(std::span<const GrowthRate> rates);
-
-struct CriticalSize {
-  std::optional<double> size;   ///< grains, over all runs
-  std::optional<double> error;  ///< bootstrap over runs
-};
-CriticalSize critical_size_over(std::span<const GrowthBySize> runs);
 
 }  // namespace shearcell

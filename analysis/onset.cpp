@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/agreement.hpp"
+#include "analysis/published.hpp"
 
 namespace shearcell {
 namespace {
@@ -106,8 +106,8 @@ RunOnset onset_by_slope(const FigureRun& run, double critical_size) {
   return found;
 }
 
-bool Onset::tells() const {
-  return phi.runs >= runs_to_tell && 3 * (never + before_start) <= phi.runs;
+double critical_size_for(const FigureRun& run) {
+  return published_nearest(number_of(run, "amplitude_rad")).critical_size;
 }
 
 Onset onset(std::span<const FigureRun* const> runs, OnsetMethod method, double critical_size) {

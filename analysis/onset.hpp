@@ -33,6 +33,9 @@ RunOnset onset_by_size(const FigureRun& run, double critical_size);
 inline constexpr double slope_window = 0.008;
 RunOnset onset_by_slope(const FigureRun& run, double critical_size);
 
+/// The supplement's critical size for the amplitude of the run.
+double critical_size_for(const FigureRun& run);
+
 using OnsetMethod = RunOnset (*)(const FigureRun& run, double critical_size);
 
 /// Over independent runs. Censored runs do not enter the mean, which is biased towards early onsets
@@ -43,9 +46,6 @@ struct Onset {
   RunStatistics cycle;              ///< over observed runs
   std::size_t never = 0;            ///< runs that end before
   std::size_t before_start = 0;     ///< runs that begin after
-
-  /// Enough runs, and no more than a quarter of them censored. [choice]
-  bool tells() const;
 };
 Onset onset(std::span<const FigureRun* const> runs, OnsetMethod method, double critical_size);
 

@@ -53,8 +53,64 @@ inline constexpr std::array published_sizes = {PublishedSize{5200, 3335}, Publis
 /// The onset no longer depends on the size from here on.
 inline constexpr double converged_interior_grains = 6000;
 
+/// Section B.2: relative fall of phi_u over a hundredfold k, "roughly 2 %".
+inline constexpr double published_fall_of_phi_u = 0.02;
+/// Section B.4: the average overlap is less than this [d].
+inline constexpr double published_overlap = 1e-3;
+
 /// Section E: sizes of the crystallites of Fig. S7.
 inline constexpr std::int32_t nucleus_smallest = 15;
 inline constexpr std::int32_t nucleus_largest = 25;
+
+/// Cycles over which phi is compared: before the grains crystallize. [choice]
+inline constexpr std::int64_t early_cycles = 15;
+/// phi over which the percentage of crystalline grains is compared: from the onset to where a fifth
+/// of the grains is crystalline. [choice]
+inline constexpr double window_low = 0.646;
+inline constexpr double window_high = 0.67;
+
+/// phi that 0.1 s of rest adds to a checkpoint of continuous shear, which is read at the largest
+/// shear rate: measured, N = 2000.
+inline constexpr double phi_gained_at_rest = 0.0004;
+
+/// A difference that does not matter: what two results may differ by and still agree. The margins
+/// are stated here before the runs are made; a published number's own uncertainty is part of its
+/// margin.
+struct Margin {
+  const char* quantity;
+  double value;
+  const char* unit;
+  const char* reason;
+};
+inline constexpr Margin margin_early_phi = {"phi, mean over cycles 1 to 15", 0.001, "",
+                                            "the supplement states phi to 0.001"};
+inline constexpr Margin margin_percentage = {
+    "percentage crystalline, mean over phi from 0.646 to 0.67", 2, "points",
+    "it rises by 2 points over 0.002 in phi, the margin of the onset"};
+inline constexpr Margin margin_onset_phi = {
+    "phi at the onset", 0.002, "", "the supplement's +-0.001, and as much for our critical size"};
+inline constexpr Margin margin_onset_cycle = {
+    "cycle of the onset, log2 of the ratio", 1, "",
+    "the supplement's curves of equal runs part from others at n = 30, 40 and 60: a factor of 2"};
+inline constexpr Margin margin_contacts = {"mean overlap, contacts per grain", 0.03, "relative",
+                                           "overlaps are proportional to the pressure: 3 % of it"};
+inline constexpr Margin margin_critical_size = {
+    "critical size", 0.25, "of the published size",
+    "the published sizes differ by a quarter from one amplitude to the next"};
+inline constexpr Margin margin_share = {
+    "share of nuclei in one part of the cell less that in another", 0.2, "",
+    "60 % against 40 %: the least that shows in Fig. S7"};
+inline constexpr Margin margin_fall_of_phi_u = {"relative fall of phi_u over a hundredfold k",
+                                                0.005, "", "2 % in one digit is 1.5 to 2.5 %"};
+inline constexpr Margin margin_hard_phi = {"change of phi over a hundredfold k", 0.002, "",
+                                           "a seventh of the fall of phi_u"};
+inline constexpr Margin margin_interior = {
+    "N_inves", 0.03, "relative", "the surface of a rough wall, a choice, displaced by 0.12 d"};
+inline constexpr Margin margin_pause_gain = {
+    "phi gained by pauses at rest, mean over cycles 1 to 15", 0.0002, "",
+    "half of what a cycle adds; a larger gain is a gain"};
+inline constexpr Margin margin_wall_delay = {
+    "cycle of 20 % crystalline grains, rough walls against smooth, log2 of the ratio", 1, "",
+    "smooth walls that matter halve the time"};
 
 }  // namespace shearcell

@@ -92,32 +92,26 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
   constexpr double infinite = std::numeric_limits<double>::infinity();
   const double limit = normal_quantile((1 + confidence_level) / 2);
   std::vector<Waiting> scaled(b.begin(), b.end());
+  double negative = edges.front();  // the statistic is negative below this factor
+  double positive = edges.back();   // and positive above this one
   Interval kept{infinite, -infinite};
-  Interval zero = kept;  // where the statistic is nearest to zero
-  double nearest = infinite;
   for (std::size_t k = 0; k <= edges.size(); ++k) {  // between the edges
-    const double low = k == 0 ? edges.front() - 2 : edges[k - 1];
-    const double high = k == edges.size() ? edges.back() + 2 : edges[k];
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      scaled[j].cycle = b[j].cycle * std::exp2((low + high) / 2);
-    }
-    const double z = std::abs(log_rank(a, scaled));
-    if (z < limit) {
-      kept.low = std::min(kept.low, k == 0 ? -infinite : low);
-      kept.high = std::max(kept.high, k == edges.size() ? infinite : high);
-    }
-    if (z < nearest) zero = {low, high};
-    if (z == nearest) zero.high = high;
-    nearest = std::min(nearest, z);
+    const double low = k == 0 ? -infinite : edges[k - 1];
+    const double high = k == edges.size() ? infinite : edges[k];
+    const double factor = k == 0 ? high - 1 : k == edges.size() ? low + 1 : (low + high) / 2;
+    for (std::size_t j = 0; j < b.size(); ++j) scaled[j].cycle = b[j].cycle * std::exp2(factor);
+    const double z = log_rank(a, scaled);
+    if (std::abs(z) < limit) kept = {std::min(kept.low, low), std::max(kept.high, high)};
+    if (z < 0 && k < edges.size()) negative = high;
+    if (z > 0 && k > 0) positive = std::min(positive, low);
   }
-  kept = {std::min(kept.low, zero.low), std::max(kept.high, zero.high)};
   Estimate estimate;
-  estimate.value = (zero.low + zero.high) / 2;
-  estimate.interval = kept;
+  estimate.value = (negative + positive) / 2;
+  estimate.interval = {std::min(kept.low, estimate.value), std::max(kept.high, estimate.value)};
   estimate.runs = std::min(a.size(), b.size());
   estimate.groups = 2;
-  estimate.spread =
-      (kept.high - kept.low) / (2 * limit) * std::sqrt(static_cast<double>(estimate.runs));
+  estimate.spread = (estimate.interval.high - estimate.interval.low) / (2 * limit) *
+                    std::sqrt(static_cast<double>(estimate.runs));
   return estimate;
 }
 

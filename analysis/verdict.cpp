@@ -9,60 +9,107 @@
 namespace shearcell {
 namespace {
 
-nlohmann::json rounded(const std::optional<double>& value) {
-  if (!value || !std::isfinite(*value)) return nullptr;
-  return std::stod(fmt::format("{:.6g}", *value));
+nlohmann::json rounded(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::stod(fmt::format("{:.6g}", value));
+}
+
+Ruling ruling_of(const Interval& interval, double margin, Claimed claimed) {
+  const bool is_above = interval.low > margin;
+  const bool is_below = interval.high < margin;
+  if (claimed == Claimed::within) {
+    if (interval.low >= -margin && interval.high <= margin) return Ruling::agrees;
+    return is_above || interval.high < -margin ? Ruling::differs : Ruling::undecided;
+  }
+  if (is_above) return claimed == Claimed::above ? Ruling::agrees : Ruling::differs;
+  if (is_below) return claimed == Claimed::below ? Ruling::agrees : Ruling::differs;
+  return Ruling::undecided;
+}
+
+std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, Claimed claimed) {
+  const bool within = claimed == Claimed::within;
+  const std::optional<std::size_t> planned = runs_to_resolve(estimate, margin, within);
+  if (!planned || *planned > estimate.runs) return planned;
+  const double size = within ? std::abs(estimate.value) : estimate.value;
+  return runs_to_resolve(estimate, std::abs(size - margin), false);
 }
 
 }  // namespace
 
 const char* name_of(Ruling ruling) {
   switch (ruling) {
-    case Ruling::pass:
-      return "pass";
-    case Ruling::fail:
-      return "fail";
-    case Ruling::too_few_runs:
+    case Ruling::agrees:
+      return "agrees";
+    case Ruling::differs:
+      return "differs";
+    case Ruling::undecided:
       break;
   }
-  return "too few runs to tell";
+  return "undecided";
 }
 
-Verdict below_if(bool enough, std::string claim, std::string quantity, std::optional<double> value,
-                 double limit, std::string note) {
-  Verdict verdict{std::move(claim),     std::move(quantity), value, limit,
-                  Ruling::too_few_runs, std::move(note)};
-  if (value && !std::isfinite(*value)) verdict.value.reset();
-  if (enough && verdict.value)
-    verdict.ruling = *verdict.value < limit ? Ruling::pass : Ruling::fail;
+Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
+               std::size_t runs, std::string note) {
+  Verdict verdict;
+  verdict.claim = claim.text;
+  verdict.quantity = std::move(quantity);
+  verdict.margin = claim.margin;
+  verdict.runs = runs;
+  verdict.note = std::move(note);
+  if (!estimate) return verdict;
+  verdict.estimate = estimate->value;
+  verdict.interval = estimate->interval;
+  verdict.ruling = ruling_of(estimate->interval, claim.margin, claim.claimed);
+  if (verdict.ruling == Ruling::undecided) {
+    verdict.runs_needed = runs_needed(*estimate, claim.margin, claim.claimed);
+  }
   return verdict;
 }
 
-Verdict below(std::string claim, std::string quantity, std::optional<double> value, double limit,
-              std::string note) {
-  return below_if(true, std::move(claim), std::move(quantity), value, limit, std::move(note));
-}
-
-Ruling overall(std::span<const Verdict> verdicts) {
-  Ruling result = verdicts.empty() ? Ruling::too_few_runs : Ruling::pass;
+std::optional<Ruling> overall(std::span<const Verdict> verdicts) {
+  if (verdicts.empty()) return std::nullopt;
+  Ruling result = Ruling::agrees;
   for (const Verdict& verdict : verdicts) {
-    if (verdict.ruling == Ruling::fail) return Ruling::fail;
-    if (verdict.ruling == Ruling::too_few_runs) result = Ruling::too_few_runs;
+    if (verdict.ruling == Ruling::differs) return Ruling::differs;
+    if (verdict.ruling == Ruling::undecided) result = Ruling::undecided;
   }
   return result;
 }
 
 nlohmann::json to_json(std::span<const Verdict> verdicts) {
-  nlohmann::json claims = nlohmann::json::array();
+  using nlohmann::json;
+  json claims = json::array();
   for (const Verdict& verdict : verdicts) {
-    claims.push_back({{"claim", verdict.claim},
-                      {"quantity", verdict.quantity},
-                      {"value", rounded(verdict.value)},
-                      {"limit", rounded(verdict.limit)},
-                      {"verdict", name_of(verdict.ruling)},
-                      {"note", verdict.note}});
+    json claim = {{"claim", verdict.claim},
+                  {"quantity", verdict.quantity},
+                  {"estimate", nullptr},
+                  {"interval", nullptr},
+                  {"level", confidence_level},
+                  {"margin", rounded(verdict.margin)},
+                  {"verdict", name_of(verdict.ruling)},
+                  {"runs", verdict.runs},
+                  {"runs_needed", nullptr},
+                  {"note", verdict.note}};
+    if (verdict.estimate) {
+      claim["estimate"] = rounded(*verdict.estimate);
+      claim["interval"] = {rounded(verdict.interval.low), rounded(verdict.interval.high)};
+    }
+    if (verdict.runs_needed) claim["runs_needed"] = *verdict.runs_needed;
+    claims.push_back(std::move(claim));
   }
-  return {{"verdict", name_of(overall(verdicts))}, {"claims", claims}};
+  json result = {{"verdict", nullptr}, {"claims", claims}};
+  if (const auto ruling = overall(verdicts)) result["verdict"] = name_of(*ruling);
+  return result;
+}
+
+std::string numbers_of(const Verdict& verdict) {
+  std::string text = verdict.estimate
+                         ? fmt::format("{:.3g}, interval {:.3g} to {:.3g}", *verdict.estimate,
+                                       verdict.interval.low, verdict.interval.high)
+                         : std::string("not measured");
+  text += fmt::format(", margin {:.3g}, {} runs", verdict.margin, verdict.runs);
+  if (verdict.runs_needed) text += fmt::format(" of {} needed", *verdict.runs_needed);
+  return text;
 }
 
 }  // namespace shearcell

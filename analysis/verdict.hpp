@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the supplement claims of a figure, as a test with a number.
+// A claim decided by an interval and a margin.
 #pragma once
 
 #include <cstddef>
@@ -7,37 +7,54 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
+
+#include "analysis/estimate.hpp"
 
 namespace shearcell {
 
-enum class Ruling { pass, fail, too_few_runs };
+enum class Ruling { agrees, differs, undecided };
 
-/// "pass", "fail", "too few runs to tell".
+/// "agrees", "differs", "undecided".
 const char* name_of(Ruling ruling);
 
-struct Verdict {
-  std::string claim;            ///< in the supplement's sense, with its section
-  std::string quantity;         ///< what `value` is, with its unit
-  std::optional<double> value;  ///< none when nothing could be measured
-  std::optional<double> limit;  ///< what `value` is compared with
-  Ruling ruling = Ruling::too_few_runs;
-  std::string note;  ///< how many runs, what is missing; may be empty
+/// Where a claim puts its quantity: from -margin to margin, above the margin, or below it.
+enum class Claimed { within, above, below };
+
+struct Claim {
+  std::string text;  ///< in the supplement's sense, with its section
+  double margin = 0;
+  Claimed claimed = Claimed::within;
 };
 
-/// Passes when value < limit. Nothing can be told without a value.
-Verdict below(std::string claim, std::string quantity, std::optional<double> value, double limit,
-              std::string note = "");
+struct Verdict {
+  std::string claim;
+  std::string quantity;            ///< what is estimated, with its unit
+  std::optional<double> estimate;  ///< none if too few runs have the quantity
+  Interval interval;               ///< at confidence_level; only with an estimate
+  double margin = 0;
+  Ruling ruling = Ruling::undecided;
+  std::size_t runs = 0;                    ///< per group, or pairs
+  std::optional<std::size_t> runs_needed;  ///< if undecided; none if it is not known
+  std::string note;                        ///< how it was compared, what is missing
+};
 
-/// The same, but nothing can be told unless `enough`.
-Verdict below_if(bool enough, std::string claim, std::string quantity, std::optional<double> value,
-                 double limit, std::string note = "");
+/// agrees: the interval lies where the claim puts it. differs: the interval lies wholly outside.
+/// undecided: otherwise, and without an estimate. runs_needed decides with 90 % probability if the
+/// truth is what is claimed, or twice the margin; where there are as many runs already, if the
+/// truth is the estimate.
+Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
+               std::size_t runs, std::string note);
 
-/// fail when any claim fails; else too few runs when any could not be told, or when there is none.
-Ruling overall(std::span<const Verdict> verdicts);
+/// differs if a claim differs; else undecided if one is undecided; none without claims.
+std::optional<Ruling> overall(std::span<const Verdict> verdicts);
 
-/// {"verdict", "claims": [{"claim", "quantity", "value", "limit", "verdict", "note"}]}; numbers to
-/// six significant digits, null where there is none. The same verdicts give the same bytes.
+/// {"verdict", "claims": [{"claim", "quantity", "estimate", "interval": [low, high], "level",
+/// "margin", "verdict", "runs", "runs_needed", "note"}]}. Numbers have six significant digits; null
+/// where there is none, for an infinite end of an interval too. The same verdicts give the same
+/// bytes.
 nlohmann::json to_json(std::span<const Verdict> verdicts);
+
+/// "0.0012, interval -0.0003 to 0.0027, margin 0.001, 6 runs of 24 needed".
+std::string numbers_of(const Verdict& verdict);
 
 }  // namespace shearcell

@@ -7,10 +7,15 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/agreement.hpp"
 #include "analysis/published.hpp"
 
 namespace shearcell {
+
+std::vector<const FigureRun*> pointers(std::span<const FigureRun> runs) {
+  std::vector<const FigureRun*> all;
+  for (const FigureRun& run : runs) all.push_back(&run);
+  return all;
+}
 
 std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRun> runs,
                                                         const std::string& parameter) {
@@ -22,7 +27,7 @@ std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRu
   return groups;
 }
 
-double interior_grains(std::span<const FigureRun* const> runs) {
+double interior_grains(RunGroup runs) {
   std::vector<double> counts;
   for (const FigureRun* run : runs) {
     if (run->checkpoints.empty()) continue;
@@ -39,36 +44,20 @@ std::optional<double> published_interior(double grains) {
   return std::nullopt;
 }
 
-Verdict interior_is_published(double grains, std::span<const FigureRun* const> runs) {
+Verdict interior_is_published(double grains, RunGroup runs) {
   const double published = published_interior(grains).value();
-  const double interior = interior_grains(runs);
-  const bool measured = std::isfinite(interior);
-  return below(
-      fmt::format("C: N = {} has {} grains at least 1.5 d from the walls", grains, published),
-      "relative difference", std::abs(interior / published - 1), 0.03,
-      measured ? fmt::format("N_inves = {:.1f} at the first checkpoint, mean over runs", interior)
-               : fmt::format("no run of {} grains", grains));
+  Scalar interior = at_cycle(
+      "N_inves", [](const Measures& m) { return static_cast<double>(m.interior_grains); }, 0);
+  interior.relative = true;
+  return compare_with(
+      {fmt::format("C: N = {} has {} grains at least 1.5 d from the walls", grains, published),
+       margin_interior.value},
+      interior, runs, published);
 }
 
-std::string runs_in_words(const Onset& onset) {
-  return fmt::format("{} runs, {} end before the onset, {} begin after it", onset.phi.runs,
-                     onset.never, onset.before_start);
-}
-
-Verdict onset_is_published(const Onset& onset, std::string claim) {
-  std::optional<double> distance;
-  double limit = published_onset_error;
-  std::string note = runs_in_words(onset);
-  if (onset.phi.mean) {
-    distance = std::abs(*onset.phi.mean - published_onset_phi);
-    note += fmt::format("; phi = {:.5f}", *onset.phi.mean);
-  }
-  if (onset.phi_error) {
-    limit += limit_of_agreement(onset.phi.runs - 1) * *onset.phi_error;
-    note += fmt::format(" +- {:.5f}", *onset.phi_error);
-  }
-  return below_if(onset.tells(), std::move(claim), "distance of the mean onset from phi = 0.646",
-                  distance, limit, note);
+Verdict onset_is_published(RunGroup runs, std::string claim) {
+  return compare_with({std::move(claim), margin_onset_phi.value}, onset_phi(onset_by_size), runs,
+                      published_onset_phi);
 }
 
 std::vector<std::string> onset_columns(std::vector<std::string> columns) {

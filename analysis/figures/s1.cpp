@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Figure S1: phi_u falls as the springs of a packing are made stiffer, phi stays where it is.
 // Supplement B.2.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "analysis/agreement.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
+#include "analysis/figures/groups.hpp"
+#include "analysis/published.hpp"
 #include "analysis/statistics.hpp"
 
 namespace shearcell {
@@ -82,55 +81,38 @@ FigureTable table_of(const std::map<int, Stiffness>& found) {
   return table;
 }
 
-/// Largest change over the stiffnesses of one run; none unless they span the hundredfold.
-struct Change {
-  double fall_of_phi_u;  ///< from the softest to the hardest, relative: the supplement says "2 %
-                         ///< lower"
-  double spread_of_phi;  ///< largest distance from the softest
-};
-std::vector<Change> changes(std::span<const FigureRun> runs) {
-  std::vector<Change> all;
-  for (const FigureRun& run : runs) {
+/// What `change` computes from the softest and the hardest packing of a run, if k spans the
+/// hundredfold.
+Scalar over_the_hundredfold(std::string name,
+                            double (*change)(const Stiffness& soft, const Stiffness& hard)) {
+  const auto of = [change](const FigureRun& run) -> RunValue {
     const std::map<int, Stiffness> own = by_stiffness(std::span(&run, 1));
     constexpr int hundredfold = 200;
-    if (own.empty() || own.rbegin()->first < hundredfold) continue;
-    const Stiffness& soft = own.begin()->second;
-    Change change{1 - own.rbegin()->second.phi_u.front() / soft.phi_u.front(), 0};
-    for (const auto& [hundredths, at] : own) {
-      change.spread_of_phi =
-          std::max(change.spread_of_phi, std::abs(at.phi.front() - soft.phi.front()));
-    }
-    all.push_back(change);
-  }
-  return all;
-}
-
-std::vector<Verdict> verdicts_on(std::span<const Change> all) {
-  std::vector<double> fall;
-  std::optional<double> spread;
-  for (const Change& change : all) {
-    fall.push_back(change.fall_of_phi_u);
-    spread = std::max(spread.value_or(0), change.spread_of_phi);
-  }
-  const RunStatistics mean = over_runs(fall);
-  std::optional<double> distance;
-  std::string note = fmt::format("{} systems over a hundredfold k", all.size());
-  if (mean.mean) {
-    distance = std::abs(*mean.mean - 0.02);
-    note += fmt::format("; it falls by {:.4f} of itself", *mean.mean);
-  }
-  const bool enough = all.size() >= runs_to_tell;
-  return {below_if(enough, "B.2: phi_u falls by about 2 %, here 1 to 3 %, over a hundredfold k",
-                   "distance of its mean relative fall from 0.02", distance, 0.01, note),
-          below_if(enough, "B.2: phi (Eq. S4) stays where it is over a hundredfold k",
-                   "largest change of phi in any system", spread, 0.002,
-                   fmt::format("{} systems", all.size()))};
+    if (own.empty() || own.rbegin()->first < hundredfold) return {0, Missing::too_short};
+    return {change(own.begin()->second, own.rbegin()->second), Missing::nothing};
+  };
+  return {std::move(name), "k/k0 = 100", of};
 }
 
 }  // namespace
 
 FigureResult figure_s1(std::span<const FigureRun> runs) {
-  return {{table_of(by_stiffness(runs))}, verdicts_on(changes(runs))};
+  const std::vector<const FigureRun*> all = pointers(runs);
+  const Scalar fall = over_the_hundredfold("relative fall of phi_u",
+                                           [](const Stiffness& soft, const Stiffness& hard) {
+                                             return 1 - hard.phi_u.front() / soft.phi_u.front();
+                                           });
+  const Scalar change =
+      over_the_hundredfold("change of phi", [](const Stiffness& soft, const Stiffness& hard) {
+        return hard.phi.front() - soft.phi.front();
+      });
+  return {{table_of(by_stiffness(runs))},
+          {compare_with(
+               {"B.2: phi_u falls by about 2 % over a hundredfold k", margin_fall_of_phi_u.value},
+               fall, all, published_fall_of_phi_u),
+           compare_with(
+               {"B.2: phi (Eq. S4) stays the same over a hundredfold k", margin_hard_phi.value},
+               change, all, 0)}};
 }
 
 }  // namespace shearcell

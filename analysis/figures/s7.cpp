@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
-#include "analysis/agreement.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/figures/groups.hpp"
 #include "analysis/nucleation_sites.hpp"
+#include "analysis/published.hpp"
 #include "analysis/statistics.hpp"
 
 namespace shearcell {
@@ -22,15 +23,13 @@ constexpr std::size_t bins = 20;
 /// Centres of such crystallites cannot lie nearer to a plane than this [d]: interior grains begin
 /// 1.875 d inside a rough plane, and the crystallite has a radius. [choice]
 constexpr double inaccessible = 4;
-/// Fewer say nothing about a distribution over 20 bins. [choice]
-constexpr std::size_t crystallites_to_tell = 200;
 
 struct Places {
   std::vector<std::vector<double>> runs;  ///< those with any
   std::size_t count = 0;
 };
 
-Places places_of(std::span<const FigureRun* const> runs, CellAxis axis) {
+Places places_of(RunGroup runs, CellAxis axis) {
   Places places;
   for (const FigureRun* run : runs) {
     std::vector<double> found = nucleus_places(*run, axis);
@@ -42,10 +41,10 @@ Places places_of(std::span<const FigureRun* const> runs, CellAxis axis) {
 }
 
 /// The smallest cell among the runs, for which the inaccessible layer is the largest share.
-double smallest_width(std::span<const FigureRun> runs) {
+double smallest_width(RunGroup runs) {
   double width = std::numeric_limits<double>::infinity();
-  for (const FigureRun& run : runs) {
-    for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+  for (const FigureRun* run : runs) {
+    for (const CheckpointMeasures& checkpoint : run->checkpoints) {
       if (checkpoint.crystallites) width = std::min(width, checkpoint.crystallites->width);
     }
   }
@@ -92,76 +91,53 @@ Text ratio(const char* length, const Text& unit) {
   return italic(length) + "/" + unit;
 }
 
-std::string enough_in_words(const Places& places) {
-  return fmt::format("{} crystallites of 15 to 25 grains in {} runs", places.count,
-                     places.runs.size());
-}
-
-bool enough(const Places& places) {
-  return places.runs.size() >= runs_to_tell && places.count >= crystallites_to_tell;
-}
-
-Verdict uniform_in_the_middle(std::span<const DensityBin> density, const Places& places,
-                              double width) {
-  const double edge = (inaccessible + 1) / (width + 2);
-  std::vector<DensityBin> middle;
-  for (const DensityBin& bin : density) {
-    if (bin.low >= edge && bin.high <= 1 - edge) middle.push_back(bin);
+/// Share of the nuclei in one part of the cell less that in another, over all runs. `side` gives 1
+/// in the one part, -1 in the other, 0 elsewhere, and nothing where a nucleus is not counted.
+Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
+                      const std::function<std::optional<int>(double place)>& side) {
+  std::vector<std::vector<double>> places;
+  std::size_t count = 0;
+  for (const FigureRun* run : runs) {
+    std::vector<double> found = nucleus_births(*run, axis);
+    if (found.empty()) continue;
+    count += found.size();
+    places.push_back(std::move(found));
   }
-  double mean = 0;
-  for (const DensityBin& bin : middle) mean += bin.density / static_cast<double>(middle.size());
-  double sum = 0;
-  bool errors = !middle.empty();
-  for (const DensityBin& bin : middle) {
-    errors = errors && bin.error && *bin.error > 0;
-    if (errors) sum += std::pow((bin.density - mean) / *bin.error, 2);
-  }
-  std::optional<double> rms;
-  if (errors) rms = std::sqrt(sum / static_cast<double>(middle.size()));
-  Verdict verdict{"E: crystallites are equally probable over the accessible central x",
-                  "P(x/w) less its mean there, root mean square in standard errors",
-                  rms,
-                  std::nullopt,
-                  Ruling::too_few_runs,
-                  fmt::format("{}, {} bins", enough_in_words(places), middle.size())};
-  if (!rms) return verdict;
-  verdict.limit = limit_of_agreement(places.runs.size() - 1);
-  if (enough(places)) verdict.ruling = *rms < *verdict.limit ? Ruling::pass : Ruling::fail;
-  return verdict;
-}
-
-double upper_less_lower(const std::vector<double>& places) {
-  double difference = 0;
-  for (const double y : places) difference += y > 2.0 / 3 ? 1 : (y < 1.0 / 3 ? -1 : 0);
-  return difference;
-}
-
-Verdict more_near_the_top(const Places& places) {
-  const auto of = [&](std::span<const std::size_t> selection) {
-    double difference = 0;
+  const auto difference = [&](std::span<const std::size_t> selection) {
+    double sum = 0;
     double all = 0;
     for (const std::size_t run : selection) {
-      difference += upper_less_lower(places.runs[run]);
-      all += static_cast<double>(places.runs[run].size());
+      for (const double place : places[run]) {
+        const std::optional<int> counted = side(place);
+        if (!counted) continue;
+        sum += *counted;
+        ++all;
+      }
     }
-    return std::optional<double>(difference / all);
+    return std::optional<double>(sum / all);
   };
-  std::vector<std::size_t> every;
-  for (std::size_t r = 0; r < places.runs.size(); ++r) every.push_back(r);
-  const std::optional<double> error = bootstrap_error(places.runs.size(), of);
-  Verdict verdict{"E: crystallites are more probable near the top wall than near the bottom wall",
-                  "share in the upper third less that in the lower third, in standard errors",
-                  std::nullopt,
-                  std::nullopt,
-                  Ruling::too_few_runs,
-                  enough_in_words(places)};
-  if (!error || *error <= 0) return verdict;
-  verdict.value = of(every).value() / *error;
-  verdict.limit = limit_of_agreement(places.runs.size() - 1);
-  if (!enough(places)) return verdict;
-  if (*verdict.value > *verdict.limit) verdict.ruling = Ruling::pass;
-  if (*verdict.value < -*verdict.limit) verdict.ruling = Ruling::fail;
-  return verdict;
+  return decide(claim, std::move(quantity), bootstrapped(places.size(), difference), places.size(),
+                fmt::format("{} nuclei of {} to {} grains in {} of {} runs", count,
+                            nucleus_smallest, nucleus_largest, places.size(), runs.size()));
+}
+
+/// Inner half of the accessible width against the outer half.
+Verdict uniform_in_the_middle(RunGroup runs) {
+  const double half = 0.5 - (inaccessible + 1) / (smallest_width(runs) + 2);
+  return share_verdict(
+      {"E: crystallites are equally probable over the accessible central x", margin_share.value},
+      "share of nuclei in the inner half of the accessible width less that in the outer half", runs,
+      CellAxis::x, [half](double x) -> std::optional<int> {
+        const double away = std::abs(x - 0.5);
+        if (away > half) return std::nullopt;
+        return 2 * away < half ? 1 : -1;
+      });
+}
+
+Verdict upper_less_lower(RunGroup runs, const Claim& claim) {
+  return share_verdict(claim, "share of nuclei in the upper third less that in the lower third",
+                       runs, CellAxis::y,
+                       [](double y) { return y > 2.0 / 3 ? 1 : (y < 1.0 / 3 ? -1 : 0); });
 }
 
 }  // namespace
@@ -186,13 +162,25 @@ FigureResult figure_s7(std::span<const FigureRun> runs) {
     stiffness.push_back(
         {k, italic("k") + fmt::format(" = {} N/m", k), places_of(members, CellAxis::y)});
   }
+  std::vector<Verdict> verdicts = {
+      uniform_in_the_middle(softest),
+      upper_less_lower(softest, {fmt::format("E: crystallites are more probable near the top wall "
+                                             "than near the bottom wall, by more than {} of all",
+                                             margin_share.value),
+                                 margin_share.value, Claimed::above})};
+  if (by_stiffness.size() > 1) {
+    const auto& [k, members] = *by_stiffness.rbegin();
+    verdicts.push_back(upper_less_lower(
+        members, {fmt::format("E: at k = {} N/m crystallites are as probable near the top wall as "
+                              "near the bottom wall",
+                              k),
+                  margin_share.value}));
+  }
   const std::span all(places);
   return {{density_table("S7", "axis", x_over_w + ",  " + y_over_h, all.first(2)),
            density_table("S7_heights", "axis", y_over_h + ",  " + y_over_nominal, all.last(2)),
            density_table("S7_stiffness", "stiffness_N_per_m", y_over_h, stiffness)},
-          {uniform_in_the_middle(density(places[0].places.runs, bins), places[0].places,
-                                 smallest_width(runs)),
-           more_near_the_top(places[1].places)}};
+          std::move(verdicts)};
 }
 
 }  // namespace shearcell

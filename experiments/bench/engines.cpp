@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "analysis/agreement.hpp"
+#include "analysis/estimate.hpp"
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/lammps/lammps_settle.hpp"
@@ -101,7 +101,10 @@ EngineMeans compare_means(std::vector<std::string> engines,
        mean_of("height [d]", of_engine, &N::height)},
       0};
   const std::size_t comparisons = result.means.size() * (of_engine.size() - 1);
-  result.limit = limit_of_agreement(2 * (of_engine[0].size() - 1), comparisons);
+  // Two standard errors for many runs, shared among the comparisons (Bonferroni).
+  constexpr double outside = 0.0455;
+  const auto freedom = static_cast<double>(2 * (of_engine[0].size() - 1));
+  result.limit = student_quantile(1 - outside / (2 * static_cast<double>(comparisons)), freedom);
   return result;
 }
 

@@ -51,15 +51,10 @@ nlohmann::json facts(const FigureSummary& result) {
 }
 
 void print_verdicts(const FigureSummary& result) {
-  if (result.verdicts.empty()) return;
-  tell("  verdict: {}\n", name_of(overall(result.verdicts)));
+  if (const auto ruling = overall(result.verdicts)) tell("  verdict: {}\n", name_of(*ruling));
   for (const Verdict& verdict : result.verdicts) {
-    const std::string value =
-        verdict.value ? fmt::format("{:.4g}", *verdict.value) : "not measured";
-    const std::string limit =
-        verdict.limit ? fmt::format(" (limit {:.4g})", *verdict.limit) : std::string();
-    tell("    {}: {}\n      {}: {}{}{}{}\n", name_of(verdict.ruling), verdict.claim,
-         verdict.quantity, value, limit, verdict.note.empty() ? "" : "; ", verdict.note);
+    tell("    {}: {}\n      {}: {}{}{}\n", name_of(verdict.ruling), verdict.claim, verdict.quantity,
+         numbers_of(verdict), verdict.note.empty() ? "" : "; ", verdict.note);
   }
 }
 

@@ -77,7 +77,7 @@ std::string overview_html(const ReportData& data) {
     rows.push_back({fmt::format("<a href=\"#experiment-{0}\">{1}</a> <span "
                                 "class=\"small\">{0}</span>",
                                 escape_html(experiment.name), escape_html(question)),
-                    experiment.figures.empty() ? "" : ruling_html(ruling_of(data, experiment)),
+                    ruling_html(ruling_of(data, experiment)),
                     figures, std::to_string(experiment.runs.size())});
   }
   std::string html = "<nav aria-label=\"Experiments\">" +

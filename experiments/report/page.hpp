@@ -28,10 +28,11 @@ std::string lineage_html(const ReportData& data, const ReportFigure& figure);
 /// Every run: how it was made, by which build, and its checkpoints.
 std::string runs_html(const ReportData& data);
 
-/// "pass", "fail" or "too few runs", as a mark that needs no colour to be read.
-std::string ruling_html(Ruling ruling);
+/// "agrees", "differs" or "undecided", as a mark that can be read without colour; "" without
+/// claims.
+std::string ruling_html(std::optional<Ruling> ruling);
 
-/// The experiment as a whole: the worst of its figures.
-Ruling ruling_of(const ReportData& data, const ReportExperiment& experiment);
+/// The verdict on all figures of the experiment; none if they have no claims.
+std::optional<Ruling> ruling_of(const ReportData& data, const ReportExperiment& experiment);
 
 }  // namespace shearcell

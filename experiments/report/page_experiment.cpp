@@ -16,11 +16,9 @@ const ReportFigure& figure_called(const ReportData& data, const std::string& nam
 }
 
 std::string claim_html(const Verdict& verdict) {
-  const std::string value = verdict.value ? fmt::format("{:.4g}", *verdict.value) : "not measured";
-  const std::string limit = verdict.limit ? fmt::format(", limit {:.4g}", *verdict.limit) : "";
-  return fmt::format("<li>{}<div><p>{}</p><p class=\"small\">{}: {}{}{}</p></div></li>\n",
+  return fmt::format("<li>{}<div><p>{}</p><p class=\"small\">{}: {}{}</p></div></li>\n",
                      ruling_html(verdict.ruling), escape_html(verdict.claim),
-                     escape_html(verdict.quantity), value, limit,
+                     escape_html(verdict.quantity), numbers_of(verdict),
                      verdict.note.empty() ? "" : ". " + escape_html(verdict.note));
 }
 
@@ -88,14 +86,14 @@ std::string run_table(const ReportData& data, const ReportExperiment& experiment
 
 }  // namespace
 
-std::string ruling_html(Ruling ruling) {
-  const char* mark = ruling == Ruling::pass ? "✓" : ruling == Ruling::fail ? "✗" : "?";
-  const char* kind = ruling == Ruling::pass ? "pass" : ruling == Ruling::fail ? "fail" : "open";
-  return fmt::format("<span class=\"ruling {}\"><span aria-hidden=\"true\">{}</span> {}</span>",
-                     kind, mark, ruling == Ruling::too_few_runs ? "too few runs" : kind);
+std::string ruling_html(std::optional<Ruling> ruling) {
+  if (!ruling) return "";
+  const char* mark = ruling == Ruling::agrees ? "✓" : ruling == Ruling::differs ? "✗" : "?";
+  return fmt::format("<span class=\"ruling {0}\"><span aria-hidden=\"true\">{1}</span> {0}</span>",
+                     name_of(*ruling), mark);
 }
 
-Ruling ruling_of(const ReportData& data, const ReportExperiment& experiment) {
+std::optional<Ruling> ruling_of(const ReportData& data, const ReportExperiment& experiment) {
   std::vector<Verdict> all;
   for (const std::string& name : experiment.figures) {
     const std::vector<Verdict>& own = figure_called(data, name).summary.verdicts;
@@ -153,8 +151,8 @@ std::string experiment_html(const ReportData& data, const ReportExperiment& expe
       name, experiment.question.empty() ? name : escape_html(experiment.question));
   if (experiment.figures.empty()) {
     html += "<p class=\"small\">No figure can be made of this experiment yet.</p>\n";
-  } else {
-    html += "<p class=\"verdict\">Verdict: " + ruling_html(ruling_of(data, experiment)) + "</p>\n";
+  } else if (const auto ruling = ruling_of(data, experiment)) {
+    html += "<p class=\"verdict\">Verdict: " + ruling_html(ruling) + "</p>\n";
   }
   for (const std::string& figure_name : experiment.figures) {
     const ReportFigure& figure = figure_called(data, figure_name);

@@ -238,7 +238,8 @@ TEST(Plot, EveryFigureIsDrawnWithFewRunsAndWithNone) {
   for (const Figure& figure : all_figures()) {
     for (const std::vector<FigureRun>& runs : {two_variants(), std::vector<FigureRun>{}}) {
       const FigureResult made = figure.make(runs);
-      EXPECT_EQ(overall(made.verdicts), Ruling::too_few_runs) << figure.name;
+      EXPECT_EQ(overall(made.verdicts).value_or(Ruling::undecided), Ruling::undecided)
+          << figure.name;
       for (const FigureTable& table : made.tables) {
         write_csv(table, folder.path());
         EXPECT_GT(fs::file_size(draw_svg(table, folder.path())), 1000U) << table.name;

@@ -85,52 +85,5 @@ TEST(GrowthRates, HaveBinomialErrors) {
   EXPECT_GT(growth_rates(std::vector{a}).back().grow_error, 0.2) << "one case is no certainty";
 }
 
-/// delta_rho = tanh((size - zero) / 6), with counts that fall as sizes do.
-GrowthBySize smooth_growth(double zero) {
-  GrowthBySize counts;
-  for (std::int32_t size = 1; size <= 40; ++size) {
-    const double n = 40000.0 / (size * size);
-    const double grow = (1 + std::tanh((size - zero) / 6)) / 2;
-    counts[size].grew = static_cast<std::size_t>(std::lround(n * grow));
-    counts[size].shrank = static_cast<std::size_t>(std::lround(n * (1 - grow)));
-  }
-  return counts;
-}
-
-TEST(CriticalSize, IsWhereGrowthBegins) {
-  for (const double zero : {10.0, 13.4, 16.0, 20.0}) {
-    const std::vector<GrowthBySize> runs = {smooth_growth(zero)};
-    const auto found = critical_size(growth_rates(runs));
-    ASSERT_TRUE(found.has_value()) << zero;
-    EXPECT_NEAR(*found, zero, 0.6);
-  }
-}
-
-TEST(CriticalSize, OneStraySizeDoesNotCount) {
-  GrowthBySize counts = smooth_growth(15);
-  counts[7] = {3, 1, 0, 0};
-  EXPECT_NEAR(critical_size(growth_rates(std::vector{counts})).value(), 15, 0.8);
-}
-
-TEST(CriticalSize, NoneWhenAllGrowOrAllShrink) {
-  GrowthBySize all;
-  all[3] = {1, 9, 0, 0};
-  all[9] = {2, 8, 0, 0};
-  EXPECT_FALSE(critical_size(growth_rates(std::vector{all})).has_value());
-  all[3] = {9, 1, 0, 0};
-  all[9] = {9, 1, 0, 0};
-  EXPECT_FALSE(critical_size(growth_rates(std::vector{all})).has_value());
-  EXPECT_FALSE(critical_size({}).has_value());
-}
-
-TEST(CriticalSize, ErrorComesFromTheRuns) {
-  std::vector<GrowthBySize> runs = {smooth_growth(14), smooth_growth(15), smooth_growth(16)};
-  const CriticalSize found = critical_size_over(runs);
-  ASSERT_TRUE(found.size && found.error);
-  EXPECT_NEAR(*found.size, 15, 0.8);
-  EXPECT_NEAR(*found.error, 1 / std::sqrt(3.0), 0.3);
-  EXPECT_FALSE(critical_size_over(std::span(runs).first(1)).error.has_value());
-}
-
 }  // namespace
 }  // namespace shearcell::testing

@@ -20,11 +20,19 @@ def cell(text):
 
 
 def measured(claim):
-    if claim.get("value") is None:
-        return claim["note"] or "not measured"
-    limit = "" if claim.get("limit") is None else f" (limit {claim['limit']:.3g})"
-    note = f"; {claim['note']}" if claim["note"] and len(claim["note"]) < 160 else ""
-    return f"{claim['quantity']}: {claim['value']:.3g}{limit}{note}"
+    if "estimate" not in claim:  # written before claims had intervals
+        if claim.get("value") is None:
+            return claim["note"] or "not measured"
+        limit = "" if claim.get("limit") is None else f" (limit {claim['limit']:.3g})"
+        note = f"; {claim['note']}" if claim["note"] and len(claim["note"]) < 160 else ""
+        return f"{claim['quantity']}: {claim['value']:.3g}{limit}{note}"
+    text = f"{claim['quantity']}: not measured"
+    if claim["estimate"] is not None:
+        low, high = ("unbounded" if end is None else f"{end:.3g}" for end in claim["interval"])
+        text = f"{claim['quantity']}: {claim['estimate']:.3g}, interval {low} to {high}"
+    needed = f" of {claim['runs_needed']} needed" if claim["runs_needed"] else ""
+    note = f"; {claim['note']}" if claim["note"] else ""
+    return f"{text}, margin {claim['margin']:.3g}, {claim['runs']} runs{needed}{note}"
 
 
 def table(page, results):

@@ -67,7 +67,7 @@ TEST_F(ReportOfRuns, HoldsQuestionVerdictRunsLineageAndNumbers) {
   EXPECT_EQ(report.figures, 2U) << "S2, and Table I of all experiments";
   const Head head = store_.head();
   for (const std::string& part :
-       {std::string("Does the runner keep its promises?"), std::string("too few runs"),
+       {std::string("Does the runner keep its promises?"), std::string("undecided"),
         std::string("fluid=still"), std::string("variant,cycle,phi_mean"), head.hash,
         runs_of_kind(store_, "shear").front().id,
         store_.checkpoints(runs_of_kind(store_, "shear").front().id).back().sha256}) {

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/claims.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "analysis/published.hpp"
+
+namespace shearcell {
+namespace {
+
+RunValue measured(double value) {
+  return {value, std::isfinite(value) ? Missing::nothing : Missing::undefined};
+}
+
+/// The numbers of a group and the runs without one.
+struct Values {
+  std::map<const FigureRun*, double> found;
+  std::size_t runs = 0;
+  std::array<std::size_t, 5> missing = {};  ///< by Missing
+
+  void take(const Scalar& scalar, RunGroup group) {
+    for (const FigureRun* run : group) {
+      const RunValue value = scalar.of(*run);
+      ++runs;
+      if (value.missing == Missing::nothing) {
+        found[run] = value.value;
+      } else {
+        ++missing[static_cast<std::size_t>(value.missing)];
+      }
+    }
+  }
+  bool enough() const { return 4 * found.size() >= 3 * runs; }
+};
+
+void add(std::string& note, const std::string& text) {
+  if (!text.empty()) note += (note.empty() ? "" : "; ") + text;
+}
+
+void add_missing(std::string& note, const Values& values, const Scalar& scalar) {
+  const auto tell = [&](Missing why, const char* what) {
+    const std::size_t count = values.missing[static_cast<std::size_t>(why)];
+    if (count == 0) return;
+    add(note, fmt::format("{} of {} runs {} {}", count, values.runs, what, scalar.reach));
+  };
+  tell(Missing::checkpoint, "lack a checkpoint of");
+  tell(Missing::too_short, "end before");
+  tell(Missing::too_late, "begin after");
+  tell(Missing::undefined, "have no interior grains at");
+}
+
+Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<Estimate> estimate,
+                 std::size_t runs, const Values& values, const Scalar& scalar, std::string note) {
+  add_missing(note, values, scalar);
+  if (values.runs == 0) {
+    note = "there are no such runs";
+  } else if (!values.enough()) {
+    add(note, "more than a quarter of the runs are left out");
+    estimate.reset();
+  } else if (!estimate) {
+    add(note, fmt::format("too few runs: {} of at least {}", runs, least_runs));
+  }
+  return decide(claim, quantity, estimate, runs, std::move(note));
+}
+
+double share(double log_ratio) {
+  return std::expm1(log_ratio);
+}
+
+/// A difference of logarithms as a relative difference.
+void make_relative(Estimate& estimate) {
+  estimate.value = share(estimate.value);
+  estimate.interval = {share(estimate.interval.low), share(estimate.interval.high)};
+}
+
+/// Differences a - b of the runs that share packings.
+struct Pairs {
+  std::vector<double> differences;
+  bool any = false;  ///< some runs share packings, with numbers or without
+};
+Pairs paired(RunGroup a, RunGroup b, const Values& values,
+             const std::function<double(double)>& number) {
+  Pairs pairs;
+  for (const FigureRun* first : a) {
+    for (const FigureRun* second : b) {
+      if (first == second || !share_packing(*first, *second)) continue;
+      pairs.any = true;
+      const auto x = values.found.find(first);
+      const auto y = values.found.find(second);
+      if (x == values.found.end() || y == values.found.end()) continue;
+      pairs.differences.push_back(number(x->second) - number(y->second));
+    }
+  }
+  return pairs;
+}
+
+std::size_t unobserved(std::span<const Waiting> runs) {
+  return static_cast<std::size_t>(
+      std::count_if(runs.begin(), runs.end(), [](const Waiting& run) { return !run.observed; }));
+}
+
+std::string wait_in_words(std::span<const Waiting> runs) {
+  const auto median = median_wait(runs);
+  return fmt::format("median cycle {} of {} runs, {} of which end before",
+                     median ? fmt::format("{:.3g}", *median) : "unknown", runs.size(),
+                     unobserved(runs));
+}
+
+}  // namespace
+
+Scalar at_cycle(const std::string& name, Quantity quantity, std::int64_t cycle) {
+  Scalar scalar = over_cycles(name, std::move(quantity), cycle, cycle);
+  scalar.name = fmt::format("{} at cycle {}", name, cycle);
+  return scalar;
+}
+
+Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t first,
+                   std::int64_t last) {
+  const auto of = [quantity = std::move(quantity), first, last](const FigureRun& run) -> RunValue {
+    double sum = 0;
+    std::int64_t count = 0;
+    for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+      const double cycle = checkpoint.cycle;
+      if (std::floor(cycle) != cycle || cycle < static_cast<double>(first) ||
+          cycle > static_cast<double>(last)) {
+        continue;
+      }
+      sum += quantity(checkpoint.measures);
+      ++count;
+    }
+    if (run.checkpoints.empty() || run.checkpoints.back().cycle < static_cast<double>(last)) {
+      return {0, Missing::too_short};
+    }
+    if (count != last - first + 1) return {0, Missing::checkpoint};
+    return measured(sum / static_cast<double>(count));
+  };
+  return {
+      fmt::format("{}, mean over cycles {} to {}", name, first, last),
+      first == last ? fmt::format("cycle {}", last) : fmt::format("cycles {} to {}", first, last),
+      of};
+}
+
+Scalar early_phi() {
+  return over_cycles("phi", &Measures::phi, 1, early_cycles);
+}
+
+Scalar percentage_over_phi() {
+  const auto of = [](const FigureRun& run) -> RunValue {
+    const FigureRun* one = &run;
+    const std::vector<PhiBin> bins =
+        binned_by_phi(std::span(&one, 1), &Measures::crystalline_percent);
+    if (bins.empty()) return {0, Missing::too_short};
+    if (*bins.front().phi.mean > window_low) return {0, Missing::too_late};
+    if (*bins.back().phi.mean < window_high) return {0, Missing::too_short};
+    double area = 0;
+    for (std::size_t k = 1; k < bins.size(); ++k) {
+      const double x0 = *bins[k - 1].phi.mean, x1 = *bins[k].phi.mean;
+      const double low = std::max(x0, window_low), high = std::min(x1, window_high);
+      if (low >= high) continue;
+      const double middle = ((low + high) / 2 - x0) / (x1 - x0);
+      area += (high - low) * std::lerp(*bins[k - 1].value.mean, *bins[k].value.mean, middle);
+    }
+    return measured(area / (window_high - window_low));
+  };
+  return {
+      fmt::format("percentage crystalline, mean over phi from {} to {}", window_low, window_high),
+      fmt::format("phi from {} to {}", window_low, window_high), of};
+}
+
+Scalar onset_phi(OnsetMethod method) {
+  const auto of = [method](const FigureRun& run) -> RunValue {
+    const RunOnset onset = method(run, critical_size_for(run));
+    if (onset.observed == Observed::never) return {0, Missing::too_short};
+    if (onset.observed == Observed::before_start) return {0, Missing::too_late};
+    return measured(onset.phi);
+  };
+  return {"phi at the onset", "the onset", of};
+}
+
+bool share_packing(const FigureRun& a, const FigureRun& b) {
+  if (a.seed != b.seed || a.checkpoints.empty() || b.checkpoints.empty()) return false;
+  const CheckpointMeasures& x = a.checkpoints.front();
+  const CheckpointMeasures& y = b.checkpoints.front();
+  return x.cycle == 0 && y.cycle == 0 && x.measures.phi == y.measures.phi &&
+         x.measures.mean_overlap == y.measures.mean_overlap;
+}
+
+Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {
+  const auto number = [&](double value) { return scalar.relative ? std::log(value) : value; };
+  Values all;
+  all.take(scalar, a);
+  all.take(scalar, b);
+  const Pairs pairs = paired(a, b, all, number);
+  std::optional<Estimate> estimate;
+  std::string note;
+  std::size_t runs = 0;
+  if (pairs.any) {
+    estimate = mean_of(pairs.differences);
+    runs = pairs.differences.size();
+    note = fmt::format("{} pairs of runs that share a packing", runs);
+  } else {
+    std::vector<double> x, y;
+    for (const FigureRun* run : a) {
+      if (all.found.contains(run)) x.push_back(number(all.found.at(run)));
+    }
+    for (const FigureRun* run : b) {
+      if (all.found.contains(run)) y.push_back(number(all.found.at(run)));
+    }
+    estimate = difference_of_means(x, y);
+    runs = std::min(x.size(), y.size());
+    note = fmt::format("{} and {} independent runs", x.size(), y.size());
+  }
+  if (estimate && scalar.relative) make_relative(*estimate);
+  if (a.empty() || b.empty()) all = {};
+  return conclude(claim,
+                  (scalar.relative ? "relative difference in " : "difference in ") + scalar.name,
+                  estimate, runs, all, scalar, std::move(note));
+}
+
+Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published) {
+  Values all;
+  all.take(scalar, runs);
+  std::vector<double> values;
+  for (const auto& [run, value] : all.found) {
+    values.push_back(scalar.relative ? value / published - 1 : value - published);
+  }
+  std::sort(values.begin(), values.end());  // not in the order of addresses
+  std::string quantity = scalar.name;
+  if (scalar.relative) {
+    quantity += fmt::format(", relative difference from {:.6g}", published);
+  } else if (published != 0) {
+    quantity += fmt::format(" less {:.6g}", published);
+  }
+  return conclude(claim, quantity, mean_of(values), values.size(), all, scalar, "");
+}
+
+std::vector<Waiting> waits_for(RunGroup runs, const Quantity& quantity, double level) {
+  std::vector<Waiting> waits;
+  for (const FigureRun* run : runs) {
+    if (run->checkpoints.empty()) continue;
+    Waiting wait{run->checkpoints.back().cycle, false};
+    for (const CheckpointMeasures& checkpoint : run->checkpoints) {
+      if (!(quantity(checkpoint.measures) >= level)) continue;
+      wait = {checkpoint.cycle, true};
+      break;
+    }
+    waits.push_back(wait);
+  }
+  return waits;
+}
+
+std::vector<Waiting> waits_for_onset(RunGroup runs) {
+  std::vector<Waiting> waits;
+  for (const FigureRun* run : runs) {
+    if (run->checkpoints.empty()) continue;
+    const RunOnset onset = onset_by_size(*run, critical_size_for(*run));
+    const bool observed = onset.observed != Observed::never;
+    waits.push_back({observed ? onset.cycle : run->checkpoints.back().cycle, observed});
+  }
+  return waits;
+}
+
+Verdict compare_waits(const Claim& claim, const std::string& event, std::span<const Waiting> a,
+                      std::span<const Waiting> b) {
+  const std::optional<Estimate> estimate = log2_wait_ratio(a, b);
+  const std::size_t runs = std::min(a.size(), b.size());
+  std::string note;
+  if (runs > 0) note = wait_in_words(a) + "; " + wait_in_words(b);
+  if (runs == 0) {
+    note = "there are no such runs";
+  } else if (runs < least_runs) {
+    add(note, fmt::format("too few runs: {} of at least {}", runs, least_runs));
+  } else if (!estimate) {
+    add(note, "every run ends before " + event);
+  }
+  return decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event),
+                estimate, runs, std::move(note));
+}
+
+}  // namespace shearcell

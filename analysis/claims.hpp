@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Claims about runs: one number per run, compared between two groups of runs or with a published
+// number.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/binning.hpp"
+#include "analysis/figure.hpp"
+#include "analysis/onset.hpp"
+#include "analysis/survival.hpp"
+#include "analysis/verdict.hpp"
+
+namespace shearcell {
+
+/// Why a run has no number: it has no checkpoint of that cycle; it ends before; it begins after;
+/// or the quantity does not exist in it (phi without interior grains).
+enum class Missing { nothing, checkpoint, too_short, too_late, undefined };
+
+struct RunValue {
+  double value = 0;
+  Missing missing = Missing::nothing;
+};
+
+/// One number per run.
+struct Scalar {
+  std::string name;   ///< "phi at cycle 10"
+  std::string reach;  ///< what a run must reach to have it: "cycle 10"
+  std::function<RunValue(const FigureRun&)> of;
+  bool relative = false;  ///< differences are relative: 0.03 is 3 %
+};
+
+Scalar at_cycle(const std::string& name, Quantity quantity, std::int64_t cycle);
+
+/// Mean over the checkpoints of cycles first .. last, all of which the run must have.
+Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t first,
+                   std::int64_t last);
+
+/// phi, mean over the cycles before the grains crystallize: 1 to 15.
+Scalar early_phi();
+
+/// Percentage of crystalline grains, mean over phi from 0.646 to 0.67: the polygon through the
+/// means of the run's bins of phi (analysis/binning.hpp), integrated over that window.
+Scalar percentage_over_phi();
+
+/// phi at the onset, with the supplement's critical size for the run's amplitude.
+Scalar onset_phi(OnsetMethod method);
+
+/// Runs share a packing if they have the same seed and the same measures at cycle 0.
+bool share_packing(const FigureRun& a, const FigureRun& b);
+
+using RunGroup = std::span<const FigureRun* const>;
+
+/// a less b. Paired, by Student's t, if some runs share packings: those that do not are then left
+/// out. Else Welch's interval. A verdict needs least_runs runs or pairs and, so that runs that end
+/// early do not bias it, the number of three quarters of the runs. [choice]
+Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
+
+/// The mean over runs less the published number.
+Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published);
+
+/// The cycle at which each run is first at `level` or more, or the last one.
+std::vector<Waiting> waits_for(RunGroup runs, const Quantity& quantity, double level);
+/// The same for the onset of crystallization by method 1.
+std::vector<Waiting> waits_for_onset(RunGroup runs);
+
+/// log2 of how many times later the event is in `a`, by the log-rank test (analysis/survival.hpp).
+/// Runs that end before it are censored.
+Verdict compare_waits(const Claim& claim, const std::string& event, std::span<const Waiting> a,
+                      std::span<const Waiting> b);
+
+}  // namespace shearcell

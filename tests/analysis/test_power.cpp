@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How often each kind of claim is decided, by simulation: made-up runs of a stated spread go
+// through the estimates and verdicts of the program. Prints the table of analysis/README.md:
+//   test_analysis --gtest_filter='Power.*'
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "analysis/critical_size.hpp"
+#include "analysis/published.hpp"
+#include "analysis/survival.hpp"
+#include "analysis/verdict.hpp"
+#include "tests/analysis/normal_numbers.hpp"
+
+namespace shearcell::testing {
+namespace {
+
+/// A data set of `runs` runs, or pairs, or runs per group, in which the quantity is `truth`.
+using Simulated =
+    std::function<std::optional<Estimate>(std::uint32_t sample, std::size_t runs, double truth)>;
+
+std::vector<double> numbers(std::uint32_t sample, std::size_t runs, double mean, double spread) {
+  std::vector<double> values = normal_numbers(sample, runs);
+  for (double& value : values) value = mean + spread * value;
+  return values;
+}
+
+/// One group, or pairs.
+Simulated one_group(double spread) {
+  return [=](std::uint32_t sample, std::size_t runs, double truth) {
+    return mean_of(numbers(sample, runs, truth, spread));
+  };
+}
+
+Simulated two_groups(double spread) {
+  return [=](std::uint32_t sample, std::size_t runs, double truth) {
+    return difference_of_means(numbers(2 * sample, runs, truth, spread),
+                               numbers(2 * sample + 1, runs, 0, spread));
+  };
+}
+
+/// log2 of the cycle is normal; runs end at the 0.9 quantile of the earlier group.
+Simulated onset_cycles(double spread) {
+  const auto waits = [=](std::uint32_t sample, std::size_t runs, double mean) {
+    std::vector<Waiting> all;
+    for (const double log_cycle : numbers(sample, runs, mean, spread)) {
+      const double end = 1.2816 * spread;
+      all.push_back({std::exp2(std::min(log_cycle, end)), log_cycle <= end});
+    }
+    return all;
+  };
+  return [=](std::uint32_t sample, std::size_t runs, double truth) {
+    return log2_wait_ratio(waits(2 * sample, runs, truth / 2),
+                           waits(2 * sample + 1, runs, -truth / 2));
+  };
+}
+
+/// About 700 crystallites a run, most of them small; ln(critical size) differs from run to run.
+Simulated critical_sizes(double published, double spread) {
+  return [=](std::uint32_t sample, std::size_t runs, double truth) {
+    std::vector<GrowthBySize> all;
+    for (const double shift : numbers(sample, runs, 0, spread)) {
+      const double critical = (published + truth) * std::exp(shift);
+      GrowthBySize counts;
+      for (std::int32_t size = 1; size <= 40; ++size) {
+        const double grow = 1 / (1 + std::sqrt(critical / size));
+        for (std::int32_t k = 0; k < 400 / (size * size) + 3; ++k) {
+          const auto run = static_cast<std::uint32_t>(all.size());
+          const auto id = static_cast<std::uint32_t>(1000 * size + k);
+          ++(uniform_pair({sample, run, id, 3}, 5)[0] < grow ? counts[size].grew
+                                                             : counts[size].shrank);
+        }
+      }
+      all.push_back(counts);
+    }
+    std::optional<Estimate> found = critical_size(all);
+    if (found) {
+      found->value -= published;
+      found->interval.low -= published;
+      found->interval.high -= published;
+    }
+    return found;
+  };
+}
+
+/// Share of 20 nuclei a run in the upper third less that in the lower third.
+Simulated shares(std::size_t nuclei) {
+  return [=](std::uint32_t sample, std::size_t runs, double truth) {
+    std::vector<double> excess;
+    for (std::uint32_t run = 0; run < runs; ++run) {
+      double sum = 0;
+      for (std::uint32_t k = 0; k < nuclei; ++k) {
+        const double u = uniform_pair({sample, run, k, 5}, 11)[0];
+        sum += u < 1.0 / 3 + truth / 2 ? 1 : u > 2.0 / 3 + truth / 2 ? -1 : 0;
+      }
+      excess.push_back(sum / static_cast<double>(nuclei));
+    }
+    return bootstrapped(runs, [&](std::span<const std::size_t> selection) {
+      std::vector<double> selected;
+      for (const std::size_t run : selection) selected.push_back(excess[run]);
+      return over_runs(selected).mean;
+    });
+  };
+}
+
+struct Kind {
+  Margin margin;
+  const char* spread;
+  Simulated simulate;
+  Claimed claimed = Claimed::within;
+  double scale = 1;  ///< the margin in units of the quantity
+  std::uint32_t samples = 1000;
+};
+
+std::vector<Kind> kinds() {
+  return {
+      {margin_fall_of_phi_u, "0.001 a system", one_group(0.001)},
+      {margin_hard_phi, "0.0006 a system", one_group(0.0006)},
+      {margin_early_phi, "0.0005 a pair", one_group(0.0005)},
+      {margin_early_phi, "0.0005 a run, two groups", two_groups(0.0005)},
+      {margin_pause_gain, "0.0003 a pair", one_group(0.0003), Claimed::above},
+      {margin_percentage, "2 points a run, two groups", two_groups(2)},
+      {margin_contacts, "1.5 % a run, two groups", two_groups(0.015)},
+      {margin_onset_phi, "0.002 a run", one_group(0.002)},
+      {margin_onset_cycle, "a factor of 1.5 a run, two groups", onset_cycles(0.6), Claimed::within,
+       1, 400},
+      {margin_interior, "1 % a run", one_group(0.01)},
+      {margin_critical_size, "a quarter a run", critical_sizes(16, 0.25), Claimed::within, 16, 100},
+      {margin_share, "20 nuclei a run", shares(20), Claimed::within, 1, 200},
+      {margin_share, "the same, claimed above", shares(20), Claimed::above, 1, 200}};
+}
+
+/// The number that the program would print: from the spread that data sets of 30 runs show.
+std::size_t runs_needed(const Kind& kind, double truth, bool both_sides) {
+  constexpr std::uint32_t sets = 8;
+  Estimate design;
+  for (std::uint32_t s = 0; s < sets; ++s) {
+    const Estimate found = kind.simulate(300000 + s, 30, truth).value();
+    design.groups = found.groups;
+    design.spread += found.spread / sets;
+  }
+  return runs_to_resolve(design, kind.margin.value * kind.scale, both_sides).value();
+}
+
+/// Shares of data sets [%].
+struct Rates {
+  double agrees = 0;
+  double differs = 0;
+};
+
+Rates rates(const Kind& kind, std::size_t runs, double truth, std::uint32_t first) {
+  const Claim claim = {"", kind.margin.value * kind.scale, kind.claimed};
+  std::uint32_t agrees = 0, differs = 0;
+  for (std::uint32_t s = 0; s < kind.samples; ++s) {
+    const Verdict verdict = decide(claim, "", kind.simulate(first + s, runs, truth), runs, "");
+    agrees += verdict.ruling == Ruling::agrees ? 1 : 0;
+    differs += verdict.ruling == Ruling::differs ? 1 : 0;
+  }
+  return {100.0 * agrees / kind.samples, 100.0 * differs / kind.samples};
+}
+
+TEST(Power, OfEveryKindOfClaimAtItsNumberOfRuns) {
+  fmt::print(
+      "| quantity | margin | spread assumed | runs | decided if equal | at twice the margin "
+      "| agrees at the margin |\n|---|---|---|---|---|---|---|\n");
+  for (const Kind& kind : kinds()) {
+    const double margin = kind.margin.value * kind.scale;
+    const bool within = kind.claimed == Claimed::within;
+    const std::size_t predicted =
+        std::max(runs_needed(kind, 0, within), runs_needed(kind, 2 * margin, false));
+    std::size_t runs = predicted;
+    Rates none, twice;
+    for (;; runs += 1 + runs / 10) {
+      none = rates(kind, runs, 0, 0);
+      twice = rates(kind, runs, 2 * margin, 100000);
+      if (!within) std::swap(none.agrees, none.differs), std::swap(twice.agrees, twice.differs);
+      if (none.agrees >= 90 && twice.differs >= 90) break;
+      ASSERT_LT(runs, 2 * predicted) << kind.margin.quantity;
+    }
+    const double at = rates(kind, runs, margin, 200000).agrees;
+    fmt::print("| {} | {:.3g} {} | {} | {} | {:.0f} % | {:.0f} % | {:.0f} % |\n",
+               kind.margin.quantity, kind.margin.value, kind.margin.unit, kind.spread, runs,
+               none.agrees, twice.differs, at);
+    EXPECT_LE(runs, predicted + 1 + predicted / 5) << kind.margin.quantity;
+    EXPECT_LE(at, 5 + 2 * std::sqrt(5.0 * 95.0 / kind.samples)) << "2 sigma of the simulation";
+  }
+}
+
+}  // namespace
+}  // namespace shearcell::testing
