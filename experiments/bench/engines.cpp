@@ -11,7 +11,7 @@
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/lammps/lammps_settle.hpp"
-#include "provenance/io/stopwatch.hpp"
+#include "provenance/io/clock.hpp"
 
 namespace shearcell::bench {
 namespace {

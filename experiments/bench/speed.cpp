@@ -11,7 +11,7 @@
 #include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "provenance/checkpoint.hpp"
-#include "provenance/io/stopwatch.hpp"
+#include "provenance/io/clock.hpp"
 
 namespace shearcell {
 namespace {

@@ -12,7 +12,7 @@
 #include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/io/stopwatch.hpp"
+#include "provenance/io/clock.hpp"
 
 namespace shearcell {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time of day.
+// The time of day, and elapsed time.
 #pragma once
 
 #include <chrono>
@@ -9,6 +9,18 @@
 #include <string>
 
 namespace shearcell {
+
+/// Measures the time since it was made or restarted, with the steady clock.
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  void restart() { start_ = std::chrono::steady_clock::now(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 /// Milliseconds since 1970, UTC.
 inline std::uint64_t now_ms() {

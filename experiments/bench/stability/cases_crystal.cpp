@@ -10,7 +10,7 @@
 #include "core/diagnostics.hpp"
 #include "experiments/bench/stability/oracle.hpp"
 #include "experiments/bench/stability/scenes.hpp"
-#include "provenance/io/stopwatch.hpp"
+#include "provenance/io/clock.hpp"
 
 namespace shearcell::stability {
 namespace {

@@ -19,7 +19,7 @@
 #include <thread>
 
 #include "experiments/manifest/suggest.hpp"
-#include "provenance/io/stopwatch.hpp"
+#include "provenance/io/clock.hpp"
 
 namespace shearcell {
 namespace {
