@@ -122,7 +122,7 @@ std::vector<Kind> kinds() {
       {margin_hard_phi, "0.0006 a system", one_group(0.0006)},
       {margin_early_phi, "0.0005 a pair", one_group(0.0005)},
       {margin_early_phi, "0.0005 a run, two groups", two_groups(0.0005)},
-      {margin_pause_gain, "0.0003 a pair", one_group(0.0003), Claimed::above},
+      {margin_pause_gain, "0.0005 a pair", one_group(0.0005), Claimed::above},
       {margin_percentage, "2 points a run, two groups", two_groups(2)},
       {margin_contacts, "1.5 % a run, two groups", two_groups(0.015)},
       {margin_onset_phi, "0.002 a run", one_group(0.002)},
