@@ -66,7 +66,7 @@ FigureTable density_table(std::string name, std::string first_column, Text x,
                     .columns = {std::move(first_column), "low", "high", "probability_density",
                                 "standard_error", "crystallites", "runs"},
                     .rows = {}};
-  table.chart = {.x = {.symbol = std::move(x), .low = 0, .high = 1},
+  table.chart = {.x = {.name = "position", .symbol = std::move(x), .low = 0, .high = 1},
                  .y = {.name = "probability density", .symbol = italic("P"), .low = 0}};
   for (const Profile& profile : profiles) {
     for (const DensityBin& bin : density(profile.places.runs, bins)) {

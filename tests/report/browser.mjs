@@ -117,7 +117,7 @@ const checks = {
     await drawAllPlots(page);
     const plots = await page.locator("[data-chart]").evaluateAll((hosts) => hosts.map((host) => ({
       name: host.dataset.chart,
-      symbols: host.querySelectorAll("svg.canvas .symbol").length,
+      symbols: host.querySelectorAll("svg.canvas .symbol, svg.canvas .series .line").length,
       empty: Boolean(host.querySelector(".nothing")),
       labels: [...host.querySelectorAll(".label")].map((label) => label.textContent)
     })));
