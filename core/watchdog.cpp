@@ -212,7 +212,8 @@ void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, c
                              task.step,
                              "The grains are too soft for this load, or the time step is too "
                              "large: raise the stiffness, lower the pressure, or use a smaller "
-                             "time step");
+                             "time step. If they are merely compressed, raise the limit "
+                             "(max_overlap_diameters)");
     }
   }
   check_time_step(task, cell, scene, pose, limits);

@@ -28,11 +28,16 @@ Parameters without_what_is_not_felt(Parameters parameters) {
   return parameters;
 }
 
+json as_json(const Field& field, std::string_view text) {
+  return std::get<json>(read_value(field, text, false));
+}
+
 json resolve(Stage stage, const Parameters& given, std::uint64_t seed) {
   const Parameters parameters = without_what_is_not_felt(given);
   json values = json::object();
   for (const Field& field : schema()) {
-    json value = get_value(field, parameters);
+    json value = field.identity.recorded_as.empty() ? get_value(field, parameters)
+                                                    : as_json(field, field.identity.recorded_as);
     if (enters(field.identity, stage, parameters.protocol, value)) {
       values[std::string(field.name)] = std::move(value);
     }
@@ -107,11 +112,15 @@ Parameters read_parameters(Stage stage, const json& values) {
   for (const Field& field : schema()) {
     const auto found = values.find(field.name);
     if (found != values.end() && enters(field.identity, stage, protocol, *found)) {
+      const Parameters defaults;
       read_parameter(field, *found, parameters);
+      const std::string_view constant = field.identity.recorded_as;
+      if (!constant.empty() && *found == as_json(field, constant)) {
+        set_value(field, get_value(field, defaults), parameters);
+      }
     } else if (found == values.end() && enters(field.identity, stage, protocol, nullptr)) {
       if (field.identity.omitted_at.empty()) throw damaged(field.name, "is missing");
-      set_value(field, std::get<json>(read_value(field, field.identity.omitted_at, false)),
-                parameters);
+      set_value(field, as_json(field, field.identity.omitted_at), parameters);
     } else if (found != values.end()) {
       throw damaged(field.name, "does not belong there");
     }

@@ -71,7 +71,7 @@ struct Parameters {
   double settle_time_limit_s = 60;
 
   /// A run whose largest overlap exceeds this stops as failed, in any stage.
-  double max_overlap_diameters = 0.1;
+  double max_overlap_diameters = 0.25;
 
   // Shear.
   ProtocolKind protocol = ProtocolKind::continuous;

@@ -39,7 +39,7 @@ std::optional<SweepAxis> read_axis(const Node& key, const Node& values, const st
     problems.add_unknown(key, path, field_names());
     return std::nullopt;
   }
-  if (!field->identity.stage) {
+  if (!field->identity.distinguishes_runs()) {
     problems.add(key.at, full, "cannot be swept, since another value does not make another run", "",
                  "Set it in `base` or in a scale.");
     return std::nullopt;

@@ -116,8 +116,10 @@ std::vector<Field> settle_fields() {
                  "and the kinetic energy per grain over P d^3 is below this"),
       above_zero("settle_time_limit_s", "", "s", &P::settle_time_limit_s, 1e6, kPrepare,
                  "simulated time after which a packing that has not settled is a failure"),
-      above_zero("max_overlap_diameters", "", "d", &P::max_overlap_diameters, 0.5, kPrepare,
-                 "a stage whose largest overlap exceeds this stops as failed"),
+      above_zero("max_overlap_diameters", "", "d", &P::max_overlap_diameters, 0.5,
+                 {.stage = Stage::prepare, .recorded_as = "0.1"},
+                 "a stage whose largest overlap exceeds this stops as failed; a larger value "
+                 "continues it"),
   };
 }
 
@@ -182,6 +184,8 @@ std::string identity_markdown(const Identity& identity) {
   if (!identity.stage) return "none";
   std::string text(name_of(*identity.stage));
   if (identity.under) text += fmt::format(", if {}", name_of(*identity.under));
+  if (!identity.recorded_as.empty())
+    return fmt::format("none; recorded as {}", identity.recorded_as);
   if (!identity.omitted_at.empty()) text += fmt::format(", if not {}", identity.omitted_at);
   return text;
 }

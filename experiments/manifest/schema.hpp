@@ -25,6 +25,12 @@ struct Identity {
   /// The record leaves the parameter out at this value (as in a manifest): for a parameter younger
   /// than the stores, the value that all older runs have. It may differ from the default.
   std::string_view omitted_at = {};
+  /// Every record holds this value, whatever the parameter is: for one that was part of the
+  /// identity of older runs and no longer is. Their records may hold other values.
+  std::string_view recorded_as = {};
+
+  /// Whether another value makes another run.
+  bool distinguishes_runs() const { return stage && recorded_as.empty(); }
 };
 
 /// A parameter that is an enumeration with names (core/named.hpp).

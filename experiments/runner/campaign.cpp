@@ -14,6 +14,7 @@
 
 #include "core/filling.hpp"
 #include "core/threads.hpp"
+#include "experiments/manifest/variants.hpp"
 #include "experiments/runner/engine_error.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
@@ -282,11 +283,31 @@ StageJob job_of(const RunRecord& run) {
 
 }  // namespace
 
+namespace {
+
+// By scale, where it is not the default.
+nlohmann::json overlap_limits(const Manifest& manifest) {
+  nlohmann::json limits = nlohmann::json::object();
+  const auto add = [&](const Scale* scale) {
+    const auto settings = at_scale(manifest, scale).settings;
+    const auto found = settings.find("max_overlap_diameters");
+    if (found != settings.end()) limits[scale == nullptr ? "" : scale->name] = found->second.value;
+  };
+  if (manifest.scales.empty()) add(nullptr);
+  for (const Scale& scale : manifest.scales) add(&scale);
+  return limits;
+}
+
+}  // namespace
+
 std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan& plan) {
-  const std::string sha = store.register_manifest(manifest.text, manifest.file,
-                                                  {{"experiment", plan.experiment},
-                                                   {"question", manifest.question},
-                                                   {"figures", manifest.figures}});
+  nlohmann::json info = {{"experiment", plan.experiment},
+                         {"question", manifest.question},
+                         {"figures", manifest.figures}};
+  if (auto limits = overlap_limits(manifest); !limits.empty()) {
+    info["max_overlap_diameters"] = std::move(limits);
+  }
+  const std::string sha = store.register_manifest(manifest.text, manifest.file, info);
   std::vector<StageJob> jobs;
   std::set<std::string> known;
   for (const PlannedRun& run : plan.runs) {

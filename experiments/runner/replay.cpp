@@ -79,7 +79,7 @@ Beginning nearest_beginning(Store& store, const StagePlan& plan, std::uint64_t s
 class Replaying {
  public:
   Replaying(Store& store, const CheckpointRecord& record)
-      : store_(store), plan_(plan_stage(store.run(record.run))) {
+      : store_(store), plan_(plan_stage(store, store.run(record.run))) {
     replay_.record = record;
   }
 

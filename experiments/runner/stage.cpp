@@ -58,14 +58,36 @@ std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t 
   return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every);
 }
 
+// The limit is not part of a run's identity. Manifests that state one other than the default have
+// it beside their text (campaign.cpp); the others count with `otherwise`.
+double overlap_limit(const Store& store, const RunRecord& run, double otherwise) {
+  double limit = run.memberships.empty() ? otherwise : 0;
+  for (const Membership& membership : run.memberships) {
+    double stated = otherwise;
+    for (const Event& event : store.events("manifest/" + membership.manifest)) {
+      try {
+        const nlohmann::json info = event.body().at("info");
+        stated = info.value("max_overlap_diameters", nlohmann::json::object())
+                     .value(membership.scale, stated);
+      } catch (const nlohmann::json::exception& problem) {
+        throw StoreDamaged(fmt::format("event {} ({}): {}", event.seq, event.type, problem.what()));
+      }
+    }
+    limit = std::max(limit, stated);
+  }
+  return limit;
+}
+
 }  // namespace
 
-StagePlan plan_stage(RunRecord run) {
+StagePlan plan_stage(const Store& store, RunRecord run) {
   if (stage_key(run.resolved) != run.id) {
     throw StoreDamaged("run " + run.id.substr(0, 12) +
                        ": its recorded parameters are not those that it is named after");
   }
   StageRecord stage = read_stage(run.resolved);
+  double& limit = stage.parameters.max_overlap_diameters;
+  limit = overlap_limit(store, run, limit);
   require_memory(stage);
   const Scene scene = make_scene(stage);
   const std::uint64_t every = checkpoint_cadence(run);

@@ -25,8 +25,9 @@ struct StagePlan {
   std::uint64_t checkpoint_every = 1;  ///< cycles
 };
 
-/// Throws StoreDamaged when the recorded parameters are not those that the run is named after.
-StagePlan plan_stage(RunRecord run);
+/// The watchdog's largest overlap is the largest that a manifest of the run states. Throws
+/// StoreDamaged when the recorded parameters do not give the run's id.
+StagePlan plan_stage(const Store& store, RunRecord run);
 
 /// The state from which a stage is stepped on.
 struct Beginning {

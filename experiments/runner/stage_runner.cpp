@@ -21,7 +21,7 @@ namespace {
 class Attempt {
  public:
   Attempt(Store& store, RunRecord run, const StageOptions& options)
-      : store_(store), options_(options), plan_(plan_stage(std::move(run))) {}
+      : store_(store), options_(options), plan_(plan_stage(store, std::move(run))) {}
 
   StageOutcome run() {
     std::vector<std::string> damage;

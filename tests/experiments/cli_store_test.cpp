@@ -51,12 +51,12 @@ TEST_F(CommandLineStore, NamesATruncatedCheckpointAndGoesOnWithTheOthers) {
 
 TEST_F(CommandLineStore, SaysWhyARunFailed) {
   const std::string manifest =
-      write("m.yaml", tiny_manifest("", "sweep: {grid: {max_overlap_diameters: [0.1, 0.02]}}\n"));
+      write("m.yaml", tiny_manifest("", "sweep: {grid: {settle_time_limit_s: [60, 0.1]}}\n"));
   const Outcome outcome = run({"run", manifest, "--cycles", "1", "-q"});
   EXPECT_EQ(outcome.code, 3);
-  EXPECT_TRUE(contains(outcome.err, "over its limit of 0.02")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "over its limit of 0.1")) << outcome.err;
   const Outcome status = run({"status"});
-  EXPECT_TRUE(contains(status.out, "over its limit of 0.02")) << status.out;
+  EXPECT_TRUE(contains(status.out, "over its limit of 0.1")) << status.out;
   EXPECT_TRUE(contains(status.out, "completed"));
 }
 

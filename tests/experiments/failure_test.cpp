@@ -24,20 +24,20 @@ class Failure : public testing::Test {
   Store store_{folder_.path() / "store", Access::create};
 };
 
-// A limit on the overlap that no packing under this pressure keeps.
+// A time in which no packing settles.
 TEST_F(Failure, OfAPackingStopsItsShearAndNothingElse) {
-  const std::string text = tiny_manifest(
-      "", "sweep: {grid: {max_overlap_diameters: [0.1, 0.02], fluid: [still, cell]}}\n");
+  const std::string text =
+      tiny_manifest("", "sweep: {grid: {settle_time_limit_s: [60, 0.1], fluid: [still, cell]}}\n");
   const CampaignResult result = compute(store_, text);
   EXPECT_EQ(result.completed, 3U);
   EXPECT_EQ(result.failed, 1U);
   EXPECT_EQ(result.blocked, 2U);
   ASSERT_EQ(result.messages.size(), 1U);
   std::printf("%s\n", result.messages[0].c_str());
-  EXPECT_NE(result.messages[0].find("overlap"), std::string::npos);
+  EXPECT_NE(result.messages[0].find("settle_time_limit_s"), std::string::npos);
 
   for (const RunRecord& run : store_.runs()) {
-    const bool sound = run.resolved.at("parameters").at("max_overlap_diameters") == 0.1;
+    const bool sound = run.resolved.at("parameters").at("settle_time_limit_s") == 60;
     if (sound) {
       EXPECT_EQ(run.state, RunState::completed);
       continue;
@@ -48,17 +48,25 @@ TEST_F(Failure, OfAPackingStopsItsShearAndNothingElse) {
       continue;
     }
     EXPECT_EQ(run.state, RunState::failed);
-    EXPECT_NE(run.error.find("overlap"), std::string::npos);
+    EXPECT_NE(run.error.find("settle"), std::string::npos);
     const Event last = store_.events("run/" + run.id).back();
     ASSERT_EQ(last.type, "RunFailed");
     const nlohmann::json numbers = last.body().at("numbers");
-    EXPECT_EQ(numbers.at("limit"), 0.02);
-    EXPECT_GT(numbers.at("value").get<double>(), 0.02);
+    EXPECT_EQ(numbers.at("limit"), 0.1);
+    EXPECT_GE(numbers.at("value").get<double>(), 0.1);
     EXPECT_GT(numbers.at("step").get<std::uint64_t>(), 0U);
-    EXPECT_GE(numbers.at("grain").get<std::int64_t>(), 0);
   }
   // Trying again fails alike.
   EXPECT_EQ(resume(store_).failed, 1U);
+}
+
+TEST_F(Failure, OfTheOverlapLimitEndsWhereALargerOneIsStated) {
+  const CampaignResult low = compute(store_, tiny_manifest("  max_overlap_diameters: 0.001\n"));
+  EXPECT_EQ(low.failed, 1U);
+  const std::size_t runs = store_.runs().size();
+  const CampaignResult usual = compute(store_, tiny_manifest(""));
+  EXPECT_EQ(usual.failed, 0U);
+  EXPECT_EQ(store_.runs().size(), runs) << "the same runs";
 }
 
 TEST_F(Failure, UnderShearKeepsTheLastGoodCheckpoint) {

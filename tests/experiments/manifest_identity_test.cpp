@@ -17,7 +17,7 @@ namespace {
 using nlohmann::json;
 
 bool settling_feels(const Field& field) {
-  return field.identity.stage == Stage::prepare;
+  return field.identity.stage == Stage::prepare && field.identity.distinguishes_runs();
 }
 
 // Some other value that the field may take.
@@ -141,7 +141,7 @@ TEST(Identity, AStiffeningIsNamedByWhatItFeels) {
     const StageSpec key = last_stage(other, 1, prepare_stage(other, 1));
     EXPECT_EQ(key.key != stiffen.key, felt || field.name == "protocol");
     EXPECT_EQ(stiffen.resolved.at("parameters").contains(field.name),
-              felt && field.identity.omitted_at.empty());
+              (felt && field.identity.omitted_at.empty()) || !field.identity.recorded_as.empty());
   }
   // A shear that says it stiffens is no record of ours.
   json forged = last_stage({}, 1, prepare).resolved;
@@ -200,6 +200,18 @@ TEST(Identity, ADrawOfWallGrainsEntersOnlyWhereItIsNotTheFirst) {
     record["parameters"]["wall_grain_draw"] = value;
     EXPECT_THROW(read_stage(record), std::runtime_error) << value;
   }
+}
+
+// Part of the identity of older runs. Their records keep the value that they have.
+TEST(Identity, AnOverlapLimitIsRecordedAsItsFormerDefault) {
+  Parameters raised;
+  raised.max_overlap_diameters = 0.4;
+  json record = prepare_stage(raised, 1).resolved;
+  EXPECT_EQ(record, prepare_stage({}, 1).resolved);
+  EXPECT_EQ(record["parameters"]["max_overlap_diameters"], 0.1);
+  EXPECT_EQ(read_stage(record).parameters, Parameters{});
+  record["parameters"]["max_overlap_diameters"] = 0.02;
+  EXPECT_EQ(read_stage(record).parameters.max_overlap_diameters, 0.02);
 }
 
 // Younger than the stores as well, and felt only where a moving bottom wall lifts grains.
