@@ -31,7 +31,6 @@ Packing pressed_packing(const Parameters& parameters, std::uint64_t seed);
 /// settle.
 Packing settled_packing(const Parameters& parameters, std::uint64_t seed);
 
-/// Runs the settling protocol to its end.
 void settle(Simulation& simulation, const SettleParameters& parameters, const Scene& scene);
 
 /// A settled packing ready to be sheared with this number of steps per cycle.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <future>
@@ -51,7 +50,6 @@ std::vector<Packing> packings(const Options& options, std::size_t seeds) {
   return all;
 }
 
-// Seconds of one core per cycle.
 double seconds_per_cycle(const Parameters& p, double time_step, double engine_rate) {
   return p.period_s / time_step * static_cast<double>(p.grains) / (1e6 * engine_rate);
 }
