@@ -14,7 +14,7 @@ namespace shearcell {
 namespace {
 
 TEST(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   Store store(folder.path() / "store", Access::create);
   const CampaignResult result = test::compute(store,
                                               "experiment: packing\n"
@@ -57,7 +57,7 @@ TEST(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
 // so Table I's P and k leave no choice of the mean overlap: it must be near 3 P V / (n_c k d). The
 // sum runs over interior grains, each with half of its contacts, and V over their Voronoi cells.
 TEST(PackingOf2000, HasTheOverlapThatThePressureDemands) {
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   Store store(folder.path() / "store", Access::create);
   ASSERT_EQ(test::compute(store,
                           "experiment: packing\n"

@@ -104,7 +104,7 @@ nlohmann::json truth(const Checkpoint& c) {
 }
 
 TEST(Export, OtherProgramsReadEveryNumber) {
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const fs::path at = folder.path();
   fs::create_directories(at / "vtk");
   fs::create_directories(at / "lammps");
@@ -130,7 +130,7 @@ TEST(Export, OtherProgramsReadEveryNumber) {
 }
 
 TEST(Export, WritesTheSameBytesTwice) {
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const Frame frame = frame_of(checkpoints().back());
   std::string bytes[2];
   for (int k = 0; k < 2; ++k) {
@@ -150,7 +150,7 @@ TEST(Export, SaysWhatItCannotWrite) {
   EXPECT_THROW(h5md_writer("/nowhere/run.h5", 1), std::runtime_error);
   EXPECT_THROW(vtk_writer("/nowhere")(frame), std::runtime_error);
   EXPECT_THROW(lammps_writer("/nowhere")(frame), std::runtime_error);
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const FrameWriter one = h5md_writer(folder.path() / "run.h5", 1);
   one(frame);
   EXPECT_THROW(one(frame), std::runtime_error);
