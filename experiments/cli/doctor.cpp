@@ -12,11 +12,11 @@
 #include <memory>
 #include <sstream>
 
-#include "provenance/io/child_process.hpp"
-#include "experiments/cli/command.hpp"
 #include "experiments/bench/speed.hpp"
+#include "experiments/cli/command.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/host.hpp"
+#include "provenance/io/child_process.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell::cli {

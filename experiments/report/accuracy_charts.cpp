@@ -82,7 +82,7 @@ ReportPanel read_panel(const std::filesystem::path& csv) {
     panel.chart = parse_json(*text);
     if (!is_chart(panel.chart)) {
       throw UsageError((csv.parent_path() / panel.name).string() +
-                     ".chart.json: not a chart of `bench accuracy --out`");
+                       ".chart.json: not a chart of `bench accuracy --out`");
     }
   }
   panel.drawing = read_beside(csv, ".svg").value_or("");

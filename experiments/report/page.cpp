@@ -77,8 +77,8 @@ std::string overview_html(const ReportData& data) {
     rows.push_back({fmt::format("<a href=\"#experiment-{0}\">{1}</a> <span "
                                 "class=\"small\">{0}</span>",
                                 escape_html(experiment.name), escape_html(question)),
-                    ruling_html(ruling_of(data, experiment)),
-                    figures, std::to_string(experiment.runs.size())});
+                    ruling_html(ruling_of(data, experiment)), figures,
+                    std::to_string(experiment.runs.size())});
   }
   std::string html = "<nav aria-label=\"Experiments\">" +
                      html_table({"question", "verdict", "figures", "#stages"}, rows, "overview") +

@@ -103,8 +103,7 @@ class Attempt {
     const Checkpoint checkpoint = engine.checkpoint(cycle);
     const auto steps = static_cast<double>(engine.evaluations() - recorded_evaluations_);
     const CheckpointRecord recorded = store_.record_checkpoint(
-        id(), checkpoint,
-        {recorded_.seconds(), steps * static_cast<double>(engine.grains())});
+        id(), checkpoint, {recorded_.seconds(), steps * static_cast<double>(engine.grains())});
     if (end_) end_->add(recorded, checkpoint);
     recorded_.restart();
     recorded_evaluations_ = engine.evaluations();

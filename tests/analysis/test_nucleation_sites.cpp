@@ -110,8 +110,7 @@ TEST(FigureS7, JudgesPlacesWhoseTruthIsKnown) {
             (std::vector{R::differs, R::differs}));
   EXPECT_EQ(rulings(runs_with_places(100, even, even)), (std::vector{R::agrees, R::differs}))
       << "no excess at the top";
-  EXPECT_EQ(rulings(runs_with_places(3, even, even)),
-            (std::vector{R::undecided, R::undecided}));
+  EXPECT_EQ(rulings(runs_with_places(3, even, even)), (std::vector{R::undecided, R::undecided}));
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 // `ours DIR N` times the same steps here, `compare DIR N` compares their positions with ours.
 // peers.sh runs them.
 //
-// The scene: the rough cell of Table I, pressed, then upright with all walls fixed (a moving wall of
-// huge mass), random velocities, no gravity.
+// The scene: the rough cell of Table I, pressed, then upright with all walls fixed (a moving wall
+// of huge mass), random velocities, no gravity.
 #include <fmt/format.h>
 
 #include <algorithm>

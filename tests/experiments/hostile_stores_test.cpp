@@ -225,8 +225,7 @@ std::vector<Case> damaged_objects() {
       told("object_with_holes_of_a_terabyte", "verify", 4,
            object([](auto& f) { fs::resize_file(f, std::uintmax_t{1} << 40); }),
            "it has 1099511627776 bytes instead of"),
-      told("object_is_link", "verify", 4, object(link_instead),
-           "it is a symbolic link"),
+      told("object_is_link", "verify", 4, object(link_instead), "it is a symbolic link"),
       told("object_is_folder", "verify", 4, object(folder_instead), "it is not a regular file"),
       told("object_is_pipe", "verify", 4, object(pipe_instead), "it is not a regular file"),
       told("objects_folder_is_file", "verify", 4, object([](auto& f) {
