@@ -131,7 +131,7 @@ export function drawSeries(root, one, scales) {
   const drawn = one.points.filter(([x, y]) => Number.isFinite(scales.x(x) + scales.y(y)));
   const marks = marked(drawn, scales, one.line);
   const bars = one.band ? "" : errorBars(marks, scales);
-  if (one.band) {
+  if (one.band && drawn.length > 1) {
     const shape = area((p) => scales.x(p[0]), (p) => scales.y(p[1] - (p[3] ?? 0)),
       (p) => scales.y(p[1] + (p[3] ?? 0)));
     svg("path", {class: "band", d: shape(drawn)}, group);
