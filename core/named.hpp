@@ -51,8 +51,9 @@ inline constexpr auto kNames = nullptr;
 /// The names alone, in the order of the values.
 template <class Enum>
 inline constexpr auto kNameList = [] {
-  std::array<std::string_view, kNames<Enum>.size()> list;
-  for (std::size_t i = 0; i < list.size(); ++i) list[i] = kNames<Enum>[i].name;
+  constexpr auto names = kNames<Enum>;
+  std::array<std::string_view, names.size()> list;
+  for (std::size_t i = 0; i < list.size(); ++i) list[i] = names[i].name;
   return list;
 }();
 
