@@ -8,6 +8,7 @@
 // An enumerator without a name is a compile-time error.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -51,15 +52,15 @@ inline constexpr auto kNames = nullptr;
 /// The names alone, in the order of the values.
 template <class Enum>
 inline constexpr auto kNameList = [] {
-  constexpr auto names = kNames<Enum>;
-  std::array<std::string_view, names.size()> list;
-  for (std::size_t i = 0; i < list.size(); ++i) list[i] = names[i].name;
+  std::array<std::string_view, kNames<Enum>.size()> list;
+  std::ranges::transform(kNames<Enum>, list.begin(), &Named<Enum>::name);
   return list;
 }();
 
 template <class Enum>
 constexpr std::string_view name_of(Enum value) {
-  return kNameList<Enum>[static_cast<std::size_t>(value)];
+  const auto& names = kNameList<Enum>;
+  return names[static_cast<std::size_t>(value)];
 }
 
 /// Nothing when no value has that name.

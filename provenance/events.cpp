@@ -122,7 +122,8 @@ Any decode(const Event& event) {
 }
 
 NewEvent encode(const Any& event) {
-  const auto encoded = []<class E>(const E& e) -> NewEvent {
+  const auto encoded = [](const auto& e) -> NewEvent {
+    using E = std::decay_t<decltype(e)>;
     if constexpr (std::is_same_v<E, Unknown>) {
       throw std::logic_error("an event of unknown type cannot be written");
     } else if constexpr (has_fields<E>) {

@@ -99,12 +99,12 @@ struct CheckpointRejected {
   }
 };
 
-struct CheckpointPruned {
-  static constexpr std::string_view kType = "CheckpointPruned";
+/// A checkpoint whose file was deleted or written again.
+struct CheckpointFile {
   std::string sha256, file, state_hash;
   std::uint64_t step = 0, size = 0;
   double cycle = 0;
-  explicit CheckpointPruned(const CheckpointRecord& r = {})
+  explicit CheckpointFile(const CheckpointRecord& r = {})
       : sha256(r.sha256),
         file(r.file),
         state_hash(r.state_hash),
@@ -117,9 +117,14 @@ struct CheckpointPruned {
   }
 };
 
-struct CheckpointRegenerated : CheckpointPruned {
+struct CheckpointPruned : CheckpointFile {
+  static constexpr std::string_view kType = "CheckpointPruned";
+  using CheckpointFile::CheckpointFile;
+};
+
+struct CheckpointRegenerated : CheckpointFile {
   static constexpr std::string_view kType = "CheckpointRegenerated";
-  using CheckpointPruned::CheckpointPruned;
+  using CheckpointFile::CheckpointFile;
 };
 
 struct RunInterrupted {

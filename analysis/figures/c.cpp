@@ -55,7 +55,7 @@ Text title_of(double amplitude) {
   return italic("A") + fmt::format(" = {}", amplitude);
 }
 
-const char* colour_of(std::size_t k) {
+std::string colour_of(std::size_t k) {
   return amplitude_colours[k % amplitude_colours.size()];
 }
 

@@ -25,22 +25,22 @@ ChoiceMember choice() {
 }
 
 Field number(string_view name, string_view symbol, string_view unit, double Parameters::*member,
-             double min, bool min_excluded, double max, Identity identity, string_view doc) {
+             double min, bool min_excluded, double max, const Identity& identity, string_view doc) {
   return {name, symbol, unit, member, min, max, min_excluded, identity, doc};
 }
 
 Field above_zero(string_view name, string_view symbol, string_view unit, double Parameters::*member,
-                 double max, Identity identity, string_view doc) {
+                 double max, const Identity& identity, string_view doc) {
   return number(name, symbol, unit, member, 0, true, max, identity, doc);
 }
 
 Field from_zero(string_view name, string_view symbol, string_view unit, double Parameters::*member,
-                double max, Identity identity, string_view doc) {
+                double max, const Identity& identity, string_view doc) {
   return number(name, symbol, unit, member, 0, false, max, identity, doc);
 }
 
 Field integer(string_view name, string_view symbol, std::uint64_t Parameters::*member, double min,
-              double max, Identity identity, string_view doc) {
+              double max, const Identity& identity, string_view doc) {
   return {name, symbol, "1", member, min, max, false, identity, doc};
 }
 
