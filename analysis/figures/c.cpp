@@ -96,7 +96,7 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
       .lines = {{0}}};
   for (std::size_t k = 0; k < all.size(); ++k) {
     const AmplitudeGrowth& one = all[k];
-    const char* colour = colour_of(k);
+    const std::string colour = colour_of(k);
     Series fit{.colour = colour, .point = 0, .join = Join::line, .band = true};
     for (const FittedSize& at : fitted_sizes(one)) {
       fit.points.push_back({at.size, at.delta, std::nullopt, at.error});
