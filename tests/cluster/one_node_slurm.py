@@ -150,6 +150,9 @@ class OneNodeSlurm:
         with open(f"{folder}/slurm.conf", "w") as file:
             file.write(CONFIGURATION.format(host=self.host, folder=folder, cpus=cpus,
                                             controller_port=controller_port, node_port=node_port))
+        # No job is limited by cgroups, and a container need not have them.
+        with open(f"{folder}/cgroup.conf", "w") as file:
+            file.write("CgroupPlugin=cgroup/v1\n")
         self.environment = dict(os.environ, SLURM_CONF=f"{folder}/slurm.conf")
         for name in [name for name in self.environment if name.startswith("SBATCH_")]:
             del self.environment[name]
