@@ -3,16 +3,13 @@
 //
 // Each loop has a scalar reference implementation (scalar_kernel.cpp) and a SIMD version
 // (simd_kernel.cpp, simd_lists.cpp); both give the same bits. The rules that make this possible:
-//  1. One grain per lane: a grain's force is summed by its own lane, over the plane and the grains
-//  of
-//     the moving wall, the other planes, then the other walls' grains and its neighbours in
-//     ascending permanent id. No sum crosses lanes.
-//  2. A neighbour that does not touch, and padding, adds +0 to the sum, which changes no bit. So
-//  the
-//     result does not depend on which non-touching neighbours a list happens to hold.
-//  3. A position is a row {x, y, z, margin} of four doubles. Lanes load whole rows and transpose
-//  them
-//     in registers: no gathers, and a lane writes only its own grain's row.
+//  1. One grain per lane: a grain's force is summed by its own lane, over the plane and the
+//     grains of the moving wall, the other planes, then the other walls' grains and its
+//     neighbours in ascending permanent id. No sum crosses lanes.
+//  2. A neighbour that does not touch, and padding, adds +0 to the sum, which changes no bit.
+//     So the result does not depend on which non-touching neighbours a list happens to hold.
+//  3. A position is a row {x, y, z, margin} of four doubles. Lanes load whole rows and
+//     transpose them in registers: no gathers, and a lane writes only its own grain's row.
 //
 // One array holds these rows: the grains, padded; one row that touches nothing; the wall grains,
 // those of the moving wall first. The margin [d] is how far the grain may move in the frame of the

@@ -14,7 +14,7 @@
 namespace shearcell {
 namespace {
 
-/// What tells the curves apart.
+/// The values in which the curves differ.
 nlohmann::json group_of(double amplitude, bool gravity) {
   return nlohmann::json::array({amplitude, gravity});
 }

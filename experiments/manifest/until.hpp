@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `until` of a manifest: a measure that ends a run before `cycles`. It is no part of the run's
-// identity, as `cycles` is none.
+// `until` of a manifest: a measure that ends a run before `cycles`. Like `cycles`, it is not part
+// of the identity of a run.
 #pragma once
 
 #include <cstdint>

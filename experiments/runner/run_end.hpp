@@ -50,7 +50,7 @@ nlohmann::json end_of(const Store& store, const RunRecord& run);
 /// "crystalline_percent >= 10 at cycle 25 and 15 cycles more"; "" for null.
 std::string describe_end(const nlohmann::json& ended);
 
-/// Mean cycle at which runs of the store with this `until` ended; nothing when there are none.
+/// Mean cycle at which runs of the store with this `until` ended; empty if there are no such runs.
 std::optional<double> expected_end(const Store& store, const Until& until);
 
 /// Measures the checkpoints of one run and keeps the results in the store's derived.sqlite, where

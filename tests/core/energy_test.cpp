@@ -45,7 +45,7 @@ double work_of_walls(const Cell& cell, const Scene& scene, const State& state, c
   return b.energy - a.energy + 0.5 * (a.on_wall + b.on_wall) * rise;
 }
 
-// Energy but for that of the springs, with the velocities of the whole step between two half steps.
+// Energy except that of the springs, with the velocities of the whole step between two half steps.
 double other_energy(const Cell& cell, const Scene& scene, const State& before, const State& after) {
   const double area = cell.width * cell.depth;
   const Eigen::Matrix3Xd v = 0.5 * (before.velocity + after.velocity);

@@ -69,7 +69,7 @@ TEST(RunEnd, IsDescribed) {
   EXPECT_EQ(describe_end(nullptr), "");
 }
 
-// The packing densifies, so phi ends the runs. One run of six cycles tells where.
+// The packing densifies, so phi ends the runs. One run of six cycles gives the cycle.
 class UntilTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
