@@ -2,6 +2,7 @@
 #include "analysis/chart.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,6 +48,13 @@ double rounded(double value) {
 
 json to_json(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? json(rounded(*value)) : json();
+}
+
+/// "mean overlap ⟨δ⟩ [d]".
+std::string axis_text(const Axis& axis) {
+  std::string text = plain_text(axis.name);
+  if (!axis.symbol.empty()) text += (text.empty() ? "" : " ") + plain_text(axis.symbol);
+  return axis.unit.empty() ? text : text + " [" + plain_text(axis.unit) + "]";
 }
 
 json to_json(const Axis& axis) {
@@ -142,6 +150,42 @@ std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series
     points.push_back({middle, *value, number_in(row, x_error), number_in(row, y_error)});
   }
   return points;
+}
+
+std::string plain_text(const Text& text) {
+  std::string plain;
+  for (const TextRun& run : text.runs) {
+    plain += (run.style == "sub" ? "_" : run.style == "sup" ? "^" : "") + run.text;
+  }
+  return plain;
+}
+
+std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
+  std::string text = title + ".";
+  bool bars = false, bands = false;
+  std::vector<std::string> lines;
+  for (const FigureTable& table : tables) {
+    const Chart& chart = table.chart;
+    if (chart.series.empty()) continue;
+    text += fmt::format(" {}{} against {}.", chart.letter.empty() ? "" : "(" + chart.letter + ") ",
+                        axis_text(chart.y), axis_text(chart.x));
+    for (const Series& series : chart.series) {
+      for (const ChartPoint& p : points_of(table, series)) {
+        if (p.y_error) (series.band ? bands : bars) = true;
+      }
+    }
+    for (const ReferenceLine& line : chart.lines) {
+      const std::string name = plain_text(line.title);
+      if (!name.empty() && std::ranges::find(lines, name) == lines.end()) lines.push_back(name);
+    }
+  }
+  if (bars || bands) {
+    text += fmt::format(" {}: standard errors over runs.", bars && bands ? "Bars and bands"
+                                                           : bars        ? "Bars"
+                                                                         : "Bands");
+  }
+  if (!lines.empty()) text += fmt::format(" Reference lines: {}.", fmt::join(lines, "; "));
+  return text;
 }
 
 json to_json(const Text& text) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -86,7 +87,8 @@ struct Series {
   int point = 7;  ///< 0 none, 4 square, 6 circle, 8 triangle, 10 triangle down, 12 diamond;
                   ///< + 1 filled
   Join join = Join::none;  ///< points are joined in their order
-  bool band = false;       ///< errors of y are drawn as a band, not as bars
+  bool band = false;       ///< errors of y are drawn as a band, not as bars; those of x are not
+  bool thin = false;       ///< one of many traces
   SeriesColumns columns = {};
   RowFilter filter = {};
   std::vector<ChartPoint> points = {};  ///< used where `columns` names no x
@@ -99,6 +101,7 @@ struct ReferenceLine {
   bool vertical = false;
   bool stub = false;
   std::string colour = "#888888";
+  Text title = {};  ///< in the caption
 };
 
 struct Chart {
@@ -106,9 +109,9 @@ struct Chart {
   Axis y = {};
   std::vector<Series> series = {};
   std::vector<ReferenceLine> lines = {};
-  Text title = {};  ///< above the frame; figures have none
-  int width = 600;  ///< of the gnuplot drawing [px]
-  int height = 430;
+  Text title = {};          ///< above the frame; figures have none
+  bool wide = false;        ///< drawn over two columns of a journal (17.8 cm), not one (8.6 cm)
+  std::string letter = {};  ///< of the panel: "a"
 };
 
 /// A table that is drawn as text: the first row is the heading.
@@ -147,6 +150,13 @@ std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series
 
 /// Nine significant digits, as in the CSV.
 std::string digits(double value);
+
+/// Without styles; "v_fluid" of a subscript.
+std::string plain_text(const Text& text);
+
+/// What a reader needs beside the drawings of a figure's panels: what each shows, the errors, and
+/// what its reference lines are. One paragraph that begins with `title`.
+std::string caption_of(const std::string& title, std::span<const FigureTable> tables);
 
 /// [[text, style], ...].
 nlohmann::json to_json(const Text& text);

@@ -12,18 +12,12 @@ namespace {
 using nlohmann::json;
 
 json scalars_of(const Analysis& analysis) {
-  const Measures& m = analysis.measures;
-  return {{"grains", m.grains},
-          {"interior_grains", m.interior_grains},
-          {"phi", m.phi},
-          {"phi_uncorrected", m.phi_uncorrected},
-          {"crystalline_percent", m.crystalline_percent},
-          {"fcc_percent", m.fcc_percent},
-          {"hcp_percent", m.hcp_percent},
-          {"mean_overlap_d", m.mean_overlap},
-          {"contacts_per_grain", m.contacts_per_grain},
-          {"crystallites", m.crystallites},
-          {"largest_crystallite", m.largest_crystallite}};
+  json scalars;
+  for (const ScalarMeasure& scalar : all_scalar_measures()) {
+    std::visit([&](auto member) { scalars[scalar.name] = analysis.measures.*member; },
+               scalar.member);
+  }
+  return scalars;
 }
 
 json criteria() {
@@ -53,17 +47,9 @@ const DerivedMeasure& crystallite_measure() {
 Measures read_measures(const json& result) {
   Measures m;
   try {
-    result.at("grains").get_to(m.grains);
-    result.at("interior_grains").get_to(m.interior_grains);
-    result.at("phi").get_to(m.phi);
-    result.at("phi_uncorrected").get_to(m.phi_uncorrected);
-    result.at("crystalline_percent").get_to(m.crystalline_percent);
-    result.at("fcc_percent").get_to(m.fcc_percent);
-    result.at("hcp_percent").get_to(m.hcp_percent);
-    result.at("mean_overlap_d").get_to(m.mean_overlap);
-    result.at("contacts_per_grain").get_to(m.contacts_per_grain);
-    result.at("crystallites").get_to(m.crystallites);
-    result.at("largest_crystallite").get_to(m.largest_crystallite);
+    for (const ScalarMeasure& scalar : all_scalar_measures()) {
+      std::visit([&](auto member) { result.at(scalar.name).get_to(m.*member); }, scalar.member);
+    }
   } catch (const json::exception& problem) {
     throw AnalysisError(std::string("these are not the scalars of a checkpoint: ") +
                         problem.what());

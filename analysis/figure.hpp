@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -32,7 +33,9 @@ struct CheckpointMeasures {
 struct FigureRun {
   std::string run_id;
   std::string experiment;
-  std::string variant;        ///< its curve, as the manifest names it: "fluid=cell"
+  std::string variant;        ///< its curve, as the manifest expands it: "fluid=cell"
+  std::string name;           ///< of the variant, for people; "" for `variant`
+  bool named = false;         ///< by a label of the manifest
   nlohmann::json labels;      ///< the swept parameters of the run
   nlohmann::json parameters;  ///< all parameters, by their keys in a manifest
   std::uint64_t seed = 0;
@@ -49,23 +52,35 @@ struct FigureResult {
 /// that needs none gets the last checkpoint of each run, unmeasured.
 enum class FigureNeeds { none, scalars, crystallites };
 
-/// Which runs a figure gets: those of the experiments whose manifests list it, each run once; or
-/// those of every experiment, each run once per experiment.
-enum class FigureScope { asking, every };
+/// `table`: of the runs of every experiment, each run once per experiment. The others are of the
+/// runs of one experiment: `curves` has one curve for each variant; `groups` averages over the
+/// variants that have the same values of the figure's `keys`.
+enum class FigureForm { table, curves, groups };
 
 /// A figure of the supplement.
 struct Figure {
-  std::string_view name;
-  std::string_view title;
-  FigureNeeds needs;
-  FigureResult (*make)(std::span<const FigureRun> runs);
-  FigureScope scope = FigureScope::asking;
+  std::string name;
+  std::string title;
+  FigureNeeds needs = FigureNeeds::scalars;
+  std::function<FigureResult(std::span<const FigureRun> runs)> make;
+  FigureForm form = FigureForm::curves;
+  std::vector<std::string> keys = {};  ///< parameters that it tells apart
+  bool at_rest = false;                ///< needs phi_at_rest of cycles 1 to early_cycles
 };
 
 /// The value of a parameter, swept or not; null if the run has no such key.
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key);
 /// The same as a number; NaN if it is not a number.
 double number_of(const FigureRun& run, const std::string& key);
+
+/// Those of `keys` that tell the variants apart: each varies, and without any one of them two
+/// variants would be equal. Of keys that advance together the first stays. `variants` are objects
+/// of swept keys and values.
+std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,
+                                            std::vector<std::string> keys);
+
+/// The swept keys of the runs that tell their variants apart.
+std::vector<std::string> varied_keys(std::span<const FigureRun> runs);
 
 /// Every figure, in the order of the supplement.
 std::span<const Figure> all_figures();

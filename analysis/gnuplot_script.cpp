@@ -2,6 +2,7 @@
 #include "analysis/gnuplot_script.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,19 +12,22 @@
 namespace shearcell {
 namespace {
 
+// At 96 px an inch: 8.6 cm and 17.8 cm wide, type of 8 pt.
+constexpr int column_width = 325, double_width = 673, chart_height = 215, key_row = 15;
+constexpr double type_size = 10.67;
+
 constexpr std::string_view style =
     "set encoding utf8\n"
     "set datafile separator ','\n"
-    "set border 15 lw 1.2\n"
+    "set border 15 lw 0.8\n"
     "set xtics in mirror scale 0.9,0.5\n"
     "set ytics in mirror scale 0.9,0.5\n"
-    "set format '%h'\n"
     "set mxtics 2\n"
     "set mytics 2\n"
     // Ranges end a little outside the data, not at the next tick, so that no point or bar is cut.
     "set autoscale noextend\n"
     // Above the frame, the one place where no data can be.
-    "set key above horizontal center noautotitle Left reverse samplen 1.5 width 2\n"
+    "set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9\n"
     "set bars 0.5\n";
 
 /// gnuplot's single-quoted text, in which only the quote itself is special.
@@ -90,7 +94,10 @@ class Script {
   }
 
   std::string text() {
-    if (!chart_.title.empty()) add("set title {} font ',12'\n", literal(markup(chart_.title)));
+    if (!chart_.title.empty()) add("set title {}\n", literal(markup(chart_.title)));
+    if (!chart_.letter.empty()) {
+      add("set label '({})' at screen 0.015, screen 0.96 left front\n", chart_.letter);
+    }
     add("set xlabel {}\nset ylabel {}\n", literal(label_of(chart_.x)), literal(label_of(chart_.y)));
     if (longest_ == 0) {
       add("set label 'no data' at graph 0.5, graph 0.5 center\nplot [0:1] [0:1] NaN notitle\n");
@@ -101,12 +108,17 @@ class Script {
     ranges();
     for (const ReferenceLine& line : chart_.lines) reference(line);
     for (std::size_t k = 0; k < points_.size(); ++k) data(k);
-    std::string plots;
-    for (std::size_t k = 0; k < points_.size(); ++k) {
-      for (const std::string& part : parts(k))
-        plots += (plots.empty() ? "plot " : ", \\\n     ") + part;
+    // The key in the order of the series; the first series lies on top of the others.
+    std::vector<std::string> plots;
+    for (const Series& series : chart_.series) plots.push_back(key_entry(series));
+    for (const bool bands : {true, false}) {
+      for (std::size_t k = points_.size(); k-- > 0;) {
+        if (points_[k].empty()) continue;
+        if (bands == chart_.series[k].band) errors(k, plots);
+        if (!bands) curve(k, plots);
+      }
     }
-    return text_ + plots + "\n";
+    return text_ + fmt::format("plot {}\n", fmt::join(plots, ", \\\n     "));
   }
 
  private:
@@ -121,6 +133,18 @@ class Script {
       add("set format {0} '10^{{%T}}'\nset m{0}tics 10\n", name);
     }
     if (axis.whole && data.high <= 10) add("set {0}tics 1\nunset m{0}tics\n", name);
+    if (axis.log || axis.whole) return;
+    const double low = std::min(data.low, axis.low.value_or(data.low));
+    const double high = std::max(data.high, axis.high.value_or(data.high));
+    const double length = axis.clip && axis.low && axis.high ? *axis.high - *axis.low : high - low;
+    if (!(length > 0) || !std::isfinite(length)) return;
+    // About five steps of 1, 2 or 5 times a power of ten, all with as many decimals.
+    const double power = std::pow(10, std::floor(std::log10(length / 5)));
+    const double ratio = length / 5 / power;
+    const double step = power * (ratio < 1.5 ? 1 : ratio < 3.5 ? 2 : ratio < 7.5 ? 5 : 10);
+    const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 9);
+    if (step >= 1e6) return;
+    add("set {0}tics {1}\nset format {0} '%.{2}f'\n", name, digits(step), decimals);
   }
 
   /// An end of an axis is either fixed, or left to gnuplot with some room beyond the data and the
@@ -177,7 +201,7 @@ class Script {
 
   /// Every how many points a joined curve has a mark, so that marks stay apart.
   std::size_t spacing(const Series& series) const {
-    constexpr std::size_t most_marks = 60;
+    constexpr std::size_t most_marks = 20;
     std::size_t every = 1;
     if (series.join == Join::none) return every;
     for (const std::size_t step : {2U, 5U, 10U, 20U, 50U, 100U, 200U, 500U, 1000U}) {
@@ -186,47 +210,50 @@ class Script {
     return every;
   }
 
-  /// The parts of the plot command that draw one series: errors, line, points. `yerrorbars` alone
-  /// would leave out points without an error.
-  std::vector<std::string> parts(std::size_t k) const {
-    const Series& series = chart_.series[k];
-    const std::string title =
-        series.title.empty() ? "notitle" : "title " + literal(markup(series.title));
-    const std::string line =
-        fmt::format("lc rgb '{}'{}", series.colour, series.join == Join::dashes ? " dt 2" : "");
-    const std::string look = fmt::format(
-        "{} {}{} {}",
-        series.point == 0           ? "lines"
-        : series.join == Join::none ? "points"
-                                    : "linespoints",
-        line, series.point == 0 ? "" : fmt::format(" pt {} ps 0.6", series.point), title);
-    if (points_[k].empty()) return {"keyentry with " + look};
+  static std::string look_of(const Series& series) {
+    return fmt::format("lc rgb '{}' lw {}{}{}", series.colour, series.thin ? 0.6 : 1.2,
+                       series.join == Join::dashes ? " dt 2" : "",
+                       series.point == 0 ? "" : fmt::format(" pt {} ps 0.4", series.point));
+  }
 
-    const auto has = [&](const std::optional<double> ChartPoint::*error) {
-      return std::ranges::any_of(points_[k],
-                                 [&](const ChartPoint& p) { return (p.*error).has_value(); });
-    };
+  static const char* kind_of(const Series& series) {
+    return series.point == 0 ? "lines" : series.join == Join::none ? "points" : "linespoints";
+  }
+
+  static std::string key_entry(const Series& series) {
+    return fmt::format("keyentry with {} {} {}", kind_of(series), look_of(series),
+                       series.title.empty() ? "notitle" : "title " + literal(markup(series.title)));
+  }
+
+  bool has(std::size_t k, const std::optional<double> ChartPoint::*error) const {
+    return std::ranges::any_of(points_[k],
+                               [&](const ChartPoint& p) { return (p.*error).has_value(); });
+  }
+
+  void errors(std::size_t k, std::vector<std::string>& plots) const {
+    const Series& series = chart_.series[k];
+    if (!has(k, &ChartPoint::y_error)) return;
+    plots.push_back(
+        series.band
+            ? fmt::format("$series{} using 1:($2-$4):($2+$4) with filledcurves fc rgb '{}' fs "
+                          "transparent solid 0.2 noborder notitle",
+                          k, series.colour)
+            : fmt::format("$series{} every {} using {} lc rgb '{}' lw 0.7 pt 0 notitle", k,
+                          spacing(series),
+                          has(k, &ChartPoint::x_error) ? "1:2:3:4 with xyerrorbars"
+                                                       : "1:2:4 with yerrorbars",
+                          series.colour));
+  }
+
+  void curve(std::size_t k, std::vector<std::string>& plots) const {
+    const Series& series = chart_.series[k];
     const std::size_t every = spacing(series);
-    const std::string all = fmt::format("$series{} ", k);
-    const std::string marked = every == 1 ? all : fmt::format("{}every {} ", all, every);
-    std::vector<std::string> found;
-    if (has(&ChartPoint::y_error)) {
-      const bool both = has(&ChartPoint::x_error);
-      found.push_back(
-          series.band
-              ? fmt::format(
-                    "{}using 1:($2-$4):($2+$4) with filledcurves fc rgb '{}' fs transparent "
-                    "solid 0.2 noborder notitle",
-                    all, series.colour)
-              : fmt::format("{}using {} lc rgb '{}' lw 0.8 pt 0 notitle", marked,
-                            both ? "1:2:3:4 with xyerrorbars" : "1:2:4 with yerrorbars",
-                            series.colour));
-    }
-    if (every > 1) found.push_back(all + "using 1:2 with lines " + line + " notitle");
-    found.push_back(every > 1 && series.point > 0
-                        ? marked + "using 1:2 with points" + look.substr(look.find(' '))
-                        : all + "using 1:2 with " + look);
-    return found;
+    const std::string look = look_of(series);
+    if (every > 1)
+      plots.push_back(fmt::format("$series{} using 1:2 with lines {} notitle", k, look));
+    if (every > 1 && series.point == 0) return;
+    plots.push_back(fmt::format("$series{} every {} using 1:2 with {} {} notitle", k, every,
+                                every > 1 ? "points" : kind_of(series), look));
   }
 
   const Chart& chart_;
@@ -276,16 +303,31 @@ std::string text_table_commands(const TextTable& table) {
   return text + "plot [0:1] [0:1] NaN\n";
 }
 
+/// As tall as the frame and the rows of the key need.
+int height_of(const Chart& chart) {
+  std::size_t entries = 0, longest = 0;
+  for (const Series& series : chart.series) {
+    const std::size_t length = plain_text(series.title).size();
+    entries += length > 0 ? 1 : 0;
+    longest = std::max(longest, length);
+  }
+  const std::size_t letters = chart.wide ? 110 : 50, symbol = 8;  // of a row
+  const std::size_t in_a_row = std::max<std::size_t>(1, letters / (longest + symbol));
+  return chart_height + key_row * static_cast<int>((entries + in_a_row - 1) / in_a_row);
+}
+
 }  // namespace
 
 std::string gnuplot_script(const FigureTable& table) {
   const bool words = !table.text.rows.empty();
+  const Chart& chart = table.chart;
   return fmt::format(
-      "{}{},{} enhanced font 'Helvetica,14' background '#ffffff'\n{}set output '{}.svg'\ndata = "
+      "{}{},{} enhanced font 'Helvetica,{}' background '#ffffff'\n{}set output '{}.svg'\ndata = "
       "'{}.csv'\n{}set output\n",
-      gnuplot_script_beginning, words ? width_of(table.text) : table.chart.width,
-      words ? height_of(table.text) : table.chart.height, style, table.name, table.name,
-      words ? text_table_commands(table.text) : Script(table).text());
+      gnuplot_script_beginning,
+      words ? width_of(table.text) : (chart.wide ? double_width : column_width),
+      words ? height_of(table.text) : height_of(chart), words ? 14 : type_size, style, table.name,
+      table.name, words ? text_table_commands(table.text) : Script(table).text());
 }
 
 }  // namespace shearcell

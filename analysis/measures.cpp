@@ -58,6 +58,27 @@ void find_crystallites(const VoronoiDiagram& diagram, Analysis& analysis) {
 
 }  // namespace
 
+std::span<const ScalarMeasure> all_scalar_measures() {
+  using M = Measures;
+  static constexpr ScalarMeasure measures[] = {
+      {"grains", "1", "N, number of grains", &M::grains},
+      {"interior_grains", "1", "N_inves, grains at least 1.5 d from the wall surfaces",
+       &M::interior_grains},
+      {"phi", "1", "packing fraction of interior grains (Eq. S4)", &M::phi},
+      {"phi_uncorrected", "1", "phi_u, the same with overlaps counted twice (Eq. S2)",
+       &M::phi_uncorrected},
+      {"crystalline_percent", "%", "crystalline grains among interior grains",
+       &M::crystalline_percent},
+      {"fcc_percent", "%", "those of FCC structure", &M::fcc_percent},
+      {"hcp_percent", "%", "those of HCP structure", &M::hcp_percent},
+      {"mean_overlap_d", "d", "mean overlap of touching grains (Eq. S3)", &M::mean_overlap},
+      {"contacts_per_grain", "1", "contacts with grains and wall grains, mean over all grains",
+       &M::contacts_per_grain},
+      {"crystallites", "1", "number of crystallites of interior grains", &M::crystallites},
+      {"largest_crystallite", "1", "grains in the largest crystallite", &M::largest_crystallite}};
+  return measures;
+}
+
 Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions) {
   Analysis analysis;
   Measures& all = analysis.measures;

@@ -4,6 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "analysis/crystal.hpp"
@@ -25,7 +29,18 @@ struct Measures {
   double contacts_per_grain = 0;        ///< with grains and wall grains, over all grains
   std::size_t crystallites = 0;         ///< of interior grains
   std::size_t largest_crystallite = 0;  ///< grains in it
+  /// phi after a rest (protocols/rest.hpp); not a number unless a figure asked for it.
+  double phi_at_rest = std::numeric_limits<double>::quiet_NaN();
 };
+
+/// A scalar of Measures, by the name that kept results, tables and exports give it.
+struct ScalarMeasure {
+  std::string_view name;  ///< with its unit, unless it is a count or a pure number
+  std::string_view unit;  ///< "1", "%" or "d"
+  std::string_view meaning;
+  std::variant<double Measures::*, std::size_t Measures::*> member;
+};
+std::span<const ScalarMeasure> all_scalar_measures();
 
 /// One entry per grain, by grain id.
 struct GrainMeasures {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/plot.hpp"
 
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +10,7 @@
 #include "analysis/gnuplot_script.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/plain_file.hpp"
+#include "provenance/io/temporary_folder.hpp"
 
 namespace shearcell {
 namespace {
@@ -32,22 +31,24 @@ std::optional<ProgramOutcome> run_timeless(const std::filesystem::path& folder,
   return run_program(words, folder, {"SOURCE_DATE_EPOCH=0"});
 }
 
-bool made(const ProgramOutcome& outcome, const std::filesystem::path& file) {
-  return outcome.code == 0 && std::filesystem::exists(file) && std::filesystem::file_size(file) > 0;
+/// What a program drew; nothing when it failed.
+std::optional<std::string> drawing(const ProgramOutcome& outcome,
+                                   const std::filesystem::path& file) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 30;
+  auto text = read_plain(file, most_bytes);
+  if (outcome.code != 0 || (text && text->empty())) text.reset();
+  return text;
 }
 
 /// librsvg drops spaces next to a change of style unless xml:space says "preserve", which gnuplot
 /// sets only for two spaces in a row.
-void keep_spaces(const std::filesystem::path& svg) {
-  std::ifstream in(svg, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+std::string with_spaces_kept(std::string text) {
   constexpr std::string_view plain = "<text>";
   constexpr std::string_view keeping = "<text xml:space=\"preserve\">";
   for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at)) {
     text.replace(at, plain.size(), keeping);
   }
-  if (!in) throw AnalysisError("cannot read " + svg.string());
-  write_output(svg, text);
+  return text;
 }
 
 }  // namespace
@@ -73,40 +74,43 @@ void require_own_files(const FigureTable& table, const std::filesystem::path& fo
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder) {
   require_plain_name(table.name);
   std::filesystem::path svg = folder / (table.name + ".svg");
-  const std::filesystem::path script = folder / (table.name + ".gp");
-  if (!std::filesystem::exists(folder / (table.name + ".csv"))) {
-    throw AnalysisError("there is no " + table.name + ".csv in " + folder.string() + " to draw");
-  }
-  write_output(script, gnuplot_script(table));
-  std::filesystem::remove(svg);  // gnuplot would follow a link
+  const std::string script = table.name + ".gp";
+  write_output(folder / script, gnuplot_script(table));
+  const TemporaryFolder apart;
+  write_csv(table, apart.path());
+  write_output(apart.path() / script, gnuplot_script(table));
 
   // -d keeps a user's own defaults out of the figure.
   const std::optional<ProgramOutcome> outcome =
-      run_timeless(folder, {"gnuplot", "-d", script.filename().string()});
+      run_timeless(apart.path(), {"gnuplot", "-d", script});
   if (!outcome) {
     throw AnalysisError("gnuplot is not installed (Debian package gnuplot-nox); the data are in " +
                         folder.string());
   }
-  if (!made(*outcome, svg)) {
-    std::filesystem::remove(svg);
+  auto drawn = drawing(*outcome, apart.path() / svg.filename());
+  if (!drawn) {
+    std::filesystem::remove(svg);  // of other data
     throw AnalysisError("gnuplot could not draw " + table.name + ":\n" + outcome->messages);
   }
-  keep_spaces(svg);
+  write_output(svg, with_spaces_kept(std::move(*drawn)));
   return svg;
 }
 
 std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path& svg) {
   std::filesystem::path pdf = svg;
   pdf.replace_extension(".pdf");
-  std::filesystem::remove(pdf);  // rsvg-convert would follow a link
-  const std::optional<ProgramOutcome> outcome =
-      run_timeless(svg.parent_path(), {"rsvg-convert", "--format=pdf", "--output",
-                                       pdf.filename().string(), svg.filename().string()});
+  const TemporaryFolder apart;
+  const std::filesystem::path made = apart.path() / pdf.filename();
+  const std::optional<ProgramOutcome> outcome = run_timeless(
+      svg.parent_path(),
+      {"rsvg-convert", "--format=pdf", "--output", made.string(), svg.filename().string()});
   if (!outcome) return std::nullopt;
-  if (!made(*outcome, pdf)) {
+  const auto drawn = drawing(*outcome, made);
+  if (!drawn) {
     std::filesystem::remove(pdf);
     throw AnalysisError("rsvg-convert could not read " + svg.string() + ":\n" + outcome->messages);
   }
+  write_output(pdf, *drawn);
   return pdf;
 }
 

@@ -14,12 +14,13 @@ namespace shearcell {
 /// it, drawings by that script.
 void require_own_files(const FigureTable& table, const std::filesystem::path& folder);
 
-/// Draws FOLDER/NAME.svg from FOLDER/NAME.csv, which write_csv() must have written, and keeps the
-/// script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` in that folder draws it again). Returns the path
-/// of the SVG. The same table gives the same bytes with the same gnuplot.
+/// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` in that
+/// folder draws it again from the table that write_csv() puts there). Returns the path of the SVG.
+/// The same table gives the same bytes with the same gnuplot. Drawings are made in a temporary
+/// folder, so that several programs may write to one folder and no cut file is left there.
 ///
 /// Throws AnalysisError if gnuplot is missing (naming the package to install) or fails (with its
-/// message); the CSV and the script stay.
+/// message); the script stays.
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder);
 
 /// The same drawing as PDF beside the SVG, without a date: equal bytes from an equal SVG with the

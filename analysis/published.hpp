@@ -69,10 +69,6 @@ inline constexpr std::int64_t early_cycles = 15;
 inline constexpr double window_low = 0.646;
 inline constexpr double window_high = 0.67;
 
-/// phi that 0.1 s of rest adds to a checkpoint of continuous shear, which is read at the largest
-/// shear rate: measured, N = 2000.
-inline constexpr double phi_gained_at_rest = 0.0004;
-
 /// A difference that does not matter: what two results may differ by and still agree. The margins
 /// are stated here before the runs are made; a published number's own uncertainty is part of its
 /// margin.

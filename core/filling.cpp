@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/filling.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -16,6 +17,7 @@ constexpr double kGrainArea = std::numbers::pi / 4;
 // Volume per area that the grains of a rough wall take from the cell: 0.66 grains per d^2, each a
 // cap of mean volume 0.17 d^3 for recesses of 0 to d/4, and the gaps behind them.
 constexpr double kRoughLayer = 0.175;
+constexpr double kLongestCell = 1e6;      // [d]
 constexpr std::uint32_t kFillStream = 4;  // after the four wall sides
 
 // Each draw has a stream per wall side. Draws after the first follow the stream of the filling,
@@ -39,11 +41,15 @@ std::array<double, 4> draw(std::uint64_t seed, std::size_t grains, std::uint32_t
   return {a[0], a[1], b[0], b[1]};
 }
 
+void look_sometimes(const Look& look, std::uint64_t attempt) {
+  if (look && attempt % 1024 == 0) look();
+}
+
 // Random sequential addition of discs of diameter d on a wall of `length` by `depth`, periodic
 // along the depth; each becomes a wall grain through `place(along, z, recess)`.
 template <class Place>
 void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side, double length,
-                     double depth, Place&& place) {
+                     double depth, const Look& look, Place&& place) {
   const double area = length * depth;
   const auto target =
       static_cast<std::size_t>(geometry.wall_grain_area_fraction * area / kGrainArea);
@@ -53,6 +59,7 @@ void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side
   LinkedCells near(length, 0.0, 1.0, depth, 1.0, target);
   std::vector<Eigen::Vector2d> placed;
   for (std::uint64_t attempt = 0; attempt < attempts && placed.size() < target; ++attempt) {
+    look_sometimes(look, attempt);
     const auto u = draw(seed, geometry.grains, stream, attempt);
     const Eigen::Vector2d p(u[0] * length, u[1] * depth);
     bool free = true;
@@ -85,7 +92,28 @@ double cell_width(const Geometry& geometry) {
   return 0.5 * (low + high);
 }
 
-Cell make_cell(const Geometry& geometry, std::uint64_t seed) {
+double fill_height(const Geometry& geometry) {
+  const double inset = geometry.walls == WallTexture::rough ? kRoughLayer : 0.0;
+  const double width = cell_width(geometry);
+  return static_cast<double>(geometry.grains) * kGrainVolume /
+             (geometry.fill_packing_fraction * width * (width - 2 * inset)) +
+         2 * inset;
+}
+
+double wall_grain_count(const Geometry& geometry) {
+  if (geometry.walls == WallTexture::smooth) return 0;
+  const double width = cell_width(geometry);
+  return geometry.wall_grain_area_fraction / kGrainArea * 2 * width *
+         (fill_height(geometry) + width);
+}
+
+bool too_large(const Geometry& geometry) {
+  const double most_wall_grains = 1e4 + 1e3 * static_cast<double>(geometry.grains);
+  return !(std::max(cell_width(geometry), fill_height(geometry)) <= kLongestCell &&
+           wall_grain_count(geometry) <= most_wall_grains);
+}
+
+Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Look& look) {
   Cell cell;
   cell.width = cell.depth = cell_width(geometry);
   cell.moving = geometry.moving;
@@ -95,16 +123,19 @@ Cell make_cell(const Geometry& geometry, std::uint64_t seed) {
                         " d deep; the periodic depth must be at least 3 d, so that no grain meets "
                         "another through both seams: use more grains");
   }
-  const double inset = geometry.walls == WallTexture::rough ? kRoughLayer : 0.0;
+  if (too_large(geometry)) {
+    throw GeometryError("a cell of " + std::to_string(cell.width) + " d by " +
+                        std::to_string(fill_height(geometry)) + " d is too large for " +
+                        std::to_string(geometry.grains) +
+                        " grains: raise fill_packing_fraction or nominal_packing_fraction");
+  }
   cell.bottom = 0;
-  cell.top = static_cast<double>(geometry.grains) * kGrainVolume /
-                 (geometry.fill_packing_fraction * cell.depth * (cell.width - 2 * inset)) +
-             2 * inset;
+  cell.top = fill_height(geometry);
   if (geometry.walls == WallTexture::smooth) return cell;
 
   const double height = cell.top;
   const auto add = [&](WallSide side, double length, auto&& centre) {
-    add_wall_grains(geometry, seed, side, length, cell.depth,
+    add_wall_grains(geometry, seed, side, length, cell.depth, look,
                     [&](double along, double z, double recess) {
                       cell.wall_grains.push_back({side, centre(along, z, recess)});
                     });
@@ -118,7 +149,7 @@ Cell make_cell(const Geometry& geometry, std::uint64_t seed) {
   return cell;
 }
 
-State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed) {
+State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, const Look& look) {
   State state;
   const auto n = static_cast<Eigen::Index>(geometry.grains);
   state.position.resize(3, n);
@@ -144,6 +175,7 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed) 
                             " grains found a place in the loose filling: lower "
                             "fill_packing_fraction");
       }
+      look_sometimes(look, attempt);
       const auto u = draw(seed, geometry.grains, kFillStream, attempt);
       const Eigen::Vector3d p(0.5 + u[0] * (cell.width - 1.0),
                               cell.bottom + 0.5 + u[1] * (cell.top - cell.bottom - 1.0),

@@ -16,6 +16,7 @@
 // shear before its neighbour list must be rebuilt.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -154,7 +155,9 @@ struct Kernels {
   bool (*prune)(const PruneTask&, std::size_t first_block, std::size_t last_block);
 };
 
-enum class Simd { best, scalar, avx2, avx512 };
+enum class Simd { best, scalar, avx2, avx512, neon };
+/// Every implementation; a machine has some of them, always the scalar one.
+inline constexpr std::array kEverySimd = {Simd::avx512, Simd::avx2, Simd::neon, Simd::scalar};
 
 /// The implementation asked for; null where this machine lacks the instructions.
 const Kernels* find_kernels(Simd simd);

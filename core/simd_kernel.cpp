@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loops over contacts with one grain per vector lane, compiled for AVX2+FMA and AVX-512 and
-// chosen at run time. Operations and their order are those of scalar_kernel.cpp.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
+// The loops over contacts with one grain per vector lane: for AVX2+FMA and AVX-512, chosen at run
+// time, and for NEON. Operations and their order are those of scalar_kernel.cpp.
+#define HWY_DISABLED_TARGETS \
+  (HWY_SSSE3 | HWY_SSE4 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/simd_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -14,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace shearcell {
 namespace HWY_NAMESPACE {
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+#if SHEARCELL_HAS_SIMD
 
 // contact_factor(s) for s >= 0; kDeep: also for s beyond the range of the series.
 template <bool kDeep>
@@ -185,7 +186,9 @@ bool prune(const PruneTask& task, std::size_t first_block, std::size_t last_bloc
 
 const Kernels* kernels() {
   static const Kernels table{
-      HWY_TARGET == HWY_AVX3 ? "AVX-512" : "AVX2",
+      HWY_TARGET == HWY_AVX3   ? "AVX-512"
+      : HWY_TARGET == HWY_AVX2 ? "AVX2"
+                               : "NEON",
       kLanes,
       sum_contacts,
       {{step<false, false>, step<false, true>}, {step<true, false>, step<true, true>}},
@@ -203,8 +206,11 @@ HWY_AFTER_NAMESPACE();
 namespace shearcell {
 
 const Kernels* find_kernels(Simd simd) {
+#if HWY_TARGETS & HWY_NEON  // part of every 64-bit ARM
+  if (simd == Simd::best || simd == Simd::neon) return N_NEON::kernels();
+#else
   const auto supported = hwy::SupportedTargets();
-  (void)supported;
+#endif
 #if HWY_TARGETS & HWY_AVX3
   if ((simd == Simd::best || simd == Simd::avx512) && (supported & HWY_AVX3) != 0) {
     return N_AVX3::kernels();

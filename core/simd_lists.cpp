@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The loops that build and prune the neighbour lists, with one neighbour per vector lane. They
 // decide which pairs the kernel tests, never what it computes.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
+#define HWY_DISABLED_TARGETS \
+  (HWY_SSSE3 | HWY_SSE4 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/simd_lists.cpp"
 #include <hwy/foreach_target.h>
@@ -18,7 +19,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace shearcell {
 namespace HWY_NAMESPACE {
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+#if SHEARCELL_HAS_SIMD
 
 using Offsets = hn::Rebind<std::int32_t, D>;
 constexpr Offsets kOffsets{};

@@ -17,8 +17,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace shearcell {
 namespace HWY_NAMESPACE {
-// Targets without a fused multiply-add would give other bits; they use the scalar kernel.
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+// Targets without a fused multiply-add would give other bits; they use the scalar kernel. Vectors
+// of SVE have no size that the compiler knows, so that no struct can hold them.
+#define SHEARCELL_HAS_SIMD \
+  (HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON)
+#if SHEARCELL_HAS_SIMD
 
 namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<double>;
@@ -31,6 +34,7 @@ struct Vectors {
   V x, y, z;
 };
 
+#if HWY_TARGET != HWY_NEON
 // Rows {x, y, z, margin} of kLanes grains, transposed. `a` .. `d` hold rows 0 .. 3, and in their
 // upper halves, where there are any, rows 4 .. 7.
 HWY_INLINE Vectors transpose(V a, V b, V c, V d, V& margin) {
@@ -44,6 +48,8 @@ HWY_INLINE Vectors transpose(V a, V b, V c, V d, V& margin) {
           hn::OddEvenBlocks(x_z_high, hn::SwapAdjacentBlocks(x_z_low))};
 }
 
+#endif
+
 // Loads kLanes rows; lane l takes the row at rows + offset(l).
 template <class Offset>
 HWY_INLINE Vectors load_rows(const double* HWY_RESTRICT rows, Offset&& offset, V& margin) {
@@ -51,6 +57,14 @@ HWY_INLINE Vectors load_rows(const double* HWY_RESTRICT rows, Offset&& offset, V
   const auto row = [&](std::size_t lane) HWY_ATTR { return hn::LoadU(kHalf, rows + offset(lane)); };
   return transpose(hn::Combine(kD, row(4), row(0)), hn::Combine(kD, row(5), row(1)),
                    hn::Combine(kD, row(6), row(2)), hn::Combine(kD, row(7), row(3)), margin);
+#elif HWY_TARGET == HWY_NEON
+  const double* const a = rows + offset(0);
+  const double* const b = rows + offset(1);
+  const V xy_a = hn::LoadU(kD, a), z_a = hn::LoadU(kD, a + 2);
+  const V xy_b = hn::LoadU(kD, b), z_b = hn::LoadU(kD, b + 2);
+  margin = hn::InterleaveUpper(kD, z_a, z_b);
+  return {hn::InterleaveLower(kD, xy_a, xy_b), hn::InterleaveUpper(kD, xy_a, xy_b),
+          hn::InterleaveLower(kD, z_a, z_b)};
 #else
   return transpose(hn::LoadU(kD, rows + offset(0)), hn::LoadU(kD, rows + offset(1)),
                    hn::LoadU(kD, rows + offset(2)), hn::LoadU(kD, rows + offset(3)), margin);
@@ -63,6 +77,12 @@ HWY_INLINE void store_rows(const Vectors& v, V margin, double* HWY_RESTRICT rows
   const V xy_odd = hn::InterleaveUpper(kD, v.x, v.y);
   const V z_even = hn::InterleaveLower(kD, v.z, margin);
   const V z_odd = hn::InterleaveUpper(kD, v.z, margin);
+#if HWY_TARGET == HWY_NEON
+  hn::StoreU(xy_even, kD, rows);
+  hn::StoreU(z_even, kD, rows + 2);
+  hn::StoreU(xy_odd, kD, rows + 4);
+  hn::StoreU(z_odd, kD, rows + 6);
+#else
   // Rows of the even and odd 128-bit blocks: {x y} of one block beside {z margin} of the same
   // block.
   const V row0 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_even), xy_even);
@@ -83,6 +103,7 @@ HWY_INLINE void store_rows(const Vectors& v, V margin, double* HWY_RESTRICT rows
   hn::StoreU(row1, kD, rows + 4);
   hn::StoreU(row2, kD, rows + 8);
   hn::StoreU(row3, kD, rows + 12);
+#endif
 #endif
 }
 

@@ -10,9 +10,10 @@
 namespace shearcell {
 namespace {
 
-// A step of a large cell takes about 100 us and its parts end within a few of each other: spinning
-// for that time costs less than sleeping. During longer gaps (a checkpoint) the workers sleep.
-constexpr int kSpins = 4000;
+// The parts of a step end within microseconds of each other, so a thread first waits for the others
+// in a short spin and sleeps only then. With fewer cores than threads, the one that it waits for
+// may need this core.
+constexpr int kSpins = 1000, kSpinsWithFewCores = 100;
 
 void relax() {
 #if defined(__x86_64__)
@@ -20,10 +21,22 @@ void relax() {
 #endif
 }
 
+// Waits until `number` is no longer `seen`.
+void wait_for_change(const std::atomic<std::uint32_t>& number, std::uint32_t seen, int spins) {
+  while (number.load(std::memory_order_acquire) == seen) {
+    if (spins-- > 0) {
+      relax();
+    } else {
+      number.wait(seen, std::memory_order_acquire);
+    }
+  }
+}
+
 }  // namespace
 
 Team::Team(std::size_t threads)
-    : workers_(start_threads(threads, [this](std::size_t k) { work_until_stopped(k); })) {}
+    : spins_(threads <= std::thread::hardware_concurrency() ? kSpins : kSpinsWithFewCores),
+      workers_(start_threads(threads, [this](std::size_t k) { work_until_stopped(k); })) {}
 
 Team::~Team() {
   stop_ = true;
@@ -44,32 +57,20 @@ void Team::start_workers() {
 
 void Team::wait_for_workers() {
   const auto all = static_cast<std::uint32_t>(workers_.size());
-  for (int spin = 0;; ++spin) {
+  while (true) {
     const std::uint32_t done = done_.load(std::memory_order_acquire);
     if (done == all) return;
-    if (spin < kSpins) {
-      relax();
-    } else {
-      done_.wait(done, std::memory_order_acquire);
-    }
+    wait_for_change(done_, done, spins_);
   }
 }
 
 void Team::work_until_stopped(std::size_t thread) {
-  std::uint32_t seen = 0;
-  for (;;) {
-    for (int spin = 0; round_.load(std::memory_order_acquire) == seen; ++spin) {
-      if (spin < kSpins) {
-        relax();
-      } else {
-        round_.wait(seen, std::memory_order_acquire);
-      }
-    }
-    ++seen;
+  for (std::uint32_t seen = 0;; ++seen) {
+    wait_for_change(round_, seen, spins_);
     if (stop_) return;
     run_part(thread);
-    done_.fetch_add(1, std::memory_order_release);
-    done_.notify_one();
+    const bool last = done_.fetch_add(1, std::memory_order_release) + 1 == workers_.size();
+    if (last) done_.notify_one();
   }
 }
 

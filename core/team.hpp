@@ -54,6 +54,7 @@ class Team {
   void* argument_ = nullptr;
   std::size_t count_ = 0;
   bool stop_ = false;
+  int spins_;  // before a thread that waits goes to sleep
   // Number of the current round, and of the workers that have done it.
   alignas(64) std::atomic<std::uint32_t> round_{0};
   alignas(64) std::atomic<std::uint32_t> done_{0};

@@ -9,13 +9,16 @@
 namespace shearcell {
 namespace {
 
-constexpr double kLookInterval = 0.1;  // [s]
 constexpr std::uint64_t kLooksPerCheckpoint = 20;
 constexpr double kDenseGrains = 1.2;      // per d^3, of a packing at phi = 0.63
 constexpr double kPressingOverlap = 0.5;  // [d]
 
+std::uint64_t steps_in(double seconds, const Scene& scene) {
+  return static_cast<std::uint64_t>(std::min(seconds / scene.time_step, kMostSteps));
+}
+
 std::uint64_t look_steps(const Scene& scene) {
-  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kLookInterval / scene.time_step));
+  return std::max<std::uint64_t>(1, steps_in(kLookInterval, scene));
 }
 
 // Check intervals that the wall needs to reach a dense packing.
@@ -32,7 +35,7 @@ Settle::Settle(const SettleParameters& parameters, const Scene& scene)
     : parameters_(parameters),
       scene_(scene),
       look_steps_(look_steps(scene)),
-      limit_steps_(static_cast<std::uint64_t>(parameters.time_limit / scene.time_step)) {}
+      limit_steps_(steps_in(parameters.time_limit, scene)) {}
 
 std::uint64_t Settle::press_steps(const Cell& cell, std::size_t grains) const {
   return scene_.gravity == 0 ? 0 : way_steps(cell, grains);

@@ -7,6 +7,12 @@
 
 namespace shearcell {
 
+/// Most time steps of a stage that are counted: every whole number up to it is a double too.
+inline constexpr double kMostSteps = 1e15;
+
+/// Time between checks of whether a packing has settled [s].
+inline constexpr double kLookInterval = 0.1;
+
 struct SettleParameters {
   double force_tolerance = 1e-3;    ///< largest |load - contact force| / (P A) of the moving wall
   double kinetic_tolerance = 1e-8;  ///< largest kinetic energy per grain over P d^3

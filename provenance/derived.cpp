@@ -38,7 +38,8 @@ std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
 
 }  // namespace
 
-DerivedCache::DerivedCache(const fs::path& store_folder) : file_(store_folder / kFile) {
+DerivedCache::DerivedCache(const fs::path& store_folder, bool read_only)
+    : file_(store_folder / kFile), read_only_(read_only) {
   try {
     open();
   } catch (const StoreDamaged&) {
@@ -55,11 +56,13 @@ void DerivedCache::open() {
         file_.string() +
         ": measures are kept in this file, but it is a folder, link or device; remove it");
   }
-  database_.emplace(file_, sqlite::Open::create);
+  if (read_only_ && type == fs::file_type::not_found) return;
+  database_.emplace(file_, read_only_ ? sqlite::Open::existing : sqlite::Open::create);
   sqlite::Database& database = *database_;
   // No syncs: damage by a power cut is found by the hash, and the object is computed again.
   database.execute("PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA synchronous=OFF;");
-  if (database.integer("PRAGMA page_count") == 0) {
+  if (read_only_) database.execute("PRAGMA query_only=ON");
+  if (!read_only_ && database.integer("PRAGMA page_count") == 0) {
     sqlite::WriteTransaction lock(database);
     if (database.integer("SELECT count(*) FROM sqlite_schema") == 0) {
       database.execute(kDerivedTable);
@@ -81,6 +84,7 @@ void DerivedCache::open() {
 }
 
 void DerivedCache::start_over() {
+  if (read_only_) return give_up(file_.string() + ": it is not a database of measures");
   database_.reset();
   std::error_code ignored;
   // A journal left behind would be played back into the new database.

@@ -34,7 +34,8 @@ struct DerivedObject {
 /// nothing can be stored (no space, no permission, a foreign file), `trouble` gives the reason.
 class DerivedCache {
  public:
-  explicit DerivedCache(const std::filesystem::path& store_folder);
+  /// With `read_only` nothing is created, replaced or stored.
+  explicit DerivedCache(const std::filesystem::path& store_folder, bool read_only = false);
 
   /// In the order of `keys`; nothing for those that are not stored.
   std::vector<std::optional<std::vector<std::byte>>> get(std::span<const DerivedKey> keys);
@@ -55,6 +56,7 @@ class DerivedCache {
   void give_up(const std::string& why);
 
   std::filesystem::path file_;
+  bool read_only_;
   std::optional<sqlite::Database> database_;
   std::string trouble_;
 };

@@ -107,7 +107,7 @@ Holder this_process() {
 
 bool lapsed(const Lease& lease, std::uint64_t now) {
   return now >= lease.expires_at_ms || lease.renewed_at_ms > now + kClockSlackMs ||
-         known_dead(lease.holder);
+         now >= lease.renewed_at_ms + kLongestLeaseMs || known_dead(lease.holder);
 }
 
 std::string describe(const Holder& holder) {

@@ -36,9 +36,12 @@ struct Lease {
 /// This process, with a new token.
 Holder this_process();
 
-/// Whether any program may take the lease: it expired, its holder is dead (checked only for
-/// processes of the same boot and namespace), or it was renewed in the future because the clock was
-/// set back.
+/// The longest lease: a later end, of a wrong clock or a forged row, is not waited for.
+inline constexpr std::uint64_t kLongestLeaseMs = 60'000;
+
+/// Whether any program may take the lease: it expired or is older than kLongestLeaseMs, its holder
+/// is dead (checked only for processes of the same boot and namespace), or it was renewed in the
+/// future because the clock was set back.
 bool lapsed(const Lease& lease, std::uint64_t now);
 
 /// "host vm, process 1234".

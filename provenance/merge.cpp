@@ -183,6 +183,7 @@ void copy_objects(const Database& into, ObjectStore& objects, const MergeSource&
 void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction& lock,
                   const MergeSource& source, MergeReport& report) {
   const std::set<std::string> known = content_keys(log);
+  const std::vector<FigureRecord> figures = query_figures(into);
   std::map<std::string, RunMerge> runs;
   for (const RunRecord& run : query_runs(*source.tables)) {
     runs.emplace(run.id, plan_run(into, log, *source.tables, source.events, run));
@@ -208,6 +209,15 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   }
   for (const auto& [id, run] : runs) {
     if (const auto closing = run.closing_event(into)) take(*closing);
+  }
+  // A copied figure follows the store's own in the log; the one that was made later stays the
+  // newest.
+  for (const FigureRecord& copied : query_figures(into)) {
+    const auto own = std::ranges::find(figures, copied.name, &FigureRecord::name);
+    if (own == figures.end() || own->recorded_at <= copied.recorded_at) continue;
+    for (const Event& event : log.events("figure/" + copied.name)) {
+      if (event.seq == own->seq) take(event);
+    }
   }
   if (merged_before(log, source.head)) return;
   const NewEvent merged = events::encode(

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "provenance/events.hpp"
+#include "provenance/queries.hpp"
 
 namespace shearcell {
 
@@ -81,6 +82,7 @@ class Projector {
       : database_(database), event_(event), id_(event.stream.substr(event.stream.find('/') + 1)) {}
 
   void operator()(const events::RunDeclared& e) const {
+    require_cycles(e.target_cycles, e.membership.checkpoint_every);
     // An upsert would also count as an insert of a second ordinal.
     if (Statement(database_, "SELECT 1 FROM runs WHERE id = ?", id_).step()) {
       // A completed run may also have ended early, as other experiments asked for.
@@ -147,10 +149,8 @@ class Projector {
   }
 
   void operator()(const events::FigureGenerated& e) const {
-    // The figure that was generated last stays; a merge may append older ones after it.
     run("INSERT INTO figures VALUES(?,?,?,?) ON CONFLICT DO UPDATE SET seq = excluded.seq, "
-        "recorded_at = excluded.recorded_at, provenance = excluded.provenance "
-        "WHERE excluded.recorded_at >= figures.recorded_at",
+        "recorded_at = excluded.recorded_at, provenance = excluded.provenance",
         id_, event_.seq, event_.recorded_at, e.facts.dump());
   }
 

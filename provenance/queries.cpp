@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "provenance/json_text.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell {
 
@@ -41,6 +42,7 @@ std::vector<Membership> query_memberships(const Database& database, const std::s
     query.get(m.experiment, m.scale, m.variant, labels, m.seed, m.manifest, m.target_cycles,
               m.checkpoint_every);
     m.labels = parse(database, labels);
+    require_cycles(m.target_cycles, m.checkpoint_every);
   }
   return found;
 }
@@ -85,6 +87,18 @@ std::string run_stream(std::string_view id) {
   return fmt::format("run/{}", id);
 }
 
+void require_cycles(std::uint64_t target_cycles, std::uint64_t checkpoint_every) {
+  const auto require = [](const char* name, std::uint64_t value, std::uint64_t low) {
+    if (value >= low && value <= StoreLimits::cycles) return;
+    throw StoreDamaged(
+        fmt::format("the record of a run has {} = {}, outside {} to {}; run "
+                    "`verify`, and restore the store from a backup",
+                    name, value, low, StoreLimits::cycles));
+  };
+  require("target_cycles", target_cycles, 0);
+  require("checkpoint_every", checkpoint_every, 1);
+}
+
 std::vector<RunRecord> query_runs(const Database& database, std::string_view id) {
   Statement query(database,
                   fmt::format("SELECT id, parent, kind, grains, target_cycles, attempts, cycle, "
@@ -100,6 +114,7 @@ std::vector<RunRecord> query_runs(const Database& database, std::string_view id)
               run.step, run.state_hash, run.wall_seconds, run.particle_steps, run.error,
               run.updated_at, resolved, state);
     run.resolved = parse(database, resolved);
+    require_cycles(run.target_cycles, 1);
     run.state = state_of<RunState>(database, state);
     run.memberships = query_memberships(database, run.id);
   }

@@ -17,6 +17,10 @@ NotFound unknown_run(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 std::string run_stream(std::string_view id);  ///< "run/<id>"
 
+/// Throws StoreDamaged when a run is to be longer, or its checkpoints further apart, than any run
+/// of this program. Step counts could overflow.
+void require_cycles(std::uint64_t target_cycles, std::uint64_t checkpoint_every);
+
 /// One run, or all in the order of their declaration ("").
 std::vector<RunRecord> query_runs(const sqlite::Database& database, std::string_view id = "");
 /// Ids with this prefix, at most `limit`.

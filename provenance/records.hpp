@@ -111,7 +111,7 @@ struct CheckpointRecord {
 };
 
 struct FigureRecord {
-  std::string name;
+  std::string name;           ///< "drag/S2"
   std::uint64_t seq = 0;      ///< the event that recorded it
   std::string recorded_at;    ///< UTC
   nlohmann::json provenance;  ///< inputs and SHA-256 of the outputs

@@ -45,17 +45,6 @@ constexpr std::array<Migration, 1> kMigrations = {{
 }};
 static_assert(kMigrations.back().from + 1 == kSchemaVersion);
 
-void require_plain_file(const std::filesystem::path& file) {
-  const auto type = std::filesystem::symlink_status(file).type();
-  if (type != std::filesystem::file_type::regular &&
-      type != std::filesystem::file_type::not_found) {
-    throw StoreDamaged(fmt::format(
-        "{}: the log of a store is a regular file, but this is a folder, link or device; remove it "
-        "or name another store folder",
-        file.string()));
-  }
-}
-
 void create_tables(sqlite::Database& database) {
   sqlite::WriteTransaction lock(database);
   // Another process may have created them while this one waited for the lock.
@@ -126,7 +115,6 @@ void migrate(sqlite::Database& database) {
 
 sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open mode,
                                bool read_only) {
-  require_plain_file(file);
   sqlite::Database database(file, mode);
   // Rollback journal instead of WAL: SQLite before 3.51.3 can lose committed transactions when
   // several connections checkpoint a WAL at once. EXTRA also syncs the folder after the journal is

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
 
 #include <stdexcept>
 #include <utility>
@@ -15,20 +16,71 @@ namespace shearcell::sqlite {
 namespace {
 
 constexpr int kBusyTimeoutMs = 30'000;
+// SQLite's 512 less the longest suffix, "-journal".
+constexpr std::size_t kLongestName = 504;
+constexpr const char* kInMemory = ":memory:";
+
+void require_same_file(const std::string& file, std::uint64_t device, std::uint64_t inode,
+                       const std::string& name) {
+  struct stat now {};
+  if (stat(file.c_str(), &now) == 0 && now.st_dev == device && now.st_ino == inode) return;
+  throw Moved(
+      fmt::format("{}: it was moved, replaced or deleted while this program used it, so nothing "
+                  "more is written; name its new place with --store and run again",
+                  name));
+}
+
+void require_plain_files(const std::string& name) {
+  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
+    const std::string file = name + suffix;
+    struct stat found {};
+    if (lstat(file.c_str(), &found) != 0) continue;
+    if (!S_ISREG(found.st_mode)) {
+      throw StoreDamaged(fmt::format(
+          "{}: the database is in regular files, but this is a folder, link or device; remove it "
+          "or name another store folder",
+          file));
+    }
+    if (found.st_nlink < 2) continue;
+    throw StoreDamaged(fmt::format(
+        "{0}: the file has {1} names (hard links), so each use of this store would damage another; "
+        "copy stores with `cp -a`, and separate this one by `cp -p {0} {0}.own && mv {0}.own {0}`",
+        file, found.st_nlink));
+  }
+}
 
 }  // namespace
+
+std::string full_name(const std::filesystem::path& file) {
+  // Absolute: "file:x" would be a URI.
+  std::string name = std::filesystem::absolute(file).string();
+  if (name.size() <= kLongestName) return name;
+  throw UsageError(
+      fmt::format("{}: the full path has {} bytes, and SQLite opens at most {}; use a shorter one",
+                  file.string(), name.size(), kLongestName));
+}
 
 void Database::Close::operator()(sqlite3* handle) const {
   sqlite3_close_v2(handle);
 }
 
 Database::Database(const std::filesystem::path& file, Open mode) : name_(file.string()) {
+  if (name_ != kInMemory) {
+    full_name_ = sqlite::full_name(file);
+    require_plain_files(full_name_);
+  }
   sqlite3* handle = nullptr;
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE |
                     (mode == Open::create ? SQLITE_OPEN_CREATE : 0);
-  const int code = sqlite3_open_v2(name_.c_str(), &handle, flags, nullptr);
+  const int code =
+      sqlite3_open_v2(full_name_.empty() ? kInMemory : full_name_.c_str(), &handle, flags, nullptr);
   handle_.reset(handle);
   if (code != SQLITE_OK) fail(code, "open");
+  struct stat opened {};
+  if (!full_name_.empty() && stat(full_name_.c_str(), &opened) == 0) {
+    device_ = opened.st_dev;
+    inode_ = opened.st_ino;
+  }
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, static_cast<int>(StoreLimits::value_bytes));
   sqlite3_limit(handle, SQLITE_LIMIT_ATTACHED, 0);
@@ -39,10 +91,18 @@ Database::Database(const std::filesystem::path& file, Open mode) : name_(file.st
 }
 
 Database Database::in_memory() {
-  return Database(":memory:", Open::create);
+  return Database(kInMemory, Open::create);
+}
+
+void Database::require_in_place() const {
+  if (inode_ == 0 || sqlite3_get_autocommit(handle_.get()) == 0) return;
+  require_same_file(full_name_, device_, inode_, name_);
+  require_plain_files(full_name_);
 }
 
 void Database::fail(int code, std::string_view doing) const {
+  // SQLite would call it an I/O error.
+  if (inode_ != 0) require_same_file(full_name_, device_, inode_, name_);
   const char* reason = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(code);
   switch (code & 0xff) {
     case SQLITE_NOTADB:
@@ -73,6 +133,7 @@ void Database::fail(int code, std::string_view doing) const {
 }
 
 void Database::execute(const std::string& sql) {
+  require_in_place();
   const int code = sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) fail(code, "write");
 }
@@ -89,6 +150,7 @@ void Database::Finalize::operator()(sqlite3_stmt* handle) const {
 
 Statement::Statement(const Database& database, std::string_view sql)
     : database_(&database), sql_(sql) {
+  database.require_in_place();
   if (auto idle = database.idle_.extract(sql_)) {
     handle_ = std::move(idle.mapped());
     return;

@@ -12,6 +12,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "provenance/errors.hpp"
+
 struct sqlite3;
 struct sqlite3_stmt;
 
@@ -19,9 +21,24 @@ namespace shearcell::sqlite {
 
 enum class Open { existing, create };
 
+/// The database was moved, replaced or deleted while this program used it.
+class Moved : public MachineError {
+ public:
+  using MachineError::MachineError;
+};
+
+/// The absolute name under which a database is opened. Throws UsageError when it is longer than
+/// SQLite's own limit.
+std::string full_name(const std::filesystem::path& file);
+
 /// One connection, for one thread at a time. All functions throw StoreDamaged when the file is not
-/// a valid database, StoreBusy when another process kept it locked, and std::runtime_error when the
-/// machine fails (disk full, no permission). Messages name the file.
+/// a valid database, StoreBusy when another process kept it locked, Moved when its name has
+/// come to stand for another file, and std::runtime_error when the machine fails (disk full, no
+/// permission). Messages name the file.
+///
+/// The file and SQLite's own files beside it must be regular files without hard links: SQLite finds
+/// its journal by the name of the file, so a second name of the file would make it play back a
+/// journal of another database, or none.
 class Database {
  public:
   Database(const std::filesystem::path& file, Open mode);
@@ -33,6 +50,8 @@ class Database {
   std::int64_t integer(const std::string& sql);
   const std::string& name() const { return name_; }
   sqlite3* handle() const { return handle_.get(); }
+  /// Throws Moved. Called before each transaction, which may play back a journal.
+  void require_in_place() const;
   /// Throws the exception for an SQLite result code.
   [[noreturn]] void fail(int code, std::string_view doing) const;
 
@@ -47,6 +66,8 @@ class Database {
   };
   using Prepared = std::unique_ptr<sqlite3_stmt, Finalize>;
   std::string name_;
+  std::string full_name_;  ///< "" in memory
+  std::uint64_t device_ = 0, inode_ = 0;
   std::unique_ptr<sqlite3, Close> handle_;
   /// Prepared statements that are not in use, by their text: preparing takes longer than running.
   mutable std::unordered_map<std::string, Prepared> idle_;

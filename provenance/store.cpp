@@ -25,6 +25,7 @@ constexpr const char* kLogFile = "store.sqlite";
 std::filesystem::path prepare_folder(std::filesystem::path folder, Access access) {
   namespace fs = std::filesystem;
   const std::string name = folder.string();
+  sqlite::full_name(folder / kLogFile);  // or says that it is too long, before anything is made
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw StoreDamaged(fmt::format(
         "{}: a store is a folder, but this is a file; remove it or name another store", name));
@@ -74,7 +75,9 @@ Store::Store(std::filesystem::path folder, Access access, const StoreOptions& op
                         access == Access::read)),
       log_(database_),
       self_(this_process()),
-      lease_ms_(static_cast<std::uint64_t>(std::max(0.0, options.lease_seconds) * 1000)) {}
+      lease_ms_(std::min(kLongestLeaseMs,
+                         static_cast<std::uint64_t>(std::max(0.0, options.lease_seconds) * 1000))) {
+}
 
 Store::~Store() {
   if (held_.empty()) return;
@@ -162,7 +165,15 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   const std::string stream = "manifest/" + sha256;
   const std::scoped_lock guard(mutex_);
   sqlite::WriteTransaction lock(database_);
-  if (log_.version(stream) == 0) {
+  const std::string experiment = info.is_object() ? info.value("experiment", "") : "";
+  sqlite::Statement newest(
+      database_,
+      "SELECT stream FROM events WHERE stream >= 'manifest/' AND stream < 'manifest0' "
+      "AND json_valid(payload) AND json_extract(payload, '$.info.experiment') = ? "
+      "ORDER BY seq DESC LIMIT 1",
+      experiment);
+  const bool known = log_.version(stream) > 0;
+  if (!known || (newest.step() && newest.text(0) != stream)) {
     append(stream,
            encode(events::ManifestRegistered{sha256, std::string(path), std::string(text), info}),
            lock);
@@ -202,7 +213,7 @@ void Store::declare_run(const RunDeclaration& declared) {
 
 std::uint64_t Store::start_run(const std::string& id, const json& host,
                                const std::optional<std::string>& from_sha256,
-                               const std::string& parent_checkpoint) {
+                               const std::string& parent_checkpoint, bool fill) {
   must_write();
   const std::scoped_lock guard(mutex_);
   if (held_.contains(id)) {
@@ -216,8 +227,8 @@ std::uint64_t Store::start_run(const std::string& id, const json& host,
     throw RunHeld(
         fmt::format("run {}: another program computes it ({})", id, describe(lease->holder)));
   }
-  if (known.front().state == RunState::completed) {
-    throw ConcurrencyConflict(fmt::format("run {}: it is completed", id));
+  if ((known.front().state == RunState::completed) != fill) {
+    throw ConcurrencyConflict(fmt::format("run {}: it is {}completed", id, fill ? "not " : ""));
   }
   const std::uint64_t attempt = known.front().attempts + 1;
   const json process = {{"host", self_.host}, {"pid", self_.pid}, {"token", self_.token}};
@@ -233,7 +244,7 @@ std::uint64_t Store::start_run(const std::string& id, const json& host,
     if (!parent_checkpoint.empty()) started.parent_checkpoint = parent_checkpoint;
     begun = std::move(started);
   }
-  if (known.front().step > from_step) {
+  if (known.front().step > from_step && !fill) {
     throw ConcurrencyConflict(
         fmt::format("run {}: another program has recorded step {}; continue from there", id,
                     known.front().step));
@@ -275,6 +286,10 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
   // an event without its file.
   const std::string state = state_hash(checkpoint);
   const std::vector<std::byte> bytes = encode_checkpoint(checkpoint);
+  {
+    const std::scoped_lock guard(mutex_);
+    database_.require_in_place();  // else the file would go to the store that is now at this place
+  }
   const ObjectInfo object = objects_.put(bytes);
   const std::scoped_lock guard(mutex_);
   const auto old = query_checkpoint(database_, id, object.sha256);

@@ -30,7 +30,8 @@ enum class Access {
 };
 
 struct StoreOptions {
-  double lease_seconds = 60;  ///< a lease that is not renewed for so long expires
+  /// A lease that is not renewed for so long expires; at most kLongestLeaseMs.
+  double lease_seconds = static_cast<double>(kLongestLeaseMs) / 1000;
 };
 
 /// The stream of record_submission.
@@ -61,7 +62,8 @@ class Store {
 
   // --- Recording ---
 
-  /// Stores the text once; returns its SHA-256.
+  /// Stores the text and returns its SHA-256. Records nothing if this text is what was registered
+  /// last of info["experiment"].
   std::string register_manifest(std::string_view text, std::string_view path,
                                 const nlohmann::json& info);
 
@@ -73,10 +75,12 @@ class Store {
   /// Starts an attempt and returns its number, from 1. With `from_sha256` it continues from this
   /// checkpoint of the run; `parent_checkpoint` is only recorded. Throws NotFound when the run or
   /// the checkpoint is unknown, RunHeld when another program computes the run, ConcurrencyConflict
-  /// when this object holds it, when it is completed, or when a later checkpoint was recorded.
+  /// when this object holds it, when it is completed, or when a later checkpoint was recorded. With
+  /// `fill` it must be completed: the attempt records checkpoints that the run lacks before its
+  /// last one, and completes it again.
   std::uint64_t start_run(const std::string& id, const nlohmann::json& host,
                           const std::optional<std::string>& from_sha256 = std::nullopt,
-                          const std::string& parent_checkpoint = "");
+                          const std::string& parent_checkpoint = "", bool fill = false);
 
   /// Renews the leases of all held runs; call it several times within `lease_seconds`. Runs that
   /// another program took are no longer held.
@@ -104,7 +108,8 @@ class Store {
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr);
 
-  /// `provenance` holds the inputs and the SHA-256 of the outputs.
+  /// `name` is that of the figure's stream, "drag/S2"; `provenance` holds the inputs and the
+  /// SHA-256 of the outputs.
   void record_figure(const std::string& name, const nlohmann::json& provenance);
 
   /// `type` is "CampaignSubmitted" or "JobQueued". Throws ConcurrencyConflict when the stream does

@@ -127,19 +127,12 @@ Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
     require_kept();  // it may have been pruned since the record was read
     throw;
   }
-  Checkpoint checkpoint;
+  const RunRecord of = run(record.run);
   try {
-    checkpoint = decode_checkpoint(bytes);
-    require_plausible(checkpoint);
+    return read_checkpoint(bytes, record, of);
   } catch (const StoreDamaged& damage) {
     throw StoreDamaged(fmt::format("{}: {}", file, damage.what()));
   }
-  if (checkpoint.run != record.run || state_hash(checkpoint) != record.state_hash) {
-    throw StoreDamaged(fmt::format(
-        "{}: its state is not the recorded one; `resume` continues from an older checkpoint",
-        file));
-  }
-  return checkpoint;
 }
 
 std::vector<FigureRecord> Store::figures() const {

@@ -4,16 +4,57 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
+#include "provenance/checkpoint.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/events.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/queries.hpp"
+#include "provenance/sha256.hpp"
 
 namespace shearcell {
 
 namespace {
+
+void require_same(std::string_view what, const auto& in_file, const auto& in_log) {
+  if (in_file == in_log) return;
+  throw StoreDamaged(
+      fmt::format("its {} is {}, and the log says {}; `resume` continues from an older checkpoint",
+                  what, in_file, in_log));
+}
+
+using Observables = std::map<std::string, double>;
+
+std::string value_of(const Observables& observables, const std::string& name) {
+  const auto found = observables.find(name);
+  return found == observables.end() ? "absent" : fmt::format("{}", found->second);
+}
+
+void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const RunRecord& run) {
+  require_same("run", c.run, record.run);
+  require_same("name", ObjectStore::file_of(record.sha256), record.file);
+  require_same("step", c.state.step, record.step);
+  require_same("cycle", c.cycle, record.cycle);
+  require_same("time_s", c.time_s, record.time_s);
+  require_same("number of grains", static_cast<std::uint64_t>(c.state.position.cols()), run.grains);
+  for (const auto& [name, unit] :
+       {std::pair("diameter_m", c.units.diameter_m), std::pair("mass_kg", c.units.mass_kg)}) {
+    const nlohmann::json::json_pointer place(std::string("/parameters/") + name);
+    if (!run.resolved.is_object() || !run.resolved.contains(place)) continue;
+    const nlohmann::json& parameter = run.resolved.at(place);
+    require_same(name, unit, parameter.is_number() ? parameter.get<double>() : std::nan(""));
+  }
+  Observables all = c.observables;
+  all.insert(record.observables.begin(), record.observables.end());
+  for (const auto& [name, value] : all) {
+    require_same("observable " + name, value_of(c.observables, name),
+                 value_of(record.observables, name));
+  }
+  require_same("state", state_hash(c), record.state_hash);
+}
 
 using Severity = Finding::Severity;
 using Rows = std::map<std::string, std::vector<std::string>>;
@@ -65,6 +106,11 @@ sqlite::Database derive(const EventLog& log, VerifyReport& report) {
   log.for_each([&](const Event& event) {
     try {
       apply(fresh, event);
+      const events::Any decoded = events::decode(event);
+      const auto* manifest = std::get_if<events::ManifestRegistered>(&decoded);
+      if (manifest != nullptr && event.stream != "manifest/" + sha256_hex(manifest->text)) {
+        throw StoreDamaged("the manifest's text has another SHA-256");
+      }
     } catch (const StoreDamaged& damage) {
       const bool of_run = event.stream.starts_with("run/");
       report.findings.push_back({Severity::error, fmt::format("event {}", event.seq),
@@ -100,7 +146,8 @@ bool pruned_meanwhile(const sqlite::Database& database, const CheckpointRecord& 
   }
 }
 
-void check_objects(const std::vector<CheckpointRecord>& records, const sqlite::Database& database,
+void check_objects(const std::vector<CheckpointRecord>& records,
+                   const std::map<std::string, RunRecord>& runs, const sqlite::Database& database,
                    const ObjectStore& objects, VerifyReport& report) {
   std::set<std::string> known;
   for (const CheckpointRecord& record : records) {
@@ -115,9 +162,10 @@ void check_objects(const std::vector<CheckpointRecord>& records, const sqlite::D
       continue;
     }
     try {
-      objects.get(record.sha256, record.size);
+      const std::vector<std::byte> bytes = objects.get(record.sha256, record.size);
       ++report.checkpoints;
       report.bytes += record.size;
+      read_checkpoint(bytes, record, runs.at(record.run));
     } catch (const std::exception& problem) {
       if (pruned_meanwhile(database, record)) continue;
       report.findings.push_back(
@@ -151,6 +199,14 @@ void check_reproduced(const std::vector<CheckpointRecord>& records, VerifyReport
 
 }  // namespace
 
+Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRecord& record,
+                           const RunRecord& run) {
+  Checkpoint checkpoint = decode_checkpoint(image);
+  require_plausible(checkpoint);
+  require_recorded(checkpoint, record, run);
+  return checkpoint;
+}
+
 bool VerifyReport::ok() const {
   return std::none_of(findings.begin(), findings.end(),
                       [](const Finding& finding) { return finding.severity == Severity::error; });
@@ -160,6 +216,7 @@ VerifyReport verify(sqlite::Database& database, const EventLog& log, const Objec
                     const std::optional<Head>& against) {
   VerifyReport report;
   std::vector<CheckpointRecord> records;
+  std::map<std::string, RunRecord> runs;
   try {
     // One snapshot of the log; the files are read after it.
     const sqlite::ReadTransaction snapshot(database);
@@ -168,12 +225,13 @@ VerifyReport verify(sqlite::Database& database, const EventLog& log, const Objec
     if (against) check_extends(log, *against, report);
     const sqlite::Database fresh = derive(log, report);
     compare_tables(projection_rows(database), projection_rows(fresh), report);
+    for (RunRecord& run : query_runs(fresh)) runs.emplace(run.id, std::move(run));
     records = query_checkpoints(fresh);
   } catch (const StoreDamaged& damage) {
     report.findings.push_back({Severity::error, database.name(), "", damage.what()});
   }
   check_reproduced(records, report);
-  check_objects(records, database, objects, report);
+  check_objects(records, runs, database, objects, report);
   return report;
 }
 

@@ -4,11 +4,14 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "provenance/checkpoint.hpp"
 #include "provenance/event_log.hpp"
 #include "provenance/objects.hpp"
+#include "provenance/records.hpp"
 
 namespace shearcell {
 
@@ -32,6 +35,12 @@ struct VerifyReport {
   /// Without errors.
   bool ok() const;
 };
+
+/// Decodes the file of a record of this run. Throws StoreDamaged also when it is not plausible, or
+/// when its run, step, cycle, time, units, number of grains, observables or state are not those
+/// that the record and the run's parameters say.
+Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRecord& record,
+                           const RunRecord& run);
 
 /// Damage is reported as findings, and the check continues. With `against`, a head of earlier, a
 /// log that does not extend it is damaged. Throws only when the machine fails.

@@ -48,8 +48,8 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
   return all;
 }
 
-const std::array<const char*, 5> amplitude_colours = {"#6a3d9a", "#000000", "#2ca02c", "#1f4fd8",
-                                                      "#d62728"};
+const std::array<const char*, 5> amplitude_colours = {"#6a3d9a", "#000000", "#009e73", "#0072b2",
+                                                      "#d55e00"};
 
 Text title_of(double amplitude) {
   return italic("A") + fmt::format(" = {}", amplitude);
@@ -93,7 +93,7 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
             .low = -1.05,
             .high = 1.05,
             .clip = true},
-      .lines = {{0}}};
+      .lines = {{.at = 0, .title = "growth as probable as shrinking"}}};
   for (std::size_t k = 0; k < all.size(); ++k) {
     const AmplitudeGrowth& one = all[k];
     const std::string colour = colour_of(k);
@@ -107,7 +107,11 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
     }
     chart.series.push_back(std::move(fit));
     chart.series.push_back(std::move(data));
-    chart.lines.push_back({one.published->critical_size, true, true, colour});
+    chart.lines.push_back({.at = one.published->critical_size,
+                           .vertical = true,
+                           .stub = true,
+                           .colour = colour,
+                           .title = "the supplement's critical sizes"});
   }
   return chart;
 }
@@ -186,7 +190,9 @@ FigureTable largest_table(std::span<const FigureRun> runs, std::span<const Ampli
   std::vector<ReferenceLine> lines;
   for (std::size_t k = 0; k < all.size(); ++k) {
     styles.push_back({all[k].amplitude, title_of(all[k].amplitude), colour_of(k), point_of(k)});
-    lines.push_back({.at = all[k].published->critical_size, .colour = colour_of(k)});
+    lines.push_back({.at = all[k].published->critical_size,
+                     .colour = colour_of(k),
+                     .title = "the supplement's critical sizes"});
   }
   const MeasureColumn largest{"largest_crystallite", "grains", [](const Measures& m) {
                                 return std::max(1.0, static_cast<double>(m.largest_crystallite));

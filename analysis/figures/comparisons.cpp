@@ -71,25 +71,12 @@ Verdict same_load(const char* name, Quantity quantity, const Curve* a, const Cur
       scalar, runs_of(a), runs_of(b));
 }
 
-/// phi of early cycles as it would be after a rest. The checkpoints of continuous shear are read at
-/// the largest shear rate.
-Scalar early_phi_at_rest() {
-  Scalar scalar = early_phi();
-  scalar.name =
-      fmt::format("{} (continuous shear: + {} for 0.1 s of rest)", scalar.name, phi_gained_at_rest);
-  scalar.of = [read = scalar.of](const FigureRun& run) {
-    RunValue value = read(run);
-    if (parameter_of(run, "protocol") == "continuous") value.value += phi_gained_at_rest;
-    return value;
-  };
-  return scalar;
-}
-
 // What a manifest has when it does not say (experiments/manifest/README.md; a test compares).
 constexpr double default_wall_mass = 10;    // [m/d^2]
 constexpr double default_wall_drag = 1000;  // [m/(d^2 s)]
 
 constexpr const char* unchanged = "default";
+constexpr const char* lifting = "bottom, under P alone";
 
 /// "wall mass ×3", "wall mass /3", or "".
 std::string times(const char* what, double ratio) {
@@ -126,7 +113,7 @@ Text seconds(const char* mantissa) {
 
 FigureResult figure_s2(Runs runs) {
   const std::vector<CurveStyle> styles = {
-      {"still", fluid_is("0"), "#d62728", 9},
+      {"still", fluid_is("0"), "#d55e00", 9},
       {"cell", fluid_is(italic("v") + subscript("cell")), "#000000", 5}};
   const auto curves = curves_of(runs, "fluid", styles);
   return drawn(
@@ -137,9 +124,9 @@ FigureResult figure_s2(Runs runs) {
 FigureResult figure_s3(Runs runs) {
   // By the number of steps in a cycle of 2 s.
   const std::vector<CurveStyle> styles = {{76923, seconds("2.6"), "#000000", 5},
-                                          {57143, seconds("3.5"), "#d62728", 7},
-                                          {45600, seconds("4.4"), "#1f4fd8", 9},
-                                          {28571, seconds("7.0"), "#2ca02c", 11}};
+                                          {57143, seconds("3.5"), "#d55e00", 7},
+                                          {45600, seconds("4.4"), "#0072b2", 9},
+                                          {28571, seconds("7.0"), "#009e73", 11}};
   const auto curves = curves_of(runs, "steps_per_cycle", styles);
   const Curve* main_text = curve_with(curves, 45600);
   std::vector<Verdict> verdicts;
@@ -158,10 +145,21 @@ FigureResult figure_s3(Runs runs) {
                std::move(verdicts));
 }
 
+/// The wall that moves, and where the pressure acts if it lifts the grains with it. Records of runs
+/// leave `pressure_at` out at `moving_wall`.
+nlohmann::json load_of(const FigureRun& run) {
+  nlohmann::json moves = parameter_of(run, "moving_wall");
+  const nlohmann::json at = parameter_of(run, "pressure_at");
+  if (moves == "bottom" && (at.is_null() || at == "moving_wall")) moves = lifting;
+  return moves;
+}
+
 FigureResult figure_s4(Runs runs) {
-  const std::vector<CurveStyle> styles = {{"bottom", "top fixed", "#d62728", 9},
-                                          {"top", "top moves vertically", "#000000", 5}};
-  const auto curves = curves_of(runs, "moving_wall", styles);
+  const std::vector<CurveStyle> styles = {
+      {"bottom", "top fixed", "#d55e00", 9},
+      {"top", "top moves vertically", "#000000", 5},
+      {lifting, Text("top fixed, ") + italic("P") + " on the bottom wall", "#0072b2", 11}};
+  const auto curves = curves_by(runs, find_figure("S4")->keys, load_of, styles);
   const Curve* top = curve_with(curves, "top");
   const Curve* bottom = curve_with(curves, "bottom");
   std::vector<Verdict> verdicts = similar("B.6", "both moving walls", top, bottom);
@@ -173,7 +171,7 @@ FigureResult figure_s4(Runs runs) {
 
 FigureResult figure_b5(Runs runs) {
   const std::vector<CurveStyle> styles = {{"continuous", "continuous shear", "#000000", 5},
-                                          {"paused", "periodically paused shear", "#d62728", 7}};
+                                          {"paused", "periodically paused shear", "#d55e00", 7}};
   const auto curves = curves_of(runs, "protocol", styles);
   const Curve* paused = curve_with(curves, "paused");
   const Curve* continuous = curve_with(curves, "continuous");
@@ -185,14 +183,15 @@ FigureResult figure_b5(Runs runs) {
       {compare({fmt::format("B.5: at cycles 1 to {} phi of paused shear is higher by more than {}",
                             early_cycles, margin_pause_gain.value),
                 margin_pause_gain.value, Claimed::above},
-               early_phi_at_rest(), runs_of(paused), runs_of(continuous)),
+               over_cycles("phi at rest", &Measures::phi_at_rest, 1, early_cycles), runs_of(paused),
+               runs_of(continuous)),
        same_percentage("B.5", "both relaxations", paused, continuous)});
 }
 
 // Not in the supplement, which says only that crystallites appear away from the walls (E).
 FigureResult figure_walls(Runs runs) {
   const std::vector<CurveStyle> styles = {{"rough", "rough walls", "#000000", 5},
-                                          {"smooth", "smooth walls", "#d62728", 7}};
+                                          {"smooth", "smooth walls", "#d55e00", 7}};
   const auto curves = curves_of(runs, "walls", styles);
   const Curve* rough = curve_with(curves, "rough");
   const Curve* smooth = curve_with(curves, "smooth");
@@ -220,12 +219,12 @@ FigureResult figure_walls(Runs runs) {
 
 FigureResult figure_choices(Runs runs) {
   const std::vector<CurveStyle> styles = {{unchanged, "default", "#000000", 5},
-                                          {"wall mass ×3", "wall mass ×3", "#d62728", 9},
-                                          {"wall mass /3", "wall mass /3", "#d62728", 8},
-                                          {"wall drag ×3", "wall drag ×3", "#1f4fd8", 11},
-                                          {"wall drag /3", "wall drag /3", "#1f4fd8", 10},
-                                          {"other wall grains", "other wall grains", "#2ca02c", 7}};
-  const auto curves = curves_by(runs, choice_of, styles);
+                                          {"wall mass ×3", "wall mass ×3", "#d55e00", 9},
+                                          {"wall mass /3", "wall mass /3", "#d55e00", 8},
+                                          {"wall drag ×3", "wall drag ×3", "#0072b2", 11},
+                                          {"wall drag /3", "wall drag /3", "#0072b2", 10},
+                                          {"other wall grains", "other wall grains", "#009e73", 7}};
+  const auto curves = curves_by(runs, find_figure("choices")->keys, choice_of, styles);
   std::vector<Verdict> verdicts;
   const Curve* reference = curve_with(curves, unchanged);
   for (std::size_t k = 1; k < styles.size(); ++k) {

@@ -2,9 +2,9 @@
 #include "analysis/figures/curves.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string_view>
@@ -37,11 +37,53 @@ std::string plain_field(std::string variant) {
   return variant;
 }
 
-CurveStyle style_of_other(const std::string& variant, std::size_t index) {
-  static const std::array<const char*, 6> colours = {"#1f78b4", "#33a02c", "#ff7f00",
-                                                     "#6a3d9a", "#b15928", "#000000"};
-  return {nullptr, variant, colours[index % colours.size()], 6 + 2 * static_cast<int>(index % 4)};
+/// Values of `keys` in a run.
+std::vector<nlohmann::json> values_of(const FigureRun& run, std::span<const std::string> keys) {
+  std::vector<nlohmann::json> values;
+  for (const std::string& key : keys) values.push_back(parameter_of(run, key));
+  return values;
 }
+
+template <class Value>
+int rank_in(const std::set<Value>& all, const Value& value) {
+  return static_cast<int>(std::distance(all.begin(), all.find(value)));
+}
+
+/// Styles by what varies: ranks of the values decide colour and symbol. Each pair comes once.
+class StylesOfOthers {
+ public:
+  explicit StylesOfOthers(std::span<const FigureRun> runs) : keys_(varied_keys(runs)) {
+    for (const FigureRun& run : runs) {
+      std::vector<nlohmann::json> values = values_of(run, keys_);
+      if (!values.empty()) firsts_.insert(values.front());
+      if (!values.empty()) values.erase(values.begin());
+      rests_.insert(std::move(values));
+    }
+  }
+
+  /// Place among the variants.
+  std::pair<int, int> place(const FigureRun& run) const {
+    std::vector<nlohmann::json> values = values_of(run, keys_);
+    const int first = values.empty() ? 0 : rank_in(firsts_, values.front());
+    if (!values.empty()) values.erase(values.begin());
+    return {first, rank_in(rests_, values)};
+  }
+  CurveStyle style(const FigureRun& run) const {
+    const auto [first, rest] = place(run);
+    // 5, 7, 9, 11, 13: filled symbols; where one key varies, they change with the colour.
+    const int symbol = rests_.size() > 1 ? rest : first;
+    constexpr int symbols = 5;
+    return {nullptr, run.name.empty() ? run.variant : run.name,
+            safe_colours[static_cast<std::size_t>(first) % safe_colours.size()],
+            5 + 2 * (symbol % symbols)};
+  }
+  const std::vector<std::string>& keys() const { return keys_; }
+
+ private:
+  std::vector<std::string> keys_;
+  std::set<nlohmann::json> firsts_;
+  std::set<std::vector<nlohmann::json>> rests_;
+};
 
 std::vector<CurvePoint> points_of(std::span<const FigureRun* const> runs) {
   std::map<std::int64_t, std::vector<const Measures*>> found;
@@ -62,13 +104,17 @@ std::vector<CurvePoint> points_of(std::span<const FigureRun* const> runs) {
   return points;
 }
 
-std::string column_of(const MeasureColumn& measure, const char* statistic) {
+const MeasureColumn crystalline = {"crystalline", "percent", &Measures::crystalline_percent};
+
+}  // namespace
+
+std::string column_name(const MeasureColumn& measure, const char* statistic) {
   return measure.name + "_" + statistic + (measure.unit.empty() ? "" : "_" + measure.unit);
 }
 
 void add_columns(const MeasureColumn& measure, std::vector<std::string>& columns) {
-  columns.push_back(column_of(measure, "mean"));
-  columns.push_back(column_of(measure, "standard_error"));
+  columns.push_back(column_name(measure, "mean"));
+  columns.push_back(column_name(measure, "standard_error"));
 }
 
 void add_values(const RunStatistics& statistics, std::vector<TableValue>& row) {
@@ -76,22 +122,24 @@ void add_values(const RunStatistics& statistics, std::vector<TableValue>& row) {
   row.push_back(table_value(statistics.standard_error));
 }
 
-const MeasureColumn crystalline = {"crystalline", "percent", &Measures::crystalline_percent};
-
-}  // namespace
-
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
                              std::span<const CurveStyle> styles) {
   return curves_by(
-      runs, [&](const FigureRun& run) { return parameter_of(run, parameter); }, styles);
+      runs, std::span(&parameter, 1),
+      [&](const FigureRun& run) { return parameter_of(run, parameter); }, styles);
 }
 
-std::vector<Curve> curves_by(std::span<const FigureRun> runs,
+std::vector<Curve> curves_by(std::span<const FigureRun> runs, std::span<const std::string> keys,
                              const std::function<nlohmann::json(const FigureRun&)>& value_of,
                              std::span<const CurveStyle> styles) {
   std::map<std::string, std::vector<const FigureRun*>> variants;
   for (const FigureRun& run : runs) variants[run.variant].push_back(&run);
-  std::vector<std::pair<std::size_t, Curve>> ranked;
+  const StylesOfOthers others(runs);
+  const bool own = std::ranges::all_of(others.keys(), [&](const std::string& key) {
+    return std::ranges::find(keys, key) != keys.end();
+  });
+  std::vector<std::size_t> used(styles.size() + 1);
+  std::vector<std::pair<std::size_t, Curve>> ranked;  // by style
   for (auto& [variant, members] : variants) {
     Curve curve;
     curve.variant = plain_field(variant);
@@ -99,26 +147,39 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs,
     curve.points = points_of(members);
     curve.runs = std::move(members);
     if (curve.points.empty()) continue;
-    const auto style = std::find_if(styles.begin(), styles.end(), [&](const CurveStyle& s) {
-      return matches(curve.value, s.value);
-    });
+    const auto style = std::ranges::find_if(
+        styles, [&](const CurveStyle& s) { return own && matches(curve.value, s.value); });
     const auto rank = static_cast<std::size_t>(style - styles.begin());
-    curve.style =
-        style == styles.end() ? style_of_other(variant, styles.size() + ranked.size()) : *style;
+    ++used[rank];
     ranked.emplace_back(rank, std::move(curve));
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto& [rank, curve] : ranked) {
+    const FigureRun& run = *curve.runs.front();
+    curve.style = others.style(run);
+    if (used[rank] > 1) rank = styles.size();
+    if (rank == styles.size()) continue;
+    if (run.named) {
+      curve.style.colour = styles[rank].colour, curve.style.point = styles[rank].point;
+    } else {
+      curve.style = styles[rank];
+    }
+  }
+  std::ranges::stable_sort(ranked, {}, [&](const auto& entry) {
+    return std::pair(entry.first, others.place(*entry.second.runs.front()));
+  });
   std::vector<Curve> curves;
   for (auto& [rank, curve] : ranked) curves.push_back(std::move(curve));
   return curves;
 }
 
 const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& value) {
+  const Curve* found = nullptr;
   for (const Curve& curve : curves) {
-    if (matches(curve.value, value)) return &curve;
+    if (!matches(curve.value, value)) continue;
+    if (found != nullptr) return nullptr;
+    found = &curve;
   }
-  return nullptr;
+  return found;
 }
 
 RunStatistics over(const CurvePoint& point, const Quantity& quantity) {
@@ -153,17 +214,24 @@ Axis onset_axis() {
 }
 
 std::vector<ReferenceLine> onset_lines() {
-  return {{published_onset_phi - published_onset_error},
-          {published_onset_phi + published_onset_error}};
+  const Text title = "the supplement's onset, 0.646 ± 0.001";
+  return {{.at = published_onset_phi - published_onset_error, .title = title},
+          {.at = published_onset_phi + published_onset_error, .title = title}};
 }
 
 std::vector<Series> series_of(std::span<const Curve> curves, const SeriesColumns& columns) {
   std::vector<Series> series;
+  std::set<std::string> titles;
   for (const Curve& curve : curves) {
+    if (!titles.insert(plain_text(curve.style.title)).second) {
+      throw AnalysisError("two curves of a figure have the label '" +
+                          plain_text(curve.style.title) + "'; give their variants other `labels`");
+    }
     series.push_back({.title = curve.style.title,
                       .colour = curve.style.colour,
                       .point = curve.style.point,
                       .join = Join::line,
+                      .band = true,
                       .columns = columns,
                       .filter = {"variant", curve.variant}});
   }
@@ -186,8 +254,8 @@ FigureTable against_cycle(const std::string& name, std::span<const Curve> curves
       .x = cycle_axis(),
       .y = std::move(y),
       .series = series_of(curves, {.x = "cycle",
-                                   .y = column_of(measures.front(), "mean"),
-                                   .y_error = column_of(measures.front(), "standard_error")})};
+                                   .y = column_name(measures.front(), "mean"),
+                                   .y_error = column_name(measures.front(), "standard_error")})};
   return table;
 }
 
@@ -210,9 +278,9 @@ FigureTable against_phi(const std::string& name, std::span<const Curve> curves,
   table.chart = {.x = phi_axis(),
                  .y = std::move(y),
                  .series = series_of(curves, {.x = "phi_mean",
-                                              .y = column_of(measure, "mean"),
+                                              .y = column_name(measure, "mean"),
                                               .x_error = "phi_standard_error",
-                                              .y_error = column_of(measure, "standard_error")})};
+                                              .y_error = column_name(measure, "standard_error")})};
   return table;
 }
 

@@ -3,6 +3,7 @@
 // variant, averaged over runs, against the cycle or against the packing fraction.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -18,7 +19,9 @@ namespace shearcell {
 
 /// How a curve is drawn, following the supplement. The style is that of the runs in which the
 /// figure's parameter has this value; numbers match within 3 %, because a time step is a whole
-/// fraction of a cycle.
+/// fraction of a cycle. It is used where the runs differ in the figure's parameters alone, and by
+/// one curve. Other curves are named by what varies, with a colour for each value of the first
+/// parameter and a symbol for the others.
 struct CurveStyle {
   nlohmann::json value;
   Text title;
@@ -40,10 +43,10 @@ struct Curve {
   std::vector<CurvePoint> points;  ///< by cycle
 };
 
-/// `value_of` a run decides its style. Checkpoints inside a cycle are left out. Curves come in the
-/// order of the styles, then any others by the variant's name. Throws AnalysisError if one run has
-/// two checkpoints of one cycle. Points into `runs`.
-std::vector<Curve> curves_by(std::span<const FigureRun> runs,
+/// `value_of` a run decides its style, where the runs differ in `keys` alone. Checkpoints inside a
+/// cycle are left out. Curves come in the order of the styles, then any others by their values.
+/// Throws AnalysisError if one run has two checkpoints of one cycle. Points into `runs`.
+std::vector<Curve> curves_by(std::span<const FigureRun> runs, std::span<const std::string> keys,
                              const std::function<nlohmann::json(const FigureRun&)>& value_of,
                              std::span<const CurveStyle> styles);
 
@@ -51,7 +54,7 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs,
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
                              std::span<const CurveStyle> styles);
 
-/// The curve in which the parameter has that value, or null.
+/// The one curve in which the parameter has that value; null if there is none, or several.
 const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& value);
 
 RunStatistics over(const CurvePoint& point, const Quantity& quantity);
@@ -67,7 +70,12 @@ Axis onset_axis();      ///< phi at the onset
 /// Dashed lines at phi = 0.646 +- 0.001, the supplement's onset.
 std::vector<ReferenceLine> onset_lines();
 
-/// Joined points with error bars for each curve. The table has a column "variant".
+/// Colours that readers with any colour vision tell apart (Okabe and Ito, jfly.uni-koeln.de/color).
+inline constexpr std::array<const char*, 7> safe_colours = {
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+
+/// Joined points with error bars for each curve. The table has a column "variant". Throws
+/// AnalysisError if two curves have the same title.
 std::vector<Series> series_of(std::span<const Curve> curves, const SeriesColumns& columns);
 
 /// One quantity of a panel: its columns are NAME_mean and NAME_standard_error, with the unit at the
@@ -77,6 +85,11 @@ struct MeasureColumn {
   std::string unit;  ///< as part of a column's name: "d", "percent" or ""
   Quantity quantity;
 };
+
+/// Name of a column: "mean", "standard_error".
+std::string column_name(const MeasureColumn& measure, const char* statistic);
+void add_columns(const MeasureColumn& measure, std::vector<std::string>& columns);
+void add_values(const RunStatistics& statistics, std::vector<TableValue>& row);
 
 /// A row for each variant and cycle. The first measure is drawn.
 FigureTable against_cycle(const std::string& name, std::span<const Curve> curves,

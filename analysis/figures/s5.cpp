@@ -60,13 +60,13 @@ FigureTable amplitude_table(std::span<const AmplitudeOnset> onsets) {
   table.chart = {.x = amplitude_axis(),
                  .y = onset_axis(),
                  .series = {{.title = "experiment",
-                             .colour = "#ff7f0e",
+                             .colour = "#e69f00",
                              .points = {{experiment_amplitude_rad,
                                          experiment_onset_phi,
                                          {},
                                          experiment_error(onsets)}}},
-                            by_method("largest crystallite is critical", "#1f4fd8", 9, 1, 0),
-                            by_method("steepest growth", "#2ca02c", 13, 2, 0.001)},
+                            by_method("largest crystallite is critical", "#0072b2", 9, 1, 0),
+                            by_method("steepest growth", "#009e73", 13, 2, 0.001)},
                  .lines = onset_lines()};
   return table;
 }
@@ -148,7 +148,7 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
                               .y = "onset_phi_mean",
                               .y_error = "onset_phi_standard_error"}},
                  {.title = Text("experiment, ") + italic("A") + " = 0.01",
-                  .colour = "#ff7f0e",
+                  .colour = "#e69f00",
                   .point = 0,
                   .join = Join::line,
                   .points = {{0, experiment_onset_phi}, {most_grains, experiment_onset_phi}}}},

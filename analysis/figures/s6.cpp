@@ -29,7 +29,7 @@ bool has_gravity(const FigureRun& run) {
 
 /// A colour for each amplitude; open symbols without gravity.
 std::vector<CurveStyle> styles_for(std::span<const FigureRun> runs) {
-  static const std::array<const char*, 4> colours = {"#1f4fd8", "#d62728", "#2ca02c", "#000000"};
+  static const std::array<const char*, 4> colours = {"#0072b2", "#d55e00", "#009e73", "#000000"};
   std::vector<CurveStyle> styles;
   std::size_t k = 0;
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
@@ -94,7 +94,7 @@ FigureTable onset_table(std::span<const CurveOnset> onsets) {
   table.chart = {
       .x = amplitude_axis(),
       .y = onset_axis(),
-      .series = {with("gravity", "#000000", 5, "on"), with("no gravity", "#d62728", 7, "off")},
+      .series = {with("gravity", "#000000", 5, "on"), with("no gravity", "#d55e00", 7, "off")},
       .lines = onset_lines()};
   return table;
 }
@@ -138,7 +138,7 @@ std::vector<Verdict> claims_on(double amplitude, const Curve& without, const Cur
 
 FigureResult figure_s6(std::span<const FigureRun> runs) {
   const std::vector<Curve> curves = curves_by(
-      runs,
+      runs, find_figure("S6")->keys,
       [](const FigureRun& run) {
         return group_of(number_of(run, "amplitude_rad"), has_gravity(run));
       },

@@ -61,7 +61,7 @@ struct Profile {
 /// Probability density over [0, 1] of one or more distributions.
 FigureTable density_table(std::string name, std::string first_column, Text x,
                           std::span<const Profile> profiles) {
-  static const std::array<const char*, 4> colours = {"#000000", "#d62728", "#1f4fd8", "#2ca02c"};
+  static const std::array<const char*, 4> colours = {"#000000", "#d55e00", "#0072b2", "#009e73"};
   FigureTable table{.name = std::move(name),
                     .columns = {std::move(first_column), "low", "high", "probability_density",
                                 "standard_error", "crystallites", "runs"},

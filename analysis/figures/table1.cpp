@@ -137,7 +137,7 @@ TextTable heading() {
 }
 
 const char* colour_of(std::string_view comparison) {
-  return comparison == "differs" ? "#d62728" : comparison == "varied" ? "#1f4fd8" : "#555555";
+  return comparison == "differs" ? "#d55e00" : comparison == "varied" ? "#0072b2" : "#555555";
 }
 
 }  // namespace

@@ -183,7 +183,7 @@ std::vector<SpeedResult> measure_size(std::size_t grains, const SpeedOptions& op
   say("pressing a packing");
   const Packing made = prepare(grains);
   std::vector<SpeedResult> results;
-  for (const Simd simd : {Simd::avx512, Simd::avx2, Simd::scalar}) {
+  for (const Simd simd : kEverySimd) {
     const Kernels* kernels = find_kernels(simd);
     if (kernels == nullptr) continue;
     for (const std::size_t threads : options.threads) {

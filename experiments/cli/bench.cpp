@@ -67,14 +67,12 @@ void add_bench(CLI::App& app, Context& context) {
   auto options = std::make_shared<SpeedOptions>();
   CLI::App* rate = command->add_subcommand(
       "speed", "Particle-steps per second in the sheared rough cell, and where the time goes");
-  rate->add_option("--size", options->sizes, "Numbers of grains")->type_name("N");
-  rate->add_option("--threads", options->threads, "Threads inside one run")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("T");
-  rate->add_option("--repeats", options->repeats, "Number of timings; the median is printed")
-      ->check(CLI::Range(1, 1000));
-  rate->add_option("--seconds", options->seconds_per_repeat, "Length of one timing")
-      ->check(CLI::Range(0.01, 60.0));
+  add_count(*rate, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000);
+  add_count(*rate, "--threads", options->threads, "Threads inside one run", "T", 1, 1024);
+  add_count(*rate, "--repeats", options->repeats, "Number of timings; the median is printed", "N",
+            1, 1000);
+  add_number(*rate, "--seconds", options->seconds_per_repeat, "Length of one timing", "S", 0.01,
+             60);
   rate->add_flag("--json", context.json, "Print JSON for programs");
   rate->footer(
       "Every kernel that this machine can run is timed, after a check that all give the same "
@@ -82,7 +80,7 @@ void add_bench(CLI::App& app, Context& context) {
       "Examples:\n  shearcell bench speed --size 600 5200\n"
       "  shearcell bench speed --size 18200 --threads 1 2 --json");
   rate->callback([options, &context] {
-    options->report = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
+    options->report = [](const std::string& what) { tell_stderr("{}\n", what); };
     speed(*options, context);
   });
   add_bench_accuracy(*command, context);

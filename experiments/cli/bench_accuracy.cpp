@@ -78,16 +78,14 @@ void add_bench_accuracy(CLI::App& bench, Context& context) {
       "accuracy", "Error against cost of integrators, time steps and stiffness");
   command->add_flag("--quick", options->measure.quick,
                     "Seconds instead of minutes: the same tables from fewer runs");
-  command->add_option("--jobs", options->measure.jobs, "Runs computed at once")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("J");
+  add_count(*command, "--jobs", options->measure.jobs, "Runs computed at once", "J", 1, 1024);
   command->add_option("--out", options->out, "Folder for CSV files and figures")->type_name("DIR");
   command->add_flag("--json", context.json, "Print JSON for programs");
   command->footer(
       "core/ACCURACY.md explains the tables and how to choose a time step.\n"
       "Examples:\n  shearcell bench accuracy --quick\n  shearcell bench accuracy --out accuracy");
   command->callback([options, &context] {
-    options->measure.report = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
+    options->measure.report = [](const std::string& what) { tell_stderr("{}\n", what); };
     measure(*options, context);
   });
 }

@@ -142,30 +142,20 @@ void add_bench_engines(CLI::App& bench, Context& context) {
   auto weightless = std::make_shared<bool>(false);
   CLI::App* command = bench.add_subcommand(
       "engines", "LAMMPS and our engine compared: trajectories, means over seeds, speed");
-  command->add_option("--size", options->grains, "Number of grains")
-      ->check(CLI::Range(100, 100'000'000))
-      ->type_name("N");
-  command->add_option("--steps", options->steps, "Time steps of trajectories and timing")
-      ->check(CLI::Range(1, 1'000'000))
-      ->type_name("S");
-  command->add_option("--cycles", options->cycles, "Cycles before the means; 0: no means")
-      ->check(CLI::Range(0, 1000))
-      ->type_name("C");
-  command->add_option("--seeds", options->seeds, "Packings of the means")
-      ->check(CLI::Range(3, 1000))
-      ->type_name("K");
-  command
-      ->add_option("--mpi", options->ranks, "Run LAMMPS also with this many processes, by mpirun")
-      ->check(CLI::Range(1, 65536))
-      ->type_name("N");
+  add_count(*command, "--size", options->grains, "Number of grains", "N", 100, 100'000'000);
+  add_count(*command, "--steps", options->steps, "Time steps of trajectories and timing", "S", 1,
+            1'000'000);
+  add_count(*command, "--cycles", options->cycles, "Cycles before the means; 0: no means", "C", 0,
+            1000);
+  add_count(*command, "--seeds", options->seeds, "Packings of the means", "K", 3, 1000);
+  add_count(*command, "--mpi", options->ranks,
+            "Run LAMMPS also with this many processes, by mpirun", "N", 1, 65536);
   command->add_flag("--settle", options->settle,
                     "Settle the loose grains in LAMMPS too, with the processes of --mpi");
-  command
-      ->add_option("--settle-time-limit", options->settle_time_limit,
-                   "Simulated time after which grains that have not settled are an error "
-                   "(settle_time_limit_s)")
-      ->check(CLI::Range(1e-3, 1e6))
-      ->type_name("S");
+  add_number(*command, "--settle-time-limit", options->settle_time_limit,
+             "Simulated time after which grains that have not settled are an error "
+             "(settle_time_limit_s)",
+             "S", 1e-3, 1e6);
   command->add_flag("--no-gravity", *weightless, "Without gravity, for cells that P cannot lift");
   command->add_flag("--json", context.json, "Print JSON for programs");
   command->footer(
@@ -176,7 +166,7 @@ void add_bench_engines(CLI::App& bench, Context& context) {
       "  shearcell bench engines --size 100000 --no-gravity --cycles 0 --mpi 2");
   command->callback([options, weightless, &context] {
     options->gravity = !*weightless;
-    options->report = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
+    options->report = [](const std::string& what) { tell_stderr("{}\n", what); };
     const EngineCheck check = check_engines(*options);
     context.json ? print_json(facts(check)) : print(check);
     if (!check.agree()) context.exit_code = kRunFailed;

@@ -49,17 +49,15 @@ void add_bench_stability(CLI::App& bench, Context& context) {
       ->type_name("NAME")
       ->check(unknown_case, "");
   command->add_flag("--quick", options->quick, "Fewer steps in the very long cases");
-  command
-      ->add_option("--seconds", options->seconds_per_case,
-                   "A case that takes longer counts as hanging")
-      ->check(CLI::Range(0.1, 86400.0));
+  add_number(*command, "--seconds", options->seconds_per_case,
+             "A case that takes longer counts as hanging", "S", 0.1, 86400);
   command->add_flag("--json", context.json, "Print JSON for programs");
   command->footer(
       "Ends with code 3 if a case does not end as expected.\n"
       "Examples:\n  shearcell bench stability --quick\n"
       "  shearcell bench stability --only vacancy limit --json");
   command->callback([options, &context] {
-    options->report = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
+    options->report = [](const std::string& what) { tell_stderr("{}\n", what); };
     stability(*options, context);
   });
 }

@@ -3,7 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <thread>
+
+#include "experiments/runner/terminal.hpp"
 
 namespace shearcell::cli {
 
@@ -20,6 +24,26 @@ void add_expand_options(CLI::App& command, ExpandOptions& options) {
   add_count(command, "--seeds", options.seeds, "Number of seeds instead of the manifest's");
 }
 
+void add_selection_options(CLI::App& command, RunSelection& selection, bool states) {
+  const auto add = [&](const char* name, auto& values, const char* help, const char* type) {
+    return command.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
+  };
+  add("--experiment", selection.experiments, "Only runs of this experiment", "NAME");
+  add("--scale", selection.scales, "Only runs of this scale", "NAME");
+  add("--variant", selection.variants, "Only runs with these swept values, as fluid=cell", "KEY=V");
+  add("--seed", selection.seeds, "Only runs with this seed", "N")
+      ->check([](const std::string& text) { return unfit_count(text, 1, UINT64_MAX); });
+  if (!states) return;
+  add("--state", selection.states, "Only runs in this state", "STATE")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(kNameList<RunState>.begin(), kNameList<RunState>.end())));
+}
+
+MeasureOptions measure_options() {
+  return {.workers = std::max(1U, std::thread::hardware_concurrency()),
+          .report = terminal_counter("measuring checkpoint")};
+}
+
 std::string unfit_count(const std::string& text, std::uint64_t low, std::uint64_t high) {
   std::uint64_t value = 0;
   const char* end = text.data() + text.size();
@@ -30,6 +54,21 @@ std::string unfit_count(const std::string& text, std::uint64_t low, std::uint64_
     return fmt::format("'{}' is not a whole number >= {} in decimal digits", text, low);
   }
   return fmt::format("'{}' is not a whole number from {} to {} in decimal digits", text, low, high);
+}
+
+std::string unfit_number(const std::string& text, double low, double high) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error == std::errc() && stop == end && value >= low && value <= high) return "";
+  return fmt::format("'{}' is not a number from {} to {} in decimal digits", text, low, high);
+}
+
+CLI::Option* add_number(CLI::App& command, const std::string& names, double& value,
+                        const std::string& help, const std::string& type_name, double low,
+                        double high) {
+  const auto check = [low, high](const std::string& text) { return unfit_number(text, low, high); };
+  return command.add_option(names, value, help)->check(check)->type_name(type_name);
 }
 
 void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help) {
@@ -44,8 +83,9 @@ void add_engine_option(CLI::App& command, ExpandOptions& options) {
 }
 
 void print_json(const nlohmann::json& facts) {
-  // Paths and hostnames may hold any byte; JSON may not.
-  fmt::print("{}\n", facts.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  // Paths and hostnames may hold any byte; JSON may not. ASCII alone, since some characters beyond
+  // it are commands to a terminal.
+  fmt::print("{}\n", facts.dump(2, ' ', true, nlohmann::json::error_handler_t::replace));
 }
 
 std::string format_bytes(double bytes) {

@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "experiments/cli/exit_code.hpp"
+#include "experiments/figures/measure.hpp"
+#include "experiments/figures/select_runs.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/campaign.hpp"
+#include "experiments/runner/terminal.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell::cli {
@@ -34,6 +37,7 @@ void add_regenerate(CLI::App& app, Context& context);
 void add_submit(CLI::App& app, Context& context);
 void add_work(CLI::App& app, Context& context);
 void add_merge(CLI::App& app, Context& context);
+void add_table(CLI::App& app, Context& context);
 void add_figures(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
 void add_export(CLI::App& app, Context& context);
@@ -56,8 +60,17 @@ void add_common_options(CLI::App& command, Context& context, bool with_json);
 /// --scale, --cycles and --seeds: what of a manifest is meant.
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
+/// --experiment, --scale, --variant and --seed, each as often as wanted; with `states`, --state.
+void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);
+
+/// All cores; progress on standard error if that is a terminal.
+MeasureOptions measure_options();
+
 /// What is wrong with a whole number in decimal digits from `low` to `high`; "" when nothing is.
 std::string unfit_count(const std::string& text, std::uint64_t low, std::uint64_t high);
+
+/// The same of a number from `low` to `high`, which may have a fraction and an exponent.
+std::string unfit_number(const std::string& text, double low, double high);
 
 /// An option that takes such a number.
 template <class Count>
@@ -67,6 +80,11 @@ CLI::Option* add_count(CLI::App& command, const std::string& names, Count& value
   const auto check = [low, high](const std::string& text) { return unfit_count(text, low, high); };
   return command.add_option(names, value, help)->check(check)->type_name(type_name);
 }
+
+/// An option that takes a number.
+CLI::Option* add_number(CLI::App& command, const std::string& names, double& value,
+                        const std::string& help, const std::string& type_name, double low,
+                        double high);
 
 /// --threads T.
 void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `export`: one run in a form that other programs read.
+// `export`: runs in a form that other programs read.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <type_traits>
@@ -16,6 +17,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
 #include "experiments/runner/terminal.hpp"
+#include "provenance/io/temporary_folder.hpp"
 #include "provenance/ro_crate.hpp"
 
 namespace shearcell::cli {
@@ -24,24 +26,28 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportOptions {
-  std::string run;
+  std::vector<std::string> runs;
+  RunSelection selection;
   std::string format;
   std::string out;
   std::string licence;
   std::string cycles;  ///< "A:B" or "A:B:STEP", each may be empty; "" for all
+  bool metres = false;
 };
 
 struct ExportFormat {
   const char* name;
   const char* title;
-  /// Writes to options.out and returns the files, relative to it. Throws std::invalid_argument when
-  /// something that is not its own stands there.
-  std::vector<std::string> (*write)(const Store&, const RunRecord&, const ExportOptions&);
+  const char* ending;  ///< of the file of a run; "" for a folder
+  /// Writes to `out`, which is free, and returns the files, relative to it. Throws
+  /// std::invalid_argument when the run cannot be exported.
+  std::vector<std::string> (*write)(const Store&, const SelectedRun&, const ExportOptions&,
+                                    const fs::path& out);
 };
 
-std::vector<std::string> ro_crate(const Store& store, const RunRecord& run,
-                                  const ExportOptions& options) {
-  return write_ro_crate(store, run.id, options.out, options.licence);
+std::vector<std::string> ro_crate(const Store& store, const SelectedRun& run,
+                                  const ExportOptions& options, const fs::path& out) {
+  return write_ro_crate(store, run.run.id, out, options.licence);
 }
 
 struct CycleRange {
@@ -61,10 +67,11 @@ CycleRange parse_cycles(const std::string& text) {
   double* const values[] = {&range.first, &range.last, &range.every};
   std::size_t k = 0;
   for (std::string part; std::getline(parts, part, ':'); ++k) {
-    std::size_t used = 0;
     if (part.empty() && k < 3) continue;
-    const double value = k < 3 && std::isdigit(part.front()) ? std::stod(part, &used) : 0;
-    if (used == 0 || used != part.size()) {
+    double value = 0;
+    const char* end = part.data() + part.size();
+    const auto [stop, error] = std::from_chars(part.data(), end, value);
+    if (k >= 3 || error != std::errc() || stop != end || !(value >= 0 && std::isfinite(value))) {
       throw std::invalid_argument("--cycles takes A:B or A:B:STEP, such as 0:60 or ::10 (got " +
                                   text + ")");
     }
@@ -95,11 +102,6 @@ void require_new(const fs::path& out) {
   }
 }
 
-void write_frames(const Store& store, const std::vector<CheckpointRecord>& records,
-                  const FrameWriter& write) {
-  for (const CheckpointRecord& record : records) write(frame_of(store.load_checkpoint(record)));
-}
-
 /// Names of the files below `folder`, or its own when it is one.
 std::vector<std::string> files_of(const fs::path& out) {
   std::vector<std::string> files;
@@ -111,32 +113,46 @@ std::vector<std::string> files_of(const fs::path& out) {
   return files;
 }
 
-enum class Output { file, folder };
-
-template <auto Writer, Output Kind>
-std::vector<std::string> frames(const Store& store, const RunRecord& run,
-                                const ExportOptions& options) {
-  const std::vector<CheckpointRecord> records = chosen(store, run, options.cycles);
-  require_new(options.out);
-  if constexpr (Kind == Output::folder) fs::create_directories(options.out);
-  if constexpr (std::is_invocable_v<decltype(Writer), fs::path, std::size_t>) {
-    write_frames(store, records, Writer(options.out, records.size()));
-  } else {
-    write_frames(store, records, Writer(options.out));
+template <auto... Writers>
+std::vector<std::string> frames(const Store& store, const SelectedRun& run,
+                                const ExportOptions& options, const fs::path& out) {
+  const std::vector<CheckpointRecord> records = chosen(store, run.run, options.cycles);
+  if constexpr (sizeof...(Writers) > 1) fs::create_directory(out);
+  const auto writer = [&](auto make) -> FrameWriter {
+    if constexpr (std::is_invocable_v<decltype(make), fs::path, std::size_t>) {
+      return make(out, records.size());
+    } else {
+      return make(out);
+    }
+  };
+  {
+    const FrameWriter writers[] = {writer(Writers)...};
+    for (const CheckpointRecord& record : records) {
+      const Frame frame = frame_of(store.load_checkpoint(record), record, run);
+      for (const FrameWriter& write : writers) write(frame);
+    }
   }
-  return files_of(options.out);
+  return files_of(out);
+}
+
+std::vector<std::string> extxyz(const Store& store, const SelectedRun& run,
+                                const ExportOptions& options, const fs::path& out) {
+  return options.metres ? frames<extxyz_in_metres>(store, run, options, out)
+                        : frames<extxyz_in_diameters>(store, run, options, out);
 }
 
 // A new format is one function and one line here.
 constexpr std::array kFormats = {
-    ExportFormat{"h5md", "H5MD 1.1, one file: MDAnalysis, h5py, VMD",
-                 frames<h5md_writer, Output::file>},
-    ExportFormat{"extxyz", "extended XYZ, one file: OVITO, ASE",
-                 frames<extxyz_writer, Output::file>},
-    ExportFormat{"vtk", "VTK PolyData, a folder: ParaView", frames<vtk_writer, Output::folder>},
-    ExportFormat{"lammps", "LAMMPS data, a folder: LAMMPS, OVITO",
-                 frames<lammps_writer, Output::folder>},
-    ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5, and PROV-JSON", ro_crate},
+    ExportFormat{"h5md", "H5MD 1.1, one file: MDAnalysis, h5py, VMD; lengths in nm", ".h5md",
+                 frames<h5md_writer>},
+    ExportFormat{"extxyz", "extended XYZ, one file: OVITO, ASE, MDAnalysis; lengths in d", ".xyz",
+                 extxyz},
+    ExportFormat{"vtk", "VTK PolyData and run.json, a folder: ParaView; SI", "",
+                 frames<vtk_writer, facts_writer>},
+    ExportFormat{"lammps", "LAMMPS data and run.json, a folder: LAMMPS, OVITO; SI", "",
+                 frames<lammps_writer, facts_writer>},
+    ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5, and PROV-JSON", "",
+                 ro_crate},
 };
 
 // Anything else would be read as a file of the crate.
@@ -153,37 +169,119 @@ std::vector<std::string> names() {
   return list;
 }
 
-void export_run(const ExportOptions& options, Context& context) {
+/// The named runs, or else those of the filters; packings only by name.
+std::vector<SelectedRun> wanted(const Store& store, const ExportOptions& options) {
+  std::vector<SelectedRun> runs;
+  for (const std::string& prefix : options.runs) {
+    RunRecord run = store.find_run(prefix);
+    runs.push_back({run, first_membership(run)});
+  }
+  if (runs.empty()) {
+    runs = select_runs(store, options.selection);
+    std::set<std::string> seen;
+    std::erase_if(runs, [&](const SelectedRun& s) {
+      return s.run.kind == name_of(Stage::prepare) || !seen.insert(s.run.id).second;
+    });
+  }
+  if (runs.empty()) throw std::invalid_argument("no run of the store is selected");
+  return runs;
+}
+
+/// "drag_fluid=still_seed1_3f9a52c1.xyz": a file of its own in a folder of several runs.
+std::string entry_name(const SelectedRun& selected, const ExportFormat& format) {
+  const Membership& m = selected.membership;
+  std::string variant = m.variant.substr(0, 100);
+  std::ranges::replace_if(
+      variant,
+      [](unsigned char c) {
+        return std::isalnum(c) == 0 &&
+               std::string("=.+-").find(static_cast<char>(c)) == std::string::npos;
+      },
+      '_');
+  return fmt::format("{:.64}_{}_seed{}_{:.8}{}", m.experiment, variant, m.seed, selected.run.id,
+                     format.ending);
+}
+
+struct Exported {
+  SelectedRun run;
+  fs::path out;
+  std::vector<std::string> files;
+};
+
+/// Written in a folder beside `out` and renamed when it is complete, so that an export that is
+/// killed or meets a full disk leaves nothing of that name.
+std::vector<Exported> write_all(const Store& store, const std::vector<SelectedRun>& runs,
+                                const ExportFormat& format, const ExportOptions& options) {
+  // "frames/" has no file name; "frames" is the same folder.
+  const fs::path given = fs::absolute(options.out);
+  const fs::path out = given.has_filename() ? given : given.parent_path();
+  const bool single = options.runs.size() == 1;
+  if (single && format.write == ro_crate) {  // which may add to an earlier one
+    return {{runs.front(), out, ro_crate(store, runs.front(), options, out)}};
+  }
+  require_new(out);
+  fs::create_directories(out.parent_path());
+  const TemporaryFolder stage(out.parent_path() / ("." + out.filename().string() + ".tmp-"));
+  const fs::path staged = stage.path() / out.filename();
+  std::vector<Exported> done;
+  if (!single) fs::create_directory(staged);
+  for (const SelectedRun& run : runs) {
+    const std::string name = single ? "" : entry_name(run, format);
+    try {
+      auto files = format.write(store, run, options, single ? staged : staged / name);
+      done.push_back({run, single ? out : out / name, std::move(files)});
+    } catch (const std::invalid_argument& problem) {  // it has no such checkpoint
+      if (single || (&run == &runs.back() && done.empty())) throw;
+      tell_stderr("left out: {}\n", problem.what());
+    }
+  }
+  require_new(out);
+  fs::rename(staged, out);
+  return done;
+}
+
+void export_runs(const ExportOptions& options, Context& context) {
   const Store store(context.store, Access::read);
-  const RunRecord run = store.find_run(options.run);
   const auto* format =
       std::find_if(kFormats.begin(), kFormats.end(),
                    [&](const ExportFormat& known) { return known.name == options.format; });
-  std::vector<std::string> files;
+  std::vector<Exported> done;
   try {
-    files = format->write(store, run, options);
+    done = write_all(store, wanted(store, options), *format, options);
   } catch (const std::invalid_argument& problem) {
     throw CLI::ValidationError("export", problem.what());
   }
-  if (context.json) {
-    return print_json(
-        {{"run", run.id}, {"format", options.format}, {"out", options.out}, {"files", files}});
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& [selected, out, files] : done) {
+    list.push_back({{"run", selected.run.id},
+                    {"format", options.format},
+                    {"out", options.runs.size() == 1 ? options.out : out.string()},
+                    {"files", files}});
+    if (context.json) continue;
+    tell("run {:.12}: {} files in {}\n", selected.run.id, files.size(),
+         options.runs.size() == 1 ? options.out : out.string());
   }
-  tell("run {:.12}: {} files in {}\n", run.id, files.size(), options.out);
+  if (context.json) print_json(options.runs.size() == 1 ? list.front() : list);
 }
 
 }  // namespace
 
 void add_export(CLI::App& app, Context& context) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "Write one run in a form that others read");
-  command->add_option("run", options->run, "Run id, or a unique beginning of it")->required();
+  CLI::App* command = app.add_subcommand("export", "Write runs in a form that others read");
+  CLI::Option* named = command->add_option(
+      "run", options->runs, "Run ids, or unique beginnings of them (default: all selected)");
+  add_selection_options(*command, options->selection);
+  for (const char* filter : {"--experiment", "--scale", "--variant", "--seed"}) {
+    named->excludes(command->get_option(filter));
+  }
   command->add_option("--to", options->format, "Format")->required()->check(CLI::IsMember(names()));
   command->add_option("--out", options->out, "File or folder to write")
       ->required()
       ->type_name("PATH");
   command->add_option("--cycles", options->cycles, "Checkpoints of these cycles (default: all)")
       ->type_name("A:B[:STEP]");
+  command->add_flag("--metres", options->metres, "Extended XYZ in SI units, not in diameters");
   command->add_option("--license", options->licence, "URI of the licence of the data")
       ->type_name("URI")
       ->check(check_uri);
@@ -194,14 +292,21 @@ void add_export(CLI::App& app, Context& context) {
   }
   command->footer(
       formats +
-      "Frames have SI units, and for each grain id, radius, velocity, phi_local, q6, structure,\n"
-      "crystallite and largest overlap; wall grains and the tilted cell are in them. The file or\n"
-      "folder must be new; that of a crate may be an earlier export of the same run.\n"
+      "Each file says which run, seed and parameters it comes from, in which units, and holds "
+      "every\n"
+      "scalar measure of each frame and for each grain id, radius, velocity, phi_local, q6, "
+      "structure,\n"
+      "crystallite and largest overlap; wall grains and the tilted cell are in it. One RUN is "
+      "written\n"
+      "to PATH, several to the folder PATH with a name each. PATH must be new; that of a crate may "
+      "be\n"
+      "an earlier export of the same run.\n"
       "Examples:\n"
       "  shearcell export 3f9a --to extxyz --cycles 0:60:10 --out run.xyz\n"
       "  shearcell export 3f9a --to vtk --out frames\n"
+      "  shearcell export --experiment drag --variant fluid=cell --to extxyz --out packings\n"
       "  shearcell export 3f9a --to ro-crate --out crate");
-  command->callback([options, &context] { export_run(*options, context); });
+  command->callback([options, &context] { export_runs(*options, context); });
 }
 
 }  // namespace shearcell::cli

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `figures`: draws figures from stored checkpoints.
 #include <fmt/format.h>
-#include <unistd.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/figures/collect.hpp"
 #include "experiments/figures/draw.hpp"
 #include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
@@ -20,34 +20,40 @@ namespace {
 struct FigureArguments {
   std::vector<std::string> names;
   bool all = false;
-  bool fresh = false;
-  std::string out = "shearcell-figures";
-  std::optional<std::string> scale;
+  std::optional<std::string> experiment;
+  FigureOptions how;
 };
 
-void complain(const FigureSummary& result) {
-  for (const std::string& line : result.damage)
-    fmt::print(stderr, "left out: {}\n", for_terminal(line));
-  for (const std::string& line : result.pruned)
-    fmt::print(stderr, "left out: {}\n", for_terminal(line));
+void complain(const FigureSummary& result, std::set<std::string>& told) {
+  for (const std::string& note : result.notes) {  // once for all figures
+    if (told.insert(note).second) tell_stderr("{}\n", note);
+  }
+  for (const std::string& line : result.damage) tell_stderr("left out: {}\n", line);
+  for (const std::string& line : result.pruned) tell_stderr("left out: {}\n", line);
   for (const std::string& sha256 : result.changed) {
-    fmt::print(stderr, "checkpoint {:.12}: the kept measures were different; replaced\n", sha256);
+    tell_stderr("checkpoint {:.12}: the kept measures were different; replaced\n", sha256);
   }
   if (!result.cache_trouble.empty()) {
-    fmt::print(stderr, "measures cannot be kept: {}\n", for_terminal(result.cache_trouble));
+    tell_stderr("measures cannot be kept: {}\n", result.cache_trouble);
   }
-  if (!result.plot_error.empty())
-    fmt::print(stderr, "no plot: {}\n", for_terminal(result.plot_error));
+  if (!result.plot_error.empty()) tell_stderr("no plot: {}\n", result.plot_error);
 }
 
 nlohmann::json facts(const FigureSummary& result) {
   nlohmann::json files = nlohmann::json::array();
   for (const auto& file : result.files) files.push_back(file.string());
-  return {{"figure", result.name},       {"scale", result.scale},
-          {"runs", result.runs},         {"checkpoints", result.checkpoints},
-          {"measured", result.measured}, {"files", files},
-          {"damage", result.damage},     {"pruned", result.pruned},
-          {"changed", result.changed},   {"verdict", to_json(result.verdicts)}};
+  return {{"figure", result.name},
+          {"experiment", result.experiment},
+          {"scale", result.scale},
+          {"runs", result.runs},
+          {"checkpoints", result.checkpoints},
+          {"measured", result.measured},
+          {"files", files},
+          {"notes", result.notes},
+          {"damage", result.damage},
+          {"pruned", result.pruned},
+          {"changed", result.changed},
+          {"verdict", to_json(result.verdicts)}};
 }
 
 void print_verdicts(const FigureSummary& result) {
@@ -60,80 +66,106 @@ void print_verdicts(const FigureSummary& result) {
 
 /// Prints one figure's summary or adds it to the list.
 void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
-  complain(result);
   if (!result.damage.empty()) context.exit_code = kStoreDamaged;
   const bool incomplete = !result.plot_error.empty() || !result.pruned.empty();
   if (incomplete && context.exit_code == kDone) context.exit_code = kOtherError;
   list.push_back(facts(result));
   if (context.json) return;
-  tell("{} ({} scale): {} runs, {} checkpoints, {} of them measured now\n", result.name,
+  tell("{}{}{} ({} scale): {} runs, {} checkpoints, {} of them measured now\n", result.experiment,
+       result.experiment.empty() ? "" : "/", result.name,
        result.scale.empty() ? "base" : result.scale, result.runs, result.checkpoints,
        result.measured);
   for (const auto& file : result.files) tell("  {}\n", file.string());
   print_verdicts(result);
 }
 
-void figures(const FigureArguments& options, Context& context) {
+void figures(FigureArguments& options, Context& context) {
   Store store(context.store, Access::write);
-  WantedFigures wanted;
-  if (options.all || options.names.empty()) {
-    wanted = figures_of_store(store);
-    if (wanted.figures.empty()) fmt::print(stderr, "No manifest of this store lists a figure.\n");
-  } else {
-    for (const std::string& name : options.names) wanted.figures.push_back(&figure_called(name));
+  if (options.all) options.names.clear();
+  WantedFigures wanted = wanted_figures(store, options.names, options.experiment);
+  if (wanted.figures.empty() && !options.names.empty()) {
+    throw NotFound(fmt::format("no experiment of the store lists {}; name one with --experiment",
+                               fmt::join(options.names, " or ")));
   }
-  for (const std::string& problem : wanted.unknown) {  // the other figures are made all the same
-    fmt::print(stderr, "shearcell: {}\n", for_terminal(problem));
+  if (wanted.figures.empty()) tell_stderr("No manifest of this store lists a figure.\n");
+  const auto complain_of = [&](const std::string& problem) {  // the others are made all the same
+    tell_stderr("shearcell: {}\n", problem);
     context.exit_code = kUsageError;
-  }
-  FigureOptions how;
-  how.folder = options.out;
-  how.scale = options.scale;
-  how.fresh = options.fresh;
+  };
+  for (const std::string& problem : wanted.unknown) complain_of(problem);
+  FigureOptions& how = options.how;
   how.workers = std::max(1U, std::thread::hardware_concurrency());
-  if (isatty(STDERR_FILENO) != 0) {
-    how.report = [](std::size_t done, std::size_t total) {
-      fmt::print(stderr, "\rmeasuring checkpoint {} of {}{}", done, total,
-                 done == total ? "\n" : "");
-    };
-  }
+  how.report = terminal_counter("measuring checkpoint");
   nlohmann::json list = nlohmann::json::array();
-  for (const Figure* figure : in_order_of_needs(std::move(wanted.figures))) {
+  std::set<std::string> told;
+  for (const WantedFigure& figure : in_order_of_needs(std::move(wanted.figures))) {
     try {
-      const FigureSummary result = draw_figure(store, *figure, how);
+      const FigureSummary result = draw_figure(store, figure, how);
+      complain(result, told);
       take(result, list, context);
-    } catch (const NotFound& missing) {  // the other figures are made all the same
-      fmt::print(stderr, "shearcell: {}\n", for_terminal(missing.what()));
-      context.exit_code = kUsageError;
+    } catch (const UsageError& problem) {
+      complain_of(problem.what());
     } catch (const NotOurs& refused) {
-      fmt::print(stderr, "shearcell: {}\n", for_terminal(refused.what()));
-      context.exit_code = kUsageError;
+      complain_of(refused.what());
     }
   }
   if (context.json) print_json({{"figures", list}});
+}
+
+/// "S2: NAME; tells apart KEYS", one line each.
+std::string list_of_figures() {
+  std::string text;
+  for (const Figure& figure : all_figures()) {
+    text += fmt::format("  {:<8} {}\n", figure.name, figure.title);
+    if (!figure.keys.empty()) {
+      text += fmt::format("           varies {}\n", fmt::join(figure.keys, ", "));
+    }
+  }
+  return text;
 }
 
 }  // namespace
 
 void add_figures(CLI::App& app, Context& context) {
   auto options = std::make_shared<FigureArguments>();
+  FigureOptions& how = options->how;
+  how.folder = "shearcell-figures";
   CLI::App* command = app.add_subcommand("figures", "Draw figures from the store alone");
   command->add_option("figure", options->names, "Figures, as S2 (default: all)");
   command->add_flag("--all", options->all, "All that the store's manifests ask for");
-  command->add_option("--out", options->out, "Folder to write to")
+  command
+      ->add_option("--experiment", options->experiment,
+                   "Only of this experiment, which need not list the figures named")
+      ->type_name("E");
+  command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/NAME.csv, ...")
       ->capture_default_str()
       ->type_name("DIR");
-  command->add_option("--scale", options->scale, "Scale of the runs (default: declared last)");
-  command->add_flag("--fresh", options->fresh,
+  command->add_option("--scale", how.collect.scale, "Scale of the runs (default: declared last)");
+  command->add_flag("--all-versions", how.collect.all_versions,
+                    "Runs of older versions of a manifest too, as variants of their own");
+  command
+      ->add_option_function<std::string>(
+          "--width", [options](const std::string& width) { options->how.wide = width == "double"; },
+          "Of the drawings: one column of a journal (8.6 cm) or two (17.8 cm)")
+      ->check(CLI::IsMember({"single", "double"}))
+      ->default_str("single");
+  command->add_flag("--fresh", how.fresh,
                     "Measure every checkpoint again and compare with what is kept");
   add_common_options(*command, context, true);
   command->footer(
-      "Writes CSV, SVG and PDF of each panel, NAME.verdict.json (the verdicts on the supplement's\n"
-      "claims) and NAME.lineage.json (the checkpoints that they come from).\n"
+      "A figure belongs to one experiment: those whose manifests list it under `figures` each get\n"
+      "their own, beside the plots and claims of the manifest. Written are CSV, SVG and PDF of "
+      "each\n"
+      "panel, NAME.caption.txt, NAME.verdict.json (the verdicts on\n"
+      "the supplement's claims) and NAME.lineage.json (the checkpoints that they come from).\n"
       "Measures of checkpoints are kept in the store's derived.sqlite, which may be deleted at "
       "any\n"
       "time.\n"
-      "Examples:\n  shearcell figures S2 --out figures\n  shearcell figures --all");
+      "Figures, and the keys that their experiment varies (other keys too where a figure has a\n"
+      "curve for each variant; others average):\n" +
+      list_of_figures() +
+      "Examples:\n  shearcell figures S2 --out figures\n"
+      "  shearcell figures S2 --experiment drag\n  shearcell figures --all");
   command->callback([options, &context] { figures(*options, context); });
 }
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The program: reads the command line and turns errors into messages and exit codes.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/host.hpp"
-#include "experiments/runner/terminal.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -26,8 +28,9 @@ constexpr const char* kFooter =
     "  shearcell figures S2 --out figures\n"
     "  shearcell resume\n"
     "\n"
-    "Exit codes: 0 done; 2 usage or manifest error; 3 a run failed numerically;\n"
-    "4 the store is damaged; 85 interrupted, resumable.";
+    "Exit codes: 0 done; 1 the machine failed (disk full, store locked, out of memory, output\n"
+    "lost); 2 usage or manifest error; 3 a run failed numerically; 4 the store is damaged;\n"
+    "85 interrupted, resumable.";
 
 std::string version_text() {
   const nlohmann::json facts = host_facts();
@@ -44,8 +47,26 @@ std::string version_text() {
 }
 
 int complain(int code, const char* what) {
-  fmt::print(stderr, "shearcell: {}\n", for_terminal(what));
+  tell_stderr("shearcell: {}\n", what);
   return code;
+}
+
+// What the caller left open, closed or ignored must change nothing: a closed standard stream would
+// be the next file that is opened, and with SIGCHLD ignored no child could be waited for.
+void make_surroundings_usual() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) != -1) continue;
+    // The lowest free number is that of the stream; using it fails, as it should.
+    (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+  std::signal(SIGCHLD, SIG_DFL);
+}
+
+// The exit code, after a look at what was printed.
+int after_output(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  return complain(code == kDone ? kOtherError : code,
+                  "standard output was lost, at least in part: it is closed, or its disk is full");
 }
 
 int run(int argc, char** argv) {
@@ -58,10 +79,10 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());
   app.require_subcommand(0, 1);  // so that a word that is none is named
-  for (const auto add : {add_plan,   add_run,     add_status,  add_log,        add_show,
-                         add_verify, add_rebuild, add_prune,   add_regenerate, add_submit,
-                         add_work,   add_merge,   add_figures, add_report,     add_export,
-                         add_bench,  add_new,     add_doctor,  add_completion, add_manual}) {
+  for (const auto add :
+       {add_plan,   add_run,        add_status, add_log,  add_show,   add_verify,     add_rebuild,
+        add_prune,  add_regenerate, add_submit, add_work, add_merge,  add_table,      add_figures,
+        add_report, add_export,     add_bench,  add_new,  add_doctor, add_completion, add_manual}) {
     add(app, context);
   }
   try {
@@ -77,7 +98,9 @@ int run(int argc, char** argv) {
         context.store, error.what());
     return complain(exit_code_of(error), why.c_str());
   } catch (const std::exception& error) {
-    return complain(exit_code_of(error), error.what());
+    // What a command found out counts more than that it could not say it.
+    const bool known = context.exit_code != kDone;
+    return complain(known ? context.exit_code : exit_code_of(error), error.what());
   }
 }
 
@@ -85,5 +108,6 @@ int run(int argc, char** argv) {
 }  // namespace shearcell::cli
 
 int main(int argc, char** argv) {
-  return shearcell::cli::run(argc, argv);
+  shearcell::cli::make_surroundings_usual();
+  return shearcell::cli::after_output(shearcell::cli::run(argc, argv));
 }

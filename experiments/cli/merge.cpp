@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/runner/audit.hpp"
 #include "experiments/runner/terminal.hpp"
 
 namespace shearcell::cli {
@@ -12,7 +13,11 @@ namespace {
 
 void merge(const std::vector<std::string>& sources, Context& context) {
   Store store(context.store, Access::create);
-  const auto reports = store.merge({sources.begin(), sources.end()});
+  std::vector<Finding> refused;
+  const auto reports = merge_stores(store, {sources.begin(), sources.end()}, {}, &refused);
+  for (const Finding& finding : refused) {
+    tell_stderr("no measures were copied from {}: {}\n", finding.subject, finding.message);
+  }
   if (context.json) {
     nlohmann::json list = nlohmann::json::array();
     for (const MergeReport& report : reports) {
@@ -45,7 +50,9 @@ void add_merge(CLI::App& app, Context& context) {
       "The chain of each source and every copied file are checked first, and two stores that tell\n"
       "different states of one run at one step are refused, before anything is changed. The "
       "sources\n"
-      "stay as they are, and merging twice changes nothing.\n"
+      "stay as they are, and merging twice changes nothing. Kept measures come along if three that "
+      "are\n"
+      "computed again are right.\n"
       "Examples:\n  shearcell merge task-1 task-2 --store all");
   command->callback([sources, &context] { merge(*sources, context); });
 }

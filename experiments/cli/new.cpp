@@ -2,16 +2,17 @@
 // `new`: writes a manifest to begin with, from the schema, so that it cannot name a key that is
 // not.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 
+#include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -46,18 +47,38 @@ std::string entry(const Field& field) {
          fmt::format("  # {}: {}\n", field.name, value_text(get_value(field, {})));
 }
 
+/// The figures and the keys that they tell apart, as comments.
+std::string figure_comments() {
+  std::string text = "# Figures, and the keys that an experiment varies for them:\n";
+  for (const Figure& figure : all_figures()) {
+    if (figure.keys.empty()) continue;
+    text +=
+        fmt::format("#   {:<8} {}: {}\n", figure.name, figure.title, fmt::join(figure.keys, ", "));
+  }
+  return text;
+}
+
 std::string text_of(const std::string& experiment) {
   std::string text = fmt::format(
       "# Keys that are commented out show their default.\n"
       "# `shearcell plan FILE --scale smoke` checks this file and lists its runs.\n"
       "experiment: {}\n"
       "question: What is to be found out?\n"
-      "figures: [S2]                  # `shearcell figures --help` lists them\n"
+      "{}"
+      "figures: [S2]\n"
+      "# Plots and claims of your own (experiments/manifest/README.md):\n"
+      "# plots:\n"
+      "#   - {{name: compaction, y: phi, x: cycle, show: traces}}\n"
+      "# claims:\n"
+      "#   - {{name: same, compare: phi, at_cycle: 10, between: [{{fluid: still}}, {{fluid: "
+      "cell}}], "
+      "margin: 0.001}}\n"
+      "# labels: {{\"fluid=still\": \"fluid at rest\"}}\n"
       "\n"
       "base:\n"
       "  grains: {}\n"
       "  amplitude_rad: {}\n\n",
-      experiment, Parameters{}.grains, Parameters{}.amplitude_rad);
+      experiment, figure_comments(), Parameters{}.grains, Parameters{}.amplitude_rad);
   for (const Field& field : schema()) {
     if (field.name != "grains" && field.name != "amplitude_rad") text += entry(field);
   }
@@ -81,22 +102,16 @@ std::string text_of(const std::string& experiment) {
 }
 
 void write_new(const std::filesystem::path& file, const std::string& text) {
-  // "x": never over a file that is there, not even one that comes to be in between.
-  std::FILE* stream = std::fopen(file.c_str(), "wx");
-  if (stream == nullptr && errno == EEXIST) {
+  try {
+    write_output(file, text, Existing::kept);
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::file_exists) throw;
     throw ManifestError({{file.string(),
                           {},
                           "",
                           "the file exists already",
                           "",
                           "Choose another name, or remove it."}});
-  }
-  const bool written =
-      stream != nullptr && std::fwrite(text.data(), 1, text.size(), stream) == text.size();
-  const int error = errno;
-  if ((stream != nullptr && std::fclose(stream) != 0) || !written) {
-    throw std::runtime_error(
-        fmt::format("{}: cannot be written: {}", file.string(), std::strerror(error)));
   }
 }
 
@@ -105,7 +120,7 @@ void make(std::filesystem::path file) {
   const std::string text = text_of(experiment_of(file));
   parse_manifest(text, file.string());  // a name that no experiment may have is refused here
   write_new(file, text);
-  fmt::print("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(), file.string());
+  tell("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(), file.string());
 }
 
 }  // namespace

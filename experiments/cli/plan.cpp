@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -92,25 +93,28 @@ nlohmann::json facts(const std::optional<TimeStep>& step) {
 // Time steps and overlap of every kind of stage, each once.
 void print_numerics(const std::vector<Line>& lines) {
   std::vector<std::vector<std::string>> rows;
+  std::set<std::vector<std::string>> seen;
   for (const Line& line : lines) {
     const std::optional<TimeStep> step = time_step_of(line);
     const bool prepare = line.stage->stage == Stage::prepare;
     std::vector<std::string> row = {std::string(name_of(line.stage->stage)),
-                                    prepare ? "" : line.run->variant,
+                                    prepare ? "" : line.run->name,
+                                    "",
                                     "",
                                     "",
                                     "",
                                     fmt::format("{:.2g}", expected_overlap(line.run->parameters))};
     if (step) {
-      row[2] = fmt::format("{:.4g}", step->seconds);
-      row[3] = fmt::format("{:.3f}", step->over_contact_time);
-      row[4] = fmt::format("{:.3f}", step->over_stability_limit);
+      if (!prepare) row[2] = std::to_string(line.run->parameters.steps_per_cycle);
+      row[3] = fmt::format("{:.4g}", step->seconds);
+      row[4] = fmt::format("{:.3f}", step->over_contact_time);
+      row[5] = fmt::format("{:.3f}", step->over_stability_limit);
     }
-    if (std::find(rows.begin(), rows.end(), row) == rows.end()) rows.push_back(std::move(row));
+    if (seen.insert(row).second) rows.push_back(std::move(row));
   }
   fmt::print("\n");
-  print_table({"stage", "variant", "time step [s]", "/ contact time", "/ stability limit",
-               "expected overlap [d]"},
+  print_table({"stage", "variant", "steps/cycle", "time step [s]", "/ contact time",
+               "/ stability limit", "expected overlap [d]"},
               rows);
 }
 
@@ -127,9 +131,14 @@ std::vector<std::string> notes_of(const Plan& plan) {
 }
 
 // What is left if the run ends where others with the same `until` ended; nothing when none did.
-std::optional<double> left_until(const Line& line, const std::optional<Store>& store) {
+// `ends` keeps where those ended, as a search reads every run.
+using ExpectedEnds = std::map<std::string, std::optional<double>>;
+std::optional<double> left_until(const Line& line, const std::optional<Store>& store,
+                                 ExpectedEnds& ends) {
   if (!line.run->until || line.stage->stage == Stage::prepare) return line.left.particle_steps;
-  const auto end = store ? expected_end(*store, *line.run->until) : std::nullopt;
+  const auto [known, fresh] = ends.try_emplace(describe(*line.run->until));
+  if (fresh && store) known->second = expected_end(*store, *line.run->until);
+  const std::optional<double> end = known->second;
   if (!end) return std::nullopt;
   PlannedRun shorter = *line.run;
   shorter.cycles = std::min(shorter.cycles, static_cast<std::uint64_t>(std::llround(*end)));
@@ -161,27 +170,27 @@ void print_until(const std::vector<Line>& lines, double at_most) {
   }
 }
 
-std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store) {
-  std::vector<RunRecord> known;
-  if (store) known = store->runs();
+std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
+                           const std::vector<RunRecord>& runs) {
+  const KnownRuns known(runs);
+  ExpectedEnds ends;
   std::vector<Line> lines;
   std::set<std::string> seen;
   for (const PlannedRun& run : plan.runs) {
     for (const StageSpec* stage : {&run.prepare, &run.last}) {
       if (!seen.insert(stage->key).second) continue;
       Line line{.run = &run, .stage = stage};
-      line.novelty = novelty(*stage, known);
-      for (const RunRecord& record : known) {
-        if (record.id != stage->key) continue;
-        line.cycle = record.cycle;
-        add_shares(record, plan.experiment, line);
-        const auto from = cycle_to_continue(run, *stage, &record);
-        line.state = !from ? "done" : record.attempts > 0 ? name_of(record.state) : "to do";
+      line.novelty = known.novelty(*stage);
+      if (const RunRecord* record = known.find(stage->key)) {
+        line.cycle = record->cycle;
+        add_shares(*record, plan.experiment, line);
+        const auto from = cycle_to_continue(run, *stage, record);
+        line.state = !from ? "done" : record->attempts > 0 ? name_of(record->state) : "to do";
         if (line.state == "completed") line.state = "to extend";
       }
       if (line.state != "done") {
         line.left = stage_cost(run, *stage, line.cycle);
-        line.left_until = left_until(line, store);
+        line.left_until = left_until(line, store, ends);
       }
       lines.push_back(line);
     }
@@ -193,17 +202,22 @@ void plan(const PlanOptions& options, Context& context) {
   const Manifest manifest = load_manifest(options.manifest);
   const Plan expanded = expand(manifest, options.expand);
   for (const std::string& warning : expanded.warnings) {
-    fmt::print(stderr, "warning: {}\n", warning);
+    tell_stderr("warning: {}\n", warning);
   }
   const std::optional<Store> store = open_if_there(context.store);
-  const std::vector<Line> lines = lines_of(expanded, store);
   const auto known = store ? store->runs() : std::vector<RunRecord>{};
+  const std::vector<Line> lines = lines_of(expanded, store, known);
   StageCost left;
   double core_seconds = 0;
   Rate rate{0, true};
+  std::map<std::pair<EngineKind, std::uint64_t>, Rate> rates;
   for (const Line& line : lines) {
-    const Rate own = expected_rate(known, engine_of(line.stage->resolved),
-                                   static_cast<double>(line.run->grains));
+    const EngineKind engine = engine_of(line.stage->resolved);
+    const auto [entry, fresh] = rates.try_emplace({engine, line.run->grains});
+    if (fresh) {
+      entry->second = expected_rate(known, engine, static_cast<double>(line.run->grains));
+    }
+    const Rate own = entry->second;
     left.particle_steps += line.left.particle_steps;
     left.bytes += line.left.bytes;
     core_seconds += line.left.particle_steps / own.particle_steps_per_second;
@@ -222,6 +236,7 @@ void plan(const PlanOptions& options, Context& context) {
                       {"parent", line.stage->parent},
                       {"stage", name_of(line.stage->stage)},
                       {"variant", line.run->variant},
+                      {"parameters", line.stage->resolved.at("parameters")},
                       {"seed", line.run->seed},
                       {"N", line.run->grains},
                       {"cycles", line.run->cycles},
@@ -253,7 +268,7 @@ void plan(const PlanOptions& options, Context& context) {
   for (const Line& line : lines) {
     const bool prepare = line.stage->stage == Stage::prepare;
     rows.push_back({line.stage->key.substr(0, 8), std::string(name_of(line.stage->stage)),
-                    prepare ? "" : line.run->variant, std::to_string(line.run->seed),
+                    prepare ? "" : line.run->name, std::to_string(line.run->seed),
                     std::to_string(line.run->grains),
                     prepare ? "" : fmt::format("{:.4g}/{}", line.cycle, line.run->cycles),
                     line.state, remark(line)});

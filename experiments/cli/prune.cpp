@@ -54,7 +54,7 @@ void print_plan(const Store& store, const std::vector<CheckpointRecord>& records
 
 bool agreed() {
   if (isatty(STDIN_FILENO) == 0) return false;
-  fmt::print(stderr, "Free them? [y/N] ");
+  tell_stderr("Free them? [y/N] ");
   std::string answer;
   return std::getline(std::cin, answer) && (answer == "y" || answer == "Y");
 }

@@ -3,14 +3,12 @@
 #include "experiments/report/report.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <memory>
 #include <thread>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/runner/terminal.hpp"
 #include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
@@ -23,13 +21,6 @@ struct ReportCommand {
   double megabytes = 9;
   ReportOptions report;
 };
-
-std::function<void(std::size_t, std::size_t)> counter(const char* what) {
-  if (isatty(STDERR_FILENO) == 0) return {};
-  return [what](std::size_t done, std::size_t total) {
-    fmt::print(stderr, "\r{} {} of {}{}", what, done, total, done == total ? "\n" : "");
-  };
-}
 
 // What every report begins with, and hardly another page (report/page.cpp).
 bool is_report(std::string_view beginning) {
@@ -61,24 +52,22 @@ void report(ReportCommand& command, Context& context) {
   if (!command.accuracy.empty()) options.accuracy = command.accuracy;
   for (std::string& run : options.packings.runs) run = store.find_run(run).id;
   options.workers = std::max(1U, std::thread::hardware_concurrency());
-  options.measured = counter("measuring checkpoint");
-  options.packed = counter("packing checkpoint");
+  options.measured = terminal_counter("measuring checkpoint");
+  options.packed = terminal_counter("packing checkpoint");
   const Report made = make_report(store, options);
   write_output(command.out, made.html);
   if (!made.damage.empty()) context.exit_code = kStoreDamaged;
-  for (const std::string& line : made.damage)
-    fmt::print(stderr, "left out: {}\n", for_terminal(line));
-  for (const std::string& line : made.notes)
-    fmt::print(stderr, "left out: {}\n", for_terminal(line));
+  for (const std::string& line : made.damage) tell_stderr("left out: {}\n", line);
+  for (const std::string& line : made.notes) tell_stderr("left out: {}\n", line);
   if (!has_front_end() && !command.drawings) {
-    fmt::print(stderr,
-               "Figures are drawings and there are no packings: this program was built without "
-               "Node.\n");
+    tell_stderr(
+        "Figures are drawings and there are no packings: this program was built without "
+        "Node.\n");
   }
   if (context.json) return print_json(facts(made, command));
-  fmt::print("{}: {}; {} experiments, {} figures, {} stages", command.out,
-             format_bytes(static_cast<double>(made.html.size())), made.experiments, made.figures,
-             made.runs);
+  tell("{}: {}; {} experiments, {} figures, {} stages", command.out,
+       format_bytes(static_cast<double>(made.html.size())), made.experiments, made.figures,
+       made.runs);
   if (made.interactive) {
     fmt::print(", {} checkpoints of {} runs in 3D", made.frames, made.packings);
   }
@@ -95,16 +84,15 @@ void add_report(CLI::App& app, Context& context) {
   sub->add_option("--scale", command->report.scale, "Scale of the runs (default: declared last)");
   sub->add_option("--run", packings.runs, "Show these runs in 3D instead of the default")
       ->type_name("RUN");
-  sub->add_option("--runs-per-experiment", packings.runs_per_experiment,
-                  "Runs in 3D: the last of each variant, so many of them")
+  add_count(*sub, "--runs-per-experiment", packings.runs_per_experiment,
+            "Runs in 3D: the last of each variant, so many of them")
       ->capture_default_str();
-  sub->add_option("--frames", packings.frames, "Checkpoints of each run in 3D, evenly spread")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
-  sub->add_option("--packings-mb", command->megabytes,
-                  "Room for all of them; fewer are taken where they would not fit")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1000.0));
+  add_count(*sub, "--frames", packings.frames, "Checkpoints of each run in 3D, evenly spread", "N",
+            1, 100000)
+      ->capture_default_str();
+  add_number(*sub, "--packings-mb", command->megabytes,
+             "Room for all of them; fewer are taken where they would not fit", "MB", 0, 1000)
+      ->capture_default_str();
   sub->add_option("--accuracy", command->accuracy,
                   "Folder that `bench accuracy --out` wrote: adds its diagrams")
       ->type_name("DIR");

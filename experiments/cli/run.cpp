@@ -47,7 +47,7 @@ void run(const RunOptions& options, Context& context) {
     manifests.push_back(load_manifest(path));
     plans.push_back(expand(manifests.back(), options.expand));
     for (const std::string& warning : plans.back().warnings) {
-      fmt::print(stderr, "warning: {}\n", warning);
+      tell_stderr("warning: {}\n", warning);
     }
   }
   const bool lammps = std::any_of(plans.begin(), plans.end(), asks_for_lammps);
@@ -77,6 +77,12 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
 }  // namespace
 
 void report(const CampaignResult& result, Context& context) {
+  const bool interrupted = result.interrupted > 0 || stop_requested();
+  context.exit_code = result.damaged > 0   ? kStoreDamaged
+                      : result.failed > 0  ? kRunFailed
+                      : interrupted        ? kInterrupted
+                      : result.blocked > 0 ? kOtherError
+                                           : kDone;
   if (context.json) {
     print_json({{"completed", result.completed},
                 {"already_done", result.already},
@@ -94,15 +100,8 @@ void report(const CampaignResult& result, Context& context) {
       fmt::print("{} were computed by other programs meanwhile\n", result.elsewhere);
     }
   }
-  if (result.damaged > 0) {
-    context.exit_code = kStoreDamaged;
-  } else if (result.failed > 0) {
-    context.exit_code = kRunFailed;
-  } else if (result.interrupted > 0 || stop_requested()) {
-    context.exit_code = kInterrupted;
-    fmt::print(stderr, "Interrupted. Continue with: shearcell resume --store {}\n", context.store);
-  } else if (result.blocked > 0) {
-    context.exit_code = kOtherError;
+  if (context.exit_code == kInterrupted) {
+    tell_stderr("Interrupted. Continue with: shearcell resume --store {}\n", context.store);
   }
 }
 

@@ -5,8 +5,11 @@
 #include <memory>
 #include <optional>
 
+#include "analysis/error.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/show_figure.hpp"
+#include "experiments/figures/lineage.hpp"
+#include "experiments/figures/run_table.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
@@ -39,6 +42,45 @@ nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   return engine;
 }
 
+using Facts = std::vector<std::pair<TableColumn, nlohmann::json>>;
+
+/// As `table` has them, measured now if the store does not keep them.
+Facts measures_of(const Store& store, const CheckpointRecord& record) {
+  MeasuredCheckpoints found;
+  try {
+    found = measure_checkpoints(store, {&record, 1}, {&scalar_measures(), 1}, {});
+  } catch (const AnalysisError& problem) {  // as a failed run may leave it
+    tell_stderr("not measured: {}\n", problem.what());
+    return facts_of(record, std::nullopt);
+  }
+  for (const auto* messages : {&found.damage, &found.pruned}) {
+    for (const std::string& line : *messages) tell_stderr("not measured: {}\n", line);
+  }
+  std::optional<Measures> measures;
+  if (found.results.front()) measures = read_measures(found.results.front()->front());
+  return facts_of(record, measures);
+}
+
+Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& checkpoints) {
+  for (auto c = checkpoints.rbegin(); c != checkpoints.rend(); ++c) {
+    if (c->state != CheckpointState::rejected) return measures_of(store, *c);
+  }
+  return {};
+}
+
+nlohmann::json as_json(const Facts& facts) {
+  nlohmann::json all = nlohmann::json::object();
+  for (const auto& [column, value] : facts) all[column.name] = value;
+  return all;
+}
+
+void print(const Facts& facts) {
+  for (const auto& [column, value] : facts) {
+    if (value.is_null() || value.is_string()) continue;
+    tell("{:<37} {:<12.6g} {}\n", column.name, value.get<double>(), column.meaning);
+  }
+}
+
 void show_run(const Store& store, const RunRecord& run, Context& context) {
   const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, true);
   const nlohmann::json engine = engine_of_run(store, run.id);
@@ -49,7 +91,9 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                          {"scale", m.scale},
                          {"variant", m.variant},
                          {"seed", m.seed},
-                         {"manifest", m.manifest}});
+                         {"target_cycles", m.target_cycles},
+                         {"manifest", m.manifest},
+                         {"overrides", overrides_of(store, run, m)}});
     }
     nlohmann::json list = nlohmann::json::array();
     for (const CheckpointRecord& c : checkpoints) list.push_back(facts(c));
@@ -62,6 +106,7 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                 {"engine", engine},
                 {"memberships", members},
                 {"checkpoints", list},
+                {"measures", as_json(newest_measures(store, checkpoints))},
                 {"error", run.error},
                 {"ended", end_of(store, run)}});
     return;
@@ -79,6 +124,11 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   for (const Membership& m : run.memberships) {
     tell("part of  {} ({}) {} seed {}\n", m.experiment, m.scale.empty() ? "base" : m.scale,
          m.variant, m.seed);
+    const nlohmann::json given = overrides_of(store, run, m);
+    for (const auto& [key, values] : given.items()) {
+      tell("         given at the command line: {} {} (manifest: {})\n", key,
+           values.at("run").dump(), values.at("manifest").dump());
+    }
   }
   tell("\n");
   for (const auto& [key, value] : run.resolved.items()) {
@@ -96,6 +146,10 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                     c.state == CheckpointState::recorded ? "" : std::string(name_of(c.state))});
   }
   print_table({"cycle", "step", "checkpoint", "state", "size", ""}, rows);
+  if (const Facts facts = newest_measures(store, checkpoints); !facts.empty()) {
+    tell("\nnewest checkpoint:\n");
+    print(facts);
+  }
 }
 
 // What stays on record of a checkpoint whose file was freed.
@@ -115,6 +169,7 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
     nlohmann::json all = facts(record);
     all["grains"] = checkpoint.state.position.cols();
     all["wall_grains"] = checkpoint.cell.wall_grains.size();
+    all["measures"] = as_json(measures_of(store, record));
     print_json(all);
     return;
   }
@@ -125,7 +180,7 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
   tell("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step, record.time_s);
   tell("grains      {} and {} wall grains\n", checkpoint.state.position.cols(),
        checkpoint.cell.wall_grains.size());
-  for (const auto& [name, value] : record.observables) tell("{:<42} {:.6g}\n", name, value);
+  print(measures_of(store, record));
 }
 
 std::optional<CheckpointRecord> find_checkpoint(const Store& store, const std::string& prefix) {
@@ -140,6 +195,21 @@ std::optional<CheckpointRecord> find_checkpoint(const Store& store, const std::s
   return found;
 }
 
+// The newest record of "drag/S2", or of "S2" where one experiment has that figure.
+std::optional<FigureRecord> find_record(const Store& store, const std::string& name) {
+  std::vector<FigureRecord> found;
+  std::string names;
+  for (FigureRecord& figure : store.figures()) {
+    if (figure.name == name) return std::move(figure);
+    if (figure_name(figure) != name) continue;
+    names += (names.empty() ? "" : ", ") + figure.name;
+    found.push_back(std::move(figure));
+  }
+  if (found.size() > 1) throw NotFound("several figures are called " + name + ": " + names);
+  if (found.empty()) return std::nullopt;
+  return std::move(found.front());
+}
+
 // Neither a run nor a checkpoint has a dot or a slash in its name.
 bool is_file_name(const std::string& name) {
   return name.find_first_of("./") != std::string::npos;
@@ -147,9 +217,7 @@ bool is_file_name(const std::string& name) {
 
 void show(const std::string& name, Context& context) {
   const Store store(context.store, Access::read);
-  for (const FigureRecord& figure : store.figures()) {
-    if (figure.name == name) return show_figure(store, figure, context);
-  }
+  if (const auto figure = find_record(store, name)) return show_figure(store, *figure, context);
   if (is_file_name(name)) return show_published(store, name, context);
   if (name.size() >= 4) {
     if (const auto checkpoint = find_checkpoint(store, name)) {
@@ -174,7 +242,8 @@ void add_show(CLI::App& app, Context& context) {
       "Of a figure: its files, manifest lines, runs, seeds, attempts, builds, hosts and the\n"
       "SHA-256 of every checkpoint in it. Of a file (CSV, SVG or lineage): whether it is what the\n"
       "store recorded, and whether every checkpoint behind it still is; exit code 4 when not.\n"
-      "Examples:\n  shearcell show 3f9a\n  shearcell show S2\n  shearcell show figures/S2a.csv");
+      "Examples:\n  shearcell show 3f9a\n  shearcell show drag/S2\n  shearcell show "
+      "figures/drag/S2a.csv");
   command->callback([name, &context] { show(*name, context); });
 }
 

@@ -147,6 +147,13 @@ void print_input(const FigureInput& input, const RunLineage& run, Machines& mach
                                        input.experiment, input.variant, input.seed, run.run.grains,
                                        input.manifest, lines),
                            2));
+  if (input.overrides.is_object()) {
+    for (const auto& [key, values] : input.overrides.items()) {
+      fmt::print("  {}\n", cut(fmt::format("given at the command line: {} {} (manifest: {})", key,
+                                           text_at(values, "run"), text_at(values, "manifest")),
+                               2));
+    }
+  }
   print_attempts(run, machines);
   print_checkpoints(input.checkpoints, run);
 }

@@ -47,7 +47,7 @@ LoadedManifests load(const SubmitOptions& options) {
     loaded.manifests.push_back(load_manifest(path));
     loaded.plans.push_back(expand(loaded.manifests.back(), options.expand));
     for (const std::string& warning : loaded.plans.back().warnings) {
-      fmt::print(stderr, "warning: {}\n", warning);
+      tell_stderr("warning: {}\n", warning);
     }
   }
   return loaded;
@@ -153,10 +153,10 @@ void queue(const Submission& submission, const Proposal& proposal, Store& store,
     words.push_back("--dependency=afterany:" + job);
     fold_job = queue_job(folder, "fold.sh", submission.fold_name(), words);
   } catch (const ClusterError& error) {
-    fmt::print(stderr,
-               "warning: {}\nThe stores of the tasks are not folded by themselves: `shearcell "
-               "submit` again, or `merge` them, when the job has ended\n",
-               error.what());
+    tell_stderr(
+        "warning: {}\nThe stores of the tasks are not folded by themselves: `shearcell "
+        "submit` again, or `merge` them, when the job has ended\n",
+        error.what());
   }
   store.record_submission("JobQueued",
                           {{"submission", submission.id}, {"job", job}, {"fold_job", fold_job}});
@@ -186,8 +186,8 @@ void fold_leftovers(Store& store, const std::vector<OpenSubmission>& open) {
       checkpoints += report.checkpoints;
     }
     if (checkpoints == 0) continue;
-    fmt::print(stderr, "folded in {} checkpoints of submission {}, whose jobs have ended\n",
-               checkpoints, submission.submission.id);
+    tell_stderr("folded in {} checkpoints of submission {}, whose jobs have ended\n", checkpoints,
+                submission.submission.id);
   }
 }
 
@@ -243,8 +243,7 @@ void submit(const SubmitOptions& options, Context& context) {
     try {
       ask_queue(open);
     } catch (const ClusterError& error) {
-      fmt::print(stderr, "warning: runs that are queued already are not left out: {}\n",
-                 error.what());
+      tell_stderr("warning: runs that are queued already are not left out: {}\n", error.what());
     }
     busy = busy_runs(store, open);
   }
@@ -289,7 +288,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
       .add_option_function<std::string>(
           "--engine",
           [](const std::string&) {
-            fmt::print(stderr, "warning: --engine slurm is now called --scheduler slurm\n");
+            tell_stderr("warning: --engine slurm is now called --scheduler slurm\n");
           })
       ->check(schedulers)
       ->group("");

@@ -1,104 +1,85 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables for people.
-#include <fmt/color.h>
+// `table`: runs and their measures, for pandas, gnuplot and spreadsheets.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstdio>
-#include <map>
+#include <memory>
+#include <thread>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/figures/run_table.hpp"
 #include "experiments/runner/terminal.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {
 
-constexpr std::size_t kGap = 2;
-constexpr std::size_t kNarrowest = 6;  // of a column that is cut
-
-struct Column {
-  std::size_t width = 0;
-  bool right = true;  // numbers only
+struct TableOptions {
+  RunSelection selection;
+  std::string per = std::string(name_of(RowPer::checkpoint));
+  std::string format = "csv";
+  std::string out;
 };
 
-bool is_number(const std::string& cell) {
-  return cell.empty() || cell.find_first_not_of("0123456789.-+e:%/") == std::string::npos;
-}
-
-std::vector<Column> measure(const std::vector<std::string>& header,
-                            const std::vector<std::vector<std::string>>& rows) {
-  std::vector<Column> columns(header.size());
-  for (std::size_t c = 0; c < header.size(); ++c) {
-    columns[c].width = header[c].size();
-    for (const auto& row : rows) {
-      columns[c].width = std::max(columns[c].width, row[c].size());
-      columns[c].right = columns[c].right && is_number(row[c]);
+void table(const TableOptions& options, Context& context) {
+  const Store store(context.store, Access::read);
+  if (!options.out.empty()) require_ours(options.out, is_table);
+  const RunTable made =
+      run_table(store, options.selection, value_of<RowPer>(options.per).value(), measure_options());
+  const bool json = context.json || options.format == "json";
+  const std::string text = json ? to_json(made) : to_csv(made);
+  if (options.out.empty()) {
+    fmt::print("{}", text);
+  } else {
+    write_output(options.out, text);
+    tell_stderr("{} rows of {} columns in {}\n", made.rows.size(), made.columns.size(),
+                options.out);
+  }
+  for (const auto* messages : {&made.damage, &made.pruned}) {
+    for (const std::string& line : *messages) {
+      tell_stderr("not measured: {}\n", line);
     }
   }
-  return columns;
+  if (!made.trouble.empty()) tell_stderr("measures cannot be kept: {}\n", made.trouble);
+  if (!made.damage.empty()) context.exit_code = kStoreDamaged;
 }
 
-/// Takes from the widest column of words until the table fits.
-void narrow(std::vector<Column>& columns, std::size_t limit) {
-  std::size_t total = kGap * (columns.size() - 1);
-  for (const Column& column : columns) total += column.width;
-  for (; total > limit; --total) {
-    Column* widest = nullptr;
-    for (Column& column : columns) {
-      if (!column.right && column.width > (widest == nullptr ? kNarrowest : widest->width)) {
-        widest = &column;
-      }
-    }
-    if (widest == nullptr) return;
-    --widest->width;
+std::string columns_text(RowPer per) {
+  std::string text;
+  for (const TableColumn& column : table_columns(per)) {
+    text += fmt::format("  {:<37} {}\n", column.name, column.meaning);
   }
-}
-
-std::string fitted(const std::string& cell, const Column& column) {
-  if (cell.size() > column.width) return cell.substr(0, column.width - 1) + "~";
-  return column.right ? fmt::format("{:>{}}", cell, column.width)
-                      : fmt::format("{:<{}}", cell, column.width);
-}
-
-/// States and outcomes that one looks for.
-std::string painted(const std::string& word, const std::string& text) {
-  using fmt::terminal_color;
-  static const std::map<std::string, terminal_color> colours = {
-      {"completed", terminal_color::green},    {"done", terminal_color::green},
-      {"pass", terminal_color::green},         {"ok", terminal_color::green},
-      {"running", terminal_color::cyan},       {"failed", terminal_color::red},
-      {"fail", terminal_color::red},           {"missing", terminal_color::red},
-      {"interrupted", terminal_color::yellow}, {"to extend", terminal_color::yellow}};
-  const auto found = colours.find(word);
-  return found == colours.end() ? text : fmt::format(fmt::fg(found->second), "{}", text);
+  return text;
 }
 
 }  // namespace
 
-void print_table(const std::vector<std::string>& header,
-                 const std::vector<std::vector<std::string>>& given) {
-  std::vector<std::vector<std::string>> rows = given;
-  for (auto& row : rows) {
-    for (std::string& cell : row) cell = for_terminal(cell);
-  }
-  std::vector<Column> columns = measure(header, rows);
-  if (const auto limit = terminal_columns(stdout)) narrow(columns, *limit);
-  const bool colours = shows_colours(stdout);
-  const auto print_row = [&](const std::vector<std::string>& row, bool is_header) {
-    std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      if (c > 0) line.append(kGap, ' ');
-      std::string text = fitted(row[c], columns[c]);
-      if (c + 1 == row.size()) text.erase(text.find_last_not_of(' ') + 1);
-      if (colours)
-        text = is_header ? fmt::format(fmt::emphasis::bold, "{}", text) : painted(row[c], text);
-      line += text;
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    fmt::print("{}\n", line);
-  };
-  print_row(header, true);
-  for (const auto& row : rows) print_row(row, false);
+void add_table(CLI::App& app, Context& context) {
+  auto options = std::make_shared<TableOptions>();
+  CLI::App* command =
+      app.add_subcommand("table", "Write runs and their measures as one table, CSV or JSON");
+  add_selection_options(*command, options->selection);
+  command->add_option("--per", options->per, "One row for each checkpoint or each run")
+      ->check(CLI::IsMember({"checkpoint", "run"}))
+      ->capture_default_str();
+  CLI::Option* format = command->add_option("--format", options->format, "csv or json")
+                            ->check(CLI::IsMember({"csv", "json"}))
+                            ->capture_default_str();
+  command->add_option("--out", options->out, "File to write (default: standard output)")
+      ->type_name("FILE");
+  add_common_options(*command, context, true);
+  command->get_option("--json")->excludes(format)->description("The same as --format json");
+  command->footer(
+      "Columns (one more for each swept parameter after the seed, named as in a manifest; an empty "
+      "field\nis unknown or does not apply):\n" +
+      columns_text(RowPer::run) +
+      "The last ones, from critical_size on, are those of --per run, whose measures are of the "
+      "newest\ncheckpoint. A row for each experiment that shares a run, up to the cycles that it "
+      "asks for.\n"
+      "Examples:\n"
+      "  shearcell table --experiment drag --out drag.csv\n"
+      "  shearcell table --per run --variant fluid=cell --format json\n"
+      "  python3 -c 'import pandas, sys; print(pandas.read_csv(sys.stdin))' < drag.csv");
+  command->callback([options, &context] { table(*options, context); });
 }
 
 }  // namespace shearcell::cli

@@ -6,9 +6,9 @@
 #include <memory>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/runner/audit.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stop.hpp"
-#include "experiments/runner/terminal.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell::cli {
@@ -17,6 +17,7 @@ namespace {
 struct VerifyOptions {
   std::vector<std::string> against;
   std::size_t replay = 0;
+  std::size_t measures = 8;
   std::optional<std::uint64_t> seed;
   std::size_t threads = 1;
 };
@@ -127,23 +128,48 @@ nlohmann::json facts(const VerifyReport& report) {
           {"findings", findings}};
 }
 
-void print(const VerifyReport& report) {
+// Only of a sound store: all these read its records and files.
+MeasureCheck audit(const VerifyOptions& options, Context& context, VerifyReport& report) {
+  MeasureCheck measures;
+  if (!report.ok()) return measures;
+  const Store store(context.store, Access::read);
+  for (Finding& finding : check_runs(store)) report.findings.push_back(std::move(finding));
+  if (!report.ok()) return measures;
+  measures = check_measures(store, store.folder(), options.measures,
+                            options.seed.value_or(seed_of(report.head)));
+  for (const Finding& finding : measures.findings) report.findings.push_back(finding);
+  return measures;
+}
+
+void print(const VerifyReport& report, const MeasureCheck& measures) {
   for (const Finding& finding : report.findings) {
     tell("{}: {}: {}\n", name_of_severity(finding), finding.subject, finding.message);
   }
   tell("{} events, {} checkpoints ({}), {} orphans: {}\nhead {} {}\n", report.events,
        report.checkpoints, format_bytes(static_cast<double>(report.bytes)), report.orphans,
        report.ok() ? "all as it was written" : "DAMAGED", report.head.seq, report.head.hash);
+  if (measures.kept > 0) {
+    tell("measures of {} of {} checkpoints were computed again\n", measures.computed,
+         measures.kept);
+  }
+  if (report.ok()) {
+    tell(
+        "Keep the head elsewhere; `verify --against {}:{:.8}...` proves later that the log only "
+        "grew.\n",
+        report.head.seq, report.head.hash);
+  }
 }
 
 void verify(const VerifyOptions& options, Context& context) {
   const std::optional<Head> against = read_head(options.against);
-  const VerifyReport report = Store(context.store, Access::read).verify(against);
+  VerifyReport report = Store(context.store, Access::read).verify(against);
+  const MeasureCheck measures = audit(options, context, report);
   nlohmann::json all = facts(report);
-  if (!context.json) print(report);
+  all["measures"] = {{"kept", measures.kept}, {"computed_again", measures.computed}};
+  if (!context.json) print(report, measures);
   if (!report.ok()) {
     context.exit_code = kStoreDamaged;
-    if (options.replay > 0) fmt::print(stderr, "Not replayed: the store is damaged.\n");
+    if (options.replay > 0) tell_stderr("Not replayed: the store is damaged.\n");
   } else if (options.replay > 0) {
     all["replay"] = replay(options, context);
   }
@@ -161,12 +187,22 @@ void add_verify(CLI::App& app, Context& context) {
       ->type_name("SEQ HASH");
   add_count(*command, "--replay", options->replay, "Recompute K sampled checkpoints", "K", 1,
             1'000'000'000);
+  add_count(*command, "--measures", options->measures,
+            "Recompute the kept measures of K sampled checkpoints (default: 8)", "K");
   add_count(*command, "--seed", options->seed, "Seed of the sample (default: from the head)");
   add_threads_option(*command, options->threads, "Threads of a replay, for large cells");
   add_common_options(*command, context, true);
   command->footer(
-      "--against proves that the log extends the earlier one. --replay steps from the checkpoint\n"
-      "before each sampled one, compares every bit, and records the outcome.\n"
+      "Proves that no event or file was changed or lost; that each file is the one its event\n"
+      "describes (step, cycle, time, units, grains, observables, state); that runs have the\n"
+      "parameters and labels that their ids stand for; that the tables follow from the events.\n"
+      "--replay K proves for the sampled states that they, and all that is recorded with them,\n"
+      "follow bit for bit from the checkpoint before, and records the outcome. --measures K\n"
+      "proves the measures that derived.sqlite keeps of the sampled checkpoints.\n"
+      "Cannot prove: what is not sampled; when, where and how fast a run was computed; LAMMPS's\n"
+      "trajectories; that the log was not written anew from its first event, or its end cut off.\n"
+      "Against the last, keep the head that is printed away from the store: --against proves that\n"
+      "the log extends it.\n"
       "Examples:\n  shearcell verify --json\n  shearcell verify --replay 5\n"
       "  shearcell verify --against 16 4358ffe4f2a9...");
   command->callback([options, &context] { verify(*options, context); });

@@ -16,6 +16,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/task_report.hpp"
+#include "experiments/runner/audit.hpp"
 #include "experiments/runner/campaign.hpp"
 #include "experiments/runner/stop.hpp"
 
@@ -47,8 +48,7 @@ class Repeated {
             try {
               deed();
             } catch (const std::exception& problem) {
-              fmt::print(stderr, "shearcell: {}; tried again in {} s\n", problem.what(),
-                         interval.count());
+              tell_stderr("shearcell: {}; tried again in {} s\n", problem.what(), interval.count());
             }
           }
         }) {}
@@ -74,14 +74,17 @@ class WorkStore {
         fs::path(scratch) / fmt::format("shearcell-{}-{}", whole.parent_path().filename().string(),
                                         whole.filename().string());
     store_.emplace(copy_, Access::create);
-    store_->merge({task});
+    merge_stores(*store_, {task});
     for (const RunRecord& run : store_->runs()) runs_.insert(run.id);
   }
 
   Store& store() { return *store_; }
   bool is_copy() const { return !copy_.empty(); }
 
-  void save() const { Store(task_, Access::write).merge({copy_}, runs_); }
+  void save() const {
+    Store task(task_, Access::write);
+    merge_stores(task, {copy_}, runs_);
+  }
 
   /// Folds the copy back and removes it.
   void finish() {

@@ -32,6 +32,7 @@ std::vector<Bundle> work_left(const std::vector<Plan>& plans, const std::vector<
     }
   }
   std::vector<Bundle> bundles;
+  std::map<std::string, std::size_t> places;  // of each packing in bundles
   std::set<std::string> seen;
   for (const Plan& plan : plans) {
     for (const PlannedRun& planned : plan.runs) {
@@ -39,15 +40,12 @@ std::vector<Bundle> work_left(const std::vector<Plan>& plans, const std::vector<
       const PlannedRun& run = *longest.at(planned.last.key);
       const auto left = left_of(run, run.last, by_id);
       if (!left) continue;
-      auto bundle = std::find_if(bundles.begin(), bundles.end(), [&](const Bundle& other) {
-        return other.packing == run.prepare.key;
-      });
-      if (bundle == bundles.end()) {
-        const double settling = left_of(run, run.prepare, by_id).value_or(0);
-        bundle = bundles.insert(bundle, {run.prepare.key, {}, settling});
+      const auto [place, fresh] = places.try_emplace(run.prepare.key, bundles.size());
+      if (fresh) {
+        bundles.push_back({run.prepare.key, {}, left_of(run, run.prepare, by_id).value_or(0)});
       }
-      bundle->runs.push_back(run.last.key);
-      bundle->particle_steps += *left;
+      bundles[place->second].runs.push_back(run.last.key);
+      bundles[place->second].particle_steps += *left;
     }
   }
   return bundles;

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <charconv>
+#include <optional>
 #include <sstream>
 
 #include "provenance/io/child_process.hpp"
@@ -21,8 +22,18 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-std::string ask(const std::vector<std::string>& words, const std::filesystem::path& folder) {
-  const auto outcome = run_program(words, folder);
+// Slurm's own limit for an answer of its controller is 10 s.
+constexpr double kAnswerSeconds = 15;
+
+// `seconds` only for questions: a job may be queued although sbatch does not answer.
+std::string ask(const std::vector<std::string>& words, const std::filesystem::path& folder,
+                std::optional<double> seconds = std::nullopt) {
+  std::optional<ProgramOutcome> outcome;
+  try {
+    outcome = run_program(words, folder, {}, seconds);
+  } catch (const ProgramError& problem) {
+    throw ClusterError(problem.what());
+  }
   if (!outcome) throw ClusterError(fmt::format(fmt::runtime(kNoSlurm), words.front()));
   if (outcome->code != 0) {
     throw ClusterError(fmt::format("{} failed: {}", words.front(), trimmed(outcome->messages)));
@@ -37,7 +48,7 @@ bool is_number(std::string_view text) {
 }  // namespace
 
 void require_slurm() {
-  ask({"sbatch", "--version"}, "/");
+  ask({"sbatch", "--version"}, "/", kAnswerSeconds);
 }
 
 std::string queue_job(const std::filesystem::path& folder, const std::string& script,
@@ -57,7 +68,7 @@ std::vector<QueuedTask> ask_queue(const std::vector<std::string>& names) {
   if (names.empty()) return {};
   return read_queue(ask({"squeue", "--noheader", "--array", "--format=%j|%F|%K|%T|%r|%N",
                          fmt::format("--name={}", fmt::join(names, ","))},
-                        "/"));
+                        "/", kAnswerSeconds));
 }
 
 std::vector<QueuedTask> read_queue(const std::string& output) {

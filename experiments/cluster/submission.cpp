@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <random>
 
+#include "experiments/runner/audit.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
@@ -108,7 +109,7 @@ std::vector<MergeReport> fold(Store& store, const Submission& submission) {
   for (std::size_t task = 1; task <= submission.tasks.size(); ++task) {
     const fs::path folder = submission.task_store(store.folder(), task);
     if (!fs::exists(folder / "store.sqlite")) continue;
-    for (MergeReport& report : store.merge({folder})) reports.push_back(std::move(report));
+    for (MergeReport& report : merge_stores(store, {folder})) reports.push_back(std::move(report));
   }
   return reports;
 }
@@ -126,7 +127,7 @@ Submission prepare_submission(Store& store, const std::vector<Share>& shares, js
   try {
     for (std::size_t task = 1; task <= shares.size(); ++task) {
       Store own(made.task_store(store.folder(), task), Access::create);
-      own.merge({store.folder()}, shares[task - 1].stages);
+      merge_stores(own, {store.folder()}, shares[task - 1].stages);
     }
     store.record_submission("CampaignSubmitted", facts, seen);
   } catch (...) {

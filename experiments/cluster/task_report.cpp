@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/cluster/task_report.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "provenance/io/plain_file.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell {
 namespace {
@@ -21,19 +25,17 @@ void write_task_report(const fs::path& folder, const std::vector<RunRecord>& run
   for (const RunRecord& run : runs) {
     list.push_back({{"id", run.id}, {"state", name_of(run.state)}, {"cycle", run.cycle}});
   }
-  const fs::path file = report_file(folder);
-  fs::path beside = file;
-  beside += ".new";
-  std::ofstream out(beside, std::ios::trunc);
-  out << json{{"runs", list}}.dump() << "\n";
-  out.close();
-  if (out) fs::rename(beside, file);
+  try {
+    write_output(report_file(folder), json{{"runs", list}}.dump() + "\n");
+  } catch (const std::system_error&) {
+    // It only informs, and is written again soon.
+  }
 }
 
 std::map<std::string, ReportedRun> read_task_report(const fs::path& folder) {
   std::map<std::string, ReportedRun> reported;
-  std::ifstream in(report_file(folder));
-  const json facts = json::parse(in, nullptr, false);
+  const json facts =
+      parse_json(read_plain(report_file(folder), StoreLimits::value_bytes).value_or(""));
   try {
     for (const json& run : facts.at("runs")) {
       const auto state = value_of<RunState>(run.at("state").get_ref<const std::string&>());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files for the field's tools. Each takes frames in turn and is whole when the last one was given;
-// all have the same particles, numbered from 1. Numbers are in SI units and, as text, have 17
-// digits: what is read is what was stored.
+// all have the same particles, numbered from 1, and say which run and parameters they come from.
+// Text has 17 digits, enough to read back the same double.
 #pragma once
 
 #include <filesystem>
@@ -17,16 +17,27 @@ namespace shearcell {
 using FrameWriter = std::function<void(const Frame&)>;
 
 /// H5MD 1.1 in one file: particles/all with box, position, velocity, id, species (as Frame::type),
-/// mass, radius and the measures, and observables. Lengths in nm, the nearest that MDAnalysis
+/// mass, radius and the measures of each grain; observables with every scalar; the run and its
+/// parameters as attributes of the group parameters. Lengths in nm, the nearest that MDAnalysis
 /// knows. `frames` is how many there will be.
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 
-/// Extended XYZ in one file. Species H stands for a grain and He for a wall grain, since readers
-/// want chemical symbols; `type` tells which wall.
-FrameWriter extxyz_writer(const std::filesystem::path& file);
+enum class Lengths { diameters, metres };
 
-/// A folder with grains_CYCLE.vtp (points with their data) and cell_CYCLE.vtp (the six faces of the
-/// cell) for each frame, and frames.pvd over all of them.
+/// Extended XYZ in one file; the comment line of each frame holds the run, its parameters and the
+/// scalars. Species H stands for a grain and He for a wall grain, since readers want chemical
+/// symbols; `type` tells which wall. Lengths in grain diameters (the radius of a sphere is then
+/// 0.5, as OVITO and ASE expect numbers of order 1), d_m tells d in metres; or in metres.
+FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths);
+inline FrameWriter extxyz_in_diameters(const std::filesystem::path& file) {
+  return extxyz_writer(file, Lengths::diameters);
+}
+inline FrameWriter extxyz_in_metres(const std::filesystem::path& file) {
+  return extxyz_writer(file, Lengths::metres);
+}
+
+/// A folder with grains_CYCLE.vtp (points with their data; scalars as field data) and
+/// cell_CYCLE.vtp (the six faces of the cell) for each frame, and frames.pvd over all of them. SI.
 FrameWriter vtk_writer(const std::filesystem::path& folder);
 
 /// A folder with frame_CYCLE.data for each frame: LAMMPS data, atom_style sphere, units si, a
@@ -35,5 +46,9 @@ FrameWriter vtk_writer(const std::filesystem::path& folder);
 /// behind their planes and, on the side walls, reach below the moving one. Measures do not fit this
 /// format.
 FrameWriter lammps_writer(const std::filesystem::path& folder);
+
+/// FOLDER/run.json: {"run", ..., "parameters": {...}, "frames": [{"cycle", "checkpoint",
+/// scalars}]}, beside the files of the formats that are folders.
+FrameWriter facts_writer(const std::filesystem::path& folder);
 
 }  // namespace shearcell

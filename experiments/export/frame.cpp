@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/export/frame.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace shearcell {
@@ -55,9 +56,35 @@ void add_wall_grains(const Checkpoint& c, const WallPose& pose, Frame& frame) {
   }
 }
 
+void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
+               const Measures& measures, Frame& frame) {
+  const Membership& m = selected.membership;
+  frame.facts = {{"run", selected.run.id},
+                 {"experiment", m.experiment},
+                 {"scale", m.scale},
+                 {"variant", m.variant},
+                 {"seed", m.seed}};
+  frame.checkpoint = record.sha256;
+  for (const auto& [column, value] : facts_of(record, measures)) {
+    // Members of Frame.
+    if (column.name == "cycle" || column.name == "time_s" || column.name == "checkpoint") continue;
+    frame.scalars.emplace_back(column.name, value.is_null() ? std::nan("") : value.get<double>());
+  }
+  const nlohmann::json& resolved = selected.run.resolved;
+  const nlohmann::json parameters =
+      resolved.is_object() ? resolved.value("parameters", nlohmann::json()) : nlohmann::json();
+  for (const auto& [key, value] : parameters.items()) {
+    // `grains` is a measure too.
+    const bool known =
+        std::ranges::any_of(frame.scalars, [&](const auto& scalar) { return scalar.first == key; });
+    if (!known && (value.is_number() || value.is_string())) frame.facts.emplace_back(key, value);
+  }
+}
+
 }  // namespace
 
-Frame frame_of(const Checkpoint& checkpoint) {
+Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record,
+               const SelectedRun& run) {
   const Analysis analysis = analyse(checkpoint);
   const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
   Frame frame;
@@ -65,7 +92,6 @@ Frame frame_of(const Checkpoint& checkpoint) {
   frame.time_s = checkpoint.time_s;
   frame.cycle = checkpoint.cycle;
   frame.theta = checkpoint.theta;
-  frame.measures = analysis.measures;
   frame.grains = static_cast<std::size_t>(checkpoint.state.position.cols());
   frame.radius = checkpoint.units.diameter_m / 2;
   frame.mass = checkpoint.units.mass_kg;
@@ -73,6 +99,7 @@ Frame frame_of(const Checkpoint& checkpoint) {
                      static_cast<Eigen::Index>(checkpoint.cell.wall_grains.size());
   frame.position.resize(3, total);
   frame.velocity.resize(3, total);
+  add_facts(record, run, analysis.measures, frame);
   place_cell(checkpoint, pose, frame);
   add_grains(checkpoint, analysis.grains, frame);
   add_wall_grains(checkpoint, pose, frame);

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "analysis/measures.hpp"
+#include "experiments/figures/run_table.hpp"
 #include "provenance/checkpoint.hpp"
 
 namespace shearcell {
@@ -18,7 +18,13 @@ struct Frame {
   double time_s = 0;
   double cycle = 0;
   double theta = 0;  ///< tilt [rad]
-  Measures measures;
+
+  /// What holds for every frame of the run: id, experiment, scale, variant, seed, and its
+  /// parameters by their keys in a manifest; texts and numbers.
+  std::vector<std::pair<std::string, nlohmann::json>> facts;
+  std::string checkpoint;  ///< SHA-256 of its file
+  /// The measures of the frame, by the names that `table` gives them; NaN where one is unknown.
+  std::vector<std::pair<std::string, double>> scalars;
 
   /// The cell [m]: its lower left corner, and its edges as columns. Only the third is periodic.
   Eigen::Vector3d origin;
@@ -41,7 +47,8 @@ struct Frame {
 };
 
 /// Throws AnalysisError as analyse() does.
-Frame frame_of(const Checkpoint& checkpoint);
+Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
+               const SelectedRun& run = {});
 
 /// A column of per-particle numbers in a format that has columns.
 struct FrameColumn {

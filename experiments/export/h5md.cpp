@@ -34,7 +34,7 @@ void put_unit(const Handle& object, const std::string& unit) {
 class Trajectory {
  public:
   Trajectory(const std::filesystem::path& path, std::size_t frames)
-      : frames_(frames), file_(create(path)) {}
+      : path_(path), frames_(frames), file_(create(path)) {}
 
   void add(const Frame& frame) {
     const std::lock_guard lock(hdf5::library_mutex());
@@ -61,9 +61,8 @@ class Trajectory {
     }
     put("cycle", H5T_IEEE_F64LE, &frame.cycle);
     put("theta", H5T_IEEE_F64LE, &frame.theta);
-    put("phi", H5T_IEEE_F64LE, &frame.measures.phi);
-    put("crystalline_percent", H5T_IEEE_F64LE, &frame.measures.crystalline_percent);
-    require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "the file");
+    for (const auto& [name, value] : frame.scalars) put(name, H5T_IEEE_F64LE, &value);
+    require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), path_.string());
     ++next_;
   }
 
@@ -103,7 +102,13 @@ class Trajectory {
   void begin(const Frame& frame) {
     particles_ = frame.particles();
     put_metadata();
-    const Handle all = make_group(make_group(file_, "particles"), "all");
+    const Handle particles = make_group(file_, "particles");
+    const Handle all = make_group(particles, "all");
+    // MDAnalysis counts the particles of a group of this name, and opens the file without a
+    // topology.
+    require(
+        H5Lcreate_soft("/particles/all", particles.get(), "trajectory", H5P_DEFAULT, H5P_DEFAULT),
+        "a link");
     dataset(all, "step", "step", H5T_STD_U64LE, {frames_}, "");
     dataset(all, "time", "time", H5T_IEEE_F64LE, {frames_}, "s");
     put_box(all);
@@ -127,8 +132,19 @@ class Trajectory {
     const Handle observables = make_group(file_, "observables");
     element(observables, "cycle", H5T_IEEE_F64LE, {}, "");
     element(observables, "theta", H5T_IEEE_F64LE, {}, "rad");
-    element(observables, "phi", H5T_IEEE_F64LE, {}, "");
-    element(observables, "crystalline_percent", H5T_IEEE_F64LE, {}, "");
+    for (const auto& [name, value] : frame.scalars) {
+      element(observables, name, H5T_IEEE_F64LE, {}, "");
+    }
+    const Handle parameters = make_group(file_, "parameters");
+    for (const auto& [key, value] : frame.facts) {
+      if (value.is_string()) {
+        put_attribute(parameters, key, value.get<std::string>());
+      } else if (value.is_number_unsigned()) {
+        put_attribute(parameters, key, value.get<std::uint64_t>());
+      } else {
+        put_attribute(parameters, key, value.get<double>());
+      }
+    }
   }
 
   void put_metadata() {
@@ -173,6 +189,8 @@ class Trajectory {
     require(H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, data), name);
   }
 
+  const hdf5::Quiet quiet_;  // until all below is closed, which may fail on a full disk
+  std::filesystem::path path_;
   std::size_t frames_;
   std::size_t particles_ = 0;
   std::size_t next_ = 0;
@@ -183,6 +201,9 @@ class Trajectory {
 }  // namespace
 
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames) {
+  // Before any other call: at the end of the process HDF5 would write again what a full disk
+  // refused, and crash.
+  H5dont_atexit();
   return [out = std::make_shared<Trajectory>(file, frames)](const Frame& f) { out->add(f); };
 }
 

@@ -18,12 +18,13 @@ std::string header(const Frame& f) {
   const double low_x = along.minCoeff() + tilt * low_y - f.radius;
   const double high_x = along.maxCoeff() + tilt * low_y + f.radius;
   return fmt::format(
-      "LAMMPS data file by shearcell, units si, atom_style sphere, step {}, cycle {:.17g}\n\n"
+      "LAMMPS data file by shearcell, units si, atom_style sphere, step {}, cycle {:.17g}, "
+      "run {:.64}\n\n"
       "{} atoms\n5 atom types\n\n"
       "{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n0 {:.17g} zlo zhi\n{:.17g} 0 0 xy xz "
       "yz\n\n",
-      f.step, f.cycle, f.particles(), low_x, high_x, low_y, high_y, f.edges(2, 2),
-      tilt * (high_y - low_y));
+      f.step, f.cycle, f.facts.front().second.get<std::string>(), f.particles(), low_x, high_x,
+      low_y, high_y, f.edges(2, 2), tilt * (high_y - low_y));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <memory>
 
@@ -19,11 +20,11 @@ class PolyData {
  public:
   template <typename Number>
   std::string array(const std::string& name, const char* type, int components,
-                    const std::vector<Number>& values) {
+                    const std::vector<Number>& values, const char* more = "") {
     std::string element = fmt::format(
-        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
+        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" {}format=\"appended\" "
         "offset=\"{}\"/>\n",
-        type, name, components, data_.size());
+        type, name, components, more, data_.size());
     const std::uint64_t bytes = values.size() * sizeof(Number);
     data_.append(reinterpret_cast<const char*>(&bytes), sizeof bytes);
     data_.append(reinterpret_cast<const char*>(values.data()), bytes);
@@ -54,10 +55,16 @@ std::vector<std::int64_t> count_from(std::int64_t first, std::size_t count) {
 
 void write_grains(const Frame& f, const std::filesystem::path& file) {
   PolyData out;
-  std::string piece =
-      fmt::format("<FieldData>\n{}{}</FieldData>\n",
-                  out.array("cycle", "Float64", 1, std::vector<double>{f.cycle}),
-                  out.array("TimeValue", "Float64", 1, std::vector<double>{f.time_s}));
+  std::string piece = "<FieldData>\n";
+  const auto add_field = [&](const std::string& name, double value) {
+    piece += out.array(name, "Float64", 1, std::vector<double>{value}, "NumberOfTuples=\"1\" ");
+  };
+  add_field("cycle", f.cycle);
+  add_field("TimeValue", f.time_s);
+  for (const auto& [name, value] : f.scalars) {
+    if (std::isfinite(value)) add_field(name, value);
+  }
+  piece += "</FieldData>\n";
   piece += fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfPolys=\"0\">\n",
                        f.particles());
   piece += "<Points>\n" + out.array("Points", "Float64", 3, flat(f.position)) + "</Points>\n";

@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
+#include "analysis/own_figure.hpp"
+#include "experiments/manifest/names.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -32,106 +35,250 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
   return found;
 }
 
-std::vector<CollectedRun> each_once(std::vector<CollectedRun> runs, bool per_experiment) {
-  std::vector<CollectedRun> once;
-  std::map<std::pair<std::string, std::string>, std::size_t> places;
-  for (CollectedRun& run : runs) {
-    const std::string within = per_experiment ? run.membership.experiment : "";
-    const auto [place, first] = places.try_emplace({run.run.id, within}, once.size());
-    if (first) {
-      once.push_back(std::move(run));
-    } else {
-      std::uint64_t& target = once[place->second].membership.target_cycles;
-      target = std::max(target, run.membership.target_cycles);
-    }
-  }
-  return once;
+/// "fluid=still, fluid=cell and 3 more".
+std::string some_of(const std::set<std::string>& names) {
+  constexpr std::size_t most = 3;
+  const std::vector<std::string> first(
+      names.begin(),
+      std::next(names.begin(), static_cast<std::ptrdiff_t>(std::min(names.size(), most))));
+  return fmt::format("{}{}", fmt::join(first, ", "),
+                     names.size() > most ? fmt::format(" and {} more", names.size() - most) : "");
 }
 
-std::string unknown_figure(const std::string& name) {
-  std::vector<std::string_view> known;
-  for (const Figure& figure : all_figures()) known.push_back(figure.name);
+/// Runs of one figure, each run once and each seed of a variant once.
+class Chosen {
+ public:
+  explicit Chosen(bool all_versions) : all_versions_(all_versions) {}
+
+  void take(CollectedRun run) {
+    const Membership& m = run.membership;
+    if (!ids_.emplace(m.experiment, run.run.id).second) return;
+    const auto [place, first] =
+        places_.try_emplace({m.experiment, m.variant, m.seed}, runs_.size());
+    if (first) {
+      runs_.push_back(std::move(run));
+      return;
+    }
+    // The same manifest meant another run to another version of the program.
+    CollectedRun& known = runs_[place->second];
+    notes_.push_back(fmt::format(
+        "experiment {}: run {:.8} ({}, seed {}) is left out: the manifest was later declared with "
+        "run {:.8} in its place",
+        m.experiment, known.run.id, m.variant, m.seed, run.run.id));
+    known = std::move(run);
+  }
+
+  void take_older(CollectedRun run) {
+    Membership& m = run.membership;
+    if (ids_.contains({m.experiment, run.run.id})) return;
+    if (!all_versions_) {
+      Left& left = left_[{m.experiment, m.manifest}];
+      left.variants.insert(m.variant);
+      ++left.runs;
+      return;
+    }
+    m.labels["manifest"] = m.manifest.substr(0, 8);
+    m.variant += fmt::format(",manifest={:.8}", m.manifest);
+    take(std::move(run));
+  }
+
+  std::vector<std::string> notes() {
+    for (const auto& [version, left] : left_) {
+      notes_.push_back(fmt::format(
+          "experiment {}: {} runs of another version of its manifest ({:.8}) are left out: {}; "
+          "--all-versions adds them",
+          version.first, left.runs, version.second, some_of(left.variants)));
+    }
+    return std::move(notes_);
+  }
+  std::vector<CollectedRun> runs() { return std::move(runs_); }
+
+ private:
+  struct Left {
+    std::size_t runs = 0;
+    std::set<std::string> variants;
+  };
+  bool all_versions_;
+  std::vector<CollectedRun> runs_;
+  std::set<std::pair<std::string, std::string>> ids_;  // experiment, run
+  std::map<std::tuple<std::string, std::string, std::uint64_t>, std::size_t> places_;
+  std::map<std::pair<std::string, std::string>, Left> left_;  // by experiment and manifest
+  std::vector<std::string> notes_;
+};
+
+/// What was asked for up to the end of the runs, and is not there: a manifest may state a denser
+/// cadence than the runs were made with.
+std::optional<std::string> never_made(const std::vector<CollectedRun>& runs) {
+  std::size_t checkpoints = 0;
+  std::set<std::string> lacking;
+  for (const CollectedRun& run : runs) {
+    if (run.run.kind != "shear" || run.checkpoints.empty()) continue;
+    std::set<double> cycles;
+    for (const CheckpointRecord& record : run.checkpoints) cycles.insert(record.cycle);
+    const std::uint64_t every = std::max<std::uint64_t>(run.membership.checkpoint_every, 1);
+    std::size_t missing = 0;
+    for (double cycle = 0; cycle < *cycles.rbegin(); cycle += static_cast<double>(every)) {
+      missing += cycles.contains(cycle) ? 0 : 1;
+    }
+    if (missing == 0) continue;
+    checkpoints += missing;
+    lacking.insert(run.run.id.substr(0, 8));
+  }
+  if (lacking.empty()) return std::nullopt;
+  return fmt::format(
+      "{} checkpoints that the manifest asks for were never made (runs {}); `shearcell run` with "
+      "the manifest, or `shearcell resume RUN`, computes them",
+      checkpoints, some_of(lacking));
+}
+
+std::string unknown_name(const char* what, const std::string& name,
+                         const std::vector<std::string_view>& known) {
   const Suggestion nearest = suggest_name(name, known);
-  return fmt::format("there is no figure {}; {}", name,
+  return fmt::format("there is no {} {}; {}", what, name,
                      nearest.name.empty() ? fmt::format("known are {}", fmt::join(known, ", "))
                                           : "did you mean " + nearest.name + "?");
 }
 
-}  // namespace
+std::string unknown_figure(const std::string& name) {
+  std::vector<std::string_view> known;
+  for (const Figure& figure : all_figures()) known.emplace_back(figure.name);
+  return unknown_name("figure", name, known);
+}
 
-std::vector<RegisteredManifest> registered_manifests(const Store& store) {
-  std::vector<RegisteredManifest> found;
-  for (const Event& event : store.events()) {
-    if (event.type != "ManifestRegistered") continue;
-    try {
-      const nlohmann::json body = event.body();
-      const nlohmann::json& info = body.at("info");
-      found.push_back({info.at("experiment").get<std::string>(), info.value("question", ""),
-                       info.at("figures").get<std::vector<std::string>>()});
-    } catch (const nlohmann::json::exception& problem) {
-      throw damaged_payload(event, problem);
+std::vector<Figure> own_figures(const RegisteredManifest& manifest) {
+  std::vector<Figure> figures;
+  const std::optional<Manifest> read_one = read(manifest);
+  if (!read_one) return figures;
+  for (const PlotSpec& plot : read_one->plots) figures.push_back(plot_figure(plot));
+  for (const ClaimSpec& claim : read_one->claims) figures.push_back(claim_figure(claim));
+  return figures;
+}
+
+/// Names the variants of the figure's runs, which may be of several versions of a manifest.
+void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRuns& collected) {
+  for (const RegisteredManifest& manifest : manifests) {
+    std::map<nlohmann::json, std::string> names;  // by swept values
+    std::vector<nlohmann::json> variants;
+    for (const CollectedRun& run : collected.runs) {
+      if (run.membership.experiment != manifest.experiment) continue;
+      if (names.emplace(run.membership.labels, "").second)
+        variants.push_back(run.membership.labels);
+    }
+    if (variants.empty()) continue;
+    const auto known = read(manifest);
+    const auto labels = known ? known->labels : std::vector<VariantLabel>();
+    const std::vector<std::string> found = variant_names(variants, labels);
+    for (std::size_t k = 0; k < variants.size(); ++k) names[variants[k]] = found[k];
+    for (CollectedRun& run : collected.runs) {
+      if (run.membership.experiment != manifest.experiment) continue;
+      run.name = names.at(run.membership.labels);
+      run.named = std::ranges::any_of(
+          labels, [&](const VariantLabel& label) { return selects(label, run.membership.labels); });
     }
   }
-  return found;
 }
 
-const Figure& figure_called(const std::string& name) {
-  const Figure* figure = find_figure(name);
-  if (figure == nullptr) throw NotFound(unknown_figure(name));
-  return *figure;
+}  // namespace
+
+std::string WantedFigure::path() const {
+  return experiment.empty() ? figure.name : experiment + "/" + figure.name;
 }
 
-WantedFigures figures_of_store(const Store& store) {
+WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names,
+                             const std::optional<std::string>& experiment) {
+  std::vector<RegisteredManifest> manifests = newest_manifests(store);
+  if (experiment) {
+    std::vector<std::string_view> known;
+    for (const RegisteredManifest& manifest : manifests) known.emplace_back(manifest.experiment);
+    if (std::ranges::find(known, *experiment) == known.end()) {
+      throw NotFound(unknown_name("experiment", *experiment, known));
+    }
+    std::erase_if(manifests, [&](const auto& m) { return m.experiment != *experiment; });
+  }
+  const auto asked = [&](const std::string& name) {
+    return names.empty() || std::ranges::find(names, name) != names.end();
+  };
   WantedFigures wanted;
-  std::set<std::string> names;
-  const std::vector<RegisteredManifest> manifests = registered_manifests(store);
+  std::set<std::string> known, reported;
+  for (const Figure& figure : all_figures()) known.insert(figure.name);
+  for (const Figure& figure : all_figures()) {
+    if (figure.form != FigureForm::table || manifests.empty() || !asked(figure.name)) continue;
+    if (!experiment || !names.empty()) wanted.figures.push_back({figure, ""});
+  }
   for (const RegisteredManifest& manifest : manifests) {
+    for (const Figure& figure : all_figures()) {
+      const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;
+      const bool named = experiment && !names.empty();
+      if (figure.form == FigureForm::table || !asked(figure.name) || !(named || lists)) continue;
+      wanted.figures.push_back({figure, manifest.experiment});
+    }
+    for (Figure& figure : own_figures(manifest)) {
+      known.insert(figure.name);
+      if (asked(figure.name)) wanted.figures.push_back({std::move(figure), manifest.experiment});
+    }
     for (const std::string& name : manifest.figures) {
-      if (!names.insert(name).second || find_figure(name) != nullptr) continue;
+      if (!names.empty() || find_figure(name) != nullptr || !reported.insert(name).second) continue;
       wanted.unknown.push_back("experiment " + manifest.experiment + ": " + unknown_figure(name));
     }
   }
-  for (const Figure& figure : all_figures()) {
-    const bool every = figure.scope == FigureScope::every && !manifests.empty();
-    if (every || names.contains(std::string(figure.name))) wanted.figures.push_back(&figure);
+  for (const std::string& name : names) {
+    if (!known.contains(name))
+      throw NotFound(unknown_name("figure", name, {known.begin(), known.end()}));
   }
   return wanted;
 }
 
-std::vector<const Figure*> in_order_of_needs(std::vector<const Figure*> figures) {
-  std::ranges::stable_sort(figures, std::greater{}, &Figure::needs);
+std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures) {
+  std::ranges::stable_sort(figures, std::greater{},
+                           [](const WantedFigure& wanted) { return wanted.figure.needs; });
   return figures;
 }
 
-CollectedRuns collect_runs(const Store& store, const Figure& figure,
-                           const std::optional<std::string>& scale) {
-  const bool every = figure.scope == FigureScope::every;
-  std::set<std::string> experiments;
-  for (const RegisteredManifest& manifest : registered_manifests(store)) {
-    if (every || std::ranges::find(manifest.figures, figure.name) != manifest.figures.end()) {
-      experiments.insert(manifest.experiment);
-    }
-  }
-  CollectedRuns collected;
-  std::vector<CollectedRun>& runs = collected.runs;
+CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
+                           const CollectOptions& options) {
+  const std::vector<RegisteredManifest> manifests = newest_manifests(store);
+  std::map<std::string, std::string> newest;  // SHA-256 by experiment
+  for (const RegisteredManifest& manifest : manifests)
+    newest[manifest.experiment] = manifest.sha256;
+  std::vector<CollectedRun> current, older;
   for (const RunRecord& run : store.runs()) {
     if (run.kind == "prepare") continue;
     for (const Membership& membership : run.memberships) {
-      if (!experiments.contains(membership.experiment)) continue;
-      if (!scale || membership.scale == *scale) runs.push_back({run, membership, {}});
+      if (!wanted.experiment.empty() && membership.experiment != wanted.experiment) continue;
+      if (options.scale && membership.scale != *options.scale) continue;
+      const bool is_current = newest[membership.experiment] == membership.manifest;
+      (is_current ? current : older).push_back({run, membership, {}});
     }
   }
-  if (runs.empty()) {
-    throw NotFound(
-        fmt::format("no run of the store belongs to figure {}{}; run a manifest that "
-                    "lists it under `figures` first",
-                    figure.name, scale ? " at scale " + *scale : ""));
+  if (current.empty() && (older.empty() || !options.all_versions)) {
+    throw NotFound(fmt::format(
+        "no run of the store belongs to figure {}{}{}", wanted.path(),
+        options.scale ? " at scale " + *options.scale : "",
+        older.empty() ? "; run a manifest that lists it under `figures` first"
+                      : " as the manifest was registered last; run it, or use --all-versions"));
   }
-  collected.scale = runs.back().membership.scale;
-  std::erase_if(runs,
-                [&](const CollectedRun& run) { return run.membership.scale != collected.scale; });
-  runs = each_once(std::move(runs), every);
-  for (CollectedRun& run : runs) run.checkpoints = checkpoints_of(store, figure, run);
+  CollectedRuns collected;
+  collected.scale = (current.empty() ? older : current).back().membership.scale;
+  Chosen chosen(options.all_versions);
+  for (std::vector<CollectedRun>* runs : {&current, &older}) {
+    for (CollectedRun& run : *runs) {
+      if (run.membership.scale != collected.scale) continue;
+      if (runs == &current) {
+        chosen.take(std::move(run));
+      } else {
+        chosen.take_older(std::move(run));
+      }
+    }
+  }
+  collected.runs = chosen.runs();
+  collected.notes = chosen.notes();
+  if (wanted.figure.needs != FigureNeeds::none) name_variants(manifests, collected);
+  for (CollectedRun& run : collected.runs) {
+    run.checkpoints = checkpoints_of(store, wanted.figure, run);
+  }
+  if (wanted.figure.needs != FigureNeeds::none) {
+    if (auto note = never_made(collected.runs)) collected.notes.push_back(std::move(*note));
+  }
   return collected;
 }
 

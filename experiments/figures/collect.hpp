@@ -7,52 +7,63 @@
 #include <vector>
 
 #include "analysis/figure.hpp"
+#include "experiments/runner/registered.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
 
-/// What a registered manifest says of figures.
-struct RegisteredManifest {
+/// A figure of one experiment, or of all ("").
+struct WantedFigure {
+  Figure figure;
   std::string experiment;
-  std::string question;
-  std::vector<std::string> figures;
+
+  /// "drag/S2": names its record, and its files below the folder for figures.
+  std::string path() const;
 };
-
-/// In the order of registration; an experiment may have several. Throws StoreDamaged for an event
-/// that does not hold them.
-std::vector<RegisteredManifest> registered_manifests(const Store& store);
-
-/// The figure with that name. Throws NotFound that names the nearest figure.
-const Figure& figure_called(const std::string& name);
 
 /// What registered manifests ask for.
 struct WantedFigures {
-  std::vector<const Figure*> figures;  ///< in the order of the supplement
-  std::vector<std::string> unknown;    ///< a message for each name that is not a figure's
+  /// By experiment; in each those of the supplement in its order, then plots and claims.
+  std::vector<WantedFigure> figures;
+  std::vector<std::string> unknown;  ///< a message for each name that is not a figure's
 };
-WantedFigures figures_of_store(const Store& store);
+
+/// The figures, plots and claims that the newest manifests state: all, or those with one of
+/// `names`; of all experiments, or of `experiment`, which then need not list them. Throws NotFound,
+/// with the nearest name, for a name that is not a figure's or an experiment's.
+WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
+                             const std::optional<std::string>& experiment = {});
 
 /// Figures that need more of a checkpoint first: its one analysis then gives what the others need
 /// as well. Otherwise in the order given.
-std::vector<const Figure*> in_order_of_needs(std::vector<const Figure*> figures);
+std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures);
 
 /// One run of a figure.
 struct CollectedRun {
   RunRecord run;
   Membership membership;
   std::vector<CheckpointRecord> checkpoints;  ///< at whole cycles
+  std::string name = {};                      ///< of its variant, for people
+  bool named = false;                         ///< by a label of the manifest
 };
 
 struct CollectedRuns {
   std::string scale;  ///< one figure never mixes scales
   std::vector<CollectedRun> runs;
+  std::vector<std::string> notes;  ///< runs that were left out, checkpoints that were never made
 };
 
-/// The runs of the experiments that ask for the figure, at one scale (default: the one declared
-/// last). A run that two experiments share is one run and ends where the longer of them ends:
-/// counted twice, it would make errors too small. A figure of every experiment has it once per
-/// experiment. Throws NotFound if there is no such run.
-CollectedRuns collect_runs(const Store& store, const Figure& figure,
-                           const std::optional<std::string>& scale);
+struct CollectOptions {
+  std::optional<std::string> scale;  ///< default: the one declared last
+  bool all_versions = false;         ///< runs of older versions of the manifest too
+};
+
+/// The runs of the experiment, as the newest version of its manifest has them, at one scale. No two
+/// of them have the same variant and seed, and no run comes twice: counted twice, it would make
+/// errors too small. (A figure of every experiment has it once per experiment.) Runs of older
+/// versions are named in the notes, or have a variant of their own, "fluid=cell,manifest=1f2e3d4c".
+/// Throws NotFound if there is no such run.
+CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
+                           const CollectOptions& options);
 
 }  // namespace shearcell

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/figures/draw.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
-#include "experiments/figures/collect.hpp"
+#include "experiments/figures/at_rest.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/measure.hpp"
+#include "experiments/manifest/manifest.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/io/plain_file.hpp"
@@ -53,6 +60,13 @@ std::vector<std::optional<FigureMeasures>> measures_of(const Store& store, const
     throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
                         problem.what() + "); delete it, or measure again with --fresh");
   }
+  if (figure.at_rest) {
+    const std::vector<double> phi =
+        phi_at_rest(store, records, {options.workers, options.fresh, options.report});
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      if (measured[i]) measured[i]->measures.phi_at_rest = phi[i];
+    }
+  }
   result.measured = found.computed;
   result.damage = std::move(found.damage);
   result.pruned = std::move(found.pruned);
@@ -69,6 +83,8 @@ std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
     FigureRun run{input.run.id,
                   input.membership.experiment,
                   input.membership.variant,
+                  input.name,
+                  input.named,
                   input.membership.labels,
                   input.run.resolved.value("parameters", nlohmann::json::object()),
                   input.membership.seed,
@@ -91,7 +107,8 @@ std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
 }
 
 /// The figure's inputs, without anything that depends on the time or the host.
-nlohmann::json lineage_of(const FigureSummary& result, const std::vector<CollectedRun>& inputs,
+nlohmann::json lineage_of(const Store& store, const FigureSummary& result,
+                          const std::vector<CollectedRun>& inputs,
                           const std::vector<FigureRun>& runs) {
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t r = 0; r < runs.size(); ++r) {
@@ -104,12 +121,18 @@ nlohmann::json lineage_of(const FigureSummary& result, const std::vector<Collect
                     {"variant", runs[r].variant},
                     {"seed", runs[r].seed},
                     {"checkpoints", checkpoints}});
+    const CollectedRun& input = inputs[r];
+    if (auto given = overrides_of(store, input.run, input.membership); !given.is_null()) {
+      list.back()["overrides"] = std::move(given);
+    }
   }
-  return {{"figure", result.name},
-          {"scale", result.scale},
-          {"analysis_version", analysis_version},
-          {"inputs", list},
-          {"outputs", nlohmann::json::object()}};
+  nlohmann::json facts = {{"figure", result.name},
+                          {"scale", result.scale},
+                          {"analysis_version", analysis_version},
+                          {"inputs", list},
+                          {"outputs", nlohmann::json::object()}};
+  if (!result.experiment.empty()) facts["experiment"] = result.experiment;
+  return facts;
 }
 
 /// Unless the newest record of the figure says the same, from whatever host.
@@ -121,55 +144,121 @@ void record(Store& store, const std::string& name, nlohmann::json facts) {
   store.record_figure(name, facts);
 }
 
+/// A figure that averages over variants would mix what another parameter changes. Parameters that
+/// advance with the figure's own are not mixed.
+void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>& runs) {
+  if (wanted.figure.form != FigureForm::groups) return;
+  std::map<std::vector<nlohmann::json>, nlohmann::json> groups;  // swept values of the first run
+  for (const FigureRun& run : runs) {
+    std::vector<nlohmann::json> group;
+    for (const std::string& key : wanted.figure.keys) group.push_back(parameter_of(run, key));
+    const auto [known, first] = groups.try_emplace(std::move(group), run.labels);
+    for (const auto& [key, value] : run.labels.items()) {
+      if (known->second.value(key, nlohmann::json()) == value) continue;
+      throw UsageError(fmt::format(
+          "figure {} would average over the values of {} that experiment {} sweeps; give each an "
+          "experiment of its own, or state a plot in the manifest (`plots`)",
+          wanted.figure.name, key, wanted.experiment));
+    }
+  }
+}
+
+/// The experiment's folder. The name comes from the store, which is not trusted.
+std::filesystem::path folder_of(const WantedFigure& wanted, const FigureOptions& options) {
+  if (wanted.experiment.empty()) return options.folder;
+  if (!is_name(wanted.experiment)) {
+    throw StoreDamaged("an experiment of the store is called '" + wanted.experiment +
+                       "', which cannot name a folder; run `verify`");
+  }
+  return options.folder / wanted.experiment;
+}
+
+/// Panels of one figure get letters.
+void lay_out(std::vector<FigureTable>& tables, bool wide) {
+  char letter = 'a';
+  for (FigureTable& table : tables) {
+    if (table.chart.series.empty()) continue;
+    table.chart.wide = wide;
+    if (tables.size() > 1 && letter <= 'z') table.chart.letter = std::string(1, letter++);
+  }
+}
+
+std::string caption(const FigureSummary& summary, const std::map<std::string, std::size_t>& runs,
+                    const std::vector<FigureTable>& tables) {
+  std::vector<std::string> counts;
+  for (const auto& [variant, count] : runs) counts.push_back(fmt::format("{}: {}", variant, count));
+  return fmt::format("{} Runs: {}. Experiment {}, scale {}.",
+                     caption_of(fmt::format("Figure {}. {}", summary.name, summary.title), tables),
+                     fmt::join(counts, ", "), summary.experiment,
+                     summary.scale.empty() ? "base" : summary.scale);
+}
+
 }  // namespace
 
-ComputedFigure compute_figure(const Store& store, const Figure& figure,
+ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
                               const FigureOptions& options) {
+  const Figure& figure = wanted.figure;
   ComputedFigure computed;
   FigureSummary& summary = computed.summary;
-  const CollectedRuns collected = collect_runs(store, figure, options.scale);
+  CollectedRuns collected = collect_runs(store, wanted, options.collect);
   summary.name = figure.name;
+  summary.experiment = wanted.experiment;
+  summary.title = figure.title;
+  summary.notes = std::move(collected.notes);
   summary.scale = collected.scale;
   const std::vector<FigureRun> runs =
       figure_runs(collected.runs, measures_of(store, figure, collected.runs, options, summary));
+  require_told_apart(wanted, runs);
   summary.runs = runs.size();
-  for (const FigureRun& run : runs) summary.checkpoints += run.checkpoints.size();
+  for (const FigureRun& run : runs) {
+    summary.checkpoints += run.checkpoints.size();
+    ++computed.runs_by_variant[run.name];
+  }
   computed.result = figure.make(runs);
   summary.verdicts = computed.result.verdicts;
-  computed.lineage = lineage_of(summary, collected.runs, runs);
+  computed.lineage = lineage_of(store, summary, collected.runs, runs);
   return computed;
 }
 
-FigureSummary draw_figure(Store& store, const Figure& figure, const FigureOptions& options) {
-  ComputedFigure computed = compute_figure(store, figure, options);
+FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options) {
+  const std::filesystem::path folder = folder_of(wanted, options);
+  ComputedFigure computed = compute_figure(store, wanted, options);
   FigureSummary& result = computed.summary;
-  const FigureResult& made = computed.result;
-  std::filesystem::create_directories(options.folder);
-  for (const FigureTable& table : made.tables) require_own_files(table, options.folder);
-  require_ours(options.folder / (result.name + ".verdict.json"), [](std::string_view beginning) {
+  FigureResult& made = computed.result;
+  lay_out(made.tables, options.wide);
+  std::filesystem::create_directories(folder);
+  for (const FigureTable& table : made.tables) require_own_files(table, folder);
+  require_ours(folder / (result.name + ".verdict.json"), [](std::string_view beginning) {
     return beginning.starts_with("{\n \"claims\": [");
   });
-  require_ours(options.folder / (result.name + ".lineage.json"), [&](std::string_view beginning) {
+  require_ours(folder / (result.name + ".caption.txt"), [&](std::string_view beginning) {
+    return beginning.starts_with("Figure " + result.name + ". ");
+  });
+  require_ours(folder / (result.name + ".lineage.json"), [&](std::string_view beginning) {
     return beginning.starts_with("{\n \"analysis_version\": ") &&
            beginning.find("\n \"figure\": \"" + result.name + "\"") != beginning.npos;
   });
   const auto write = [&](const char* ending, const std::string& text) {
-    result.files.push_back(options.folder / (result.name + ending));
+    result.files.push_back(folder / (result.name + ending));
     write_output(result.files.back(), text);
   };
   for (const FigureTable& table : made.tables) {
-    result.files.push_back(write_csv(table, options.folder));
+    result.files.push_back(write_csv(table, folder));
     try {
-      const std::filesystem::path svg = draw_svg(table, options.folder);
+      const std::filesystem::path svg = draw_svg(table, folder);
       result.files.push_back(svg);
       if (auto pdf = convert_to_pdf(svg)) result.files.push_back(std::move(*pdf));
     } catch (const AnalysisError& error) {
       result.plot_error = error.what();
     }
   }
+  if (!made.tables.empty() && !made.tables.front().chart.series.empty()) {
+    write(".caption.txt", caption(result, computed.runs_by_variant, made.tables) + "\n");
+  }
   if (!made.verdicts.empty()) {
     nlohmann::json verdict = to_json(made.verdicts);
     verdict["figure"] = result.name;
+    if (!result.experiment.empty()) verdict["experiment"] = result.experiment;
     verdict["scale"] = result.scale;
     write(".verdict.json", verdict.dump(1) + "\n");
   }
@@ -180,7 +269,7 @@ FigureSummary draw_figure(Store& store, const Figure& figure, const FigureOption
   }
   write(".lineage.json", lineage_text(facts));
 
-  record(store, result.name, facts);
+  record(store, wanted.path(), facts);
   return std::move(computed.summary);
 }
 

@@ -5,18 +5,19 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "analysis/figure.hpp"
-#include "provenance/store.hpp"
+#include "experiments/figures/collect.hpp"
 
 namespace shearcell {
 
 struct FigureOptions {
-  std::filesystem::path folder;      ///< for the files; created if missing
-  std::optional<std::string> scale;  ///< default: the one that was declared last
+  std::filesystem::path folder;  ///< the files go into its folder EXPERIMENT; created if missing
+  CollectOptions collect = {};
+  bool wide = false;  ///< drawn over two columns of a journal
   std::size_t workers = 1;
   bool fresh = false;  ///< measure every checkpoint again, even if the store keeps its measures
   std::function<void(std::size_t done, std::size_t total)> report;  ///< may be empty
@@ -24,12 +25,15 @@ struct FigureOptions {
 
 struct FigureSummary {
   std::string name;
+  std::string title;
+  std::string experiment;  ///< "" if it is about all
   std::string scale;
   std::size_t runs = 0;
   std::size_t checkpoints = 0;
   std::size_t measured = 0;                  ///< checkpoints that were analysed for it now
   std::vector<std::filesystem::path> files;  ///< CSV, SVG, PDF of each panel, verdict, lineage
   std::vector<Verdict> verdicts;             ///< on the supplement's claims
+  std::vector<std::string> notes;            ///< as CollectedRuns::notes
   std::vector<std::string> damage;           ///< checkpoints that could not be read, one line each
   std::vector<std::string> pruned;           ///< checkpoints whose files were pruned, likewise
   std::vector<std::string> changed;          ///< checkpoints whose kept measures were different
@@ -41,20 +45,23 @@ struct FigureSummary {
 struct ComputedFigure {
   FigureSummary summary;  ///< without files
   FigureResult result;
+  std::map<std::string, std::size_t> runs_by_variant;
   nlohmann::json lineage;  ///< as the figure's record has it; `outputs` is empty
 };
 
 /// Tables, verdicts and inputs of a figure. Reads the store and writes nothing but measures into
 /// derived.sqlite; options.folder is not used. A checkpoint whose measures are kept is not read;
 /// one that would have to be read and is damaged or pruned is left out and named. Throws NotFound
-/// if the store holds no run for the figure.
-ComputedFigure compute_figure(const Store& store, const Figure& figure,
+/// if the store holds no run for the figure, and UsageError if the figure would average over a
+/// parameter that the experiment varies.
+ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
                               const FigureOptions& options);
 
-/// Computes the figure; writes FOLDER/PANEL.csv, .svg and, with librsvg, .pdf of each panel,
-/// FOLDER/NAME.verdict.json if there are claims, and FOLDER/NAME.lineage.json; and records a
-/// FigureGenerated event with host and build, unless the newest event of this figure says the same.
-/// The same checkpoints give the same bytes. Throws as compute_figure() and require_own_files().
-FigureSummary draw_figure(Store& store, const Figure& figure, const FigureOptions& options);
+/// Computes the figure; writes into FOLDER/EXPERIMENT (FOLDER for a figure of all): PANEL.csv, .svg
+/// and, with librsvg, .pdf of each panel, NAME.verdict.json if there are claims, and
+/// NAME.lineage.json; and records a FigureGenerated event with host and build, unless the newest
+/// event of this figure says the same. The same checkpoints give the same bytes. Throws as
+/// compute_figure() and require_own_files().
+FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options);
 
 }  // namespace shearcell

@@ -25,13 +25,16 @@ FigureInput read_input(const json& input) {
   result.seed = count_at(input, "seed");
   input.at("manifest").get_to(result.manifest);
   input.at("checkpoints").get_to(result.checkpoints);
+  result.overrides = input.value("overrides", json());
   return result;
 }
 
 // The swept values of the run in the membership that the figure used.
 json labels_of(const RunRecord& run, const FigureInput& input) {
   for (const Membership& member : run.memberships) {
-    if (member.manifest == input.manifest && member.variant == input.variant) return member.labels;
+    // The variant of an older version has the version added (collect.hpp).
+    if (member.manifest == input.manifest && input.variant.starts_with(member.variant))
+      return member.labels;
   }
   return json::object();
 }
@@ -106,11 +109,26 @@ std::string hash_in_lineage_beside(const std::filesystem::path& file, const std:
 // The outputs and the lineage file, which is the record without the host and build.
 std::map<std::string, std::string> files_of(const FigureRecord& record) {
   std::map<std::string, std::string> files = outputs_of(record.provenance);
-  files[record.name + ".lineage.json"] = sha256_hex(lineage_text(record.provenance));
+  files[figure_name(record) + ".lineage.json"] = sha256_hex(lineage_text(record.provenance));
   return files;
 }
 
 }  // namespace
+
+json overrides_of(const Store& store, const RunRecord& run, const Membership& membership) {
+  json found;
+  if (run.kind != "shear") return found;
+  const auto manifest = find_manifest(store, membership.manifest);
+  if (!manifest) return found;
+  for (const Override& made : overrides(manifest->text, membership)) {
+    found[made.key] = {{"run", made.value}, {"manifest", made.manifest}};
+  }
+  return found;
+}
+
+std::string figure_name(const FigureRecord& record) {
+  return record.name.substr(record.name.rfind('/') + 1);
+}
 
 std::string lineage_text(json provenance) {
   if (provenance.is_object()) provenance.erase("made");
@@ -181,11 +199,13 @@ json to_json(const FigureLineage& lineage) {
                       {"seed", input.seed},
                       {"manifest", input.manifest},
                       {"manifest_lines", lines},
+                      {"overrides", input.overrides},
                       {"checkpoints", checkpoints}});
   }
   for (const auto& [id, stage] : lineage.runs) stages.push_back(stage_json(stage));
   const json& facts = lineage.record.provenance;
-  return {{"figure", lineage.record.name},
+  return {{"figure", figure_name(lineage.record)},
+          {"experiment", facts.value("experiment", json(nullptr))},
           {"event", lineage.record.seq},
           {"recorded_at", lineage.record.recorded_at},
           {"scale", facts.value("scale", json(nullptr))},
@@ -220,7 +240,7 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
     const auto output = outputs.find(name);
     if (output == outputs.end()) continue;
     const PublishedFile found{PublishedFile::Verdict::changed, sha256, output->second, record};
-    if (hash_in_lineage_beside(file, record.name) == output->second) return found;
+    if (hash_in_lineage_beside(file, figure_name(record)) == output->second) return found;
     if (!by_name) by_name = found;
   }
   return by_name;

@@ -24,6 +24,7 @@ struct FigureInput {
   std::uint64_t seed = 0;
   std::string manifest;                  ///< SHA-256
   std::vector<ManifestLine> lines;       ///< of that manifest
+  nlohmann::json overrides;              ///< key -> {"run", "manifest"}; null without any
   std::vector<std::string> checkpoints;  ///< SHA-256 of those that entered the figure
 };
 
@@ -34,6 +35,12 @@ struct FigureLineage {
   std::vector<ManifestText> manifests;         ///< each once
   std::map<std::string, RunLineage> runs;      ///< of the inputs and of the stages before them
 };
+
+/// Values of the command line in place of the manifest's: {"cycles": {"run": 8, "manifest": 5}};
+/// null without any.
+nlohmann::json overrides_of(const Store& store, const RunRecord& run, const Membership& membership);
+/// "S2" of a record that is called "drag/S2". Older records are called "S2".
+std::string figure_name(const FigureRecord& record);
 
 /// The text of a figure's lineage file, from the payload of its record.
 std::string lineage_text(nlohmann::json provenance);

@@ -93,7 +93,9 @@ class Measuring {
 
   void compute(std::size_t i) {
     const Results before = std::exchange(results_[i], std::nullopt);
-    const Analysis analysis = analyse(store_.load_checkpoint(*distinct_[i]));
+    Checkpoint checkpoint = store_.load_checkpoint(*distinct_[i]);
+    if (options_.prepare) options_.prepare(*distinct_[i], checkpoint);
+    const Analysis analysis = analyse(checkpoint);
     std::vector<json> results;
     std::vector<DerivedObject> objects;
     std::vector<DerivedKey> names = keys(i);

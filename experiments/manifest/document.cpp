@@ -43,6 +43,23 @@ std::size_t utf8_length(string_view text) {
   return overlong || beyond ? 0 : length;
 }
 
+// Of a valid sequence.
+char32_t code_point(string_view text) {
+  const std::size_t length = utf8_length(text);
+  char32_t c = static_cast<unsigned char>(text.front()) & (length == 1 ? 0x7FU : 0x7FU >> length);
+  for (std::size_t i = 1; i < length; ++i) {
+    c = c << 6 | (static_cast<unsigned char>(text[i]) & 0x3FU);
+  }
+  return c;
+}
+
+// Control characters, ends of lines, and those that change the direction of the text around them
+// (Bidi_Control in Unicode).
+bool is_control(char32_t c) {
+  return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x61C || c == 0x200E || c == 0x200F ||
+         (c >= 0x2028 && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
+}
+
 // yaml-cpp replaces bad bytes silently and takes U+0004 for the end of the text.
 void check_characters(string_view text, string_view file) {
   Position at{1, 1};
@@ -235,9 +252,10 @@ std::string printable(string_view text, std::size_t longest) {
   while (!text.empty()) {
     if (result.size() >= longest) return result + "...";
     const std::size_t length = utf8_length(text);
-    const auto c = static_cast<unsigned char>(text.front());
-    if (length == 0 || c < 0x20 || c == 0x7F) {
-      result += fmt::format("\\x{:02x}", c);
+    const char32_t c = length == 0 ? static_cast<unsigned char>(text.front()) : code_point(text);
+    if (length == 0 || is_control(c)) {
+      result += c < 0x100 ? fmt::format("\\x{:02x}", static_cast<unsigned>(c))
+                          : fmt::format("\\u{:04x}", static_cast<unsigned>(c));
     } else {
       result += text.substr(0, length);
     }

@@ -27,7 +27,8 @@ struct Node {
 /// Throws ManifestError.
 Node read_document(std::string_view text, std::string_view file);
 
-/// A text fit for a one-line message: control characters escaped, cut to a readable length.
+/// A text fit for a one-line message: control characters, also those that change the direction of
+/// a text, and bytes that are not UTF-8 escaped as \x1b or \u202e; cut to a readable length.
 std::string printable(std::string_view text, std::size_t longest = 60);
 
 }  // namespace shearcell

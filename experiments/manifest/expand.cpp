@@ -9,6 +9,7 @@
 
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
+#include "experiments/manifest/names.hpp"
 #include "experiments/manifest/numerics.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
@@ -156,6 +157,19 @@ void warn_of_until(const Manifest& manifest, const AtScale& scale, Plan& plan) {
                               .text());
 }
 
+void name_variants(const Manifest& manifest, Plan& plan) {
+  std::vector<nlohmann::json> variants;
+  for (const PlannedRun& run : plan.runs) {
+    if (variants.empty() || variants.back() != run.labels) variants.push_back(run.labels);
+  }
+  const std::vector<std::string> names = variant_names(variants, manifest.labels);
+  std::size_t at = 0;
+  for (PlannedRun& run : plan.runs) {
+    if (run.labels != variants[at]) ++at;
+    run.name = names[at];
+  }
+}
+
 }  // namespace
 
 Plan expand(const Manifest& manifest, const ExpandOptions& options) {
@@ -222,6 +236,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       plan.runs.push_back(std::move(run));
     }
   });
+  name_variants(manifest, plan);
   without_effect.warn(manifest.file, plan);
   warn_of_until(manifest, resolved, plan);
   return plan;

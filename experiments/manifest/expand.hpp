@@ -26,6 +26,7 @@ struct PlannedRun {
   std::string experiment;
   std::string scale;      ///< empty when the manifest has no scales
   std::string variant;    ///< "fluid=cell"; "base" when nothing is swept
+  std::string name = {};  ///< of the variant, for people (names.hpp)
   nlohmann::json labels;  ///< the swept keys and their values, an object
   std::uint64_t seed = 0;
   StageSpec prepare;

@@ -6,6 +6,8 @@
 
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/manifest.hpp"
+#include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/variants.hpp"
 
 namespace shearcell {
 namespace {
@@ -69,6 +71,9 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
     Lines lines(text);
     lines.add_key(document, "experiment", "experiment");
     const Node* scale_node = nullptr;
+    const Node* cycles_node = nullptr;
+    std::string cycles_path = "base";
+    if (const auto* base = find(document, "base")) cycles_node = &base->second;
     const Sweep* sweep = &manifest.sweep;
     std::string sweep_path = "sweep", seeds_path = "seeds";
     if (const auto* scales = scale.empty() ? nullptr : find(document, "scales")) {
@@ -76,6 +81,10 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
       if (const auto* entry = find(scales->second, scale)) {
         lines.add(path, entry->first.at);
         scale_node = &entry->second;
+        if (find(*scale_node, "cycles") != nullptr) {
+          cycles_node = scale_node;
+          cycles_path = path;
+        }
       }
       for (const Scale& known : manifest.scales) {
         if (known.name != scale || !known.sweep) continue;
@@ -90,11 +99,44 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
     }
     lines.add_labels(sweep->grid, sweep_path + ".grid", labels);
     lines.add_labels(sweep->zip, sweep_path + ".zip", labels);
+    if (cycles_node != nullptr) lines.add_key(*cycles_node, "cycles", cycles_path + ".cycles");
     lines.add_key(scale_node != nullptr ? *scale_node : document, "seeds", seeds_path);
     return lines.take();
   } catch (const ManifestError&) {
     return {};  // written for another version of the schema
   }
+}
+
+std::vector<Override> overrides(std::string_view text, const Membership& membership) {
+  std::vector<Override> found;
+  try {
+    const Manifest manifest = parse_manifest(text, "manifest");
+    const auto scale = std::ranges::find(manifest.scales, membership.scale, &Scale::name);
+    const AtScale stated = at_scale(manifest, scale == manifest.scales.end() ? nullptr : &*scale);
+    const auto value = [&](const char* key) {
+      const auto setting = stated.settings.find(key);
+      return setting == stated.settings.end() ? get_value(*find_field(key), Parameters{})
+                                              : setting->second.value;
+    };
+    if (const auto cycles = value("cycles"); cycles != membership.target_cycles) {
+      found.push_back({"cycles", membership.target_cycles, cycles});
+    }
+    const std::vector<std::uint64_t>& seeds = stated.seeds->values;
+    if (std::ranges::find(seeds, membership.seed) == seeds.end()) {
+      found.push_back({"seed", membership.seed, seeds});
+    }
+    const auto swept = [&](const std::vector<SweepAxis>& axes) {
+      return std::ranges::find(axes, "engine", &SweepAxis::key) != axes.end();
+    };
+    const auto engine = membership.labels.find("engine");
+    if (engine != membership.labels.end() && !swept(stated.sweep->grid) &&
+        !swept(stated.sweep->zip)) {
+      found.push_back({"engine", *engine, value("engine")});
+    }
+  } catch (const ManifestError&) {
+    found.clear();
+  }
+  return found;
 }
 
 }  // namespace shearcell

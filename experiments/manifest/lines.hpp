@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which lines of a manifest make a run what it is.
+// Which lines of a manifest make a run what it is, and what the command line gave instead.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "provenance/records.hpp"
 
 namespace shearcell {
 
@@ -19,5 +21,16 @@ struct ManifestLine {
 /// the seeds that the scale uses. Empty when the text is no manifest that this program reads.
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& labels);
+
+/// A value that the command line gave in place of the manifest's: --cycles, --seeds or --engine.
+struct Override {
+  std::string key;  ///< "cycles", "seed" or "engine"
+  nlohmann::json value;
+  nlohmann::json manifest;  ///< the manifest's value; of "seed" the list of its seeds
+};
+
+/// How a run of the manifest that shears differs from what its text asks for. Empty like
+/// manifest_lines().
+std::vector<Override> overrides(std::string_view text, const Membership& membership);
 
 }  // namespace shearcell

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/own_figure.hpp"
 #include "experiments/manifest/limits.hpp"
 #include "experiments/manifest/until.hpp"
 #include "provenance/errors.hpp"
@@ -47,7 +48,7 @@ class ManifestError : public UsageError {
   std::vector<ManifestProblem> problems_;
 };
 
-/// A checked value and where it was written.
+/// A checked value, or "auto" (resolve_auto), and where it was written.
 struct Setting {
   nlohmann::json value;
   Position at;
@@ -80,6 +81,13 @@ struct StatedUntil {
   Position at;
 };
 
+/// A name of `labels` for the variants that have these values.
+struct VariantLabel {
+  nlohmann::json where;  ///< parameters and their values, an object
+  std::string name;
+  Position at;
+};
+
 /// A named size of the experiment. What it does not state is as in the manifest itself.
 struct Scale {
   std::string name;
@@ -97,6 +105,9 @@ struct Manifest {
   std::string experiment;
   std::string question;
   std::vector<std::string> figures;
+  std::vector<VariantLabel> labels;
+  std::vector<PlotSpec> plots;
+  std::vector<ClaimSpec> claims;
   Position base_at;
   Settings base;
   Sweep sweep;
@@ -105,6 +116,10 @@ struct Manifest {
   StatedUntil until;
   std::vector<Scale> scales;  ///< in the order of the text
 };
+
+/// Letters, digits, '-' and '_', at most 64 of them and no '-' first: such a text can name an
+/// experiment, its folder and its figures.
+bool is_name(std::string_view text);
 
 /// Reads a file. Throws ManifestError.
 Manifest load_manifest(const std::filesystem::path& path);

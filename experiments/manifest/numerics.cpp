@@ -17,7 +17,29 @@ TimeStep time_step(const Parameters& p, double seconds) {
   return {seconds, seconds / contact_time, seconds / stability_limit_s(p)};
 }
 
+/// Whole steps in `duration` at Table I's part of the stability limit; at least 1.
+double auto_steps(double duration, const Parameters& p) {
+  const Parameters table1;
+  const double part = shear_time_step_s(table1) / stability_limit_s(table1);
+  const double steps = std::nearbyint(duration / (part * stability_limit_s(p)));
+  constexpr double most = 1e15;  // exact, and far beyond what a manifest may state
+  return steps >= 1 ? std::min(steps, most) : 1;
+}
+
 }  // namespace
+
+bool takes_auto(std::string_view key) {
+  return key == "steps_per_cycle" || key == "settle_time_step_s";
+}
+
+void resolve_auto(std::string_view key, Parameters& p) {
+  if (key == "steps_per_cycle") {
+    p.steps_per_cycle = static_cast<std::uint64_t>(auto_steps(p.period_s, p));
+  } else {
+    const double duration = Parameters{}.period_s;
+    p.settle_time_step_s = duration / auto_steps(duration, p);
+  }
+}
 
 TimeStep shear_time_step(const Parameters& parameters) {
   return time_step(parameters, shear_time_step_s(parameters));

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "experiments/manifest/parameters.hpp"
 
@@ -19,6 +20,14 @@ struct TimeStep {
 
 TimeStep shear_time_step(const Parameters& parameters);
 TimeStep settle_time_step(const Parameters& parameters);
+
+/// Whether a manifest may set the key to `auto`: steps_per_cycle and settle_time_step_s.
+bool takes_auto(std::string_view key);
+
+/// Sets the parameter to the value that keeps the time step at Table I's part of the stability
+/// limit, 0.3547: a whole number of steps in a cycle, or in 2 s of settling. The parameters of
+/// Table I give Table I's time step. The result may be out of range (check_value).
+void resolve_auto(std::string_view key, Parameters& parameters);
 
 /// Mean overlap of touching grains at rest [d], to leading order in it: 0.75 p d/k. By the virial
 /// the mean pressure of a packing with n grains per volume and z contacts of each is p = n z k

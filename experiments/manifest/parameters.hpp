@@ -50,7 +50,7 @@ struct Parameters {
   Fluid fluid = Fluid::still;
   double gravity_m_per_s2 = 9.81;
   double pressure_Pa = 954;
-  PressureAt pressure_at = PressureAt::moving_wall;
+  PressureAt pressure_at = PressureAt::top;
 
   // The cell.
   WallTexture walls = WallTexture::rough;

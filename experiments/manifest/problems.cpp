@@ -15,9 +15,9 @@ using std::string;
 using std::string_view;
 
 std::span<const string_view> manifest_sections() {
-  static constexpr std::array<string_view, 9> sections = {"experiment",  "question", "figures",
-                                                          "base",        "sweep",    "seeds",
-                                                          "checkpoints", "until",    "scales"};
+  static constexpr std::array<string_view, 12> sections = {
+      "experiment", "question", "figures", "labels",      "plots", "claims",
+      "base",       "sweep",    "seeds",   "checkpoints", "until", "scales"};
   return sections;
 }
 

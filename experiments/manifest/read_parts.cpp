@@ -9,6 +9,8 @@
 #include <numeric>
 #include <set>
 
+#include "experiments/manifest/numerics.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -46,7 +48,10 @@ std::optional<SweepAxis> read_axis(const Node& key, const Node& values, const st
   }
   SweepAxis axis{key.text, key.at, {}};
   for (const Node& item : read_list(values, full, "[1, 2]", problems)) {
-    if (auto value = read_parameter(*field, item, full, problems)) {
+    if (is_auto(*field, item)) {
+      problems.add(item.at, full, "cannot be swept as `auto`", "",
+                   "Set it in `base` or in a scale; it then follows the variant.");
+    } else if (auto value = read_parameter(*field, item, full, problems)) {
       axis.values.push_back({std::move(*value), item.at});
     }
   }
@@ -119,6 +124,11 @@ std::optional<json> read_parameter(const Field& field, const Node& node, const s
   }
   problems.add(node.at, key, wrong->problem, shown(node), wrong->remedy);
   return std::nullopt;
+}
+
+bool is_auto(const Field& field, const Node& node) {
+  return takes_auto(field.name) && node.kind == Node::Kind::scalar && !node.quoted &&
+         node.text == "auto";
 }
 
 std::optional<std::uint64_t> read_count(const Node& node, const string& key, std::uint64_t largest,

@@ -21,6 +21,9 @@ namespace shearcell {
 std::optional<nlohmann::json> read_parameter(const Field& field, const Node& node,
                                              const std::string& key, ProblemList& problems);
 
+/// Whether the node is the word `auto` where the parameter takes it.
+bool is_auto(const Field& field, const Node& node);
+
 /// A whole number from 1 to `largest`.
 std::optional<std::uint64_t> read_count(const Node& node, const std::string& key,
                                         std::uint64_t largest, ProblemList& problems);
@@ -32,6 +35,12 @@ std::span<const Node> read_list(const Node& node, const std::string& key, std::s
 Sweep read_sweep(const Node& node, const std::string& path, ProblemList& problems);
 
 StatedUntil read_until(const Node& node, const std::string& key, ProblemList& problems);
+
+std::vector<VariantLabel> read_labels(const Node& node, ProblemList& problems);
+
+/// Add to the manifest's plots or claims, whose names are all different.
+void read_plots(const Node& node, Manifest& manifest, ProblemList& problems);
+void read_claims(const Node& node, Manifest& manifest, ProblemList& problems);
 
 Seeds read_seeds(const Node& node, const std::string& key, ProblemList& problems);
 

@@ -29,16 +29,6 @@ bool contains(const auto& names, string_view name) {
   return std::ranges::find(names, name) != names.end();
 }
 
-// Names become parts of file names and identifiers.
-bool is_name(string_view text) {
-  const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-';
-  };
-  return !text.empty() && text.size() <= kLongestName && text.front() != '-' &&
-         std::ranges::all_of(text, allowed);
-}
-
 class Reader {
  public:
   explicit Reader(string_view file) : problems_(file) { manifest_.file = file; }
@@ -77,6 +67,12 @@ class Reader {
       manifest_.question = read_question(value);
     } else if (key.text == "figures") {
       read_figures(value);
+    } else if (key.text == "labels") {
+      manifest_.labels = read_labels(value, problems_);
+    } else if (key.text == "plots") {
+      read_plots(value, manifest_, problems_);
+    } else if (key.text == "claims") {
+      read_claims(value, manifest_, problems_);
     } else if (key.text == "base") {
       manifest_.base_at = key.at;
       manifest_.base = read_settings(value, key.text, nullptr);
@@ -127,7 +123,7 @@ class Reader {
 
   void add_unknown_figure(const Node& item) {
     std::vector<string_view> known;
-    for (const Figure& figure : all_figures()) known.push_back(figure.name);
+    for (const Figure& figure : all_figures()) known.emplace_back(figure.name);
     const string near = suggest_name(item.text, known).name;
     problems_.add(item.at, "figures",
                   near.empty() ? "names an unknown figure"
@@ -149,7 +145,8 @@ class Reader {
     for (const auto& [key, value] : node.entries) {
       const string full = join_path(path, key.text);
       if (const Field* field = find_field(key.text)) {
-        auto read = read_parameter(*field, value, full, problems_);
+        auto read = is_auto(*field, value) ? nlohmann::json(value.text)
+                                           : read_parameter(*field, value, full, problems_);
         if (read) settings[key.text] = {std::move(*read), value.at};
       } else if (scale != nullptr && contains(kScaleSections, key.text)) {
         read_scale_section(key.text, value, full, *scale);
@@ -218,6 +215,15 @@ class Reader {
 };
 
 }  // namespace
+
+bool is_name(string_view text) {
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  return !text.empty() && text.size() <= kLongestName && text.front() != '-' &&
+         std::ranges::all_of(text, allowed);
+}
 
 Manifest read_manifest(const Node& root, string_view file) {
   return Reader(file).read(root);

@@ -84,8 +84,8 @@ std::vector<Field> cell_fields() {
             "the wall that moves vertically under the pressure (B.6)"),
       number("height_over_width", "", "1", &P::height_over_width, 0.1, false, 100, kPrepare,
              "nominal height of the cell over its width L (E)"),
-      above_zero("nominal_packing_fraction", "", "1", &P::nominal_packing_fraction, 0.74, kPrepare,
-                 "packing fraction at which N grains fill the nominal cell; fixes L"),
+      number("nominal_packing_fraction", "", "1", &P::nominal_packing_fraction, 1e-9, false, 0.74,
+             kPrepare, "packing fraction at which N grains fill the nominal cell; fixes L"),
       from_zero("wall_grain_area_fraction", "", "1", &P::wall_grain_area_fraction, 0.53, kPrepare,
                 "area fraction of a rough wall covered by wall grains; random sequential addition "
                 "jams at 0.547"),
@@ -104,12 +104,13 @@ std::vector<Field> cell_fields() {
 std::vector<Field> settle_fields() {
   using P = Parameters;
   return {
-      above_zero("fill_packing_fraction", "", "1", &P::fill_packing_fraction, 0.35, kPrepare,
-                 "packing fraction of the random sequential addition that settling starts from; "
-                 "it jams at 0.384"),
-      above_zero("settle_time_step_s", "", "s", &P::settle_time_step_s, 1, kPrepare,
-                 "time step while settling; not tied to that of the shear, so that variants of "
-                 "the latter share their packing"),
+      number("fill_packing_fraction", "", "1", &P::fill_packing_fraction, 1e-9, false, 0.35,
+             kPrepare,
+             "packing fraction of the random sequential addition that settling starts from; "
+             "it jams at 0.384"),
+      number("settle_time_step_s", "", "s", &P::settle_time_step_s, 1e-15, false, 1, kPrepare,
+             "time step while settling; not tied to that of the shear, so that variants of "
+             "the latter share their packing; `auto` keeps Table I's part of the stability limit"),
       above_zero("settle_force_tolerance", "", "1", &P::settle_force_tolerance, 1, kPrepare,
                  "settled when the moving wall's force imbalance over P A_w is below this"),
       above_zero("settle_kinetic_tolerance", "", "1", &P::settle_kinetic_tolerance, 1, kPrepare,
@@ -135,7 +136,8 @@ std::vector<Field> shear_fields() {
       above_zero("period_s", "T", "s", &P::period_s, 1e6, kShear,
                  "duration of a cycle, 2 pi/omega (Table I: omega = pi rad/s)"),
       integer("steps_per_cycle", "", &P::steps_per_cycle, 4, 1e9, kShear,
-              "time steps in a cycle (Table I, B.4)"),
+              "time steps in a cycle (Table I, B.4); `auto` keeps Table I's part of the stability "
+              "limit, 0.355"),
       above_zero("pause_s", "", "s", &P::pause_s, 1e6,
                  {.stage = Stage::shear, .under = ProtocolKind::paused},
                  "rest between fixed walls after each cycle, under protocol paused (B.5); rounded "

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "provenance/limits.hpp"
+
 namespace shearcell {
 
 nlohmann::json to_json(const Until& until) {
@@ -18,12 +20,12 @@ Until until_from_json(const nlohmann::json& json) {
     if (!json.is_object() || !json.contains(name)) continue;
     const auto extra = json.find("extra_cycles");
     if (json.size() != 2 || !json.at(name).is_number() || extra == json.end() ||
-        !extra->is_number_unsigned()) {
+        !extra->is_number_unsigned() || *extra > StoreLimits::cycles) {
       break;
     }
     return {entry.value, json.at(name).get<double>(), extra->get<std::uint64_t>()};
   }
-  throw std::runtime_error("until: is not {MEASURE: VALUE, extra_cycles: N}");
+  throw std::runtime_error("until: is not {MEASURE: VALUE, extra_cycles: N}, N at most 1000000");
 }
 
 std::string describe(const Until& until) {

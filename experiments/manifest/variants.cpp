@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
+#include "experiments/manifest/numerics.hpp"
 #include "experiments/manifest/schema.hpp"
 
 namespace shearcell {
@@ -15,6 +17,10 @@ void apply(const std::string& key, const Setting& setting, Parameters& parameter
 }
 
 }  // namespace
+
+bool is_auto(const Setting& setting) {
+  return setting.value == "auto";
+}
 
 AtScale at_scale(const Manifest& manifest, const Scale* scale) {
   AtScale result{manifest.base, &manifest.sweep, &manifest.seeds, manifest.checkpoint_every,
@@ -57,7 +63,14 @@ std::uint64_t variant_count(const Sweep& sweep) {
 
 void for_each_variant(const AtScale& scale, const std::function<void(const Variant&)>& visit) {
   Parameters base;
-  for (const auto& [key, setting] : scale.settings) apply(key, setting, base);
+  std::vector<std::string> autos;
+  for (const auto& [key, setting] : scale.settings) {
+    if (is_auto(setting)) {
+      autos.push_back(key);
+    } else {
+      apply(key, setting, base);
+    }
+  }
   const std::vector<SweepAxis>& grid = scale.sweep->grid;
   const std::vector<SweepAxis>& zip = scale.sweep->zip;
   const std::uint64_t rows = zip.empty() ? 1 : zip.front().values.size();
@@ -79,6 +92,10 @@ void for_each_variant(const AtScale& scale, const std::function<void(const Varia
       variant.swept.emplace_back(axis.key, &axis.values[index % rows]);
     }
     for (const auto& [key, setting] : variant.swept) apply(key, *setting, variant.parameters);
+    for (const std::string& key : autos) {
+      const auto is_key = [&](const auto& entry) { return entry.first == key; };
+      if (std::ranges::none_of(variant.swept, is_key)) resolve_auto(key, variant.parameters);
+    }
     visit(variant);
   }
 }

@@ -23,6 +23,9 @@ struct AtScale {
   StatedUntil until;
 };
 
+/// Whether the setting is `auto`, which for_each_variant() resolves.
+bool is_auto(const Setting& setting);
+
 /// `scale` may be null: the manifest without any.
 AtScale at_scale(const Manifest& manifest, const Scale* scale);
 

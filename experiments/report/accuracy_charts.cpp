@@ -76,7 +76,7 @@ bool is_chart(const json& chart) {
 
 ReportPanel read_panel(const std::filesystem::path& csv) {
   ReportPanel panel;
-  panel.name = csv.stem().string();
+  panel.name = panel.id = csv.stem().string();
   panel.csv = read_beside(csv, ".csv").value_or("");
   if (const auto text = read_beside(csv, ".chart.json")) {
     panel.chart = parse_json(*text);

@@ -69,8 +69,10 @@ std::string overview_html(const ReportData& data) {
   std::vector<HtmlRow> rows;
   for (const ReportExperiment& experiment : data.experiments) {
     std::string figures;
-    for (const std::string& name : experiment.figures) {
-      figures += fmt::format("<a href=\"#figure-{0}\">{0}</a> ", escape_html(name));
+    for (const std::size_t index : experiment.figures) {
+      const ReportFigure& figure = data.figures.at(index);
+      figures += fmt::format("<a href=\"#figure-{}\">{}</a> ", escape_html(figure.id),
+                             escape_html(figure.name));
     }
     const std::string& question =
         experiment.question.empty() ? experiment.name : experiment.question;
@@ -148,11 +150,11 @@ std::string data_html(const ReportData& data) {
   json charts = json::object();
   for (const ReportFigure& figure : data.figures) {
     for (const ReportPanel& panel : figure.panels) {
-      if (!panel.chart.is_null()) charts[panel.name] = panel.chart;
+      if (!panel.chart.is_null()) charts[panel.id] = panel.chart;
     }
   }
   for (const ReportPanel& panel : data.accuracy) {
-    if (!panel.chart.is_null()) charts[panel.name] = panel.chart;
+    if (!panel.chart.is_null()) charts[panel.id] = panel.chart;
   }
   return fmt::format(
       "<script type=\"application/json\" id=\"report-data\">{}</script>\n<script>{}</script>\n",

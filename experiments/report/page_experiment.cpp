@@ -10,11 +10,6 @@
 namespace shearcell {
 namespace {
 
-const ReportFigure& figure_called(const ReportData& data, const std::string& name) {
-  return *std::find_if(data.figures.begin(), data.figures.end(),
-                       [&](const ReportFigure& figure) { return figure.name == name; });
-}
-
 std::string claim_html(const Verdict& verdict) {
   return fmt::format("<li>{}<div><p>{}</p><p class=\"small\">{}: {}{}</p></div></li>\n",
                      ruling_html(verdict.ruling), escape_html(verdict.claim),
@@ -57,7 +52,7 @@ HtmlRow run_row(const ReportData& data, const RunRecord& run, const std::string&
   return {fmt::format("<a class=\"id\" href=\"#run-{}\">{}</a>", escape_html(run.id.substr(0, 12)),
                       escape_html(run.id.substr(0, 8))),
           escape_html(member.scale),
-          escape_html(member.variant),
+          escape_html(data.names->of(member)),
           std::to_string(member.seed),
           std::to_string(run.grains),
           "<span class=\"state " + state + "\">" + state + "</span>",
@@ -95,8 +90,8 @@ std::string ruling_html(std::optional<Ruling> ruling) {
 
 std::optional<Ruling> ruling_of(const ReportData& data, const ReportExperiment& experiment) {
   std::vector<Verdict> all;
-  for (const std::string& name : experiment.figures) {
-    const std::vector<Verdict>& own = figure_called(data, name).summary.verdicts;
+  for (const std::size_t figure : experiment.figures) {
+    const std::vector<Verdict>& own = data.figures.at(figure).summary.verdicts;
     all.insert(all.end(), own.begin(), own.end());
   }
   return overall(all);
@@ -104,9 +99,9 @@ std::optional<Ruling> ruling_of(const ReportData& data, const ReportExperiment& 
 
 std::string figure_html(const ReportData& data, const ReportFigure& figure) {
   std::string html = fmt::format(
-      "<section class=\"figure\" id=\"figure-{0}\">\n<h3>Figure {0}. "
-      "{1}</h3>\n<div class=\"panels\">\n",
-      escape_html(figure.name), escape_html(figure.title));
+      "<section class=\"figure\" id=\"figure-{0}\">\n<h3>Figure {1}. "
+      "{2}</h3>\n<div class=\"panels\">\n",
+      escape_html(figure.id), escape_html(figure.name), escape_html(figure.title));
   for (const ReportPanel& panel : figure.panels) html += panel_html(data, panel);
   html += "</div>\n<ul class=\"claims\">\n";
   for (const Verdict& verdict : figure.summary.verdicts) html += claim_html(verdict);
@@ -120,13 +115,13 @@ std::string figure_html(const ReportData& data, const ReportFigure& figure) {
 }
 
 std::string panel_html(const ReportData& data, const ReportPanel& panel) {
-  const std::string name = escape_html(panel.name);
+  const std::string name = escape_html(panel.name), id = escape_html(panel.id);
   std::string plot;
   if (data.interactive && !panel.chart.is_null()) {
     plot = fmt::format(
         "<div class=\"plot\" data-chart=\"{}\"><noscript>Plots need JavaScript; "
         "the numbers are below.</noscript></div>",
-        name);
+        id);
   } else if (!panel.drawing.empty()) {
     plot = fmt::format("<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">", name,
                        base64(std::as_bytes(std::span(panel.drawing))));
@@ -137,10 +132,10 @@ std::string panel_html(const ReportData& data, const ReportPanel& panel) {
         fmt::format("<p class=\"warning\">No drawing: {}</p>", escape_html(data.drawing_trouble));
   }
   return fmt::format(
-      "<figure id=\"panel-{0}\">\n{1}\n<figcaption>{0} <button type=\"button\" hidden "
-      "data-csv=\"{0}\">CSV</button></figcaption>\n<details class=\"numbers\"><summary>Numbers of "
-      "{0}</summary><pre tabindex=\"0\" id=\"csv-{0}\">{2}</pre></details>\n</figure>\n",
-      name, plot, escape_html(panel.csv));
+      "<figure id=\"panel-{3}\">\n{1}\n<figcaption>{0} <button type=\"button\" hidden "
+      "data-csv=\"{3}\">CSV</button></figcaption>\n<details class=\"numbers\"><summary>Numbers of "
+      "{0}</summary><pre tabindex=\"0\" id=\"csv-{3}\">{2}</pre></details>\n</figure>\n",
+      name, plot, escape_html(panel.csv), id);
 }
 
 std::string experiment_html(const ReportData& data, const ReportExperiment& experiment) {
@@ -154,14 +149,8 @@ std::string experiment_html(const ReportData& data, const ReportExperiment& expe
   } else if (const auto ruling = ruling_of(data, experiment)) {
     html += "<p class=\"verdict\">Verdict: " + ruling_html(ruling) + "</p>\n";
   }
-  for (const std::string& figure_name : experiment.figures) {
-    const ReportFigure& figure = figure_called(data, figure_name);
-    if (figure.experiment == experiment.name) {
-      html += figure_html(data, figure);
-    } else {
-      html += fmt::format("<p>Figure <a href=\"#figure-{0}\">{0}</a> is shown under {1}.</p>\n",
-                          escape_html(figure.name), escape_html(figure.experiment));
-    }
+  for (const std::size_t figure : experiment.figures) {
+    html += figure_html(data, data.figures.at(figure));
   }
   return html + run_table(data, experiment) + "</section>\n";
 }

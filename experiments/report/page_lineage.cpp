@@ -63,7 +63,10 @@ std::string makers_html(const ReportData& data, const ReportFigure& figure) {
 
 std::string record_html(const ReportFigure& figure) {
   if (!figure.recorded) {
-    return "no; " + code("shearcell figures " + figure.name) + " records it with its drawings";
+    return "no; " +
+           code("shearcell figures " + figure.name +
+                (figure.experiment.empty() ? "" : " --experiment " + figure.experiment)) +
+           " records it with its drawings";
   }
   return fmt::format("event {} of {}", figure.recorded->seq,
                      escape_html(figure.recorded->recorded_at));
@@ -176,7 +179,7 @@ std::string lineage_html(const ReportData& data, const ReportFigure& figure) {
   std::string html = fmt::format(
       "<details class=\"lineage\" id=\"lineage-{0}\"><summary>Where {0} "
       "comes from</summary>\n<dl>\n",
-      escape_html(figure.name));
+      escape_html(figure.id));
   html += row("log", fmt::format("event {}, {}", data.head.seq, code(data.head.hash)));
   html += row("scale", escape_html(scale.empty() ? "base" : scale));
   html += row("inputs", fmt::format("{} runs, {} checkpoints; analysis version {}",
@@ -186,7 +189,8 @@ std::string lineage_html(const ReportData& data, const ReportFigure& figure) {
   html += row("manifests", manifests_html(figure));
   html += row("outputs", outputs_html(figure));
   html += row("recorded", record_html(figure));
-  html += row("check it", code("shearcell show " + figure.name) + ", " + code("shearcell verify"));
+  html += row("check it", code("shearcell show " + figure.lineage.record.name) + ", " +
+                              code("shearcell verify"));
   return html + "</dl>\n" + inputs_table(figure) + "</details>\n";
 }
 

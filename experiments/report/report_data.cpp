@@ -20,17 +20,11 @@ namespace {
 
 using nlohmann::json;
 
-/// In the order in which they were first registered, with the question and figures of the newest
-/// manifest.
+/// In the order in which they were first registered, with the question of the newest manifest.
 std::vector<ReportExperiment> experiments_of(const Store& store) {
   std::vector<ReportExperiment> found;
-  for (RegisteredManifest& manifest : registered_manifests(store)) {
-    auto known = std::ranges::find(found, manifest.experiment, &ReportExperiment::name);
-    if (known == found.end()) {
-      known = found.insert(found.end(), ReportExperiment{manifest.experiment, {}, {}, {}});
-    }
-    known->question = std::move(manifest.question);
-    known->figures = std::move(manifest.figures);
+  for (RegisteredManifest& manifest : newest_manifests(store)) {
+    found.push_back({std::move(manifest.experiment), std::move(manifest.question), {}, {}});
   }
   const std::vector<RunRecord> runs = store.runs();
   for (ReportExperiment& experiment : found) {
@@ -52,7 +46,7 @@ std::string draw(const FigureTable& table, const TemporaryFolder& folder) {
 std::optional<FigureRecord> record_of(const std::vector<FigureRecord>& records,
                                       const std::string& name, const json& lineage) {
   for (auto record = records.rbegin(); record != records.rend(); ++record) {
-    if (record->name != name || !record->provenance.is_object()) continue;
+    if (figure_name(*record) != name || !record->provenance.is_object()) continue;
     const auto same = [&](const char* key) {
       const auto found = record->provenance.find(key);
       return found != record->provenance.end() && *found == lineage.at(key);
@@ -62,22 +56,25 @@ std::optional<FigureRecord> record_of(const std::vector<FigureRecord>& records,
   return std::nullopt;
 }
 
-ReportFigure figure_of(const Store& store, const Figure& figure, const ReportOptions& options,
+ReportFigure figure_of(const Store& store, const WantedFigure& wanted, const ReportOptions& options,
                        const std::vector<FigureRecord>& records, ReportData& data) {
   FigureOptions how;
-  how.scale = options.scale;
+  how.collect.scale = options.scale;
   how.workers = options.workers;
   how.report = options.measured;
-  ComputedFigure computed = compute_figure(store, figure, how);
+  ComputedFigure computed = compute_figure(store, wanted, how);
+  const std::string prefix = wanted.experiment.empty() ? "" : wanted.experiment + "-";
   ReportFigure made;
-  made.name = figure.name;
-  made.title = figure.title;
+  made.name = wanted.figure.name;
+  made.title = wanted.figure.title;
+  made.id = prefix + made.name;
+  made.experiment = wanted.experiment;
   made.summary = std::move(computed.summary);
   made.recorded = record_of(records, made.name, computed.lineage);
-  made.lineage = figure_lineage(store, {made.name, 0, "", computed.lineage});
+  made.lineage = figure_lineage(store, {wanted.path(), 0, "", computed.lineage});
   const TemporaryFolder folder("shearcell-report-");
   for (const FigureTable& table : computed.result.tables) {
-    ReportPanel panel{table.name, {}, to_csv(table), table.text, ""};
+    ReportPanel panel{table.name, prefix + table.name, {}, to_csv(table), table.text, ""};
     if (!table.chart.series.empty()) panel.chart = chart_json(table);
     try {
       if (!data.interactive && table.text.rows.empty()) panel.drawing = draw(table, folder);
@@ -89,39 +86,27 @@ ReportFigure figure_of(const Store& store, const Figure& figure, const ReportOpt
   return made;
 }
 
-/// The first experiment that asks for the figure; "" if it is about all of them.
-std::string experiment_showing(const ReportData& data, const Figure& figure) {
-  for (const ReportExperiment& experiment : data.experiments) {
-    if (std::ranges::count(experiment.figures, figure.name) > 0) return experiment.name;
-  }
-  return "";
-}
-
 void add_figures(const Store& store, const ReportOptions& options, ReportData& data,
                  Report& report) {
   const std::vector<FigureRecord> records = figure_records(store);
-  WantedFigures wanted = figures_of_store(store);
-  report.notes = std::move(wanted.unknown);
-  std::set<std::string> made;
-  for (const Figure* figure : in_order_of_needs(std::move(wanted.figures))) {
-    const std::string experiment = experiment_showing(data, *figure);
-    if (experiment.empty() && figure->scope != FigureScope::every) continue;  // an older manifest's
+  WantedFigures wanted = wanted_figures(store);
+  std::set<std::string> notes(wanted.unknown.begin(), wanted.unknown.end());
+  for (const WantedFigure& figure : in_order_of_needs(std::move(wanted.figures))) {
     try {
-      ReportFigure one = figure_of(store, *figure, options, records, data);
-      one.experiment = experiment;
+      ReportFigure one = figure_of(store, figure, options, records, data);
       const FigureSummary& summary = one.summary;
       report.damage.insert(report.damage.end(), summary.damage.begin(), summary.damage.end());
-      report.notes.insert(report.notes.end(), summary.pruned.begin(), summary.pruned.end());
-      made.insert(one.name);
+      notes.insert(summary.pruned.begin(), summary.pruned.end());
+      notes.insert(summary.notes.begin(), summary.notes.end());
+      const auto home =
+          std::ranges::find(data.experiments, figure.experiment, &ReportExperiment::name);
+      if (home != data.experiments.end()) home->figures.push_back(data.figures.size());
       data.figures.push_back(std::move(one));
-    } catch (const NotFound& missing) {
-      report.notes.push_back("figure " + std::string(figure->name) + ": " + missing.what());
+    } catch (const UsageError& problem) {
+      notes.insert("figure " + figure.path() + ": " + problem.what());
     }
   }
-  for (ReportExperiment& experiment : data.experiments) {
-    std::erase_if(experiment.figures,
-                  [&](const std::string& name) { return !made.contains(name); });
-  }
+  report.notes.assign(notes.begin(), notes.end());
 }
 
 void add_runs(const Store& store, ReportData& data) {
@@ -150,6 +135,7 @@ ReportData collect_report(const Store& store, const ReportOptions& options, Repo
   data.program = host_facts().at("build");
   data.interactive = options.interactive && has_front_end();
   data.experiments = experiments_of(store);
+  data.names.emplace(store);
   if (data.experiments.empty()) {
     throw NotFound(store.folder().string() +
                    ": the store holds no experiment; `shearcell run` one first");

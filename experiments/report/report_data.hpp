@@ -12,12 +12,14 @@
 #include "experiments/figures/lineage.hpp"
 #include "experiments/report/packings.hpp"
 #include "experiments/report/report.hpp"
+#include "experiments/runner/registered.hpp"
 #include "provenance/lineage.hpp"
 
 namespace shearcell {
 
 struct ReportPanel {
   std::string name;
+  std::string id;        ///< in the page: "drag-S2a"
   nlohmann::json chart;  ///< for the front end; null if there is none
   std::string csv;
   TextTable text;       ///< if the panel is a table
@@ -27,7 +29,8 @@ struct ReportPanel {
 struct ReportFigure {
   std::string name;
   std::string title;
-  std::string experiment;  ///< under which it is shown; "" when it is about all
+  std::string id;          ///< in the page: "drag-S2"
+  std::string experiment;  ///< "" when it is about all
   FigureSummary summary;
   std::vector<ReportPanel> panels;
   FigureLineage lineage;
@@ -37,7 +40,7 @@ struct ReportFigure {
 struct ReportExperiment {
   std::string name;
   std::string question;
-  std::vector<std::string> figures;  ///< those of them that could be made
+  std::vector<std::size_t> figures;  ///< of ReportData::figures
   std::vector<RunRecord> runs;
 };
 
@@ -48,6 +51,7 @@ struct ReportData {
   std::vector<ReportExperiment> experiments;
   std::vector<ReportFigure> figures;       ///< those of `experiments`, and those about all of them
   std::map<std::string, RunLineage> runs;  ///< by id
+  std::optional<VariantNames> names;
   std::map<std::string, ManifestText> manifests;
   std::vector<ReportPanel> accuracy;
   Packings packings;

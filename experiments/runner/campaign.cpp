@@ -2,6 +2,7 @@
 #include "experiments/runner/campaign.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -16,6 +17,7 @@
 #include "core/threads.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/engine_error.hpp"
+#include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
@@ -145,8 +147,12 @@ class Campaign {
   void tell_waiting(std::size_t held) {
     if (count(JobState::running) > 0 || held == told_held_) return;
     told_held_ = held;
-    progress_.note(fmt::format("waiting for {} stage{} that another program is at work on", held,
-                               held == 1 ? "" : "s"));
+    std::set<std::string> holders;
+    for (const Lease& lease : store_.leases()) holders.insert(describe(lease.holder));
+    progress_.note(fmt::format(
+        "waiting for {} stage{} that another program is at work on ({}); a stage is free "
+        "when its holder has ended or been silent for {} s",
+        held, held == 1 ? "" : "s", fmt::join(holders, "; "), kLongestLeaseMs / 1000));
   }
 
   JobState run_job(std::size_t j, bool was_held) {
@@ -203,7 +209,7 @@ class Campaign {
         finish(job, &CampaignResult::completed, done_text(job), true);
         return JobState::done;
       case StageOutcome::interrupted:
-        finish(job, &CampaignResult::interrupted, "interrupted, checkpoint written", false);
+        finish(job, &CampaignResult::interrupted, "interrupted", false);
         return JobState::ended;
       case StageOutcome::failed:
         note(job, &CampaignResult::failed, store_.run(job.id).error);
@@ -268,17 +274,18 @@ class Campaign {
   std::exception_ptr error_;
 };
 
-std::string job_name(const Membership& membership, const std::string& kind) {
+std::string job_name(const Membership& membership, const std::string& kind,
+                     const std::string& variant) {
   // Variants that start from one packing share it, so its name says no variant.
   return kind == "prepare"
              ? fmt::format("{} packing seed={}", membership.experiment, membership.seed)
-             : fmt::format("{} {} seed={}", membership.experiment, membership.variant,
-                           membership.seed);
+             : fmt::format("{} {} seed={}", membership.experiment, variant, membership.seed);
 }
 
-StageJob job_of(const RunRecord& run) {
+StageJob job_of(const RunRecord& run, const VariantNames& names) {
   if (run.memberships.empty()) return {run.id, run.parent, run.kind};
-  return {run.id, run.parent, job_name(run.memberships.front(), run.kind)};
+  return {run.id, run.parent,
+          job_name(run.memberships.front(), run.kind, names.of(run.memberships.front()))};
 }
 
 }  // namespace
@@ -330,8 +337,8 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
       if (!prepare && run.until) declaration.membership.until = to_json(*run.until);
       if (!known.insert(stage->key).second) continue;
       store.declare_run(declaration);
-      jobs.push_back(
-          {stage->key, stage->parent, job_name(declaration.membership, declaration.kind)});
+      jobs.push_back({stage->key, stage->parent,
+                      job_name(declaration.membership, declaration.kind, run.name)});
     }
   }
   return jobs;
@@ -350,8 +357,9 @@ std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& p
     while (wanted.insert(run.id).second && !run.parent.empty()) run = store.run(run.parent);
   }
   std::vector<StageJob> jobs;
+  const VariantNames names(store);
   for (const RunRecord& run : store.runs()) {
-    if (wanted.count(run.id) > 0) jobs.push_back(job_of(run));
+    if (wanted.count(run.id) > 0) jobs.push_back(job_of(run, names));
   }
   return jobs;
 }

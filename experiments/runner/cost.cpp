@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <span>
 
 #include "core/drive.hpp"
@@ -51,15 +52,8 @@ constexpr double kMinimization = 15e3;
 }  // namespace
 
 double checkpoint_bytes(const Geometry& shape) {
-  const double width = cell_width(shape);
-  // Two side walls of the fill height, and bottom and top.
-  const double grains = static_cast<double>(shape.grains);
-  const double fill_height = grains * 0.52 / (shape.fill_packing_fraction * width * width);
-  const double wall_grains =
-      shape.walls == WallTexture::smooth
-          ? 0
-          : shape.wall_grain_area_fraction / 0.785 * (2 * fill_height * width + 2 * width * width);
-  return kBytesPerFile + kBytesPerGrain * grains + kBytesPerWallGrain * wall_grains;
+  return kBytesPerFile + kBytesPerGrain * static_cast<double>(shape.grains) +
+         kBytesPerWallGrain * wall_grain_count(shape);
 }
 
 std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& stage,
@@ -82,7 +76,8 @@ StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle
   const double bytes = checkpoint_bytes(shape);
   const auto grains = static_cast<double>(run.grains);
   if (stage.stage == Stage::prepare) {
-    const double time = settling_time(shape.height_over_width * width);
+    const double time = std::min(settling_time(shape.height_over_width * width),
+                                 run.parameters.settle_time_limit_s);
     return {grains * time / run.parameters.settle_time_step_s, bytes * (1 + std::floor(time / 2))};
   }
   if (stage.stage == Stage::stiffen) {
@@ -107,6 +102,32 @@ Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine, double
     return {assumed_rate(kOurRates, grains), false};
   }
   return {steps / seconds, true};
+}
+
+RemainingWork remaining_work(const std::vector<RunRecord>& stages,
+                             const std::vector<RunRecord>& known) {
+  RemainingWork work;
+  std::map<std::string, double> seconds;  // of a stage and those before it, which come first
+  for (const RunRecord& run : stages) {
+    if (run.state == RunState::completed || run.state == RunState::failed) continue;
+    const StageRecord record = read_stage(run.resolved);
+    PlannedRun planned;
+    planned.parameters = record.parameters;
+    planned.grains = run.grains;
+    planned.cycles = run.target_cycles;
+    const double steps =
+        stage_cost(planned, {record.stage, run.id, run.parent, {}}, run.cycle).particle_steps;
+    const Rate rate =
+        expected_rate(known, record.parameters.engine, static_cast<double>(run.grains));
+    ++work.stages;
+    work.particle_steps += steps;
+    work.core_seconds += steps / rate.particle_steps_per_second;
+    work.measured = work.measured && rate.measured;
+    double& chain = seconds[run.id];
+    chain = seconds[run.parent] + steps / rate.particle_steps_per_second;
+    work.longest_seconds = std::max(work.longest_seconds, chain);
+  }
+  return work;
 }
 
 }  // namespace shearcell

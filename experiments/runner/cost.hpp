@@ -42,4 +42,15 @@ struct Rate {
 /// so many grains.
 Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine, double grains);
 
+/// What is left of recorded stages, those that failed apart.
+struct RemainingWork {
+  std::size_t stages = 0;
+  double particle_steps = 0;
+  double core_seconds = 0;     ///< at the rates of `known`
+  double longest_seconds = 0;  ///< of the longest run, its packing included
+  bool measured = true;        ///< the rates, or assumed
+};
+RemainingWork remaining_work(const std::vector<RunRecord>& stages,
+                             const std::vector<RunRecord>& known);
+
 }  // namespace shearcell

@@ -12,6 +12,10 @@
 namespace shearcell {
 namespace {
 
+// For LAMMPS to write a frame and end. It looks every half second whether it is to stop; batch
+// systems kill half a minute after their first signal.
+constexpr std::chrono::seconds kPatience{10};
+
 class OwnEngine final : public Engine {
  public:
   OwnEngine(const StagePlan& plan, Beginning&& beginning, std::size_t threads)
@@ -20,7 +24,10 @@ class OwnEngine final : public Engine {
   StageProgress advance() override {
     return progress_ = plan_.protocol->advance(simulation_, chunk_steps(simulation_.grains()));
   }
-  StageProgress halt() override { return progress_; }
+  StageProgress halt() override {
+    progress_.checkpoint_due = true;
+    return progress_;
+  }
   Checkpoint checkpoint(double cycle) const override {
     return make_checkpoint(plan_, simulation_, cycle);
   }
@@ -65,8 +72,10 @@ class LammpsEngine final : public Engine {
 
   StageProgress halt() override {
     run_->ask_to_stop();
-    take(run_->next_frame(std::chrono::hours(24)));
-    return progress(true);
+    const bool answered = take(run_->next_frame(kPatience));
+    StageProgress halted = progress(answered);
+    halted.checkpoint_due = answered;
+    return halted;
   }
 
   Checkpoint checkpoint(double cycle) const override {

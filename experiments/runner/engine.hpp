@@ -23,7 +23,8 @@ class Engine {
   /// NumericalFailure, and EngineError when another program failed.
   virtual StageProgress advance() = 0;
 
-  /// Ends before the stage does, at a state that can be recorded.
+  /// Ends before the stage does. No checkpoint is due when there is no state beyond the last one
+  /// that was recorded, since another program did not answer.
   virtual StageProgress halt() = 0;
 
   /// What is recorded of the state at which the last call to one of these left it, or of the

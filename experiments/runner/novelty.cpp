@@ -10,33 +10,90 @@ namespace {
 
 using nlohmann::json;
 
-// The parent's id is left out: it differs because of a value that is compared itself.
+// Parameters and seed. The parent's id is left out: it differs because of a value that is compared
+// itself.
+json values_of(const json& resolved) {
+  json values =
+      resolved.is_object() ? resolved.value("parameters", json::object()) : json::object();
+  if (!values.is_object()) values = json::object();
+  if (resolved.is_object()) values["seed"] = resolved.value("seed", json());
+  return values;
+}
+
 std::vector<Difference> differences(const json& planned, const json& known) {
   std::vector<Difference> found;
-  const json none = json::object();
-  const json& mine = planned.at("parameters");
-  const json& theirs = known.contains("parameters") ? known.at("parameters") : none;
-  for (const auto& [key, value] : mine.items()) {
-    const json other = theirs.value(key, json());
+  for (const auto& [key, value] : planned.items()) {
+    const json other = known.value(key, json());
     if (other != value) found.push_back({key, value, other});
   }
-  const json seed = known.value("seed", json());
-  if (planned.at("seed") != seed) found.push_back({"seed", planned.at("seed"), seed});
+  // The seed follows the parameters.
+  std::ranges::stable_partition(found, [](const Difference& d) { return d.field != "seed"; });
   return found;
 }
 
 }  // namespace
 
-std::optional<Novelty> novelty(const StageSpec& stage, const std::vector<RunRecord>& known) {
-  std::optional<Novelty> nearest;
-  for (const RunRecord& run : known) {
-    if (run.id == stage.key) return std::nullopt;
-    if (run.kind != name_of(stage.stage)) continue;
-    auto found = differences(stage.resolved, run.resolved);
-    if (nearest && nearest->differences.size() <= found.size()) continue;
-    nearest = Novelty{run.id, std::move(found)};
+KnownRuns::KnownRuns(const std::vector<RunRecord>& runs) {
+  for (const RunRecord& run : runs) {
+    by_id_.emplace(run.id, &run);
+    by_kind_[run.kind].push_back(&run);
+    const json values = values_of(run.resolved);
+    for (const auto& [key, value] : values.items()) {
+      columns_.try_emplace(key, columns_.size());
+    }
   }
-  return nearest;
+  numbers_.resize(columns_.size());
+  for (const auto& [kind, members] : by_kind_) {
+    std::vector<std::uint32_t>& rows = rows_[kind];
+    rows.resize(members.size() * columns_.size());
+    for (std::size_t r = 0; r < members.size(); ++r) {
+      const json values = values_of(members[r]->resolved);
+      for (const auto& [key, value] : values.items()) {
+        const std::size_t column = columns_.at(key);
+        const auto next = static_cast<std::uint32_t>(numbers_[column].size() + 1);
+        rows[r * columns_.size() + column] =
+            numbers_[column].try_emplace(value.dump(), next).first->second;
+      }
+    }
+  }
+}
+
+const RunRecord* KnownRuns::find(const std::string& id) const {
+  const auto found = by_id_.find(id);
+  return found == by_id_.end() ? nullptr : found->second;
+}
+
+std::optional<Novelty> KnownRuns::novelty(const StageSpec& stage) const {
+  const auto kind = by_kind_.find(name_of(stage.stage));
+  if (kind == by_kind_.end() || find(stage.key) != nullptr) return std::nullopt;
+  constexpr std::uint32_t kUnknown = UINT32_MAX;
+  // Values that only the known runs have do not count.
+  std::vector<std::uint32_t> planned(columns_.size(), 0), counts(columns_.size(), 0);
+  const json values = values_of(stage.resolved);
+  for (const auto& [key, value] : values.items()) {
+    const auto column = columns_.find(key);
+    if (column == columns_.end()) continue;  // no run has it, so it does not decide
+    const auto& numbers = numbers_[column->second];
+    const auto number = numbers.find(value.dump());
+    planned[column->second] = number == numbers.end() ? kUnknown : number->second;
+    counts[column->second] = 1;
+  }
+  const std::vector<std::uint32_t>& rows = rows_.at(kind->first);
+  std::size_t nearest = 0;
+  std::uint32_t fewest = kUnknown;
+  for (std::size_t r = 0; r < kind->second.size() && fewest > 1; ++r) {
+    const std::uint32_t* row = rows.data() + r * planned.size();
+    std::uint32_t different = 0;
+    for (std::size_t c = 0; c < planned.size(); ++c) {
+      different += counts[c] & static_cast<std::uint32_t>(row[c] != planned[c]);
+    }
+    if (different < fewest) {
+      fewest = different;
+      nearest = r;
+    }
+  }
+  const RunRecord& run = *kind->second[nearest];
+  return Novelty{run.id, differences(values, values_of(run.resolved))};
 }
 
 std::string describe(const Novelty& novelty) {

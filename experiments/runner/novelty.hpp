@@ -2,9 +2,12 @@
 // What sets a stage that the store does not know apart from the nearest one that it knows.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiments/manifest/identity.hpp"
@@ -24,8 +27,27 @@ struct Novelty {
   std::vector<Difference> differences;
 };
 
-/// Nothing when the store knows the stage, or none of its kind.
-std::optional<Novelty> novelty(const StageSpec& stage, const std::vector<RunRecord>& known);
+/// The runs of a store, which must outlive this object, prepared for many searches: a search
+/// compares one row of numbers with each run of the kind.
+class KnownRuns {
+ public:
+  explicit KnownRuns(const std::vector<RunRecord>& runs);
+
+  /// Null when there is no run with this id.
+  const RunRecord* find(const std::string& id) const;
+
+  /// Nothing when the store knows the stage, or none of its kind.
+  std::optional<Novelty> novelty(const StageSpec& stage) const;
+
+ private:
+  std::map<std::string_view, const RunRecord*> by_id_;
+  std::map<std::string_view, std::vector<const RunRecord*>> by_kind_;
+  /// For each value that enters an identity: its column, and a number for each value in use.
+  std::map<std::string, std::size_t> columns_;
+  std::vector<std::map<std::string, std::uint32_t>> numbers_;
+  /// For each kind the numbers of its runs, one row of columns_.size() after the other; 0 for none.
+  std::map<std::string_view, std::vector<std::uint32_t>> rows_;
+};
 
 /// "steps_per_cycle 500 (store has 400), seed 2 (store has 1)".
 std::string describe(const Novelty& novelty);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "experiments/runner/terminal.hpp"
 
@@ -27,7 +26,9 @@ std::string describe(const StageStatus& status) {
 }  // namespace
 
 std::string format_duration(double seconds) {
+  constexpr double year = 365.25 * 86400;
   if (!std::isfinite(seconds)) return "?";
+  if (seconds > 10 * year) return fmt::format("{:.3g} years", seconds / year);
   const auto total = static_cast<long long>(std::llround(seconds));
   if (total < 60) return fmt::format("{} s", total);
   if (total < 3600) return fmt::format("{} min {:02} s", total / 60, total % 60);
@@ -47,7 +48,7 @@ void Progress::begin(const std::string& name) {
   const std::lock_guard lock(mutex_);
   running_[name] = "starting";
   said_at_[name] = std::chrono::steady_clock::now();
-  if (!terminal_ && !quiet_) fmt::print(stderr, "{}: started\n", for_terminal(name));
+  if (!terminal_ && !quiet_) tell_stderr("{}: started\n", name);
 }
 
 void Progress::update(const std::string& name, const StageStatus& status) {
@@ -61,7 +62,7 @@ void Progress::update(const std::string& name, const StageStatus& status) {
   const auto now = std::chrono::steady_clock::now();
   if (now - said_at_[name] < kPlainInterval) return;
   said_at_[name] = now;
-  fmt::print(stderr, "{}: {}\n", for_terminal(name), running_[name]);
+  tell_stderr("{}: {}\n", name, running_[name]);
 }
 
 void Progress::end(const std::string& name, const std::string& how, bool done) {
@@ -70,8 +71,7 @@ void Progress::end(const std::string& name, const std::string& how, bool done) {
   if (done) ++done_;
   if (quiet_) return;
   erase();
-  fmt::print(stderr, "{}: {} ({} of {} stages done)\n", for_terminal(name), for_terminal(how),
-             done_, stages_);
+  tell_stderr("{}: {} ({} of {} stages done)\n", name, how, done_, stages_);
   if (terminal_) draw();
 }
 
@@ -88,11 +88,11 @@ void Progress::note(const std::string& line) {
 void Progress::say(const std::string& line) {
   const std::lock_guard lock(mutex_);
   erase();
-  fmt::print(stderr, "{}\n", for_terminal(line));
+  tell_stderr("{}\n", line);
 }
 
 void Progress::erase() {
-  for (; drawn_ > 0; --drawn_) fmt::print(stderr, "\x1b[1A\x1b[2K");
+  for (; drawn_ > 0; --drawn_) write_stderr("\x1b[1A\x1b[2K");
 }
 
 void Progress::draw() {
@@ -100,10 +100,9 @@ void Progress::draw() {
   // A longer line would wrap, and drawing over it would leave its beginning behind.
   const std::size_t longest = terminal_columns(stderr).value_or(80) - 1;
   for (const auto& [name, text] : running_) {
-    fmt::print(stderr, "{:.{}}\n", fmt::format("{:<28} {}", for_terminal(name), text), longest);
+    tell_stderr("{:.{}}\n", fmt::format("{:<28} {}", name, text), longest);
     ++drawn_;
   }
-  std::fflush(stderr);
 }
 
 }  // namespace shearcell

@@ -42,7 +42,7 @@ class Progress {
   std::map<std::string, std::chrono::steady_clock::time_point> said_at_;
 };
 
-/// "7 s", "4 min 05 s", "1 h 02 min" or "3 d 07 h".
+/// "7 s", "4 min 05 s", "1 h 02 min", "3 d 07 h" or "12 years".
 std::string format_duration(double seconds);
 
 }  // namespace shearcell

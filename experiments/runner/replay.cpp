@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <random>
 #include <utility>
 
@@ -63,19 +64,6 @@ std::optional<Checkpoint> recorded_state(const Store& store, const CheckpointRec
   }
 }
 
-Beginning nearest_beginning(Store& store, const StagePlan& plan, std::uint64_t step) {
-  std::vector<CheckpointRecord> earlier = store.checkpoints(plan.run.id);
-  std::erase_if(earlier, [step](const CheckpointRecord& c) { return c.step >= step; });
-  std::reverse(earlier.begin(), earlier.end());
-  for (CheckpointRecord& record : earlier) {
-    if (auto kept = recorded_state(store, record)) {
-      return {std::move(kept->cell), std::move(kept->state), std::move(record), ""};
-    }
-  }
-  std::vector<std::string> ignored;
-  return begin_stage(store, plan, ignored);
-}
-
 class Replaying {
  public:
   Replaying(Store& store, const CheckpointRecord& record)
@@ -86,16 +74,19 @@ class Replaying {
   /// The state at the record's step; nothing when that was not reached.
   std::optional<Checkpoint> compute(std::size_t threads) {
     const CheckpointRecord& record = replay_.record;
-    Beginning beginning = nearest_beginning(store_, plan_, record.step);
+    Beginning beginning = beginning_before(
+        store_, plan_, [&](const CheckpointRecord& c) { return c.step < record.step; });
     replay_.from = beginning.from;
     try {
       Simulation simulation = make_simulation(plan_, std::move(beginning), threads);
       first_ = simulation.step();
+      double cycle = 0;  // where nothing is stepped: at the beginning of the stage
       const std::uint64_t chunk = chunk_steps(simulation.grains());
       while (simulation.step() < record.step) {
         const std::uint64_t left = record.step - simulation.step();
         const StageProgress progress = plan_.protocol->advance(simulation, std::min(chunk, left));
         replay_.steps = simulation.step() - first_;
+        cycle = progress.cycle;
         if (progress.finished && simulation.step() < record.step) {
           diverge(simulation.step(),
                   fmt::format("the stage ended at step {} already", simulation.step()));
@@ -106,7 +97,7 @@ class Replaying {
           return std::nullopt;
         }
       }
-      return make_checkpoint(plan_, simulation, record.cycle);
+      return make_checkpoint(plan_, simulation, cycle);
     } catch (const NumericalFailure& failure) {
       diverge(failure.step, failure.what());
       return std::nullopt;
@@ -116,7 +107,7 @@ class Replaying {
   void compare_with(const Checkpoint& found) {
     const CheckpointRecord& record = replay_.record;
     const std::string hash = state_hash(found);
-    if (hash == record.state_hash) return;
+    if (hash == record.state_hash) return compare_numbers(found);
     diverge(record.step, fmt::format("state {:.12} instead of {:.12}", hash, record.state_hash));
     Divergence& worst = *replay_.divergence;
     if (const auto recorded = recorded_state(store_, record)) {
@@ -126,6 +117,27 @@ class Replaying {
       compare("velocity", a.velocity, b.velocity, worst);
       compare("wall_height", a.wall_height, b.wall_height, worst);
       compare("wall_velocity", a.wall_velocity, b.wall_velocity, worst);
+    }
+  }
+
+  // What is recorded beside the state, in the log and in the file.
+  void compare_numbers(const Checkpoint& found) {
+    const auto require = [this](const std::string& field, double computed, double recorded) {
+      if (computed == recorded || replay_.divergence) return;
+      diverge(replay_.record.step, fmt::format("{} {} instead of {}", field, computed, recorded),
+              field);
+      compare(field.c_str(), computed, recorded, *replay_.divergence);
+    };
+    const CheckpointRecord& record = replay_.record;
+    require("cycle", found.cycle, record.cycle);
+    require("time_s", found.time_s, record.time_s);
+    // Versions before this one may have recorded fewer observables.
+    for (const auto& [name, value] : record.observables) {
+      const auto again = found.observables.find(name);
+      require(name, again == found.observables.end() ? std::nan("") : again->second, value);
+    }
+    if (const auto recorded = recorded_state(store_, record)) {
+      require("theta", found.theta, recorded->theta);
     }
   }
 

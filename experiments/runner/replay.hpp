@@ -15,8 +15,10 @@ namespace shearcell {
 struct Divergence {
   std::uint64_t same_step = 0;   ///< last step known to be the same: where the replay began
   std::uint64_t first_step = 0;  ///< first step known to differ
-  std::string field;  ///< "position", "velocity", "wall_height", "wall_velocity"; "file" when the
-                      ///< states are equal and their files are not; "" when it is not known
+  /// "position", "velocity", "wall_height", "wall_velocity"; "cycle", "time_s", "theta" or the name
+  /// of an observable when the states are equal; "file" when all these are equal and the files are
+  /// not; "" when it is not known.
+  std::string field;
   std::int64_t grain = -1;
   std::uint64_t ulp = 0;  ///< largest distance in the field [units in the last place]
   std::string message;
@@ -42,7 +44,8 @@ std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std:
                                      std::uint64_t seed);
 
 /// Computes from the nearest earlier checkpoint that is kept, or the beginning of the stage, up to
-/// the record's step, compares, and records ReplayVerified or ReplayDiverged.
+/// the record's step, compares the state and all that is recorded with it (cycle, time, tilt,
+/// observables), and records ReplayVerified or ReplayDiverged.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 /// The same, and keeps the file: a pruned, missing or damaged checkpoint is there again, with the

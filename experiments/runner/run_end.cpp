@@ -8,9 +8,12 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
 
 #include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
@@ -63,8 +66,31 @@ std::vector<RunAsk> asks_of(const Store& store, const std::string& run) {
 }
 
 std::uint64_t checkpoint_cadence(const RunRecord& run) {
-  if (run.memberships.empty()) return 1;
-  return std::ranges::min(run.memberships, {}, &Membership::checkpoint_every).checkpoint_every;
+  std::uint64_t cadence = 0;
+  for (const Membership& m : run.memberships) cadence = std::gcd(cadence, m.checkpoint_every);
+  return std::max<std::uint64_t>(cadence, 1);
+}
+
+std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run) {
+  if (run.kind != name_of(Stage::shear) || engine_of(run.resolved) != EngineKind::shearcell) {
+    return {};
+  }
+  std::set<std::uint64_t> cycles;
+  for (const Membership& m : run.memberships) {
+    constexpr double longest = 1e6;  // that a manifest may ask for; the store is not trusted
+    const double end = std::min({run.cycle, static_cast<double>(m.target_cycles), longest});
+    const std::uint64_t every = std::max<std::uint64_t>(m.checkpoint_every, 1);
+    for (std::uint64_t cycle = 0; static_cast<double>(cycle) < end; cycle += every) {
+      cycles.insert(cycle);
+    }
+  }
+  if (cycles.empty()) return {};
+  for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
+    if (record.state == CheckpointState::rejected || std::floor(record.cycle) != record.cycle)
+      continue;
+    cycles.erase(static_cast<std::uint64_t>(record.cycle));
+  }
+  return {cycles.begin(), cycles.end()};
 }
 
 std::optional<json> ended_early(std::span<const RunAsk> asks,

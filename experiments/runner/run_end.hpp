@@ -35,8 +35,13 @@ struct RunAsk {
 /// is not as this program writes it.
 std::vector<RunAsk> asks_of(const Store& store, const std::string& run);
 
-/// The densest cadence [cycles] that an experiment asks for.
+/// The cadence [cycles] that has the checkpoints of every experiment.
 std::uint64_t checkpoint_cadence(const RunRecord& run);
+
+/// Cycles up to the run's last one at which an experiment asks for a checkpoint that was never
+/// recorded, ascending: it asked for a denser cadence later. None for a run of LAMMPS, which cannot
+/// be repeated.
+std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run);
 
 /// Why the run ends at the last of `measured` (its checkpoints on the cadence, in order): every
 /// experiment that shares it has reached the end that it asks for. Nothing while the run continues.

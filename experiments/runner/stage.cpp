@@ -13,6 +13,7 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/run_end.hpp"
+#include "experiments/runner/stop.hpp"
 #include "protocols/cyclic_shear.hpp"
 #include "protocols/settle.hpp"
 #include "protocols/stiffen.hpp"
@@ -34,7 +35,9 @@ Scene make_scene(const StageRecord& stage) {
 }
 
 void require_memory(const StageRecord& stage) {
-  const double needed = kRunBytesPerGrain * static_cast<double>(stage.parameters.grains);
+  const Geometry shape = geometry(stage.parameters);
+  const double needed =
+      kRunBytesPerGrain * (static_cast<double>(shape.grains) + wall_grain_count(shape));
   if (needed <= machine_memory()) return;
   throw TooLittleMemory(fmt::format(
       "{} grains take about {:.3g} GB, and this machine has {:.3g} GB; use fewer grains",
@@ -99,8 +102,8 @@ Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::stri
   const RunRecord& run = plan.run;
   if (run.parent.empty()) {
     const Geometry shape = geometry(plan.stage.parameters);
-    Cell cell = make_cell(shape, plan.stage.seed);
-    State state = fill_cell(cell, shape, plan.stage.seed);
+    Cell cell = make_cell(shape, plan.stage.seed, give_up_if_requested);
+    State state = fill_cell(cell, shape, plan.stage.seed, give_up_if_requested);
     return {std::move(cell), std::move(state), std::nullopt, ""};
   }
   auto parent = store.newest_valid_checkpoint(run.parent, &damage);
@@ -120,6 +123,22 @@ Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::s
             std::move(newest->record), ""};
   }
   return begin_stage(store, plan, damage);
+}
+
+Beginning beginning_before(Store& store, const StagePlan& plan,
+                           const std::function<bool(const CheckpointRecord&)>& before) {
+  std::vector<CheckpointRecord> earlier = store.checkpoints(plan.run.id);
+  for (auto record = earlier.rbegin(); record != earlier.rend(); ++record) {
+    if (!before(*record)) continue;
+    try {
+      Checkpoint kept = store.load_checkpoint(*record);
+      return {std::move(kept.cell), std::move(kept.state), std::move(*record), ""};
+    } catch (const CheckpointPruned&) {
+    } catch (const StoreDamaged&) {
+    }
+  }
+  std::vector<std::string> ignored;
+  return begin_stage(store, plan, ignored);
 }
 
 Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads) {

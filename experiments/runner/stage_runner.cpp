@@ -2,6 +2,7 @@
 #include "experiments/runner/stage_runner.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -16,6 +17,8 @@
 
 namespace shearcell {
 namespace {
+
+using namespace nlohmann::literals;
 
 // A stage in progress, and what has not been recorded of it yet.
 class Attempt {
@@ -39,13 +42,55 @@ class Attempt {
                      beginning.parent_checkpoint);
     if (asks_for_early_end()) end_.emplace(store_, plan_.run, fresh ? 0 : beginning.from->step);
     if (ends_early()) return StageOutcome::completed;
-    try {
+    return guarded([&] {
       const auto engine = make_engine(plan_, std::move(beginning), engine_options);
       first_step_ = engine->step();
       // The settled packing is cycle 0 of what follows.
       if (fresh && plan_.stage.stage != Stage::prepare) record(*engine, 0);
       if (ends_early()) return StageOutcome::completed;
       return advance(*engine);
+    });
+  }
+
+  // Records the checkpoints at these cycles of a completed run, which lacks them.
+  StageOutcome fill(const std::vector<std::uint64_t>& cycles) {
+    Beginning beginning = beginning_before(store_, plan_, [&](const CheckpointRecord& kept) {
+      return kept.cycle < static_cast<double>(cycles.front());
+    });
+    const bool fresh = !beginning.from;
+    const nlohmann::json ended = last_end();
+    store_.start_run(id(), host_facts(),
+                     fresh ? std::nullopt : std::optional(beginning.from->sha256),
+                     beginning.parent_checkpoint, true);
+    return guarded([&] {
+      const auto engine = make_engine(plan_, std::move(beginning), {options_.threads, 1});
+      first_step_ = engine->step();
+      auto next = cycles.begin();
+      if (fresh && *next == 0) {
+        record(*engine, 0);
+        ++next;
+      }
+      while (next != cycles.end()) {
+        const StageProgress progress = engine->advance();
+        if (progress.checkpoint_due && progress.cycle == static_cast<double>(*next)) {
+          record(*engine, progress.cycle);
+          ++next;
+        }
+        if (stop_requested()) return interrupted();
+        if (!store_.holds(id())) return StageOutcome::lost;
+        report(*engine, progress.cycle);
+      }
+      complete(ended);
+      return StageOutcome::completed;
+    });
+  }
+
+ private:
+  StageOutcome guarded(const std::function<StageOutcome()>& compute) {
+    try {
+      return compute();
+    } catch (const Interrupted&) {
+      return interrupted();
     } catch (const EngineError& error) {
       store_.fail_run(id(), error.what(), nlohmann::json::object());
       return StageOutcome::failed;
@@ -60,25 +105,36 @@ class Attempt {
     }
   }
 
- private:
+  // Why the run ended when it was completed.
+  nlohmann::json last_end() const {
+    nlohmann::json ended = {{"by", "cycles"}};
+    for (const Event& event : store_.events("run/" + id())) {
+      if (event.type != "RunCompleted") continue;
+      ended = event.body().value("/summary/ended"_json_pointer, ended);
+    }
+    return ended;
+  }
+
   StageOutcome advance(Engine& engine) {
     for (;;) {
       StageProgress progress = engine.advance();
       const bool stop = !progress.finished && stop_requested();
       if (stop && !progress.checkpoint_due) progress = engine.halt();
-      if (stop || progress.checkpoint_due) record(engine, progress.cycle);
+      if (progress.checkpoint_due) record(engine, progress.cycle);
       if (progress.finished) {
         complete({{"by", plan_.stage.stage == Stage::prepare ? "settled" : "cycles"}});
         return StageOutcome::completed;
       }
       if (progress.checkpoint_due && ends_early()) return StageOutcome::completed;
-      if (stop) {
-        store_.interrupt_run(id(), "stopped by a signal");
-        return StageOutcome::interrupted;
-      }
+      if (stop) return interrupted();
       if (!store_.holds(id())) return StageOutcome::lost;
       report(engine, progress.cycle);
     }
+  }
+
+  StageOutcome interrupted() {
+    store_.interrupt_run(id(), "stopped by a signal");
+    return StageOutcome::interrupted;
   }
 
   bool asks_for_early_end() const {
@@ -137,28 +193,43 @@ class Attempt {
   Stopwatch started_, recorded_, reported_;
 };
 
-}  // namespace
-
-StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options) {
-  try {
-    return Attempt(store, store.run(id), options).run();
-  } catch (const RunHeld&) {
-    return StageOutcome::held;
-  } catch (const ConcurrencyConflict&) {
-    return StageOutcome::lost;
-  }
-}
-
-bool stage_done(const Store& store, const RunRecord& run) {
-  if (run.state != RunState::completed) return false;
+// Else run_stage says what is wrong with it.
+bool newest_is_sound(const Store& store, const RunRecord& run) {
   const auto recorded = store.checkpoints(run.id);
   if (recorded.empty()) return false;
   try {
     store.load_checkpoint(recorded.back());
     return true;
   } catch (const StoreDamaged&) {
-    return false;  // run_stage says what is wrong with it
+    return false;
   }
+}
+
+}  // namespace
+
+StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options) {
+  try {
+    RunRecord run = store.run(id);
+    StageOutcome outcome = StageOutcome::completed;
+    if (run.state != RunState::completed || !newest_is_sound(store, run)) {
+      outcome = Attempt(store, std::move(run), options).run();
+      run = store.run(id);
+    }
+    if (outcome != StageOutcome::completed || run.state != RunState::completed) return outcome;
+    const std::vector<std::uint64_t> missing = missing_checkpoints(store, run);
+    return missing.empty() ? outcome : Attempt(store, std::move(run), options).fill(missing);
+  } catch (const RunHeld&) {
+    return StageOutcome::held;
+  } catch (const Interrupted&) {
+    return StageOutcome::interrupted;  // before an attempt was recorded
+  } catch (const ConcurrencyConflict&) {
+    return StageOutcome::lost;
+  }
+}
+
+bool stage_done(const Store& store, const RunRecord& run) {
+  return run.state == RunState::completed && newest_is_sound(store, run) &&
+         missing_checkpoints(store, run).empty();
 }
 
 }  // namespace shearcell

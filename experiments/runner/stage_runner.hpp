@@ -32,16 +32,17 @@ struct StageOptions {
   std::function<void(const StageStatus&)> report;   ///< called a few times a second
 };
 
-/// Computes the stage `id` until its target: continues from its newest checkpoint that verifies,
-/// or else begins from its parent's last state, or from a fresh filling. Checks for
-/// stop_requested(), and whether the store still holds the run, between chunks of steps of about
-/// 50 ms.
-/// Throws StoreDamaged when the parent's last state cannot be read, GeometryError for a cell that
-/// cannot be filled, and EngineError when the stage's engine is not installed, all before an
-/// attempt is recorded.
+/// Computes the stage `id` until its target, then the checkpoints that it lacks: continues from its
+/// newest checkpoint that verifies, or else begins from its parent's last state, or from a fresh
+/// filling. Checks for stop_requested(), and whether the store still holds the run, between chunks
+/// of steps of about 50 ms. Throws StoreDamaged when the parent's last state cannot be read,
+/// GeometryError for a cell that cannot be filled, and EngineError when the stage's engine is not
+/// installed, all before an attempt is recorded. A stage that is interrupted while its cell is
+/// filled records nothing.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
-/// Whether the stage is completed and its last state can be read; else there is work left.
+/// Whether the stage is completed, its last state can be read, and it lacks no checkpoint that an
+/// experiment asks for; else there is work left.
 bool stage_done(const Store& store, const RunRecord& run);
 
 }  // namespace shearcell

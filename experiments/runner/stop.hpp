@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SIGINT and SIGTERM as a wish to stop: runs write a checkpoint and end; a second signal kills.
+// SIGINT, SIGTERM and SIGHUP as a wish to stop: runs write a checkpoint and end; a second signal
+// kills.
 #pragma once
+
+#include <stdexcept>
 
 namespace shearcell {
 
-/// Catches SIGINT and SIGTERM from now on.
+/// Catches SIGINT and SIGTERM from now on, and SIGHUP unless it is ignored (nohup). Ignores
+/// SIGPIPE: nobody needs to read the progress of a campaign.
 void catch_stop_signals();
 
 /// The same for a task of a batch system, which tells of an end to come by SIGTERM or SIGUSR1, may
@@ -13,6 +17,15 @@ void catch_batch_signals();
 
 /// Whether one of them came.
 bool stop_requested();
+
+/// Work was given up because of such a wish, before there was a state to record.
+class Interrupted : public std::runtime_error {
+ public:
+  Interrupted() : std::runtime_error("interrupted") {}
+};
+
+/// Throws Interrupted if there is such a wish.
+void give_up_if_requested();
 
 /// Asks to stop as a signal would; `false` takes the wish back.
 void request_stop(bool stop);

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "experiments/manifest/document.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -32,20 +34,24 @@ bool shows_colours(std::FILE* stream) {
 
 std::string for_terminal(std::string_view text) {
   std::string shown;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 'a');
-    // U+0080 to U+009F are control characters too, two bytes each in UTF-8.
-    const bool high = byte == 0xc2 && next >= 0x80 && next < 0xa0;
-    const bool low = byte < 0x20 || byte == 0x7f;
-    if (high || (low && text[i] != '\n')) {
-      shown += fmt::format("\\x{:02x}", high ? next : byte);
-      i += high ? 1 : 0;
-    } else {
-      shown += text[i];
-    }
+  for (;;) {
+    const std::size_t end = text.find('\n');
+    shown += printable(text.substr(0, end), std::string::npos);
+    if (end == std::string_view::npos) return shown;
+    shown += '\n';
+    text.remove_prefix(end + 1);
   }
-  return shown;
+}
+
+void write_stderr(std::string_view text) noexcept {
+  (void)!std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what) {
+  if (isatty(STDERR_FILENO) == 0) return {};
+  return [what = std::move(what)](std::size_t done, std::size_t total) {
+    write_stderr(fmt::format("\r{} {} of {}{}", what, done, total, done == total ? "\n" : ""));
+  };
 }
 
 }  // namespace shearcell

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,8 +21,9 @@ std::optional<std::size_t> terminal_columns(std::FILE* stream);
 /// (https://no-color.org) is not set to anything.
 bool shows_colours(std::FILE* stream);
 
-/// Without what a terminal takes for a command: control characters other than a line's end are
-/// shown as \x1b.
+/// Without what a terminal takes for a command: bytes that are not UTF-8 and control characters
+/// other than a line's end, also those that change the direction of a text, are shown as \x1b or
+/// \u202e.
 std::string for_terminal(std::string_view text);
 
 /// fmt::print, of texts that may be a stranger's.
@@ -30,5 +32,19 @@ void tell(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   const std::string text = fmt::format(format, std::forward<Arguments>(arguments)...);
   fmt::print("{}", for_terminal(text));
 }
+
+/// Writes to standard error as it is. A message that cannot be written is lost: a closed terminal
+/// or a full disk must not end a campaign.
+void write_stderr(std::string_view text) noexcept;
+
+/// `tell` on standard error, by write_stderr.
+template <typename... Arguments>
+void tell_stderr(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  write_stderr(for_terminal(fmt::format(format, std::forward<Arguments>(arguments)...)));
+}
+
+/// A function that shows "WHAT done of total" on one line of standard error; none when that is not
+/// a terminal.
+std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what);
 
 }  // namespace shearcell

@@ -13,12 +13,14 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <string_view>
 #include <thread>
 
+#include "provenance/io/clock.hpp"
 #include "provenance/io/descriptor.hpp"
 
 namespace shearcell {
@@ -64,6 +66,8 @@ struct Prepared {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != p.parent) _exit(127);
+  // What this program ignores, its children would ignore too.
+  for (const int number : {SIGCHLD, SIGPIPE}) signal(number, SIG_DFL);
   const int in = open("/dev/null", O_RDONLY);
   if (in >= 0 && dup2(in, STDIN_FILENO) >= 0 && dup2(p.output, STDOUT_FILENO) >= 0 &&
       dup2(p.messages, STDERR_FILENO) >= 0 && chdir(p.folder) == 0) {
@@ -190,10 +194,19 @@ int ChildProcess::wait() {
 
 std::optional<ProgramOutcome> run_program(const std::vector<std::string>& words,
                                           const fs::path& folder,
-                                          const std::vector<std::string>& variables) {
+                                          const std::vector<std::string>& variables,
+                                          std::optional<double> seconds) {
   if (!find_program(words.front())) return std::nullopt;
   const Descriptor output = memory_file(), messages = memory_file();
   ChildProcess program({words, folder, variables, output.get(), messages.get()});
+  const Stopwatch running;
+  while (seconds && !program.exit_code()) {
+    if (running.seconds() > *seconds) {
+      throw ProgramError(words.front() + " did not answer within " +
+                         std::to_string(std::lround(*seconds)) + " s");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
   const int code = program.wait();
   return ProgramOutcome{code, text_of(output), text_of(messages)};
 }

@@ -71,9 +71,11 @@ struct ProgramOutcome {
 };
 
 /// Runs the program `words[0]` in `folder` and waits for its end. Nothing when it is not installed.
-/// Throws ProgramError when it cannot be started.
+/// Throws ProgramError when it cannot be started, or has not ended after `seconds`; then it is
+/// killed.
 std::optional<ProgramOutcome> run_program(const std::vector<std::string>& words,
                                           const std::filesystem::path& folder,
-                                          const std::vector<std::string>& variables = {});
+                                          const std::vector<std::string>& variables = {},
+                                          std::optional<double> seconds = std::nullopt);
 
 }  // namespace shearcell

@@ -53,7 +53,7 @@ void sync(const Descriptor& file, const std::filesystem::path& path) {
 
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
                   std::span<const std::byte> bytes, const std::string& temporary,
-                  Durability durability) {
+                  Durability durability, Existing existing) {
   static std::atomic<unsigned> counter = 0;
   std::string name;
   int number = -1;
@@ -67,8 +67,16 @@ void replace_file(const Descriptor& folder, const std::filesystem::path& path,
   try {
     write_all(file, bytes, path);
     if (durability == Durability::synced) sync(file, path);
-    if (renameat(folder.get(), name.c_str(), folder.get(), path.filename().c_str()) != 0) {
-      fail_on(path, "rename the new file");
+    const std::string last = path.filename();
+    if (existing == Existing::replaced) {
+      if (renameat(folder.get(), name.c_str(), folder.get(), last.c_str()) != 0) {
+        fail_on(path, "rename the new file");
+      }
+    } else {
+      if (linkat(folder.get(), name.c_str(), folder.get(), last.c_str(), 0) != 0) {
+        fail_on(path, "write");
+      }
+      unlinkat(folder.get(), name.c_str(), 0);
     }
   } catch (...) {
     unlinkat(folder.get(), name.c_str(), 0);

@@ -41,11 +41,16 @@ enum class Durability {
   synced    ///< and it survives a power cut: file and folder are synced
 };
 
+enum class Existing {
+  replaced,  ///< a file or link of the same name
+  kept       ///< it is an error: errno EEXIST
+};
+
 /// Writes a file under a temporary name in the open `folder` (`temporary` + "<pid>-<n>", mode 0644
-/// less umask), then renames it to the last part of `path`. A file or link of that name is
-/// replaced. On any error the temporary file is deleted and fail_on's exception thrown.
+/// less umask), then gives it the last part of `path` as its name. On any error the temporary file
+/// is deleted and fail_on's exception thrown.
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
                   std::span<const std::byte> bytes, const std::string& temporary,
-                  Durability durability);
+                  Durability durability, Existing existing = Existing::replaced);
 
 }  // namespace shearcell

@@ -57,12 +57,12 @@ void require_ours(const fs::path& path, const Recognize& ours) {
                 "write elsewhere with --out");
 }
 
-void write_output(const fs::path& path, std::string_view bytes) {
+void write_output(const fs::path& path, std::string_view bytes, Existing existing) {
   const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
   const Descriptor folder(open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (!folder.valid()) fail_on(path, "write");
   replace_file(folder, path, bytes_of(bytes), '.' + path.filename().string() + ".tmp-",
-               Durability::renamed);
+               Durability::renamed, existing);
 }
 
 NewFile::NewFile(const fs::path& path)

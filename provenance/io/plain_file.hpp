@@ -31,7 +31,8 @@ using Recognize = std::function<bool(std::string_view beginning)>;
 void require_ours(const std::filesystem::path& path, const Recognize& ours);
 
 /// Writes a whole file under a temporary name beside `path` and renames it (replace_file).
-void write_output(const std::filesystem::path& path, std::string_view bytes);
+void write_output(const std::filesystem::path& path, std::string_view bytes,
+                  Existing existing = Existing::replaced);
 
 /// A new file that is written in parts; an existing file is never overwritten. Both functions throw
 /// std::system_error that names the file.

@@ -81,12 +81,37 @@ TEST(GnuplotScript, StatesEverySeriesLineAndLabel) {
   for (const char* part :
        {"set xlabel 'shear cycle  {/:Italic n}'\n", "set xtics 1\n", "set ylabel 'a\\_b  [%]'\n",
         "set yrange [0:0.1<*]\n", "$series0 << EOD\n1,0.5,,0.1\nEOD\n",
-        "$series1 << EOD\n1.5,0.25,,\nEOD\n", "$series0 using 1:2:4 with yerrorbars",
-        "title '{/:Italic ϕ}_{u}'", "$series1 using 1:2 with points lc rgb '#654321'",
-        "keyentry with points lc rgb '#000000' pt 4", "first 0.1 to graph 1, first 0.1",
+        "$series1 << EOD\n1.5,0.25,,\nEOD\n", "$series0 every 1 using 1:2:4 with yerrorbars",
+        "title '{/:Italic ϕ}_{u}'", "$series1 every 1 using 1:2 with points lc rgb '#654321'",
+        "keyentry with points lc rgb '#000000' lw 1.2 pt 4", "first 0.1 to graph 1, first 0.1",
         "from 2, graph 0 to 2, graph 0.06"}) {
     EXPECT_NE(script.find(part), std::string::npos) << part << "\nin\n" << script;
   }
+}
+
+// "0.70" beside "0.75"; about five steps.
+TEST(GnuplotScript, TicksHaveOneNumberOfDecimals) {
+  const auto script_for = [](double low, double high) {
+    return gnuplot_script({.name = "t",
+                           .columns = {},
+                           .rows = {},
+                           .chart = {.series = {{.points = {{low, 1}, {high, 2}}}}}});
+  };
+  EXPECT_NE(script_for(0.64, 0.71).find("set xtics 0.01\nset format x '%.2f'"), std::string::npos);
+  EXPECT_NE(script_for(0.6, 0.9).find("set xtics 0.05\nset format x '%.2f'"), std::string::npos);
+  EXPECT_NE(script_for(0, 20).find("set xtics 5\nset format x '%.0f'"), std::string::npos);
+}
+
+TEST(Chart, TheCaptionNamesPanelsErrorsAndLines) {
+  Chart chart{.x = {.name = "cycle"},
+              .y = {.name = "overlap", .unit = "d"},
+              .series = {{.band = true, .points = {{1, 2, {}, 0.5}}}},
+              .lines = {{.at = 1, .title = "the limit"}, {.at = 2, .title = "the limit"}},
+              .letter = "b"};
+  const FigureTable table{.name = "t", .columns = {}, .rows = {}, .chart = std::move(chart)};
+  EXPECT_EQ(caption_of("A title", std::span(&table, 1)),
+            "A title. (b) overlap [d] against cycle. Bands: standard errors over runs. Reference "
+            "lines: the limit.");
 }
 
 TEST(Chart, EveryPanelOfEveryFigureHasOne) {

@@ -2,6 +2,8 @@
 // `submit` and `work` as a user meets them where there is no Slurm, or one that refuses.
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <csignal>
 #include <cstdlib>
 
@@ -213,6 +215,45 @@ TEST_F(Submit, WorkLeavesFailedRunsAlone) {
   EXPECT_EQ(second.code, 3) << second.err;
   EXPECT_TRUE(contains(second.out, "0 stages computed, 0 were done already, 0 failed"))
       << second.out;
+}
+
+// Beside a task's store lies what others put there.
+TEST_F(Submit, ProgressFilesAreNeitherWaitedForNorFollowed) {
+  slurm_that_works();
+  const fs::path task =
+      json({"submit", manifest_, "--json"}).at("folder").get<std::string>() + "/task-1";
+  const fs::path progress = task.string() + ".progress.json";
+  ASSERT_EQ(mkfifo(progress.c_str(), 0600), 0);
+  EXPECT_EQ(run({"status"}).code, 0) << "waited for a pipe";
+  fs::remove(progress);
+  write("precious", "mine");
+  fs::create_symlink(path("precious"), progress);
+  fs::create_symlink(path("precious"), progress.string() + ".new");
+  EXPECT_EQ(run({"work", "--store", task, "-j", "2"}).code, 0);
+  EXPECT_EQ(read_bytes(path("precious")), "mine");
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(progress)));
+}
+
+TEST_F(Submit, AQueueThatDoesNotAnswerIsNotWaitedForLong) {
+  slurm_that_works();
+  EXPECT_FALSE(json({"submit", manifest_, "--json"}).at("submission").is_null());
+  program("squeue", "exec /bin/sleep 600\n");
+  const Outcome status = run({"status"});
+  EXPECT_EQ(status.code, 0) << status.err;
+  EXPECT_TRUE(contains(status.out, "squeue did not answer within 15 s")) << status.out;
+}
+
+// What the tasks measured is not measured again.
+TEST_F(Submit, KeptMeasuresComeAlong) {
+  slurm_that_works();
+  const std::string until =
+      write("u.yaml", tiny_manifest("", "until: {phi: 0.9, extra_cycles: 0}\n"));
+  const std::string folder = json({"submit", until, "--json"}).at("folder");
+  EXPECT_EQ(run({"work", "--store", folder + "/task-1"}).code, 0);
+  EXPECT_EQ(run({"merge", folder + "/task-1"}).code, 0);
+  const Outcome figure = run({"figures", "S2", "--out", "."});
+  EXPECT_EQ(figure.code, 1) << "no gnuplot in this PATH: " << figure.err;
+  EXPECT_TRUE(contains(figure.out, "0 of them measured now")) << figure.out;
 }
 
 TEST_F(Submit, WorkNeedsAStore) {

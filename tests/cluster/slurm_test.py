@@ -159,7 +159,7 @@ def let_time_be_over(campaign, program):
     wait_for("task 2 queued again", lambda: campaign.worker(2) != program)
     wait_for("task 2 begun again", lambda: campaign.worker(2))
     log = (campaign.folder / "task-2.log").read_text()
-    require("checkpoint written" in log and "queued again" in log, log)
+    require("interrupted" in log and "queued again" in log, log)
     say("task 2 was warned of its time limit, recorded its state and queued itself again")
 
 

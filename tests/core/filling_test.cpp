@@ -112,10 +112,25 @@ TEST(Filling, WidthHoldsTheGrainsAtTheNominalFraction) {
 }
 
 TEST(Filling, RefusesWhatCannotBe) {
+  Geometry sparse = of(600);
+  sparse.fill_packing_fraction = 1e-300;
+  EXPECT_THROW(make_cell(sparse, 1), GeometryError);  // and not an endless placement
   EXPECT_THROW(make_cell(of(10), 1), GeometryError);  // shallower than 3 d
   Geometry dense = of(300);
   dense.fill_packing_fraction = 0.5;  // beyond what random sequential addition reaches (0.38)
   EXPECT_THROW(fill_cell(make_cell(dense, 1), dense, 1), GeometryError);
+}
+
+TEST(Filling, IsGivenUpWhenTheCallerAsks) {
+  struct GivenUp {};
+  int looks = 0;
+  const auto third = [&] {
+    if (++looks == 3) throw GivenUp();
+  };
+  EXPECT_THROW(make_cell(of(5000), 1, third), GivenUp);
+  const Cell cell = make_cell(of(5000), 1);
+  looks = 0;
+  EXPECT_THROW(fill_cell(cell, of(5000), 1, third), GivenUp);
 }
 
 }  // namespace

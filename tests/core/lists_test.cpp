@@ -122,7 +122,7 @@ PROPERTY(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId, 300
   Points points =
       random_points(grains, cell, pose, *rc::gen::inRange<std::uint64_t>(0, 1000).as("seed"));
   const Snapshot now = snapshot_of(points, pose);
-  for (const Simd simd : {Simd::scalar, Simd::avx2, Simd::avx512}) {
+  for (const Simd simd : kEverySimd) {
     const Kernels* kernels = find_kernels(simd);
     if (kernels == nullptr) continue;
     Team team(1);

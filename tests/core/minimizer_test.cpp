@@ -140,7 +140,7 @@ TEST(Minimizer, GivesTheSameBitsOnEveryMachine) {
   plain.kernels = &scalar_kernels();
   const State expected = minimized(cell, scene, start, plain, 1e-5);
   EXPECT_EQ(test::fingerprint(expected), 0xc450a98c9f1b8643U) << "on every compiler";
-  for (const Simd simd : {Simd::best, Simd::avx2, Simd::avx512}) {
+  for (const Simd simd : kEverySimd) {
     if (find_kernels(simd) == nullptr) continue;
     for (const std::size_t threads : {1U, 2U, 3U}) {
       for (const bool every_step : {false, true}) {

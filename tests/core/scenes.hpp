@@ -74,6 +74,15 @@ inline Sheared pressed(std::size_t grains, std::uint64_t steps,
   return scene;
 }
 
+/// The state after `steps` steps; by default a sheared cell under Table I.
+inline State advanced(const Sheared& start, std::uint64_t steps,
+                      const EngineSettings& settings = {}, const Scene& scene = table_1(),
+                      const Drive& drive = {0.0833, 2000, 0}) {
+  Simulation simulation(start.cell, scene, start.state, settings);
+  simulation.advance(drive, steps);
+  return simulation.state();
+}
+
 /// Equal to the last bit (so +0 and -0 differ).
 bool same_bits(const State& a, const State& b);
 

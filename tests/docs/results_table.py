@@ -12,45 +12,34 @@ import sys
 
 BEGIN = "<!-- results, by tests/docs/results_table.py -->\n"
 END = "<!-- end of results -->\n"
-ORDER = ["S1", "S2", "S3", "B5", "S4", "C", "S5a", "S5b", "S6", "S7", "walls", "choices", "table1"]
 
 
-def cell(text):
-    return str(text).replace("|", "\\|")
+def number(value):
+    return "unbounded" if value is None else f"{value:.3g}"
 
 
-def measured(claim):
-    if "estimate" not in claim:  # written before claims had intervals
-        if claim.get("value") is None:
-            return claim["note"] or "not measured"
-        limit = "" if claim.get("limit") is None else f" (limit {claim['limit']:.3g})"
-        note = f"; {claim['note']}" if claim["note"] and len(claim["note"]) < 160 else ""
-        return f"{claim['quantity']}: {claim['value']:.3g}{limit}{note}"
-    text = f"{claim['quantity']}: not measured"
+def row(claim, link):
+    low, high = claim["interval"] or (None, None)
+    measured = "not measured"
     if claim["estimate"] is not None:
-        low, high = ("unbounded" if end is None else f"{end:.3g}" for end in claim["interval"])
-        text = f"{claim['quantity']}: {claim['estimate']:.3g}, interval {low} to {high}"
-    needed = f" of {claim['runs_needed']} needed" if claim["runs_needed"] else ""
-    note = f"; {claim['note']}" if claim["note"] else ""
-    return f"{text}, margin {claim['margin']:.3g}, {claim['runs']} runs{needed}{note}"
+        measured = f"{number(claim['estimate'])} ({number(low)} to {number(high)})"
+    runs = str(claim["runs"])
+    if claim["runs_needed"]:
+        runs += f" of {claim['runs_needed']}"
+    cells = [link, claim["claim"], claim["quantity"], measured, number(claim["margin"]), runs, claim["verdict"]]
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
 
 
 def table(page, results):
-    rows = ["| figure | claim | measured | verdict |\n", "|---|---|---|---|\n"]
-    verdicts = {path.name.split(".")[0]: path for path in results.glob("*.verdict.json")}
-    unknown = set(verdicts) - set(ORDER)
-    if unknown:
-        sys.exit(f"no place in the table for {sorted(unknown)}")
-    for figure in filter(verdicts.get, ORDER):
-        folder = results.relative_to(page.parent)
-        drawings = sorted(results.glob(f"{figure}*.svg"))
-        links = " ".join(f"[{path.stem}]({folder / path.name})" for path in drawings
-                         if path.stem == figure or not path.stem[len(figure)].isalnum()
-                         or path.stem[len(figure):].isalpha())
-        for claim in json.loads(verdicts[figure].read_text())["claims"]:
-            rows.append(f"| {links} | {cell(claim['claim'])} | {cell(measured(claim))} "
-                        f"| {claim['verdict']} |\n")
-            links = ""
+    rows = ["| figure | claim | quantity | measured (90 % interval) | margin | runs | verdict |\n", "|---|---|---|---|---|---|---|\n"]
+    for path in sorted(results.glob("**/*.verdict.json")):
+        figure = path.name.split(".")[0]
+        drawings = sorted(path.parent.glob(f"{figure}*.svg"))
+        place = path.parent.relative_to(results)
+        link = f"[{place}/{figure}]({drawings[0].relative_to(page.parent)})"
+        for claim in json.loads(path.read_text())["claims"]:
+            rows.append(row(claim, link))
+            link = ""
     return "".join(rows)
 
 

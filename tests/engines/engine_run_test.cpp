@@ -90,7 +90,7 @@ TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
   EXPECT_TRUE(contains(run({"show", theirs["id"]}).out, "engine   LAMMPS "));
 
   ASSERT_EQ(run({"figures", "S2", "--out", "figures"}).code, 0);
-  const std::string csv = read_bytes(path("figures/S2a.csv"));
+  const std::string csv = read_bytes(path("figures/tiny/S2a.csv"));
   EXPECT_TRUE(contains(csv, "engine=lammps")) << csv;
 
   // Ours alone are replayed, pruned and made again.

@@ -28,6 +28,7 @@ LammpsTask loose_task(const Parameters& p) {
 Parameters small() {
   Parameters p;
   p.grains = 100;
+  p.pressure_at = PressureAt::moving_wall;
   return p;
 }
 

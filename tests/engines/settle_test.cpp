@@ -79,6 +79,7 @@ TEST_F(LammpsSettling, EndsAtAPackingOfTheSameKind) {
 TEST_F(LammpsSettling, EndsAtTheTimeLimitWhereAWallNeverRests) {
   Parameters heavy = small();
   heavy.gravity_m_per_s2 *= 5;
+  heavy.pressure_at = PressureAt::moving_wall;
   heavy.walls = WallTexture::smooth;
   const bench::Packing loose = bench::loose_packing(heavy, 1);
   const Settle endless({}, settle_scene(heavy));

@@ -61,7 +61,7 @@ TEST(Overlap, IsWhatAPlanExpects) {
     const double found = bench::numbers_of(packing.cell, packing.scene, 0, packing.state).overlap;
     std::printf("N = %d, P x %g, k x %g: %.3e d, expected %.3e d\n", static_cast<int>(c.grains),
                 c.pressure, c.stiffness, found, expected_overlap(p));
-    EXPECT_NEAR(found / expected_overlap(p), 1, 0.1);
+    EXPECT_NEAR(found / expected_overlap(p), 1, 0.15);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <set>
 
+#include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
@@ -172,6 +173,34 @@ TEST_F(CampaignTest, ARunInTwoExperimentsRunsOnce) {
   std::size_t shared = 0;
   for (const RunRecord& run : store_.runs()) shared += run.memberships.size() == 2 ? 1 : 0;
   EXPECT_EQ(shared, 2U);
+}
+
+// The checkpoints in between are those that a run of the denser cadence would have made.
+TEST_F(CampaignTest, ADenserCadenceAddsTheCheckpointsInBetween) {
+  const std::string text = tiny_manifest("  cycles: 6\n");
+  compute(store_, text + "checkpoints: {every_cycles: 3}\n");
+  const std::string run = runs_of_kind(store_, "shear").front().id;
+  EXPECT_EQ(cycles_of(store_, run), (std::vector<double>{0, 3, 6}));
+  const RunRecord before = store_.run(run);
+  EXPECT_EQ(compute(store_, text).completed, 1U);
+  EXPECT_EQ(cycles_of(store_, run), (std::vector<double>{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(store_.run(run).state, RunState::completed);
+  EXPECT_EQ(store_.run(run).state_hash, before.state_hash);
+  EXPECT_EQ(compute(store_, text).completed, 0U) << "nothing is left to do";
+  EXPECT_TRUE(store_.verify().ok());
+
+  Store dense(folder_.path() / "dense", Access::create);
+  compute(dense, text);
+  const auto filled = store_.checkpoints(run), direct = dense.checkpoints(run);
+  ASSERT_EQ(filled.size(), direct.size());
+  for (std::size_t k = 0; k < filled.size(); ++k) EXPECT_EQ(filled[k].sha256, direct[k].sha256);
+
+  // Both cadences of two experiments that share the run, none of which contains the other.
+  Store both(folder_.path() / "both", Access::create);
+  const Manifest two = parse_manifest(text + "checkpoints: {every_cycles: 2}\n", "two.yaml");
+  declare(both, two, expand(two));
+  compute(both, "# three\n" + text + "checkpoints: {every_cycles: 3}\n");
+  EXPECT_TRUE(missing_checkpoints(both, both.run(run)).empty());
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST_F(BenchAccuracy, PlanPrintsTimeStepsAndWarns) {
   EXPECT_EQ(words.err, "");
   const nlohmann::json stage = json({"plan", sound, "--json"}).at("stages").at(1);
   EXPECT_NEAR(stage.at("time_step").at("over_contact_time"), 0.1129, 1e-4);
-  EXPECT_NEAR(stage.at("expected_overlap_d"), 2.77e-3, 1e-5);
+  EXPECT_NEAR(stage.at("expected_overlap_d"), 3.797e-3, 1e-5);
   const std::string small = write("small.yaml", head + "steps_per_cycle: 200000}\n");
   const std::string large = write("large.yaml", head + "steps_per_cycle: 20000}\n");
   const std::string stiffened =

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string shell(const std::string& command) {
+std::string shell_output(const std::string& command) {
   std::string out;
   std::FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return out;
@@ -50,14 +50,14 @@ class Comfort : public ProgramTest {
                                : "") +
               std::string("source ./script\nCOMP_WORDS=(") + typed + ")\nCOMP_CWORD=" +
               std::to_string(words.size() - 1) + "\n_shearcell\necho \"${COMPREPLY[@]}\"\n");
-    return shell("cd " + path("").string() + " && " + shell_name + " ./try");
+    return shell_output("cd " + path("").string() + " && " + shell_name + " ./try");
   }
 
   /// Its output on a terminal of that width.
   std::string on_terminal(int columns, const std::string& environment, const std::string& words) {
-    return shell("cd " + path("").string() + " && script -qec 'stty cols " +
-                 std::to_string(columns) + "; TERM=xterm " + environment +
-                 " " SHEARCELL_PROGRAM " " + words + "' /dev/null");
+    return shell_output("cd " + path("").string() + " && script -qec 'stty cols " +
+                        std::to_string(columns) + "; TERM=xterm " + environment +
+                        " " SHEARCELL_PROGRAM " " + words + "' /dev/null");
   }
 };
 
@@ -113,8 +113,10 @@ TEST_F(Comfort, ShellsCompleteCommandsAndOptions) {
   write("script", run({"completion", "fish"}).out);
   if (has_program("fish")) {
     const std::string in_folder = "cd " + path("").string() + " && fish -c 'source script; ";
-    EXPECT_EQ(shell(in_folder + "complete -C \"shearcell bench sp\"'").substr(0, 6), "speed\t");
-    EXPECT_EQ(shell(in_folder + "complete -C \"shearcell run --sc\"'").substr(0, 8), "--scale\t");
+    EXPECT_EQ(shell_output(in_folder + "complete -C \"shearcell bench sp\"'").substr(0, 6),
+              "speed\t");
+    EXPECT_EQ(shell_output(in_folder + "complete -C \"shearcell run --sc\"'").substr(0, 8),
+              "--scale\t");
   }
   EXPECT_EQ(run({"completion", "tcsh"}).code, 2);
 }
@@ -137,7 +139,7 @@ TEST_F(Comfort, TheManualHasEveryCommand) {
   EXPECT_GE(commands, 16U);
   if (has_program("groff")) {
     write("page", page);
-    EXPECT_EQ(shell("groff -man -Tutf8 -ww -z " + path("page").string() + " 2>&1"), "");
+    EXPECT_EQ(shell_output("groff -man -Tutf8 -ww -z " + path("page").string() + " 2>&1"), "");
   }
 }
 
@@ -190,8 +192,8 @@ TEST_F(Comfort, ExportsTheCyclesThatAreAskedFor) {
   };
   EXPECT_EQ(files("h5md", "run.h5", "0"), 1U);
   EXPECT_EQ(files("extxyz", "run.xyz", "0:1"), 1U);
-  EXPECT_EQ(files("vtk", "vtk", ":0"), 3U);  // grains, cell, and the list of frames
-  EXPECT_EQ(files("lammps", "lammps", "0:1:1"), 2U);
+  EXPECT_EQ(files("vtk", "vtk", ":0"), 4U);  // grains, cell, the list of frames, and what they are
+  EXPECT_EQ(files("lammps", "lammps", "0:1:1"), 3U);
 
   const auto before = listing();
   for (const Arguments& words :

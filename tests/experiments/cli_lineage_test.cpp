@@ -23,10 +23,10 @@ class CommandLineLineage : public ProgramTest {
 };
 
 TEST_F(CommandLineLineage, ShowsAFigureWithoutCuttingItInAPipe) {
-  const Outcome shown = run({"show", "S2"});
+  const Outcome shown = run({"show", "tiny/S2"});
   ASSERT_EQ(shown.code, 0) << shown.err;
   EXPECT_FALSE(contains(shown.out, "...")) << shown.out;
-  const nlohmann::json all = json({"show", "S2", "--json"});
+  const nlohmann::json all = json({"show", "tiny/S2", "--json"});
   EXPECT_EQ(all.at("inputs").size(), 2U);
   for (const auto& input : all.at("inputs")) {
     EXPECT_TRUE(contains(shown.out, input.at("run")));
@@ -34,28 +34,42 @@ TEST_F(CommandLineLineage, ShowsAFigureWithoutCuttingItInAPipe) {
   }
   EXPECT_TRUE(contains(shown.out, "m.yaml"));
   EXPECT_TRUE(contains(shown.out, "experiment: tiny"));
+  // The manifest's 2 cycles were overridden.
+  EXPECT_TRUE(contains(shown.out, "given at the command line: cycles 1 (manifest: 2)"))
+      << shown.out;
+  EXPECT_TRUE(contains(shown.out, "  cycles: 2")) << shown.out;
+  const nlohmann::json overrides = {{"cycles", {{"run", 1}, {"manifest", 2}}}};
+  const nlohmann::json lineage =
+      nlohmann::json::parse(read_bytes(path("out/tiny/S2.lineage.json")));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const nlohmann::json& input = all.at("inputs").at(i);
+    EXPECT_EQ(input.at("overrides"), overrides);
+    EXPECT_EQ(lineage.at("inputs").at(i).at("overrides"), overrides);
+    const nlohmann::json run = json({"show", input.at("run"), "--json"});
+    EXPECT_EQ(run.at("memberships").at(0).at("overrides"), overrides);
+  }
   for (const char* fact : {"commit", "flags"}) {
     EXPECT_TRUE(contains(shown.out, all.at("made").at("build").at(fact))) << fact;
   }
 }
 
 TEST_F(CommandLineLineage, JudgesAPublishedFile) {
-  const Outcome sound = run({"show", "out/S2a.csv"});
+  const Outcome sound = run({"show", "out/tiny/S2a.csv"});
   EXPECT_EQ(sound.code, 0) << sound.err;
   EXPECT_TRUE(contains(sound.out, "matches")) << sound.out;
   EXPECT_TRUE(contains(sound.out, "4 checkpoints, all present and right")) << sound.out;
 
-  const nlohmann::json all = json({"show", "out/S2a.csv", "--json"});
+  const nlohmann::json all = json({"show", "out/tiny/S2a.csv", "--json"});
   EXPECT_EQ(all.at("check").at("verdict"), "matches");
   const std::string input = all.at("inputs").at(0).at("checkpoints").at(0).at("file");
   std::filesystem::remove(path("shearcell-store/" + input));
-  const Outcome missing = run({"show", "out/S2a.csv"});
+  const Outcome missing = run({"show", "out/tiny/S2a.csv"});
   EXPECT_EQ(missing.code, 4);
   EXPECT_TRUE(contains(missing.out, "1 of them")) << missing.out;
   EXPECT_TRUE(contains(missing.out, "missing")) << missing.out;
 
-  write("out/S2b.csv", read_bytes(path("out/S2b.csv")) + "x");
-  const Outcome changed = run({"show", "out/S2b.csv"});
+  write("out/tiny/S2b.csv", read_bytes(path("out/tiny/S2b.csv")) + "x");
+  const Outcome changed = run({"show", "out/tiny/S2b.csv"});
   EXPECT_EQ(changed.code, 4);
   EXPECT_TRUE(contains(changed.out, "CHANGED")) << changed.out;
 

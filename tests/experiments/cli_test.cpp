@@ -182,13 +182,15 @@ TEST_F(CommandLine, MakesAFigureTwiceWithTheSameBytes) {
   ASSERT_EQ(run({"figures", "--all", "--out", "two"}).code, 0);
   EXPECT_EQ(json({"verify", "--json"}).at("head").at("hash"), head);
   std::size_t files = 0;
-  for (const auto& entry : fs::directory_iterator(path("one"))) {
+  for (const auto& entry : fs::recursive_directory_iterator(path("one"))) {
+    if (!entry.is_regular_file()) continue;
     ++files;
-    EXPECT_EQ(read_bytes(entry.path()), read_bytes(path("two") / entry.path().filename()))
+    EXPECT_EQ(read_bytes(entry.path()),
+              read_bytes(path("two") / entry.path().lexically_relative(path("one"))))
         << entry.path();
   }
   EXPECT_GE(files, 3U);
-  EXPECT_TRUE(fs::exists(path("one") / "S2a.csv") && fs::exists(path("one") / "table1.csv"));
+  EXPECT_TRUE(fs::exists(path("one/tiny/S2a.csv")) && fs::exists(path("one") / "table1.csv"));
   EXPECT_EQ(json({"show", "S2", "--json"}).at("figure"), "S2");
 }
 

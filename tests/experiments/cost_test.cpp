@@ -4,9 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdio>
 
+#include "core/drive.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/numerics.hpp"
+#include "experiments/manifest/schema.hpp"
+#include "experiments/runner/progress.hpp"
+#include "protocols/settle.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
 namespace shearcell {
@@ -53,6 +61,88 @@ TEST(Cost, OfStiffeningIsThatOfTheSpringConstantsLeft) {
   EXPECT_NEAR(stage_cost(run, run.last, 6).particle_steps, all.particle_steps / 3, 1);
   EXPECT_NEAR(stage_cost(run, run.last, 6).bytes, all.bytes * 3 / 10, 1) << "cycles 0 to 9";
   EXPECT_EQ(stage_cost(run, run.last, 9).particle_steps, 0);
+}
+
+/// Texts of values of a number: both ends of its range, and many inside.
+std::vector<std::string> values_of(const Field& field) {
+  const bool whole = std::holds_alternative<std::uint64_t Parameters::*>(field.member);
+  std::vector<std::string> values;
+  const auto add = [&](double value) {
+    if (whole) value = std::round(value);
+    if (value < field.min || value > field.max || (field.min_excluded && value == field.min))
+      return;
+    values.push_back(whole ? fmt::format("{:.0f}", value) : fmt::format("{}", value));
+  };
+  add(field.min);
+  add(field.max);
+  for (const double tiny : {4.9e-324, 1e-320, 1e-308, 1e-300, 1e-150, 1e-30}) add(tiny);
+  for (int exponent = -18; exponent <= 15; ++exponent) {
+    for (const double digit : {1.0, 4.7}) add(digit * std::pow(10, exponent));
+  }
+  return values;
+}
+
+// What is stated on lines 3 and 4 of this text is either refused there, with a remedy, or leads to
+// stages whose size, steps and printed numbers are bounded.
+void expect_bounded(const std::string& text) {
+  SCOPED_TRACE(text);
+  try {
+    const Plan plan = expand(parse_manifest(text, "t"));
+    for (const std::string& warning : plan.warnings) {
+      for (const char* odd : {"nan", "inf "}) EXPECT_EQ(warning.find(odd), std::string::npos);
+    }
+    for (const PlannedRun& run : plan.runs) {
+      const Parameters& p = run.parameters;
+      const Geometry shape = geometry(p);
+      EXPECT_FALSE(too_large(shape));
+      EXPECT_LE(p.settle_time_limit_s / p.settle_time_step_s, kMostSteps);
+      EXPECT_LE(static_cast<double>(run.cycles) * static_cast<double>(cycle_steps(drive(p))),
+                2 * kMostSteps);
+      EXPECT_TRUE(std::isfinite(expected_overlap(p)));
+      for (const TimeStep& step : {shear_time_step(p), settle_time_step(p)}) {
+        EXPECT_TRUE(step.seconds > 0 && std::isfinite(step.over_stability_limit));
+      }
+      for (const StageSpec* stage : {&run.prepare, &run.last}) {
+        const StageCost cost = stage_cost(run, *stage, 0);
+        EXPECT_TRUE(cost.particle_steps >= 0 && cost.particle_steps < 1e25) << cost.particle_steps;
+        EXPECT_TRUE(cost.bytes >= 0 && cost.bytes < 1e20) << cost.bytes;
+        const std::string time = format_duration(cost.particle_steps / 1e3);
+        EXPECT_EQ(time.find_first_of("-?"), std::string::npos) << time;
+      }
+    }
+  } catch (const ManifestError& error) {
+    bool placed = false;
+    for (const ManifestProblem& problem : error.problems()) {
+      EXPECT_NE(find_field(problem.key), nullptr) << problem.text();
+      EXPECT_FALSE(problem.remedy.empty()) << problem.text();
+      placed = placed || problem.at.line >= 3;
+    }
+    EXPECT_TRUE(placed) << error.what();
+  }
+}
+
+TEST(Cost, OfEveryValueInItsRangeIsBoundedOrRefused) {
+  const std::vector<std::string> others = {"walls: rough",        "walls: smooth",
+                                           "protocol: paused",    "protocol: stiffen",
+                                           "gravity_m_per_s2: 0", "grains: 100"};
+  std::size_t count = 0;
+  for (const Field& field : schema()) {
+    if (std::holds_alternative<ChoiceMember>(field.member)) continue;
+    for (const std::string& value : values_of(field)) {
+      for (const std::string& other : others) {
+        if (other.starts_with(std::string(field.name) + ":")) continue;
+        expect_bounded(
+            fmt::format("experiment: a\nbase:\n  {}\n  {}: {}\n", other, field.name, value));
+        ++count;
+      }
+    }
+  }
+  std::printf("%zu manifests\n", count);
+}
+
+TEST(Cost, ADurationIsAlwaysReadable) {
+  EXPECT_EQ(format_duration(9.3e27), "2.95e+20 years");
+  EXPECT_EQ(format_duration(86400.0 * 365), "365 d 00 h");
 }
 
 TEST(Cost, OfDiskAndSettlingAreNearWhatTheyTurnOutToBe) {

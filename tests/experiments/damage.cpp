@@ -4,7 +4,9 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
+#include "analysis/derived_measures.hpp"
 #include "provenance/derived.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/objects.hpp"
 #include "provenance/sha256.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -56,8 +58,8 @@ Damage forged(const std::function<void(Event&)>& change) {
       change(event);
       event.prev_hash = prev;
       prev = event.hash = event_hash(event);
-      log.run("UPDATE events SET type = " + sql_text(event.type) +
-              ", schema = " + std::to_string(event.schema) +
+      log.run("UPDATE events SET type = " + sql_text(event.type) + ", schema = " +
+              std::to_string(event.schema) + ", recorded_at = " + sql_text(event.recorded_at) +
               ", payload = " + sql_text(event.payload) + ", prev_hash = '" + event.prev_hash +
               "', hash = '" + event.hash + "' WHERE seq = " + std::to_string(event.seq));
     }
@@ -121,24 +123,75 @@ void forge_checkpoints(const fs::path& store, const std::string& hdf5) {
   Store(store, Access::write).rebuild();
 }
 
-void forge_measures(const fs::path& store) {
-  const Store known(store, Access::read);
-  DerivedCache cache(store);
-  fs::path file = store / DerivedCache::kFile;
-  std::vector<std::byte> nested(1 << 20, std::byte{0x81});
-  sqlite3* raw = nullptr;
-  ASSERT_EQ(sqlite3_open(file.c_str(), &raw), SQLITE_OK);
-  std::vector<DerivedObject> forged;
-  const auto take = [](void* list, int, char** row, char**) {
-    static_cast<std::vector<DerivedObject>*>(list)->push_back(
-        {{row[0], row[1], std::stoull(row[2])}, {}});
-    return 0;
+Damage rebuilt(const Damage& damage) {
+  return [=](const fs::path& store) {
+    damage(store);
+    try {
+      Store(store, Access::write).rebuild();
+    } catch (const StoreDamaged&) {
+      // The command under test meets it as well.
+    }
   };
-  sqlite3_exec(raw, "SELECT checkpoint, measure, version FROM derived", take, &forged, nullptr);
-  sqlite3_close(raw);
-  ASSERT_FALSE(forged.empty());
-  for (DerivedObject& object : forged) object.content = nested;
-  cache.put(forged);
+}
+
+Damage states(const std::function<void(Checkpoint&)>& change) {
+  return rebuilt([=](const fs::path& store) {
+    std::map<std::string, std::pair<Checkpoint, ObjectInfo>> made;  // by the former SHA-256
+    {
+      const Store known(store, Access::read);
+      ObjectStore objects(store);
+      for (const RunRecord& run : known.runs()) {
+        for (const CheckpointRecord& record : known.checkpoints(run.id)) {
+          Checkpoint checkpoint = known.load_checkpoint(record);
+          change(checkpoint);
+          const ObjectInfo object = objects.put(encode_checkpoint(checkpoint));
+          made[record.sha256] = {std::move(checkpoint), object};
+        }
+      }
+    }
+    payload("CheckpointRecorded", [&](nlohmann::json& body) {
+      const auto& [checkpoint, object] = made.at(body["sha256"]);
+      body["step"] = checkpoint.state.step;
+      body["cycle"] = checkpoint.cycle;
+      body["time_s"] = checkpoint.time_s;
+      body["observables"] = checkpoint.observables;
+      body["state_hash"] = state_hash(checkpoint);
+      body["file"] = object.file;
+      body["size"] = object.size;
+    })(store);
+    forged([&](Event& event) {
+      for (const auto& [before, now] : made) {
+        for (std::size_t at = 0; (at = event.payload.find(before, at)) != std::string::npos;) {
+          event.payload.replace(at, before.size(), now.second.sha256);
+          at += before.size();
+        }
+      }
+    })(store);
+  });
+}
+
+Damage measures(const std::string& name, const std::function<void(nlohmann::json&)>& change) {
+  return [=](const fs::path& store) {
+    std::vector<DerivedKey> keys;
+    {
+      const sqlite::Database kept(store / DerivedCache::kFile, sqlite::Open::existing);
+      sqlite::Statement row(kept, "SELECT checkpoint, measure, version FROM derived");
+      while (row.step()) {
+        DerivedKey& key = keys.emplace_back();
+        row.get(key.checkpoint, key.measure, key.version);
+      }
+    }
+    DerivedCache cache(store);
+    std::vector<DerivedObject> changed;
+    for (const DerivedKey& key : keys) {
+      if (!key.measure.starts_with(name)) continue;
+      nlohmann::json content = decode_result(cache.get(std::span(&key, 1)).front().value());
+      change(content);
+      changed.push_back({key, encode_result(content)});
+    }
+    ASSERT_FALSE(changed.empty());
+    cache.put(changed);
+  };
 }
 
 }  // namespace shearcell::test

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "provenance/checkpoint.hpp"
 #include "provenance/event_log.hpp"
 
 namespace shearcell::test {
@@ -22,6 +23,16 @@ Damage forged(const std::function<void(Event&)>& change);
 /// The same of the payload of every event of a type.
 Damage payload(const std::string& type, const std::function<void(nlohmann::json&)>& change);
 
+/// Followed by `rebuild`, so that the tables say what the events say.
+Damage rebuilt(const Damage& damage);
+
+/// Changes every checkpoint together with its file, its hashes and all events that name it: a
+/// store that is consistent in itself.
+Damage states(const std::function<void(Checkpoint&)>& change);
+
+/// Changes every kept measure of this name and gives it the digest that belongs to it.
+Damage measures(const std::string& name, const std::function<void(nlohmann::json&)>& change);
+
 /// To one checkpoint file.
 Damage object(const std::function<void(const std::filesystem::path& file)>& change);
 
@@ -36,8 +47,5 @@ void folder_instead(const std::filesystem::path& path);
 /// Bytes of one's own under a right digest in the place of every checkpoint, and a log that vouches
 /// for them.
 void forge_checkpoints(const std::filesystem::path& store, const std::string& hdf5);
-
-/// Kept measures under right hashes that hold something else.
-void forge_measures(const std::filesystem::path& store);
 
 }  // namespace shearcell::test

@@ -26,12 +26,56 @@ TEST_F(HostileManifest, MoreGrainsThanTheMachineHoldsAreRefusedBeforeTheyAreMade
   EXPECT_NE(outcome.err.find("use fewer grains"), std::string::npos) << outcome.err;
 }
 
+/// Lines of `base`, the exit code of `plan`, and a part of what it says.
+TEST_F(HostileManifest, ParametersThatCannotBeComputedAreRefusedWithTheirLine) {
+  struct Case {
+    const char* base;
+    int code;
+    const char* says;
+  };
+  for (const auto& [base, code, says] :
+       {Case{"fill_packing_fraction: 1e-5", 2, ":4:26: fill_packing_fraction: the cell for"},
+        Case{"fill_packing_fraction: 1e-10", 2, ":4:26: base.fill_packing_fraction: is out"},
+        Case{"fill_packing_fraction: 1e-300", 2, ":4:26: base.fill_packing_fraction: is out"},
+        Case{"nominal_packing_fraction: 1e-15", 2, ":4:29: base.nominal_packing_fraction: is out"},
+        Case{"nominal_packing_fraction: 1e-6", 2, ":4:29: nominal_packing_fraction: the grains"},
+        Case{"settle_time_step_s: 1e-18", 2, ":4:23: base.settle_time_step_s: is out of range"},
+        Case{"settle_time_step_s: 5e-324", 2, ":4:23: base.settle_time_step_s: is out of range"},
+        Case{"settle_time_step_s: 1e-14", 2, ":4:23: settle_time_step_s: settling takes up to"},
+        Case{"period_s: 1e-320", 2, ":4:13: period_s: the parameters are so far apart"},
+        Case{"mass_kg: 1e-320", 2, ":4:12: mass_kg: the parameters are so far apart"},
+        Case{"diameter_m: 1e-320", 2, ":4:15: diameter_m: the parameters are so far apart"},
+        Case{"stiffness_N_per_m: 1e-320", 2, ":4:22: stiffness_N_per_m: the parameters"},
+        Case{"pressure_Pa: 4.9e-324", 2, ":4:16: pressure_Pa: the parameters are so far apart"},
+        Case{"drag_kg_per_s: 1e-320", 0, "left: "},
+        Case{"gravity_m_per_s2: 1e-320", 0, "left: "},
+        Case{"amplitude_rad: 1e-320", 0, "left: "},
+        Case{"max_overlap_diameters: 1e-320", 0, "left: "},
+        Case{"wall_mass_grains_per_d2: 1e-320", 0, "left: "},
+        Case{"settle_force_tolerance: 1e-320", 0, "left: "},
+        Case{"settle_time_limit_s: 1e-320", 0, "left: "},
+        Case{"height_over_width: 100", 0, "left: "},
+        Case{"cycles: 1000000\n  steps_per_cycle: 1000000000\n  grains: 100000000", 0, " years "},
+        Case{"protocol: paused\n  pause_s: 1e6", 2, ":5:12: pause_s: the pause takes"},
+        Case{"grains: 1", 2, ":4:11: grains: the cell for so few grains"}}) {
+    SCOPED_TRACE(base);
+    write("m.yaml", "experiment: a\n# Hard.\nbase:\n  " + std::string(base) + "\n");
+    const Outcome outcome = run({"plan", "m.yaml"});
+    EXPECT_EQ(outcome.code, code) << outcome.err;
+    EXPECT_NE((outcome.out + outcome.err).find(says), std::string::npos)
+        << outcome.out << outcome.err;
+    for (const char* odd : {"-1537", "nan", "inf "}) {
+      EXPECT_EQ(outcome.out.find(odd), std::string::npos) << outcome.out;
+    }
+  }
+}
+
 class Outputs : public ProgramTest {
  protected:
   void SetUp() override {
     campaign(tiny_manifest("  grains: 200\n", kBothFluids), {"--cycles", "1"});
     id_ = json({"status", "--json"})["runs"].back()["id"];
-    fs::create_directory(path("out"));
+    fs::create_directories(path("out/tiny"));
   }
 
   void expect_refused(const std::vector<std::string>& command, const std::string& file) {
@@ -55,21 +99,22 @@ TEST_F(Outputs, FiguresReplaceTheirOwnFilesAndNoOthers) {
   const std::vector<std::string> figures = {"figures", "S2", "--out", "out"};
   for (const char* file :
        {"S2a.csv", "S2a.gp", "S2b.svg", "S2b.pdf", "S2.verdict.json", "S2.lineage.json"}) {
-    write(std::string("out/") + file, "{\"mine\": 1}\n");
+    write(std::string("out/tiny/") + file, "{\"mine\": 1}\n");
     expect_refused(figures, file);
-    EXPECT_EQ(read_bytes(path(std::string("out/") + file)), "{\"mine\": 1}\n");
-    fs::remove(path(std::string("out/") + file));
-    fs::create_symlink(path("m.yaml"), path(std::string("out/") + file));
+    EXPECT_EQ(read_bytes(path(std::string("out/tiny/") + file)), "{\"mine\": 1}\n");
+    fs::remove(path(std::string("out/tiny/") + file));
+    fs::create_symlink(path("m.yaml"), path(std::string("out/tiny/") + file));
     expect_refused(figures, file);
-    fs::remove(path(std::string("out/") + file));
+    fs::remove(path(std::string("out/tiny/") + file));
   }
   ASSERT_EQ(run(figures).code, 0);
   EXPECT_EQ(run(figures).code, 0) << "made by an earlier call";
-  fs::remove(path("out/S2a.gp"));  // killed before it was drawn
-  fs::remove(path("out/S2a.svg"));
-  fs::remove(path("out/S2a.pdf"));
+  fs::remove(path("out/tiny/S2a.gp"));  // killed before it was drawn
+  fs::remove(path("out/tiny/S2a.svg"));
+  fs::remove(path("out/tiny/S2a.pdf"));
   EXPECT_EQ(run(figures).code, 0);
-  for (const auto& entry : fs::directory_iterator(path("out"))) {
+  for (const auto& entry : fs::recursive_directory_iterator(path("out"))) {
+    if (entry.is_directory()) continue;
     struct stat status {};
     ASSERT_EQ(stat(entry.path().c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0133, 0U) << entry.path() << ": others may write it, or run it";
@@ -133,7 +178,7 @@ TEST_F(Outputs, NamesOfAForgedStoreAreTextToGnuplot) {
   EXPECT_EQ(run({"verify"}).code, 0);
   const Outcome figures = run({"figures", "S2", "--out", "out"});
   EXPECT_EQ(figures.code, 0) << figures.err;
-  EXPECT_TRUE(fs::exists(path("out/S2a.svg")));
+  EXPECT_TRUE(fs::exists(path("out/tiny/S2a.svg")));
   EXPECT_EQ(run({"report", "--out", "r.html", "--drawings"}).code, 0);
   EXPECT_EQ(run({"export", id_, "--to", "ro-crate", "--out", "crate"}).code, 0);
   EXPECT_EQ(run({"status"}).out.find('\r'), std::string::npos);

@@ -157,7 +157,8 @@ TEST(BadText, NamesTheSmallestNumberOfStepsThatWorks) {
                             "}");
   };
   EXPECT_EQ(with_steps(16175), "");
-  EXPECT_NE(with_steps(16174).find("Use at least 16175 steps per cycle."), std::string::npos);
+  EXPECT_NE(with_steps(16174).find("Use at least 16175 steps per cycle, or `auto`."),
+            std::string::npos);
 }
 
 }  // namespace

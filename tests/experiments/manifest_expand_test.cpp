@@ -182,9 +182,11 @@ TEST(Expand, WarnsOfACellThatThePressureCannotLift) {
   const auto warnings = [](const std::string& base) {
     return expand(parse("experiment: a\nbase: {" + base + "}\n")).warnings;
   };
-  EXPECT_TRUE(warnings("grains: 18200").empty());
-  ASSERT_EQ(warnings("grains: 30000").size(), 1U);
-  EXPECT_NE(warnings("grains: 30000")[0].find("cannot lift"), std::string::npos);
+  const std::string lifting = "pressure_at: moving_wall, grains: 30000";
+  EXPECT_TRUE(warnings("pressure_at: moving_wall, grains: 18200").empty());
+  ASSERT_EQ(warnings(lifting).size(), 1U);
+  EXPECT_NE(warnings(lifting)[0].find("cannot lift"), std::string::npos);
+  EXPECT_TRUE(warnings("grains: 30000").empty()) << "loaded with the weight as well";
   EXPECT_TRUE(warnings("grains: 30000, gravity_m_per_s2: 0").empty());
   EXPECT_TRUE(warnings("grains: 30000, moving_wall: top").empty());
 }
@@ -203,6 +205,8 @@ TEST(Expand, WarnsOfKeysThatNoVariantFeels) {
              "2:35: cycles: has no effect: not under protocol stiffen. Leave it out."},
         Case{"stiffness_decades: 3",
              "2:27: stiffness_decades: has no effect: only under protocol stiffen. Leave it out."},
+        Case{"walls: smooth, wall_grain_area_fraction: 0.2",
+             "2:49: wall_grain_area_fraction: has no effect: only with rough walls. Leave it out."},
         Case{"walls: smooth, wall_grain_draw: 2",
              "2:40: wall_grain_draw: has no effect: only with rough walls. Leave it out."}}) {
     EXPECT_EQ(warnings(base), Strings{"test.yaml:" + warning}) << base;
@@ -226,6 +230,28 @@ TEST(Expand, AnUntilIsReadOverriddenAndPartOfNoIdentity) {
                           "{\"phi\":1,\"extra_cycles\":-1}"}) {
     EXPECT_THROW(until_from_json(nlohmann::json::parse(bad)), std::runtime_error) << bad;
   }
+}
+
+// The shortest text that tells the variants apart, with the labels of the manifest.
+TEST(Expand, NamesVariants) {
+  const auto names = [](const std::string& rest) {
+    Strings found;
+    for (const PlannedRun& run :
+         expand(parse("experiment: e\nbase: {grains: 600}\n" + rest)).runs) {
+      found.push_back(run.name);
+    }
+    return found;
+  };
+  EXPECT_EQ(names(""), Strings{"base"});
+  EXPECT_EQ(names("sweep: {grid: {fluid: [still, cell]}}\n"),
+            (Strings{"fluid=still", "fluid=cell"}));
+  EXPECT_EQ(names("sweep: {zip: {steps_per_cycle: [45600, 64488], settle_time_step_s: [4.4e-5, "
+                  "3.1e-5], stiffness_N_per_m: [654, 1308]}}\n"),
+            (Strings{"k=654 N/m", "k=1308 N/m"}));
+  EXPECT_EQ(names("sweep: {grid: {fluid: [still, cell], amplitude_rad: [0.05, 0.1]}}\n"
+                  "labels: {fluid=still: water at rest, \"fluid=cell,amplitude_rad=0.1\": wild}\n"),
+            (Strings{"water at rest, A=0.05 rad", "water at rest, A=0.1 rad",
+                     "fluid=cell, A=0.05 rad", "wild"}));
 }
 
 }  // namespace

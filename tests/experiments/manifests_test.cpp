@@ -96,7 +96,9 @@ TEST(Manifests, HaveTheSizesAndNumbersOfTheSupplement) {
                                                                    {"steps_per_cycle=45600", 10},
                                                                    {"steps_per_cycle=28571", 10}}));
   EXPECT_EQ(runs_of_variants(plan("moving_wall", "paper")),
-            (Variants{{"moving_wall=bottom", 10}, {"moving_wall=top", 10}}));
+            (Variants{{"moving_wall=bottom,pressure_at=top", 10},
+                      {"moving_wall=top,pressure_at=top", 10},
+                      {"moving_wall=bottom,pressure_at=moving_wall", 10}}));
   EXPECT_EQ(plan("critical_size", "paper").runs.size(), 5 * 10U);
   EXPECT_EQ(
       runs_of_variants(plan("system_size", "paper")),

@@ -27,11 +27,11 @@ class Measure : public testing::Test {
     options.folder = folder_.path() / name;
     options.workers = 2;
     options.fresh = fresh;
-    return draw_figure(store_, *find_figure("S2"), options);
+    return draw_figure(store_, {*find_figure("S2"), "tiny"}, options);
   }
   std::string csv(const std::string& name) const {
-    return read_bytes(folder_.path() / name / "S2a.csv") +
-           read_bytes(folder_.path() / name / "S2b.csv");
+    const std::filesystem::path folder = folder_.path() / name / "tiny";
+    return read_bytes(folder / "S2a.csv") + read_bytes(folder / "S2b.csv");
   }
   std::filesystem::path cache() const { return store_.folder() / DerivedCache::kFile; }
   void sql(const std::string& statement) const {
@@ -73,17 +73,16 @@ TEST_F(Measure, OnlyNewCheckpointsAreMeasured) {
 }
 
 TEST_F(Measure, OneAnalysisGivesAllThatFiguresMadeTogetherNeed) {
-  std::string text = tiny_manifest("", kBothFluids);
+  std::string text = tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\n");
   text.replace(text.find("[S2]"), 4, "[S7, walls]");
   compute(store_, text);
   FigureOptions options;
   options.folder = folder_.path() / "together";
   std::vector<std::string> order;
   std::size_t measured = 0;
-  for (const Figure* figure :
-       in_order_of_needs({find_figure("table1"), find_figure("walls"), find_figure("S7")})) {
-    order.emplace_back(figure->name);
-    measured += draw_figure(store_, *figure, options).measured;
+  for (const WantedFigure& wanted : in_order_of_needs(wanted_figures(store_).figures)) {
+    order.emplace_back(wanted.figure.name);
+    measured += draw_figure(store_, wanted, options).measured;
   }
   EXPECT_EQ(order, (std::vector<std::string>{"S7", "walls", "table1"}));
   EXPECT_EQ(measured, 6U) << "checkpoints, each once";
@@ -95,7 +94,7 @@ TEST_F(Measure, AFigureOfEveryExperimentMeasuresNothing) {
   compute(store_, "experiment: other" + text.substr(text.find('\n')));
   FigureOptions options;
   options.folder = folder_.path() / "table";
-  const FigureSummary table = draw_figure(store_, *find_figure("table1"), options);
+  const FigureSummary table = draw_figure(store_, {*find_figure("table1"), ""}, options);
   EXPECT_EQ(table.measured, 0U);
   EXPECT_EQ(table.runs, 2U * 2U);
   EXPECT_EQ(table.checkpoints, 2U * 2U) << "the last one of each";

@@ -18,6 +18,36 @@ TEST(TimeStep, OfTableI) {
   EXPECT_EQ(step.seconds, settle_time_step({}).seconds);
 }
 
+TEST(TimeStep, FollowsTheStiffnessWhereItIsAuto) {
+  const auto runs_of = [](const std::string& base, const std::string& sweep = "") {
+    return expand(parse_manifest("experiment: a\nbase: {grains: 600, " + base + "}\n" + sweep,
+                                 "test.yaml"))
+        .runs;
+  };
+  const std::string autos = "steps_per_cycle: auto, settle_time_step_s: auto";
+  // Table I's own numbers, and so the ids of runs that state them.
+  EXPECT_EQ(runs_of(autos).front().last.key, runs_of("cycles: 200").front().last.key);
+  const auto swept =
+      runs_of(autos, "sweep: {grid: {stiffness_N_per_m: [654, 2616, 65400], period_s: [2, 4]}}");
+  ASSERT_EQ(swept.size(), 6U);
+  const std::uint64_t steps[] = {45600, 91200, 91200, 182400, 456000, 912000};
+  for (std::size_t i = 0; i < swept.size(); ++i) {
+    const Parameters& p = swept[i].parameters;
+    EXPECT_EQ(p.steps_per_cycle, steps[i]);
+    EXPECT_EQ(p.settle_time_step_s, 2.0 / static_cast<double>(steps[i / 2 * 2]));
+    EXPECT_NEAR(shear_time_step(p).over_stability_limit, 0.3547, 1e-4);
+    EXPECT_EQ(swept[i].variant.find("steps_per_cycle"), std::string::npos) << swept[i].variant;
+  }
+  // A swept key and a scale's number override it.
+  EXPECT_EQ(runs_of(autos, "sweep: {grid: {steps_per_cycle: [91200, 45600]}}")
+                .front()
+                .parameters.steps_per_cycle,
+            91200U);
+  EXPECT_EQ(
+      runs_of(autos, "scales: {desk: {steps_per_cycle: 50000}}").front().parameters.steps_per_cycle,
+      50000U);
+}
+
 TEST(TimeStep, IsAdvisedAgainstWhereItIsTooSmallOrTooLarge) {
   for (const double part : {0.15, 0.21, 0.355, 0.566, 0.7}) {
     EXPECT_FALSE(time_step_advice({1e-5, 0.1, part}, "steps_per_cycle")) << part;
@@ -54,12 +84,14 @@ TEST(Overlap, FollowsPressureStiffnessAndWeight) {
   p.pressure_Pa *= 2;
   p.stiffness_N_per_m *= 4;
   EXPECT_NEAR(expected_overlap(p), 1.641e-3, 1e-6);
-  Parameters bottom, top;
+  Parameters bottom, lifting, top;
+  lifting.pressure_at = PressureAt::moving_wall;
   top.moving_wall = MovingWall::top;
   Parameters weightless;
   weightless.gravity_m_per_s2 = 0;
-  EXPECT_LT(expected_overlap(bottom), expected_overlap(weightless));
-  EXPECT_NEAR(expected_overlap(bottom) + expected_overlap(top), 2 * expected_overlap(weightless),
+  EXPECT_LT(expected_overlap(lifting), expected_overlap(weightless));
+  EXPECT_EQ(expected_overlap(bottom), expected_overlap(top));
+  EXPECT_NEAR(expected_overlap(lifting) + expected_overlap(top), 2 * expected_overlap(weightless),
               1e-12);
 }
 

@@ -20,7 +20,10 @@ namespace shearcell::test {
 
 namespace fs = std::filesystem;
 
-ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::string& name) {
+static constexpr int kLimitSeconds = 120;
+
+ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::string& name,
+                                        const char* executable) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   const std::string out = outputs_.path() / ("out" + name), err = outputs_.path() / ("err" + name);
@@ -30,7 +33,7 @@ ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::s
   posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), flags, 0600);
   posix_spawn_file_actions_addchdir_np(&actions, folder_.path().c_str());
 
-  std::vector<std::string> words = {SHEARCELL_PROGRAM};
+  std::vector<std::string> words = {executable};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -45,7 +48,7 @@ ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::s
   environment.push_back(nullptr);
   pid_t child = 0;
   const int error =
-      posix_spawn(&child, SHEARCELL_PROGRAM, &actions, nullptr, argv.data(), environment.data());
+      posix_spawn(&child, executable, &actions, nullptr, argv.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw std::runtime_error(std::string("posix_spawn: ") + std::strerror(error));
   return {child, out, err};
@@ -58,7 +61,12 @@ ProgramTest::Running ProgramTest::start_beside(const Arguments& arguments,
 
 Outcome ProgramTest::wait_for(const Running& program) {
   int status = 0;
-  waitpid(program.pid, &status, 0);
+  // One that waits for ever ends the test, not the suite.
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(kLimitSeconds);
+  while (waitpid(program.pid, &status, WNOHANG) == 0) {
+    if (std::chrono::steady_clock::now() > limit) kill(program.pid, SIGKILL);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   Outcome outcome;
   if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
@@ -69,6 +77,10 @@ Outcome ProgramTest::wait_for(const Running& program) {
 
 Outcome ProgramTest::run(const Arguments& arguments) {
   return wait_for(start(arguments));
+}
+
+Outcome ProgramTest::shell(const std::string& script) {
+  return wait_for(start({"-c", script, SHEARCELL_PROGRAM}, "", "/bin/sh"));
 }
 
 Outcome ProgramTest::run_until(const Arguments& arguments, std::size_t files, int signal) {

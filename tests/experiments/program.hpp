@@ -30,6 +30,9 @@ class ProgramTest : public testing::Test {
   /// Runs it to its end.
   Outcome run(const Arguments& arguments);
 
+  /// Runs a script of sh, whose "$0" is the program.
+  Outcome shell(const std::string& script);
+
   /// Sends `signal` as soon as the store has at least `files` checkpoint files.
   Outcome run_until(const Arguments& arguments, std::size_t files, int signal);
 
@@ -73,7 +76,8 @@ class ProgramTest : public testing::Test {
   std::string newest_file(const std::string& run, const std::string& store = "shearcell-store");
 
  private:
-  Running start(const Arguments& arguments, const std::string& name = "");
+  Running start(const Arguments& arguments, const std::string& name = "",
+                const char* executable = SHEARCELL_PROGRAM);
 
   TemporaryFolder folder_;
   std::string named_store_;

@@ -163,14 +163,14 @@ TEST_F(ReplayTest, FiguresNameWhatWasPruned) {
   store_.prune({records[1], records[2]});
   FigureOptions options;
   options.folder = folder_.path() / "figures";
-  const FigureSummary figure = draw_figure(store_, *find_figure("S2"), options);
+  const FigureSummary figure = draw_figure(store_, {*find_figure("S2"), "tiny"}, options);
   EXPECT_TRUE(figure.damage.empty());
   ASSERT_EQ(figure.pruned.size(), 2U);
   for (const std::string& line : figure.pruned) {
     EXPECT_NE(line.find("shearcell regenerate"), std::string::npos) << line;
   }
   for (const std::size_t at : {1U, 2U}) regenerate_checkpoint(store_, records[at]);
-  EXPECT_TRUE(draw_figure(store_, *find_figure("S2"), options).pruned.empty());
+  EXPECT_TRUE(draw_figure(store_, {*find_figure("S2"), "tiny"}, options).pruned.empty());
 }
 
 }  // namespace

@@ -51,6 +51,28 @@ nlohmann::json rows(const Eigen::Matrix3Xd& columns) {
   return all;
 }
 
+/// As a store would name it.
+SelectedRun about() {
+  SelectedRun run;
+  run.run.id = std::string(64, 'a');
+  run.run.resolved = {
+      {"parameters",
+       {{"stiffness_N_per_m", 654.0}, {"fluid", "still"}, {"steps_per_cycle", 45600}}}};
+  run.membership.experiment = "drag";
+  run.membership.scale = "smoke";
+  run.membership.variant = "fluid=still,amplitude_rad=0.0833";
+  run.membership.seed = 7;
+  return run;
+}
+
+CheckpointRecord record_of(const Checkpoint& checkpoint) {
+  CheckpointRecord record;
+  record.sha256 = std::string(64, 'b');
+  record.cycle = checkpoint.cycle;
+  record.observables = {{"cell_height_d", 11.5}};
+  return record;
+}
+
 /// From the checkpoint and its analysis, not through Frame.
 nlohmann::json truth(const Checkpoint& c) {
   const double d = c.units.diameter_m;
@@ -81,9 +103,25 @@ nlohmann::json truth(const Checkpoint& c) {
   for (std::size_t i = 0; i < type.size(); ++i) id.push_back(static_cast<int>(i) + 1);
   for (auto* numbers : {&phi_local, &q6, &overlap}) numbers->resize(type.size(), 0.0);
   for (auto* numbers : {&structure, &crystallite}) numbers->resize(type.size(), -1);
+  nlohmann::json scalars = {{"cell_height_d", 11.5}};
+  for (const ScalarMeasure& scalar : all_scalar_measures()) {
+    std::visit([&](auto member) { scalars[scalar.name] = measured.measures.*member; },
+               scalar.member);
+  }
   const double height = (pose.top - pose.bottom) * d;
   const double shift = height * pose.tan_theta;
   return {
+      {"facts",
+       {{"run", std::string(64, 'a')},
+        {"experiment", "drag"},
+        {"scale", "smoke"},
+        {"variant", "fluid=still,amplitude_rad=0.0833"},
+        {"seed", 7},
+        {"stiffness_N_per_m", 654.0},
+        {"fluid", "still"},
+        {"steps_per_cycle", 45600}}},
+      {"checkpoint", std::string(64, 'b')},
+      {"scalars", scalars},
       {"step", c.state.step},
       {"time", c.time_s},
       {"cycle", c.cycle},
@@ -110,13 +148,17 @@ TEST(Export, OtherProgramsReadEveryNumber) {
   fs::create_directories(at / "lammps");
   {
     const std::vector<Checkpoint> all = checkpoints();
-    const FrameWriter writers[] = {h5md_writer(at / "run.h5", all.size()),
-                                   extxyz_writer(at / "run.xyz"), vtk_writer(at / "vtk"),
+    const FrameWriter writers[] = {h5md_writer(at / "run.h5md", all.size()),
+                                   extxyz_in_diameters(at / "run.xyz"),
+                                   extxyz_in_metres(at / "metres.xyz"),
+                                   vtk_writer(at / "vtk"),
+                                   facts_writer(at / "vtk"),
                                    lammps_writer(at / "lammps")};
     nlohmann::json frames = nlohmann::json::array();
     for (const Checkpoint& checkpoint : all) {
       frames.push_back(truth(checkpoint));
-      for (const FrameWriter& write : writers) write(frame_of(checkpoint));
+      for (const FrameWriter& write : writers)
+        write(frame_of(checkpoint, record_of(checkpoint), about()));
     }
     std::ofstream(at / "truth.json") << frames;
   }
@@ -146,7 +188,7 @@ TEST(Export, WritesTheSameBytesTwice) {
 
 TEST(Export, SaysWhatItCannotWrite) {
   const Frame frame = frame_of(checkpoints().front());
-  EXPECT_THROW(extxyz_writer("/nowhere/run.xyz"), std::runtime_error);
+  EXPECT_THROW(extxyz_in_metres("/nowhere/run.xyz"), std::runtime_error);
   EXPECT_THROW(h5md_writer("/nowhere/run.h5", 1), std::runtime_error);
   EXPECT_THROW(vtk_writer("/nowhere")(frame), std::runtime_error);
   EXPECT_THROW(lammps_writer("/nowhere")(frame), std::runtime_error);

@@ -4,8 +4,8 @@
 
     python3 read_back.py FOLDER
 
-FOLDER holds run.h5, run.xyz, vtk/, lammps/ and truth.json, a list of frames. Readers: h5py and
-MDAnalysis for H5MD, ASE for extended XYZ, VTK for VTK, MDAnalysis for LAMMPS data.
+FOLDER holds run.h5md, run.xyz (in diameters), metres.xyz, vtk/, lammps/ and truth.json, a list of frames.
+Readers: h5py and MDAnalysis for H5MD, ASE and MDAnalysis for extended XYZ, VTK, MDAnalysis for LAMMPS data.
 """
 import json
 import pathlib
@@ -44,8 +44,18 @@ def equal(what, got, expected, tolerance=0.0):
     compared += got.size
 
 
+def same(what, got, expected):
+    """A text, or a number to the last digit."""
+    global compared
+    assert got == expected, f"{what}: {got!r}, not {expected!r}"
+    compared += 1
+
+
 def check_h5md():
-    with h5py.File(folder / "run.h5") as file:
+    with h5py.File(folder / "run.h5md") as file:
+        for key, value in frames[0]["facts"].items():
+            got = file["parameters"].attrs[key]
+            same("h5 " + key, got.decode() if isinstance(got, bytes) else got, value)
         group = file["particles/all"]
         assert list(file["h5md"].attrs["version"]) == [1, 1]
         assert [b.decode() for b in group["box"].attrs["boundary"]] == ["none", "none", "periodic"]
@@ -61,7 +71,10 @@ def check_h5md():
             equal("h5 radius", group["radius"], f["radius"] * 1e9, 1e-15)
             for name in REAL + INTEGER:
                 equal("h5 " + name, group[name + "/value"][k], f[name])
-    reader = H5MDReader(str(folder / "run.h5"))
+            for name, value in f["scalars"].items():
+                equal("h5 " + name, file[f"observables/{name}/value"][k], value)
+    reader = MDAnalysis.Universe(str(folder / "run.h5md")).trajectory  # as in RECIPES.md
+    assert isinstance(reader, H5MDReader)
     assert reader.n_frames == len(frames)
     for f, step in zip(frames, reader):  # angstrom, picoseconds and float32 by MDAnalysis's choice
         equal("MDAnalysis position", step.positions, f["position"] * 1e10, 1e-6)
@@ -70,20 +83,39 @@ def check_h5md():
         equal("MDAnalysis box", step.dimensions[:3], lengths, 1e-6)
 
 
-def check_extxyz():
-    read = ase.io.read(folder / "run.xyz", ":")
+def check_extxyz(name, unit):
+    read = ase.io.read(folder / name, ":")
     assert len(read) == len(frames)
     for f, atoms in zip(frames, read):
-        equal("xyz cell", atoms.cell.array, f["edges"])
-        equal("xyz origin", atoms.info["Origin"], f["origin"])
+        d = 2 * f["radius"][0]
+        scale = d if unit == "d" else 1.0
+        same("xyz d_m", atoms.info["d_m"], d)
+        same("xyz unit", atoms.info["length_unit"], unit)
+        equal("xyz cell", atoms.cell.array * scale, f["edges"], 1e-15)
+        equal("xyz origin", atoms.info["Origin"] * scale, f["origin"], 1e-15)
         assert list(atoms.pbc) == [False, False, True]
-        equal("xyz position", atoms.positions, f["position"])
-        equal("xyz velocity", atoms.arrays["velo"], f["velocity"])
+        equal("xyz position", atoms.positions * scale, f["position"], 1e-15)
+        equal("xyz velocity", atoms.arrays["velo"] * scale, f["velocity"], 1e-15)
+        equal("xyz radius", atoms.arrays["radius"] * scale, f["radius"], 1e-15)
+        for key, value in {**f["facts"], **f["scalars"], "checkpoint": f["checkpoint"]}.items():
+            same("xyz " + key, atoms.info[key], value)
         equal("xyz time", atoms.info["Time"], f["time"])
         equal("xyz theta", atoms.info["theta"], f["theta"])
         equal("xyz symbols", atoms.numbers, np.where(f["type"] == 0, 1, 2))
-        for name in REAL + INTEGER + ["type", "id", "radius"]:
-            equal("xyz " + name, atoms.arrays[name], f[name])
+        for column in REAL + INTEGER + ["type", "id"]:
+            equal("xyz " + column, atoms.arrays[column], f[column])
+    universe = MDAnalysis.Universe(str(folder / name))
+    assert len(universe.trajectory) == len(frames)
+    equal("MDAnalysis xyz", universe.atoms.positions * scale, frames[0]["position"], 1e-6)
+
+
+def check_facts():
+    facts = json.loads((folder / "vtk/run.json").read_text())
+    for key, value in frames[0]["facts"].items():
+        same("run.json " + key, facts[key] if key in facts else facts["parameters"][key], value)
+    for f, got in zip(frames, facts["frames"], strict=True):
+        for key, value in {**f["scalars"], "checkpoint": f["checkpoint"], "cycle": f["cycle"]}.items():
+            same("run.json " + key, got[key], value)
 
 
 def read_vtp(path):
@@ -101,6 +133,8 @@ def check_vtk():
         assert data.GetNumberOfVerts() == len(f["id"])
         for name in REAL + INTEGER + ["type", "id", "radius", "velocity"]:
             equal("vtk " + name, vtk_to_numpy(data.GetPointData().GetArray(name)), f[name])
+        for name, value in {**f["scalars"], "cycle": f["cycle"]}.items():
+            same("vtk " + name, data.GetFieldData().GetArray(name).GetValue(0), value)
         cell = read_vtp(folder / f"vtk/cell_{f['cycle']:g}.vtp")
         corners = vtk_to_numpy(cell.GetPoints().GetData())
         assert cell.GetNumberOfPolys() == 6
@@ -140,7 +174,9 @@ def check_lammps():
 
 
 check_h5md()
-check_extxyz()
+check_extxyz("run.xyz", "d")
+check_extxyz("metres.xyz", "m")
+check_facts()
 check_vtk()
 check_lammps()
 print(f"{compared} numbers in {len(frames)} frames agree")

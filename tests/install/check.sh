@@ -10,7 +10,7 @@ trap 'rm -rf "$folder"' EXIT
 cmake --install "$build" --prefix "$folder/prefix" > "$folder/log" || { cat "$folder/log"; exit 1; }
 for file in bin/shearcell share/man/man1/shearcell.1 share/shearcell/experiments/drag.yaml \
             share/shearcell/shearcell.cdx.json share/bash-completion/completions/shearcell \
-            include/shearcell/core/simulation.hpp; do
+            lib/python3/dist-packages/shearcell/store.py include/shearcell/core/simulation.hpp; do
   [ -s "$folder/prefix/$file" ] || { echo "not installed: $file"; exit 1; }
 done
 "$folder/prefix/bin/shearcell" plan "$folder/prefix/share/shearcell/experiments/drag.yaml" \
@@ -31,4 +31,5 @@ fi
 dpkg -x "$folder"/package/*.deb "$folder/unpacked"
 dpkg -I "$folder"/package/*.deb | grep -E "Package|Version|Depends|Recommends"
 "$folder/unpacked/usr/bin/shearcell" --version | head -1
+PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$folder/unpacked/usr/lib/python3/dist-packages" /usr/bin/python3 -c "import shearcell"
 [ ! -e "$folder/unpacked/usr/include" ]

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "provenance/errors.hpp"
+#include "provenance/io/clock.hpp"
 #include "provenance/schema.hpp"
 #include "tests/provenance/samples.hpp"
 
@@ -200,6 +201,13 @@ TEST_F(EventLogTest, SyncsAsTheDesignAsks) {
   sqlite::Statement mode(database, "PRAGMA journal_mode");
   ASSERT_TRUE(mode.step());
   EXPECT_EQ(mode.text(0), "delete");
+}
+
+TEST(Clock, TellsTimesBefore1970) {
+  EXPECT_EQ(utc_text(0), "1970-01-01T00:00:00.000Z");
+  EXPECT_EQ(utc_text(-1), "1969-12-31T23:59:59.999Z");
+  EXPECT_EQ(utc_text(-86'400'850), "1969-12-30T23:59:59.150Z");
+  EXPECT_EQ(utc_text(1'795'341'345'123), "2026-11-22T09:55:45.123Z");
 }
 
 }  // namespace

@@ -113,6 +113,8 @@ TEST_F(LeaseTest, OfAnotherMachineIsWaitedFor) {
   EXPECT_FALSE(lapsed(lease, now + 59'999));
   EXPECT_TRUE(lapsed(lease, now + 60'000));
   EXPECT_TRUE(lapsed(lease, now - 3'600'000)) << "the clock was set back by an hour";
+  lease.expires_at_ms = now + 1'000'000'000'000;
+  EXPECT_TRUE(lapsed(lease, now + 60'000)) << "an end that no program writes";
   lease.holder.started += 1;  // another process got the id of one that is dead
   EXPECT_TRUE(lapsed(lease, now));
   lease.holder.place = "another boot or container";

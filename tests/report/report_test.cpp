@@ -79,8 +79,8 @@ TEST_F(ReportOfRuns, GivesTheFrontEndPlotsAndPackings) {
   if (!has_front_end()) GTEST_SKIP() << "built without Node: there is no front end";
   const nlohmann::json data = data_of(make().html);
   ASSERT_TRUE(data.is_object());
-  EXPECT_TRUE(data.at("charts").contains("S2b"));
-  const auto& series = data.at("charts").at("S2a").at("series");
+  EXPECT_TRUE(data.at("charts").contains("tiny-S2b"));
+  const auto& series = data.at("charts").at("tiny-S2a").at("series");
   ASSERT_EQ(series.size(), 2U);
   EXPECT_EQ(series[0].at("points").size(), 3U) << "cycles 0, 1 and 2";
   ASSERT_EQ(data.at("packings").size(), 2U);
@@ -124,9 +124,10 @@ TEST_F(ReportOf, NeedsAnExperiment) {
 // Such a store is never written by this program, and may be handed to it.
 TEST_F(ReportOf, ShowsMarkupAsText) {
   const std::string evil = "</script><script>alert(1)</script><img src=x onerror='a()'>\"&<!--";
-  store_.register_manifest("# " + evil + "\n", evil + ".yaml",
-                           {{"experiment", evil}, {"question", evil}, {"figures", {evil, "S2"}}});
   RunDeclaration run;
+  run.membership.manifest = store_.register_manifest(
+      "# " + evil + "\n", evil + ".yaml",
+      {{"experiment", evil}, {"question", evil}, {"figures", {evil, "S2"}}});
   run.id = std::string(64, 'a');
   run.kind = evil;
   run.resolved = {{evil, evil}};
@@ -136,7 +137,6 @@ TEST_F(ReportOf, ShowsMarkupAsText) {
   run.membership.scale = evil;
   run.membership.variant = evil;
   run.membership.labels = {{evil, evil}};
-  run.membership.manifest = evil;
   store_.declare_run(run);
   store_.start_run(run.id, {{"host", evil}, {"build", {{"version", evil}, {"flags", evil}}}});
   store_.fail_run(run.id, evil);

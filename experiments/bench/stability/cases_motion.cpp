@@ -127,7 +127,7 @@ Outcome few_grains(int count) {
   row.cell.top = 1.6;  // falls and is caught
   const State early = advanced(row, 400, drive);
   bool same = true;
-  for (const Simd simd : {Simd::scalar, Simd::avx2, Simd::avx512}) {
+  for (const Simd simd : kEverySimd) {
     EngineSettings settings;
     settings.kernels = find_kernels(simd);
     settings.threads = 4;

@@ -15,7 +15,9 @@
 namespace shearcell::stability {
 
 Scene table_1() {
-  return shear_scene(Parameters{});
+  Parameters parameters;
+  parameters.pressure_at = PressureAt::moving_wall;  // the closed forms have P A_w as the load
+  return shear_scene(parameters);
 }
 
 Scene only_springs() {
@@ -49,6 +51,7 @@ const Packing& settled() {
   static const Packing packing = [] {
     Parameters parameters;
     parameters.grains = 60;
+    parameters.pressure_at = PressureAt::moving_wall;
     Packing made = bench::settled_packing(parameters, 1);
     made.state = advanced(made, 20000);  // closer to rest than settling requires
     made.state.step = 0;

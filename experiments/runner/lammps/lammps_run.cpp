@@ -13,12 +13,15 @@
 #include <thread>
 #include <vector>
 
+#include "experiments/runner/stop.hpp"
+
 namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kLook{20};
+constexpr double kHelpSeconds = 10;
 
 std::string read_text(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -79,6 +82,16 @@ std::unique_ptr<ChildProcess> start(const LammpsProgram& program, const fs::path
       Command{words, folder, variables(), said.get(), said.get()});
 }
 
+std::string help_of(const fs::path& program, const fs::path& folder) {
+  try {
+    const auto outcome = run_program({program.string(), "-h"}, folder, {}, kHelpSeconds);
+    return outcome ? outcome->output + outcome->messages : "";
+  } catch (const EngineError&) {
+    give_up_if_requested();
+    throw;
+  }
+}
+
 }  // namespace
 
 LammpsProgram find_lammps() {
@@ -92,8 +105,7 @@ LammpsProgram find_lammps() {
   }
   remove_abandoned_folders();
   const ScratchFolder folder;
-  const auto outcome = run_program({path->string(), "-h"}, folder.path());
-  const std::string text = outcome ? outcome->output + outcome->messages : "";
+  const std::string text = help_of(*path, folder.path());
   // "... Massively Parallel Simulator - 29 Sep 2021 - Update 2"
   const std::string_view title = "Massively Parallel Simulator - ";
   const auto at = text.find(title);

@@ -20,7 +20,8 @@ struct LammpsProgram {
 };
 
 /// The program `lmp` on PATH, or the one that $SHEARCELL_LAMMPS names. Throws EngineError when
-/// there is none, or it lacks the package GRANULAR. Removes what killed runs left behind.
+/// there is none, it lacks the package GRANULAR or does not answer, and Interrupted when it does
+/// not answer and a stop is requested. Removes what killed runs left behind.
 LammpsProgram find_lammps();
 
 /// Steps between two looks of LAMMPS at whether it is to stop, and of us at how far it is: about

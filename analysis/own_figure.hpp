@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plots and claims that a manifest states.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace shearcell {
+
+struct Figure;
+
+struct PlotSpec {
+  std::string name;
+  std::string y;            ///< a scalar measure (analysis/measures.hpp)
+  std::string x = "cycle";  ///< "cycle", a scalar measure, or a parameter
+  std::string by = {};      ///< a curve for each value of it; "": for each variant
+  bool traces = false;      ///< every run's curve, not their mean with its error
+  bool log_x = false, log_y = false;
+  std::optional<std::uint64_t> cycle = {};  ///< with a parameter as x; default: the last one
+  std::string x_symbol = {}, x_unit = {};   ///< of that parameter; "" for none
+
+  bool operator==(const PlotSpec&) const = default;
+};
+
+struct ClaimSpec {
+  std::string name;
+  std::string compare;                    ///< a scalar measure
+  std::uint64_t first = 0, last = 0;      ///< its mean over these cycles
+  std::array<nlohmann::json, 2> between;  ///< parameters and their values, of one variant each
+  double margin = 0;
+  bool higher = false;  ///< for the first, instead of the same
+
+  bool operator==(const ClaimSpec&) const = default;
+};
+
+/// Whether there is a scalar measure of that name.
+bool is_measure(std::string_view name);
+
+/// One panel NAME: the measure against `x`, as the supplement's figures are drawn. Against phi,
+/// runs are averaged in bins; against another measure, at each cycle.
+Figure plot_figure(const PlotSpec& plot);
+
+/// No panel and one verdict (analysis/claims.hpp). Its function throws UsageError unless each
+/// side of `between` fits exactly one variant.
+Figure claim_figure(const ClaimSpec& claim);
+
+}  // namespace shearcell

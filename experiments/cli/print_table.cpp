@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tables for people.
+#include <fmt/color.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/runner/terminal.hpp"
+
+namespace shearcell::cli {
+namespace {
+
+constexpr std::size_t kGap = 2;
+constexpr std::size_t kNarrowest = 6;  // of a column that is cut
+
+struct Column {
+  std::size_t width = 0;
+  bool right = true;  // numbers only
+};
+
+bool is_number(const std::string& cell) {
+  return cell.empty() || cell.find_first_not_of("0123456789.-+e:%/") == std::string::npos;
+}
+
+std::vector<Column> measure(const std::vector<std::string>& header,
+                            const std::vector<std::vector<std::string>>& rows) {
+  std::vector<Column> columns(header.size());
+  for (std::size_t c = 0; c < header.size(); ++c) {
+    columns[c].width = header[c].size();
+    for (const auto& row : rows) {
+      columns[c].width = std::max(columns[c].width, row[c].size());
+      columns[c].right = columns[c].right && is_number(row[c]);
+    }
+  }
+  return columns;
+}
+
+/// Takes from the widest column of words until the table fits.
+void narrow(std::vector<Column>& columns, std::size_t limit) {
+  std::size_t total = kGap * (columns.size() - 1);
+  for (const Column& column : columns) total += column.width;
+  for (; total > limit; --total) {
+    Column* widest = nullptr;
+    for (Column& column : columns) {
+      if (!column.right && column.width > (widest == nullptr ? kNarrowest : widest->width)) {
+        widest = &column;
+      }
+    }
+    if (widest == nullptr) return;
+    --widest->width;
+  }
+}
+
+std::string fitted(const std::string& cell, const Column& column) {
+  if (cell.size() > column.width) return cell.substr(0, column.width - 1) + "~";
+  return column.right ? fmt::format("{:>{}}", cell, column.width)
+                      : fmt::format("{:<{}}", cell, column.width);
+}
+
+/// States and outcomes that one looks for.
+std::string painted(const std::string& word, const std::string& text) {
+  using fmt::terminal_color;
+  static const std::map<std::string, terminal_color> colours = {
+      {"completed", terminal_color::green},    {"done", terminal_color::green},
+      {"pass", terminal_color::green},         {"ok", terminal_color::green},
+      {"running", terminal_color::cyan},       {"failed", terminal_color::red},
+      {"fail", terminal_color::red},           {"missing", terminal_color::red},
+      {"interrupted", terminal_color::yellow}, {"to extend", terminal_color::yellow}};
+  const auto found = colours.find(word);
+  return found == colours.end() ? text : fmt::format(fmt::fg(found->second), "{}", text);
+}
+
+}  // namespace
+
+void print_table(const std::vector<std::string>& header,
+                 const std::vector<std::vector<std::string>>& given) {
+  std::vector<std::vector<std::string>> rows = given;
+  for (auto& row : rows) {
+    for (std::string& cell : row) cell = for_terminal(cell);
+  }
+  std::vector<Column> columns = measure(header, rows);
+  if (const auto limit = terminal_columns(stdout)) narrow(columns, *limit);
+  const bool colours = shows_colours(stdout);
+  const auto print_row = [&](const std::vector<std::string>& row, bool is_header) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c > 0) line.append(kGap, ' ');
+      std::string text = fitted(row[c], columns[c]);
+      if (c + 1 == row.size()) text.erase(text.find_last_not_of(' ') + 1);
+      if (colours)
+        text = is_header ? fmt::format(fmt::emphasis::bold, "{}", text) : painted(row[c], text);
+      line += text;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    fmt::print("{}\n", line);
+  };
+  print_row(header, true);
+  for (const auto& row : rows) print_row(row, false);
+}
+
+}  // namespace shearcell::cli

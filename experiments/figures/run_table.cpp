@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/figures/run_table.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "analysis/onset.hpp"
+#include "experiments/manifest/identity.hpp"
+#include "experiments/manifest/schema.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+/// What the cells of a row come from.
+struct Row {
+  const SelectedRun* selected = nullptr;
+  const CheckpointRecord* checkpoint = nullptr;  // none of a run that was not begun
+  std::optional<Measures> measures = {};
+  const FigureRun* history = nullptr;  // for the onset; none of a run that is not a shear
+};
+
+struct Column : TableColumn {
+  std::function<json(const Row&)> cell;
+};
+
+json number(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+
+template <class Value>
+Column of_run(const char* name, const char* meaning, Value value) {
+  return {{name, meaning}, [value](const Row& row) -> json { return value(*row.selected); }};
+}
+
+template <class Value>
+Column of_checkpoint(const char* name, const char* meaning, Value value) {
+  return {{name, meaning}, [value](const Row& row) -> json {
+            return row.checkpoint == nullptr ? json() : json(value(*row.checkpoint));
+          }};
+}
+
+// `recorded` is the name in the checkpoint where it differs from the column's.
+Column observable(const char* name, const char* meaning, const char* recorded = nullptr) {
+  return {{name, meaning},
+          [key = std::string(recorded == nullptr ? name : recorded)](const Row& row) -> json {
+            if (row.checkpoint == nullptr) return nullptr;
+            const auto found = row.checkpoint->observables.find(key);
+            return found == row.checkpoint->observables.end() ? json() : number(found->second);
+          }};
+}
+
+std::vector<Column> names() {
+  return {
+      of_run("experiment", "name of the manifest's experiment",
+             [](const SelectedRun& s) { return s.membership.experiment; }),
+      of_run("scale", "scale of the manifest",
+             [](const SelectedRun& s) { return s.membership.scale; }),
+      of_run("variant", "swept parameters and their values",
+             [](const SelectedRun& s) { return s.membership.variant; }),
+      of_run("run", "id", [](const SelectedRun& s) { return s.run.id; }),
+      of_run("seed", "of the random numbers",
+             [](const SelectedRun& s) { return s.membership.seed; }),
+  };
+}
+
+std::vector<Column> measures() {
+  std::vector<Column> columns = {
+      of_checkpoint("cycle", "cycles since the shear began; of a stiffening its steps",
+                    [](const CheckpointRecord& c) { return c.cycle; }),
+      of_checkpoint("checkpoint", "SHA-256 of the checkpoint's file",
+                    [](const CheckpointRecord& c) { return c.sha256; }),
+  };
+  for (const ScalarMeasure& scalar : all_scalar_measures()) {
+    columns.push_back({{std::string(scalar.name), std::string(scalar.meaning)},
+                       [&scalar](const Row& row) -> json {
+                         if (!row.measures) return nullptr;
+                         return std::visit(
+                             [&](auto member) -> json {
+                               return std::isfinite(static_cast<double>((*row.measures).*member))
+                                          ? json((*row.measures).*member)
+                                          : json();
+                             },
+                             scalar.member);
+                       }});
+  }
+  columns.push_back(of_checkpoint("time_s", "simulated time since the stage began",
+                                  [](const CheckpointRecord& c) { return number(c.time_s); }));
+  for (const Column& column :
+       {observable("cell_height_d", "distance of the bottom and top wall"),
+        observable("largest_overlap_d", "largest overlap of two grains"),
+        observable("kinetic_energy_per_grain_m_d2_per_s2", "mean over grains; m is their mass"),
+        observable("wall_force_imbalance", "net force on the moving wall over its load"),
+        observable("raised_stiffness_N_per_m", "spring constant of a stiffening",
+                   "stiffness_N_per_m"),
+        observable("force_residual_P_d2",
+                   "largest net force on a grain of a stiffening over P d^2")}) {
+    columns.push_back(column);
+  }
+  return columns;
+}
+
+void add_onset(const std::string& method, const std::string& meaning, OnsetMethod find,
+               std::vector<Column>& columns) {
+  const auto onset = [find](const Row& row, auto value) -> json {
+    if (row.history == nullptr || row.history->checkpoints.empty()) return nullptr;
+    return value(find(*row.history, critical_size_for(*row.history)));
+  };
+  const auto observed = [](auto member) {
+    return [member](const RunOnset& found) {
+      return found.observed == Observed::yes ? json(found.*member) : json();
+    };
+  };
+  columns.push_back(
+      {{"onset_" + method, "observed, never or before_start: " + meaning}, [onset](const Row& row) {
+         return onset(row, [](const RunOnset& found) -> json {
+           constexpr const char* names[] = {"observed", "never", "before_start"};
+           return names[static_cast<int>(found.observed)];
+         });
+       }});
+  columns.push_back({{"onset_" + method + "_cycle", "cycle of that onset"},
+                     [=](const Row& row) { return onset(row, observed(&RunOnset::cycle)); }});
+  columns.push_back({{"onset_" + method + "_phi", "packing fraction there"},
+                     [=](const Row& row) { return onset(row, observed(&RunOnset::phi)); }});
+}
+
+std::vector<Column> ends() {
+  std::vector<Column> columns;
+  columns.push_back(
+      {{"critical_size",
+        "grains of a critical crystallite in the supplement, by the nearest amplitude"},
+       [](const Row& row) -> json {
+         return row.history == nullptr ? json() : number(critical_size_for(*row.history));
+       }});
+  add_onset("size", "the largest crystallite has the critical size (method 1)", onset_by_size,
+            columns);
+  add_onset("slope", "its logarithm rises most steeply with phi (method 2)", onset_by_slope,
+            columns);
+  for (const Column& column :
+       {of_run("state", "declared, running, interrupted, failed or completed",
+               [](const SelectedRun& s) { return name_of(s.run.state); }),
+        of_run("state_hash", "of the newest state; equal states have equal hashes",
+               [](const SelectedRun& s) { return s.run.state_hash; }),
+        of_run("target_cycles", "length that the experiment asks for",
+               [](const SelectedRun& s) { return s.membership.target_cycles; }),
+        of_run("wall_time_s", "time that the run took to compute, over all attempts",
+               [](const SelectedRun& s) { return number(s.run.wall_seconds); }),
+        of_run("particle_steps_per_s", "mean speed of the computation", [](const SelectedRun& s) {
+          return number(s.run.particle_steps / s.run.wall_seconds);
+        })}) {
+    columns.push_back(column);
+  }
+  return columns;
+}
+
+/// A swept parameter: as the variant states it, or as a run of another experiment resolved it;
+/// null where the run does not feel it.
+json swept_value(const Field& field, const SelectedRun& selected) {
+  const auto label = selected.membership.labels.find(field.name);
+  if (label != selected.membership.labels.end()) return *label;
+  const StageRecord record = read_stage(selected.run.resolved);
+  const bool felt = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
+  return felt ? get_value(field, record.parameters) : json();
+}
+
+std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per) {
+  std::set<std::string> swept;
+  for (const SelectedRun& run : runs) {
+    for (const auto& [key, value] : run.membership.labels.items()) swept.insert(key);
+  }
+  std::vector<Column> columns = names();
+  for (const Field& field : schema()) {
+    if (!swept.contains(std::string(field.name))) continue;
+    columns.push_back({{std::string(field.name), std::string(field.doc)},
+                       [&field](const Row& row) { return swept_value(field, *row.selected); }});
+  }
+  for (Column& column : measures()) columns.push_back(std::move(column));
+  if (per == RowPer::run) {
+    for (Column& column : ends()) columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+std::vector<CheckpointRecord> checkpoints_of(const Store& store, const SelectedRun& selected) {
+  std::vector<CheckpointRecord> found = store.checkpoints(selected.run.id, true);
+  const auto end = static_cast<double>(selected.membership.target_cycles);
+  std::erase_if(found, [&](const CheckpointRecord& c) {
+    return c.state == CheckpointState::rejected || c.cycle > end;
+  });
+  return found;
+}
+
+FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
+  FigureRun history;
+  history.labels = selected.membership.labels;
+  history.parameters = selected.run.resolved.value("parameters", json::object());
+  for (const Row& row : rows) {
+    if (!row.measures || row.checkpoint->cycle != std::floor(row.checkpoint->cycle)) continue;
+    history.checkpoints.emplace_back().cycle = row.checkpoint->cycle;
+    history.checkpoints.back().measures = *row.measures;
+  }
+  return history;
+}
+
+std::string csv_cell(const json& value) {
+  if (value.is_null()) return "";
+  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
+  if (!value.is_string()) return value.dump();
+  const std::string& text = value.get_ref<const std::string&>();
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted;
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return '"' + quoted + '"';
+}
+
+}  // namespace
+
+RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
+                   const MeasureOptions& options) {
+  std::vector<SelectedRun> runs = select_runs(store, selection);
+  std::erase_if(runs, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
+  std::vector<CheckpointRecord> records;
+  std::vector<std::size_t> ends;
+  for (const SelectedRun& run : runs) {
+    for (CheckpointRecord& record : checkpoints_of(store, run))
+      records.push_back(std::move(record));
+    ends.push_back(records.size());
+  }
+  MeasuredCheckpoints measured =
+      measure_checkpoints(store, records, {&scalar_measures(), 1}, options);
+
+  const std::vector<Column> columns = columns_for(runs, per);
+  RunTable table;
+  for (const Column& column : columns) table.columns.push_back(column);
+  const auto add = [&](const Row& row) {
+    std::vector<json>& cells = table.rows.emplace_back();
+    for (const Column& column : columns) cells.push_back(column.cell(row));
+  };
+  std::size_t next = 0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    std::vector<Row> rows;
+    for (; next < ends[r]; ++next) {
+      Row& row = rows.emplace_back(Row{&runs[r], &records[next]});
+      if (measured.results[next]) row.measures = read_measures(measured.results[next]->front());
+    }
+    if (per == RowPer::checkpoint) {
+      for (const Row& row : rows) add(row);
+      continue;
+    }
+    const FigureRun history = history_of(runs[r], rows);
+    Row last = rows.empty() ? Row{&runs[r]} : rows.back();
+    if (runs[r].run.kind == name_of(Stage::shear)) last.history = &history;
+    add(last);
+  }
+  table.damage = std::move(measured.damage);
+  table.pruned = std::move(measured.pruned);
+  table.trouble = std::move(measured.trouble);
+  return table;
+}
+
+std::vector<TableColumn> table_columns(RowPer per) {
+  const std::vector<Column> columns = columns_for({}, per);
+  return {columns.begin(), columns.end()};
+}
+
+std::vector<std::pair<TableColumn, json>> facts_of(const CheckpointRecord& record,
+                                                   const std::optional<Measures>& found) {
+  std::vector<std::pair<TableColumn, json>> facts;
+  for (const Column& column : measures()) {
+    facts.emplace_back(column, column.cell({nullptr, &record, found}));
+  }
+  return facts;
+}
+
+std::string to_csv(const RunTable& table) {
+  std::string text;
+  for (const TableColumn& column : table.columns) text += (text.empty() ? "" : ",") + column.name;
+  for (const std::vector<json>& row : table.rows) {
+    text += '\n';
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c > 0) text += ',';
+      text += csv_cell(row[c]);
+    }
+  }
+  return text + '\n';
+}
+
+std::string to_json(const RunTable& table) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const std::vector<json>& row : table.rows) {
+    nlohmann::ordered_json& object = rows.emplace_back(nlohmann::ordered_json::object());
+    for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].name] = row[c];
+  }
+  return rows.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
+}
+
+bool is_table(std::string_view beginning) {
+  return beginning.starts_with("experiment,scale,variant,run,seed,") || beginning == "[]\n" ||
+         beginning.starts_with("[\n {\n  \"experiment\": ");
+}
+
+}  // namespace shearcell

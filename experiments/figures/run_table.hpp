@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a store says of its runs as one table: a row for each checkpoint or each run, a column for
+// each swept parameter and each scalar measure.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/figures/measure.hpp"
+#include "experiments/figures/select_runs.hpp"
+
+namespace shearcell {
+
+/// A column and what it holds. Names end in their unit, except counts and pure numbers.
+struct TableColumn {
+  std::string name;
+  std::string meaning;
+};
+
+enum class RowPer { checkpoint, run };
+template <>
+inline constexpr auto kNames<RowPer> = names_in_order<RowPer>("checkpoint", "run");
+
+struct RunTable {
+  std::vector<TableColumn> columns;
+  std::vector<std::vector<nlohmann::json>> rows;  ///< null: it does not apply or is not known
+  std::vector<std::string> damage;                ///< checkpoints that could not be read
+  std::vector<std::string> pruned;                ///< checkpoints that were pruned unmeasured
+  std::string trouble;                            ///< why measures cannot be kept; ""
+};
+
+/// Rows in the order of declaration, then by cycle. Settled packings are not among the runs.
+/// Checkpoints count up to the length that the experiment asks for; rejected ones do not. Onsets
+/// come from the checkpoints at whole cycles, as in the figures. Throws NotFound as select_runs().
+RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
+                   const MeasureOptions& options);
+
+/// Every column but those of swept parameters, which are named as in a manifest.
+std::vector<TableColumn> table_columns(RowPer per);
+
+/// Names and values of what is known of one checkpoint, in the order of the columns.
+std::vector<std::pair<TableColumn, nlohmann::json>> facts_of(
+    const CheckpointRecord& record, const std::optional<Measures>& measures);
+
+/// RFC 4180 with a header row; numbers have the shortest digits that read back to the same double.
+std::string to_csv(const RunTable& table);
+/// An array of objects, one for each row, keys in the order of the columns.
+std::string to_json(const RunTable& table);
+
+/// Whether a file begins as one of the two does.
+bool is_table(std::string_view beginning);
+
+}  // namespace shearcell

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which runs of a store are meant: the filters --experiment, --scale, --variant, --seed, --state.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+/// An empty list selects all.
+struct RunSelection {
+  std::vector<std::string> experiments;
+  std::vector<std::string> scales;
+  /// "fluid=cell" also selects the variant "fluid=cell,amplitude_rad=0.1".
+  std::vector<std::string> variants;
+  std::vector<std::uint64_t> seeds;
+  std::vector<std::string> states;  ///< names of RunState
+};
+
+struct SelectedRun {
+  RunRecord run;
+  Membership membership;  ///< a run of two experiments is selected once for each
+};
+
+/// In the order of declaration. Throws NotFound for an experiment, scale, variant or seed that the
+/// store does not have, and names those that it has.
+std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& selection);
+
+/// A run that no experiment declared, as a damaged store may hold it, has an empty membership.
+Membership first_membership(const RunRecord& run);
+
+}  // namespace shearcell

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One checkpoint as arrays."""
+from __future__ import annotations
+
+import functools
+import hashlib
+import io
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import ase
+
+    from .store import Run
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class Checkpoint:
+    """A state of N grains and M wall grains. Lengths are in grain diameters d, times in seconds.
+
+    Arrays of grains are in the order of the grains' ids. x runs across the cell, y upwards (between
+    the bottom and the top wall), z along the periodic depth.
+
+    Attributes:
+        run: the Run that it belongs to.
+        sha256: of its file.
+        cycle: cycles since the shear began.
+        step: time steps since the stage began.
+        time_s: simulated time since the stage began [s].
+        theta: tilt of the side walls [rad].
+        diameter_m: d [m].
+        mass_kg: mass of a grain [kg].
+        position: (N, 3) [d]; z is not folded back into the cell.
+        velocity: (N, 3) [d/s].
+        wall_position: (M, 3) [d], centres of the wall grains.
+        wall_velocity: (M, 3) [d/s]; only the wall that feels the pressure moves by itself.
+        wall_side: (M,) 1 left, 2 right, 3 bottom, 4 top.
+        cell: (3, 3) [d], the edges of the cell as rows; only the third is periodic.
+        origin: (3,) [d], its lower left corner.
+        observables: what the program recorded with the state, by name.
+    """
+
+    def __init__(self, run: "Run", record: dict[str, Any]) -> None:
+        content = (run.store.path / record["file"]).read_bytes()
+        found = hashlib.sha256(content).hexdigest()
+        if found != record["sha256"]:
+            raise ValueError(f"{record['file']} is damaged: its SHA-256 is {found}")
+        self.run = run
+        self.sha256: str = record["sha256"]
+        self.observables: dict[str, float] = record["observables"]
+        with h5py.File(io.BytesIO(content), "r") as file:
+            state = file["restart"]
+            self.cycle = float(state.attrs["cycle"])
+            self.step = int(state.attrs["step"])
+            self.time_s = float(state.attrs["time_s"])
+            self.theta = float(state.attrs["theta"])
+            self.diameter_m = float(state.attrs["diameter_m"])
+            self.mass_kg = float(state.attrs["mass_kg"])
+            self.position: Floats = state["position"][:]
+            self.velocity: Floats = state["velocity"][:]
+            every = file["particles/all"]
+            grains = len(self.position)
+            self.wall_position: Floats = every["position/value"][0, grains:] / self.diameter_m
+            self.wall_side: Integers = every["species"][grains:].astype(np.int64)
+            self.cell, self.origin = _cell(state, self.theta)
+            self.wall_velocity: Floats = np.zeros_like(self.wall_position)
+            moving = self.wall_side == 3 + int(state["cell"].attrs["moving"])
+            self.wall_velocity[moving, 1] = state.attrs["wall_velocity"]
+
+    @property
+    def grains(self) -> int:
+        """N, the number of grains."""
+        return len(self.position)
+
+    @functools.cached_property
+    def _measured(self) -> dict[str, NDArray[Any]]:
+        # By the program, which has the Voronoi cells: the numbers are those of the figures.
+        with tempfile.TemporaryDirectory(prefix="shearcell-python-") as folder:
+            file = Path(folder) / "checkpoint.h5"
+            self.run.store.call("export", self.run.id, "--to", "h5md", "--cycles",
+                                repr(self.cycle), "--out", str(file))
+            with h5py.File(file, "r") as exported:
+                every = exported["particles/all"]
+                names = ("q6", "phi_local", "overlap", "structure", "crystallite")
+                return {name: every[name + "/value"][0, : self.grains] for name in names}
+
+    @property
+    def q6(self) -> Floats:
+        """(N,) bond order of each grain, Eq. S1."""
+        return self._measured["q6"]
+
+    @property
+    def phi_local(self) -> Floats:
+        """(N,) local packing fraction."""
+        return self._measured["phi_local"]
+
+    @property
+    def overlap(self) -> Floats:
+        """(N,) largest overlap of each grain [d]."""
+        return self._measured["overlap"]
+
+    @property
+    def structure(self) -> Integers:
+        """(N,) 0 disordered, 1 FCC, 2 HCP."""
+        return self._measured["structure"]
+
+    @property
+    def crystallite(self) -> Integers:
+        """(N,) crystallite of each grain: 0 none; 1, 2, ... by their lowest grain id."""
+        return self._measured["crystallite"]
+
+    def to_ase(self) -> "ase.Atoms":
+        """ase.Atoms of the N grains and M wall grains; needs ASE.
+
+        Lengths are in grain diameters (`info["d_m"]` is d [m]), velocities (array "velo") in d/s.
+        H is a grain, He a wall grain. Arrays "type", "q6", "phi_local", "overlap", "structure" and
+        "crystallite" are as in the program's export to extxyz.
+        """
+        import ase
+
+        walls = len(self.wall_position)
+        position = self.position.copy()
+        position[:, 2] %= self.cell[2, 2]
+        atoms = ase.Atoms(
+            numbers=[1] * self.grains + [2] * walls,
+            positions=np.concatenate([position, self.wall_position]),
+            cell=self.cell,
+            pbc=(False, False, True),
+            info={"run": self.run.id, "variant": self.run.variant, "seed": self.run.seed,
+                  "cycle": self.cycle, "Time": self.time_s, "Origin": self.origin,
+                  "d_m": self.diameter_m},
+        )
+        atoms.set_array("type", np.concatenate([np.zeros(self.grains, int), self.wall_side]))
+        atoms.set_array("velo", np.concatenate([self.velocity, self.wall_velocity]))
+        for name, values in self._measured.items():
+            missing = -1 if values.dtype.kind == "i" else 0
+            atoms.set_array(name, np.concatenate([values, np.full(walls, missing)]))
+        return atoms
+
+    def __repr__(self) -> str:
+        return f"<Checkpoint {self.sha256[:12]} cycle {self.cycle:g}, {self.grains} grains>"
+
+
+def _cell(state: h5py.Group, theta: float) -> tuple[Floats, Floats]:
+    """Edges and origin of the cell [d]. The top wall is fixed in x, so the bottom one shifts."""
+    walls = state["cell"].attrs
+    bottom, top, moving = float(walls["bottom"]), float(walls["top"]), int(walls["moving"])
+    if moving == 0:
+        bottom = float(state.attrs["wall_height"])
+    else:
+        top = float(state.attrs["wall_height"])
+    height = top - bottom
+    shift = height * np.tan(theta)
+    edges = np.array([[walls["width"], 0, 0], [shift, height, 0], [0, 0, walls["depth"]]], float)
+    return edges, np.array([-shift, bottom, 0.0])

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stores and runs, by the program's own commands."""
+from __future__ import annotations
+
+import hashlib
+import inspect
+import io
+import json
+import os
+import shutil
+import subprocess
+import textwrap
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Union
+
+from .checkpoint import Checkpoint
+
+if TYPE_CHECKING:
+    import pandas
+
+Measure = Callable[[Checkpoint], Union[float, Mapping[str, float]]]
+
+
+class ShearcellError(RuntimeError):
+    """The program ended with an error; the text is its message."""
+
+
+class Store:
+    """A store, read only.
+
+    Args:
+        path: folder of the store.
+        program: the program shearcell; default $SHEARCELL, or that in PATH.
+    """
+
+    def __init__(self, path: str | os.PathLike[str] = "shearcell-store",
+                 program: str | os.PathLike[str] | None = None) -> None:
+        self.path = Path(path)
+        self.program = str(program or os.environ.get("SHEARCELL") or "shearcell")
+        if shutil.which(self.program) is None:
+            raise ShearcellError(f"there is no program {self.program}: add its folder to PATH, or "
+                                 "name it in $SHEARCELL")
+        if not (self.path / "store.sqlite").is_file():
+            raise FileNotFoundError(f"{self.path} is not a store")
+
+    def call(self, *arguments: str) -> str:
+        """Output of `shearcell ARGUMENTS --store PATH`. Raises ShearcellError."""
+        done = subprocess.run([self.program, *arguments, "--store", str(self.path)],
+                              capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise ShearcellError(done.stderr.strip() or f"exit code {done.returncode}")
+        return done.stdout
+
+    def runs(self, **select: Any) -> list["Run"]:
+        """Runs in the order of their declaration, without the packings that they start from.
+
+        Args:
+            select: experiment, scale, variant, seed or state, each a value or a list of values.
+        """
+        listed = json.loads(self.call("status", "--json", *_filters(select)))["runs"]
+        return [Run(self, facts) for facts in listed if facts["kind"] != "prepare"]
+
+    def run(self, prefix: str) -> "Run":
+        """The run whose id begins so. Raises KeyError if it is none or several."""
+        found = [run for run in self.runs() if run.id.startswith(prefix)]
+        if len(found) != 1:
+            raise KeyError(f"{len(found)} runs begin with {prefix!r}")
+        return found[0]
+
+    def table(self, per: str = "checkpoint", **select: Any) -> "pandas.DataFrame":
+        """`shearcell table`: a row for each checkpoint, or for each run (per="run"); needs pandas.
+
+        Columns have their unit in the name; `shearcell table --help` lists them.
+
+        Args:
+            per: "checkpoint" or "run".
+            select: experiment, scale, variant or seed, each a value or a list of values.
+        """
+        import pandas
+
+        text = self.call("table", "--per", per, *_filters(select))
+        return pandas.read_csv(io.StringIO(text), float_precision="round_trip")
+
+    def measure(self, function: Measure, *, fresh: bool = False,
+                **select: Any) -> "pandas.DataFrame":
+        """An own measure of every checkpoint: experiment, variant, run, seed, cycle, checkpoint and
+        what the function returns, in a column of its name or one for each key; needs pandas.
+
+        Results are kept beside the store, in PATH.measures/NAME.json, with the SHA-256 of the
+        function's source and that of each checkpoint, and are computed again when either is
+        another. Only the function's own source is looked at: after a change in a function that it
+        calls, use fresh=True.
+
+        Args:
+            function: from a Checkpoint to a number, or to a mapping of names to numbers.
+            fresh: computes everything again.
+            select: experiment, scale, variant, seed or state, each a value or a list of values.
+        """
+        import pandas
+
+        kept = _KeptMeasure(self.path, function, fresh)
+        rows = []
+        try:
+            for run in self.runs(**select):
+                for record in run.records():
+                    result = kept.of(record["sha256"], lambda: Checkpoint(run, record))
+                    rows.append({"experiment": run.experiment, "variant": run.variant,
+                                 "run": run.id, "seed": run.seed, "cycle": record["cycle"],
+                                 "checkpoint": record["sha256"], **result})
+        finally:
+            kept.save()
+        return pandas.DataFrame(rows)
+
+    def __repr__(self) -> str:
+        return f"Store({str(self.path)!r})"
+
+
+class Run:
+    """One run: a variant with a seed.
+
+    Attributes:
+        store, id, experiment, scale, variant, seed, state: as `shearcell status` has them.
+        facts: everything that `shearcell status --json` says.
+    """
+
+    def __init__(self, store: Store, facts: dict[str, Any]) -> None:
+        self.store = store
+        self.facts = facts
+        self.id: str = facts["id"]
+        self.experiment: str = facts["experiment"]
+        self.scale: str = facts["scale"]
+        self.variant: str = facts["variant"]
+        self.seed: int = facts["seed"]
+        self.state: str = facts["state"]
+
+    @cached_property
+    def _shown(self) -> dict[str, Any]:
+        return json.loads(self.store.call("show", self.id, "--json"))
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Every parameter of the run, by its key in a manifest (units are in the keys)."""
+        return self._shown["resolved"]["parameters"]
+
+    def records(self) -> list[dict[str, Any]]:
+        """What the store recorded of each checkpoint whose file it has, by cycle."""
+        return [c for c in self._shown["checkpoints"] if c["state"] == "recorded"]
+
+    @property
+    def cycles(self) -> list[float]:
+        """Cycles that have a checkpoint."""
+        return [record["cycle"] for record in self.records()]
+
+    def checkpoint(self, cycle: float | None = None) -> Checkpoint:
+        """The checkpoint at that cycle, or the newest. Raises KeyError if there is none."""
+        found = [c for c in self.records() if cycle is None or c["cycle"] == cycle]
+        if not found:
+            raise KeyError(f"run {self.id[:12]} has no checkpoint at cycle {cycle}; it has those of "
+                           f"cycles {self.cycles}")
+        return Checkpoint(self, found[-1])
+
+    def checkpoints(self) -> Iterator[Checkpoint]:
+        """All checkpoints by cycle, read one after the other."""
+        return (Checkpoint(self, record) for record in self.records())
+
+    def __repr__(self) -> str:
+        return f"<Run {self.id[:12]} {self.experiment} {self.variant} seed {self.seed}>"
+
+
+class _KeptMeasure:
+    """Results of one function, in a file beside the store."""
+
+    def __init__(self, store: Path, function: Measure, fresh: bool) -> None:
+        self.function = function
+        self.name: str = function.__name__
+        try:
+            source = textwrap.dedent(inspect.getsource(function))
+        except (OSError, TypeError) as problem:
+            raise ValueError(f"the source of {self.name} is not known; define it in a file or a "
+                             "notebook's cell") from problem
+        if not self.name.isidentifier():
+            raise ValueError(f"{self.name} cannot name a measure; define a function with `def`")
+        self.facts: dict[str, Any] = {
+            "measure": self.name, "source": source,
+            "source_sha256": hashlib.sha256(source.encode()).hexdigest()}
+        store = store.resolve()
+        self.file = store.with_name(store.name + ".measures") / f"{self.name}.json"
+        self.values: dict[str, dict[str, float]] = {}
+        if not fresh and self.file.is_file():
+            known = json.loads(self.file.read_text())
+            if known.get("source_sha256") == self.facts["source_sha256"]:
+                self.values = known["checkpoints"]
+        self.changed = fresh
+
+    def of(self, sha256: str, load: Callable[[], Checkpoint]) -> dict[str, float]:
+        if sha256 not in self.values:
+            result = self.function(load())
+            named = result if isinstance(result, Mapping) else {self.name: result}
+            self.values[sha256] = {str(key): float(value) for key, value in named.items()}
+            self.changed = True
+        return self.values[sha256]
+
+    def save(self) -> None:
+        if not self.changed:
+            return
+        self.file.parent.mkdir(exist_ok=True)
+        part = self.file.with_suffix(f".{os.getpid()}.tmp")
+        part.write_text(json.dumps({**self.facts, "checkpoints": self.values}, indent=1) + "\n")
+        part.replace(self.file)
+
+
+def _filters(select: Mapping[str, Any]) -> list[str]:
+    arguments = []
+    for key, values in select.items():
+        for value in values if isinstance(values, (list, tuple, set)) else [values]:
+            arguments += [f"--{key}", str(value)]
+    return arguments

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/runner/audit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/derived_measures.hpp"
+#include "analysis/error.hpp"
+#include "experiments/manifest/identity.hpp"
+#include "experiments/manifest/schema.hpp"
+#include "experiments/runner/replay.hpp"
+#include "provenance/derived.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+void require_same(const std::string& what, const json& recorded, const json& expected) {
+  if (recorded == expected) return;
+  throw StoreDamaged(fmt::format("its event has {} = {}, and its parameters give {}", what,
+                                 recorded.dump(), expected.dump()));
+}
+
+/// A label of a parameter that the run does not feel, or that is not part of its id, proves
+/// nothing.
+void check_membership(const Membership& m, const StageRecord& stage, const json& resolved) {
+  require_same("seed", m.seed, stage.seed);
+  for (const auto& [key, value] : m.labels.items()) {
+    const Field* field = find_field(key);
+    const json& parameters = resolved.at("parameters");
+    if (field == nullptr || !field->identity.recorded_as.empty() || !parameters.contains(key)) {
+      continue;
+    }
+    require_same("label " + key, value, parameters.at(key));
+    const std::string part = key + "=" + value_text(value);
+    if (("," + m.variant + ",").find("," + part + ",") == std::string::npos) {
+      throw StoreDamaged(fmt::format("its variant is '{}', without {}", m.variant, part));
+    }
+  }
+}
+
+void check_run(const RunRecord& run) {
+  if (stage_key(run.resolved) != run.id) {
+    throw StoreDamaged("its recorded parameters are not those that it is named after");
+  }
+  const StageRecord stage = read_stage(run.resolved);
+  require_same("kind", run.kind, name_of(stage.stage));
+  require_same("parent", run.parent, stage.parent);
+  require_same("grains", run.grains, stage.parameters.grains);
+  for (const Membership& membership : run.memberships) {
+    check_membership(membership, stage, run.resolved);
+  }
+}
+
+/// The first place where two results differ, with both values; "" when they are equal.
+std::string difference(const json& kept, const json& computed, const std::string& place) {
+  if (kept.is_number() && computed.is_number()) {
+    const auto a = kept.get<double>(), b = computed.get<double>();
+    const bool same = a == b || (std::isnan(a) && std::isnan(b)) ||
+                      std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
+    return same ? "" : fmt::format("{}: {} is kept and {} computed", place, a, b);
+  }
+  const bool nested = kept.is_structured() && kept.type() == computed.type();
+  if (!nested || kept.size() != computed.size()) {
+    return kept == computed ? "" : place + ": what is kept is something else";
+  }
+  const json a = kept.flatten(), b = computed.flatten();
+  if (a.size() != b.size()) return place + ": its structure is another one";
+  for (const auto& [path, value] : b.items()) {
+    if (!a.contains(path)) return place + path + ": it is not kept";
+    if (auto found = difference(a.at(path), value, place + path); !found.empty()) return found;
+  }
+  return "";
+}
+
+const std::vector<const DerivedMeasure*>& kept_measures() {
+  static const std::vector<const DerivedMeasure*> all = {&scalar_measures(),
+                                                         &crystallite_measure()};
+  return all;
+}
+
+/// Of one checkpoint, in the order of kept_measures().
+using Kept = std::vector<std::optional<std::vector<std::byte>>>;
+
+std::vector<DerivedKey> keys_of(const CheckpointRecord& record) {
+  std::vector<DerivedKey> keys;
+  for (const DerivedMeasure* measure : kept_measures()) {
+    keys.push_back({record.sha256, measure->key(), analysis_version});
+  }
+  return keys;
+}
+
+std::string wrong_measure(const Store& store, const CheckpointRecord& record, const Kept& kept) {
+  try {
+    const Analysis analysis = analyse(store.load_checkpoint(record));
+    for (std::size_t m = 0; m < kept.size(); ++m) {
+      if (!kept[m]) continue;
+      const DerivedMeasure& measure = *kept_measures()[m];
+      auto found = difference(decode_result(*kept[m]), measure.from(analysis), measure.name);
+      if (!found.empty()) return found;
+    }
+  } catch (const AnalysisError& error) {
+    return error.what();
+  } catch (const CheckpointPruned&) {
+    // Meanwhile, by another program.
+  }
+  return "";
+}
+
+/// Checkpoints with files of which the cache keeps a measure, each once.
+std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache) {
+  std::vector<CheckpointRecord> found;
+  std::set<std::string> seen;
+  for (const RunRecord& run : store.runs()) {
+    for (CheckpointRecord& record : store.checkpoints(run.id)) {
+      const Kept kept = cache.get(keys_of(record));
+      const bool any = std::ranges::any_of(kept, [](const auto& k) { return k.has_value(); });
+      if (any && seen.insert(record.sha256).second) found.push_back(std::move(record));
+    }
+  }
+  return found;
+}
+
+/// Returns the number of checkpoints.
+void copy_measures(const Store& store, DerivedCache& from) {
+  DerivedCache into(store.folder());
+  std::vector<DerivedObject> missing;
+  for (const CheckpointRecord& record : measured_checkpoints(store, from)) {
+    const std::vector<DerivedKey> keys = keys_of(record);
+    Kept there = from.get(keys), here = into.get(keys);
+    for (std::size_t m = 0; m < keys.size(); ++m) {
+      if (there[m] && !here[m]) missing.push_back({keys[m], std::move(*there[m])});
+    }
+  }
+  if (!missing.empty()) into.put(missing);
+}
+
+}  // namespace
+
+std::vector<Finding> check_runs(const Store& store) {
+  std::vector<Finding> findings;
+  for (const RunRecord& run : store.runs()) {
+    const auto note = [&](Finding::Severity severity, const std::exception& problem) {
+      findings.push_back({severity, fmt::format("run {:.12}", run.id), run.id, problem.what()});
+    };
+    try {
+      check_run(run);
+    } catch (const StoreDamaged& damage) {
+      note(Finding::Severity::error, damage);
+    } catch (const std::runtime_error& unknown) {  // parameters of another version
+      note(Finding::Severity::note, unknown);
+    }
+  }
+  return findings;
+}
+
+MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
+                            std::size_t count, std::uint64_t seed) {
+  DerivedCache cache(folder, true);
+  const std::vector<CheckpointRecord> kept = measured_checkpoints(store, cache);
+  const std::vector<CheckpointRecord> chosen = sample(kept, count, seed);
+  MeasureCheck check{.kept = kept.size(), .computed = chosen.size(), .findings = {}};
+  for (const CheckpointRecord& record : chosen) {
+    const std::string wrong = wrong_measure(store, record, cache.get(keys_of(record)));
+    if (wrong.empty()) continue;
+    check.findings.push_back(
+        {Finding::Severity::error, (folder / DerivedCache::kFile).string(), record.run,
+         fmt::format("checkpoint {:.12}, {}; delete this file and draw the figures again",
+                     record.sha256, wrong)});
+  }
+  return check;
+}
+
+std::vector<MergeReport> merge_stores(Store& store,
+                                      const std::vector<std::filesystem::path>& sources,
+                                      const std::set<std::string>& runs,
+                                      std::vector<Finding>* refused) {
+  constexpr std::size_t kSampled = 3;
+  std::vector<MergeReport> reports = store.merge(sources, runs);
+  for (const std::filesystem::path& source : sources) {
+    const MeasureCheck check = check_measures(store, source, kSampled, reports.size());
+    if (check.findings.empty()) {
+      DerivedCache from(source, true);
+      copy_measures(store, from);
+    } else if (refused != nullptr) {
+      refused->insert(refused->end(), check.findings.begin(), check.findings.end());
+    }
+  }
+  return reports;
+}
+
+}  // namespace shearcell

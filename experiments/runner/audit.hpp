@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Checks of a store that need the meaning of parameters and measures; Store::verify checks that its
+// events, files and tables agree.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+/// An error for each run whose id is not the hash of its parameters, or whose kind, parent, number
+/// of grains, seed, labels or variant contradict them; a note when this program does not know them.
+std::vector<Finding> check_runs(const Store& store);
+
+struct MeasureCheck {
+  std::size_t kept = 0;      ///< checkpoints of the store of which measures are kept
+  std::size_t computed = 0;  ///< of these, computed again
+  std::vector<Finding> findings;
+};
+
+/// Computes the measures that derived.sqlite in `folder` keeps again, for `count` sampled
+/// checkpoints of the store, and compares to 1e-9 (libraries of mathematics differ in the last
+/// bits).
+MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
+                            std::size_t count, std::uint64_t seed);
+
+/// Store::merge, and copies the measures that the sources keep of checkpoints that the store has
+/// now. A source of which one of three sampled measures is wrong gives none: it is named in
+/// `refused`.
+std::vector<MergeReport> merge_stores(Store& store,
+                                      const std::vector<std::filesystem::path>& sources,
+                                      const std::set<std::string>& runs = {},
+                                      std::vector<Finding>* refused = nullptr);
+
+}  // namespace shearcell

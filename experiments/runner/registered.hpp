@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The manifests that a store was given, and what they call their variants.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "experiments/manifest/manifest.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+/// What a registered manifest says of figures.
+struct RegisteredManifest {
+  std::string sha256;
+  std::string experiment;
+  std::string question;
+  std::vector<std::string> figures;
+  std::string text;
+};
+
+/// Its labels, plots and claims; nothing if this version of the program cannot read it.
+std::optional<Manifest> read(const RegisteredManifest& manifest);
+
+/// Names for people of all variants of the runs of a store, from the labels of each manifest and
+/// what varies in it (experiments/manifest/names.hpp).
+class VariantNames {
+ public:
+  explicit VariantNames(const Store& store);
+  VariantNames(const std::vector<RegisteredManifest>& manifests,
+               const std::vector<RunRecord>& runs);
+  std::string of(const Membership& membership) const;  ///< its variant, if it is unknown
+
+ private:
+  using Key = std::tuple<std::string, std::string, std::string, std::string>;
+  static Key key_of(const Membership& membership);
+  std::map<Key, std::string> names_;
+};
+
+/// In the order of registration; an experiment may have several versions, and a version that was
+/// run again after another one comes again. Throws StoreDamaged for an event that does not hold
+/// them.
+std::vector<RegisteredManifest> registered_manifests(const Store& store);
+
+/// The version of each experiment that was registered last, in the order in which the experiments
+/// were first registered.
+std::vector<RegisteredManifest> newest_manifests(const Store& store);
+
+}  // namespace shearcell

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tables of runs, filters, and exports of several runs, as a user sees them.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/experiments/program.hpp"
+
+namespace shearcell::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class CommandLineTable : public ProgramTest {
+ protected:
+  void SetUp() override { campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"}); }
+
+  nlohmann::json table(Arguments options) {
+    options.insert(options.begin(), {"table", "--json"});
+    return json(options);
+  }
+};
+
+TEST_F(CommandLineTable, HasARowForEachCheckpointAndEachRun) {
+  const nlohmann::json rows = table({});
+  ASSERT_EQ(rows.size(), 4U) << "two runs at cycles 0 and 1";
+  for (const auto& row : rows) {
+    const nlohmann::json shown = json({"show", row.at("checkpoint"), "--json"});
+    EXPECT_EQ(shown.at("run"), row.at("run"));
+    for (const char* key : {"cycle", "phi", "grains", "mean_overlap_d", "cell_height_d"}) {
+      EXPECT_EQ(shown.at("measures").at(key), row.at(key)) << key;
+    }
+    EXPECT_EQ(row.at("variant"), "fluid=" + row.at("fluid").get<std::string>());
+  }
+  const nlohmann::json runs = table({"--per", "run"});
+  ASSERT_EQ(runs.size(), 2U);
+  for (std::size_t r = 0; r < 2; ++r) {
+    const nlohmann::json& last = rows[2 * r + 1];
+    for (const auto& [key, value] : last.items()) EXPECT_EQ(runs[r].at(key), value) << key;
+    const nlohmann::json run = json({"show", runs[r].at("run"), "--json"});
+    EXPECT_EQ(run.at("measures").at("phi"), runs[r].at("phi"));
+    EXPECT_EQ(runs[r].at("state"), run.at("state"));
+    EXPECT_EQ(runs[r].at("state_hash"), run.at("checkpoints").back().at("state_hash"));
+    EXPECT_EQ(runs[r].at("onset_size"), "never") << "no crystallite grows within a cycle";
+    EXPECT_TRUE(runs[r].at("onset_size_phi").is_null());
+    EXPECT_GT(runs[r].at("wall_time_s"), 0);
+  }
+  const Outcome help = run({"table", "--help"});
+  for (const auto& [key, value] : runs[0].items()) {
+    EXPECT_TRUE(key == "fluid" || contains(help.out, "  " + key + " ")) << key;
+  }
+}
+
+TEST_F(CommandLineTable, WritesTheSameAsCsvOverItsOwnFilesOnly) {
+  const Outcome printed = run({"table", "--per", "run"});
+  ASSERT_EQ(printed.code, 0) << printed.err;
+  EXPECT_TRUE(printed.out.starts_with("experiment,scale,variant,run,seed,fluid,cycle,checkpoint,"))
+      << printed.out;
+  EXPECT_TRUE(contains(printed.out, "\ntiny,,fluid=cell,")) << printed.out;
+  for (int k = 0; k < 2; ++k) {
+    ASSERT_EQ(run({"table", "--per", "run", "--out", "runs.csv"}).code, 0);
+    EXPECT_EQ(read_bytes(path("runs.csv")), printed.out);
+  }
+  write("mine.csv", "a,b\n");
+  EXPECT_EQ(run({"table", "--out", "mine.csv"}).code, 2);
+  EXPECT_EQ(read_bytes(path("mine.csv")), "a,b\n");
+}
+
+TEST_F(CommandLineTable, SelectsRuns) {
+  struct Case {
+    Arguments filters;
+    std::size_t runs;
+  };
+  for (const Case& c : {Case{{"--variant", "fluid=cell"}, 1},
+                        Case{{"--variant", "fluid=cell", "--variant", "fluid=still"}, 2},
+                        Case{{"--experiment", "tiny", "--seed", "1"}, 2}}) {
+    Arguments options = {"--per", "run"};
+    options.insert(options.end(), c.filters.begin(), c.filters.end());
+    EXPECT_EQ(table(options).size(), c.runs);
+    Arguments status = {"status", "--json", "--state", "completed"};
+    status.insert(status.end(), c.filters.begin(), c.filters.end());
+    std::size_t sheared = 0;
+    const nlohmann::json listed = json(status);
+    for (const auto& run : listed.at("runs")) sheared += run.at("kind") == "shear" ? 1 : 0;
+    EXPECT_EQ(sheared, c.runs);
+  }
+  const Outcome unknown = run({"table", "--variant", "fluid=cel"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_TRUE(contains(unknown.err, "did you mean fluid=cell?")) << unknown.err;
+  EXPECT_EQ(run({"status", "--experiment", "other"}).code, 2);
+  EXPECT_EQ(run({"status", "--state", "lost"}).code, 2);
+}
+
+TEST_F(CommandLineTable, EstimatesWhatIsLeft) {
+  EXPECT_TRUE(json({"status", "--json"}).at("estimate").is_null());
+  write("longer.yaml", tiny_manifest("  cycles: 4000\n", kBothFluids));
+  const Outcome stopped = run_until({"run", "longer.yaml", "-q"}, 8, SIGINT);
+  ASSERT_EQ(stopped.code, 85) << stopped.err;
+  const nlohmann::json left = json({"status", "--json"}).at("estimate");
+  EXPECT_EQ(left.at("stages_left"), 2);
+  EXPECT_EQ(left.at("running"), false);
+  const double steps = left.at("particle_steps_left");
+  EXPECT_NEAR(steps, 2 * 3999 * 300 * 1e4, 2 * 1000 * 300 * 1e4);
+  EXPECT_GT(left.at("seconds_left"), 0);
+  EXPECT_TRUE(contains(run({"status"}).out, "\nleft: 2 stages, ")) << run({"status"}).out;
+}
+
+TEST_F(CommandLineTable, ExportsSelectedRunsWholeOrNotAtAll) {
+  const std::set<std::string> before = listing();
+  const nlohmann::json done =
+      json({"export", "--experiment", "tiny", "--to", "extxyz", "--out", "all", "--json"});
+  ASSERT_EQ(done.size(), 2U);
+  for (const auto& one : done) {
+    const std::string text = read_bytes(one.at("out").get<std::string>());
+    EXPECT_TRUE(contains(text, "run=\"" + one.at("run").get<std::string>() + '"'));
+    EXPECT_TRUE(contains(text, "length_unit=d ") && contains(text, " amplitude_rad=0.0833 "));
+  }
+  const std::string id = done[0].at("run");
+  ASSERT_EQ(run({"export", id, "--to", "vtk", "--out", "frames/"}).code, 0);
+  EXPECT_TRUE(fs::exists(path("frames/run.json")) && fs::exists(path("frames/frames.pvd")));
+  EXPECT_EQ(run({"export", id, "--seed", "1", "--to", "vtk", "--out", "other"}).code, 2);
+  EXPECT_EQ(run({"export", id, "--to", "extxyz", "--out", "frames"}).code, 2) << "it exists";
+
+  // Killed by the limit on files' sizes, and told by write() as if the disk were full.
+  for (const std::string trap : {"", "trap '' XFSZ; "}) {
+    for (const std::string format : {"extxyz", "h5md", "vtk", "lammps"}) {
+      const std::string command = "cd '" + path("").string() + "'; " + trap +
+                                  "ulimit -f 8; exec " SHEARCELL_PROGRAM " export " + id +
+                                  " --to " + format + " --out cut >cut.log 2>&1";
+      const int status = std::system(("sh -c \"" + command + "\"").c_str());
+      if (trap.empty()) {
+        EXPECT_NE(status, 0) << format;
+      } else {
+        EXPECT_EQ(WEXITSTATUS(status), 1) << format;
+      }
+      EXPECT_FALSE(fs::exists(path("cut"))) << format << read_bytes(path("cut.log"));
+      if (!trap.empty()) {
+        EXPECT_TRUE(contains(read_bytes(path("cut.log")), "cut")) << read_bytes(path("cut.log"));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shearcell::test

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Standard streams that are closed or full, signals that are ignored or come at a bad time,
+// programs that hang, neighbours that write to the same places, and odd words on the command line.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <thread>
+
+#include "tests/experiments/program.hpp"
+
+namespace shearcell::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kFails = tiny_manifest("  settle_time_limit_s: 0.1\n");
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class Streams : public ProgramTest {
+ protected:
+  void SetUp() override {
+    campaign(tiny_manifest("  grains: 200\n", kBothFluids), {"--cycles", "1"});
+    write("fails.yaml", kFails);
+    write("bad.yaml", "experiment: bad\nbase: {grains: many}\n");
+    const nlohmann::json runs = json({"status", "--json"}).at("runs");
+    for (const auto& run : runs) {
+      if (run.at("kind") == "shear") run_ = run.at("id");
+    }
+  }
+
+  /// A hung up terminal as descriptor 9, which programs inherit: each write fails with EIO.
+  static void open_hung_up_terminal() {
+    const int master = posix_openpt(O_RDWR | O_NOCTTY);
+    ASSERT_TRUE(master >= 0 && grantpt(master) == 0 && unlockpt(master) == 0);
+    const int slave = open(ptsname(master), O_RDWR | O_NOCTTY);
+    ASSERT_TRUE(slave >= 0 && dup2(slave, 9) == 9);
+    close(master);
+    if (slave != 9) close(slave);
+  }
+
+  std::string run_;  // a shear
+};
+
+TEST_F(Streams, EveryCommandEndsWithItsOwnCodeWithoutStandardError) {
+  struct Case {
+    const char* words;
+    int code;
+  };
+  for (const auto& [words, code] :
+       {Case{"status", 0}, Case{"status --json", 0}, Case{"plan m.yaml", 0}, Case{"plan none", 2},
+        Case{"plan bad.yaml", 2}, Case{"frobnicate", 2}, Case{"status --frobnicate", 2},
+        Case{"figures S99", 2}, Case{"show nothing", 2}, Case{"verify", 0},
+        Case{"run fails.yaml --store new", 3}, Case{"run m.yaml --cycles 1 --store new", 0},
+        Case{"run m.yaml --cycles 0 --store new -q", 0}, Case{"status --store m.yaml", 4},
+        Case{"figures S2 --out out", 0}, Case{"resume", 0}, Case{"new m", 2},
+        Case{"report --out m.yaml", 2}, Case{"export none --to vtk --out v", 2}}) {
+    for (const char* closed : {"2>&-", "2>/dev/full"}) {
+      const Outcome outcome =
+          shell("exec \"$0\" " + std::string(words) + " " + closed + " >/dev/null");
+      EXPECT_EQ(outcome.code, code) << words << closed << ", signal " << outcome.signal;
+      fs::remove_all(path("new"));
+    }
+  }
+}
+
+TEST_F(Streams, OutputThatIsLostIsAnError) {
+  for (const char* words : {"status",
+                            "status --json",
+                            "plan m.yaml",
+                            "plan m.yaml --json",
+                            "verify",
+                            "verify --json",
+                            "figures S2 --json --out out",
+                            "run m.yaml --cycles 1 --json -q",
+                            "run m.yaml --cycles 1 -q",
+                            "completion bash",
+                            "--help",
+                            "run --help",
+                            "--version",
+                            "manual",
+                            "log",
+                            "show RUN",
+                            "doctor --no-speed",
+                            "new other",
+                            "report --out r.html",
+                            "export RUN --to vtk --out v --json"}) {
+    std::string command = "exec \"$0\" " + std::string(words);
+    if (const auto at = command.find("RUN"); at != command.npos) command.replace(at, 3, run_);
+    const Outcome full = shell(command + " >/dev/full");
+    EXPECT_EQ(full.code, 1) << words << full.err << ", signal " << full.signal;
+    EXPECT_TRUE(contains(full.err, "standard output")) << words << ": " << full.err;
+    for (const char* file : {"other.yaml", "v"}) fs::remove_all(path(file));
+    const Outcome closed = shell(command + " >&-");
+    EXPECT_EQ(closed.code, 1) << words << closed.err << ", signal " << closed.signal;
+    for (const char* file : {"other.yaml", "v"}) fs::remove_all(path(file));
+    EXPECT_EQ(shell(command + " >/dev/full 2>/dev/full").code, 1) << words;
+    for (const char* file : {"other.yaml", "v"}) fs::remove_all(path(file));
+  }
+  EXPECT_EQ(shell("exec \"$0\" run fails.yaml -q --json --store new >/dev/full").code, 3)
+      << "what was found out counts more";
+}
+
+TEST_F(Streams, ACampaignOutlivesItsTerminalAndItsReaders) {
+  const std::string whole = "\"$0\" run m.yaml --store ";
+  open_hung_up_terminal();
+  EXPECT_EQ(shell("trap '' HUP; exec " + whole + "a --cycles 1 2>&9").code, 0);
+  close(9);
+  const Outcome piped = shell("mkfifo p; sleep 0.3 <p & exec " + whole + "b --cycles 1 2>p");
+  EXPECT_EQ(piped.code, 0) << "signal " << piped.signal;
+  EXPECT_EQ(hashes("a"), hashes());
+  EXPECT_EQ(hashes("b"), hashes());
+  EXPECT_EQ(shell("exec \"$0\" verify --store a <&- 2>&-").code, 0);
+}
+
+TEST_F(Streams, SignalsThatTheCallerIgnoresChangeNothing) {
+  for (const int ignored : {SIGCHLD, SIGPIPE, SIGHUP}) {
+    fs::remove_all(path("out"));
+    const auto before = std::signal(ignored, SIG_IGN);  // the program inherits it
+    const Running program = start_beside({"figures", "S2", "--out", "out"}, "ignoring");
+    std::signal(ignored, before);
+    const Outcome outcome = wait_for(program);
+    EXPECT_EQ(outcome.code, 0) << strsignal(ignored) << outcome.err;
+    const auto files = listing();
+    EXPECT_TRUE(std::ranges::any_of(files, [](const std::string& file) {
+      return file.ends_with("S2a.svg");
+    })) << strsignal(ignored);
+  }
+}
+
+TEST_F(Streams, TwoThatDrawIntoOneFolderDoNotDisturbEachOther) {
+  for (int round = 0; round < 3; ++round) {
+    const Running first = start_beside({"figures", "S2", "--out", "out"}, "first");
+    const Running second = start_beside({"figures", "S2", "--out", "out"}, "second");
+    for (const Running& each : {first, second}) {
+      const Outcome outcome = wait_for(each);
+      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      EXPECT_EQ(outcome.err, "");
+    }
+  }
+  ASSERT_EQ(run({"figures", "S2", "--out", "alone"}).code, 0);
+  std::size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(path("out"))) {
+    if (entry.is_directory()) continue;
+    const fs::path name = entry.path().lexically_relative(path("out"));
+    EXPECT_EQ(read_bytes(entry.path()), read_bytes(path("alone") / name)) << name;
+    ++files;
+  }
+  EXPECT_GE(files, 8U);
+  EXPECT_EQ(run({"verify"}).code, 0);
+}
+
+class Signals : public ProgramTest {
+ protected:
+  /// Seconds from the signal to the end.
+  double stop(const Running& program, int signal, Outcome& outcome) {
+    const auto begun = std::chrono::steady_clock::now();
+    kill(program.pid, signal);
+    outcome = wait_for(program);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  }
+};
+
+TEST_F(Signals, AreHeededWhileACellIsFilled) {
+  write("m.yaml", tiny_manifest("  grains: 3000000\n"));
+  std::signal(SIGHUP, SIG_DFL);  // programs inherit it if it is ignored here
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
+    const Running program = start_beside({"run", "m.yaml"}, "run");
+    while (!contains(read_bytes(program.err), "started")) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    Outcome outcome;
+    const double seconds = stop(program, signal, outcome);
+    EXPECT_EQ(outcome.code, 85) << outcome.signal << outcome.err;
+    EXPECT_LT(seconds, 3) << signal;
+  }
+  EXPECT_EQ(objects(), 0U);
+  EXPECT_EQ(run({"verify"}).code, 0);
+}
+
+TEST_F(Signals, EndALammpsThatHangs) {
+  const std::string answers =
+      "#!/bin/sh\ncase \"$*\" in *-h*) printf '%s\\n' "
+      "'Large-scale Massively Parallel Simulator - 1 Jan 2020' gran/hooke;; "
+      "*) exec sleep 600;; esac\n";
+  for (const std::string& script : {answers, std::string("#!/bin/sh\nexec sleep 600\n")}) {
+    const bool begins = script == answers;
+    fs::remove_all(path("shearcell-store"));
+    write("m.yaml", tiny_manifest("  grains: 200\n"));
+    write("lmp", script);
+    fs::permissions(path("lmp"), fs::perms::owner_all);
+    ASSERT_EQ(run({"run", "m.yaml", "--cycles", "0"}).code, 0);
+    setenv("SHEARCELL_LAMMPS", path("lmp").c_str(), 1);
+    const Running program = start_beside({"run", "m.yaml", "--engine", "lammps"}, "run");
+    while (begins && !contains(read_bytes(program.err), ": started")) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    unsetenv("SHEARCELL_LAMMPS");
+    Outcome outcome;
+    EXPECT_LT(stop(program, SIGTERM, outcome), 20);
+    if (begins) {
+      EXPECT_EQ(outcome.code, 85) << outcome.err;
+      EXPECT_EQ(run({"verify"}).code, 0);
+    } else {
+      EXPECT_EQ(outcome.signal, SIGTERM) << "nothing was begun";
+    }
+  }
+}
+
+/// Two programs, a kill of one, and a resume end in the checkpoints of a run that nobody disturbed.
+TEST_F(Signals, AKillOfOneOfTwoLeavesWhatUntilAsksFor) {
+  const std::string text = tiny_manifest(
+      "  cycles: 8\n", kBothFluids + "seeds: 2\nuntil: {phi: 0.3, extra_cycles: 3}\n");
+  write("m.yaml", text);
+  ASSERT_EQ(run({"run", "m.yaml", "-q", "--store", "whole"}).code, 0);
+  const Running first = start_beside({"run", "m.yaml", "-q", "-j", "1"}, "first");
+  const Running second = start_beside({"run", "m.yaml", "-q", "-j", "1"}, "second");
+  while (objects() < 9) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  kill(first.pid, SIGKILL);
+  wait_for(first);
+  kill(second.pid, SIGTERM);
+  wait_for(second);
+  ASSERT_EQ(run({"resume", "-q"}).code, 0);
+  // Those at the end of cycles; an interruption adds one within a cycle.
+  const auto recorded = [&](const std::string& folder) {
+    const Store store(path(folder), Access::read);
+    std::map<std::string, std::string> found;
+    for (const RunRecord& run : store.runs()) {
+      for (const CheckpointRecord& c : store.checkpoints(run.id)) {
+        const bool whole = run.kind != "prepare" && c.cycle == std::floor(c.cycle);
+        if (whole) found[run.id + " " + std::to_string(c.cycle)] = c.state_hash;
+      }
+    }
+    return found;
+  };
+  EXPECT_EQ(recorded("shearcell-store"), recorded("whole"));
+  EXPECT_EQ(hashes(), hashes("whole"));
+  EXPECT_EQ(run({"verify"}).code, 0);
+}
+
+class Words : public ProgramTest {};
+
+TEST_F(Words, NumbersAreDecimalOnEveryOption) {
+  for (const char* words : {"bench speed --size 010",
+                            "bench speed --size 0x10",
+                            "bench speed --threads 0x2",
+                            "bench speed --threads 02",
+                            "bench speed --repeats 07",
+                            "bench speed --repeats 1e1",
+                            "bench speed --seconds 0x1",
+                            "bench speed --seconds nan",
+                            "bench stability --seconds 0x10",
+                            "bench stability --seconds inf",
+                            "bench accuracy --jobs 01",
+                            "bench engines --size 0x200",
+                            "bench engines --steps 010",
+                            "bench engines --cycles 0x1",
+                            "bench engines --seeds 03",
+                            "bench engines --mpi 0x2",
+                            "bench engines --settle-time-limit 0x1",
+                            "report --frames 010",
+                            "report --runs-per-experiment 0x1",
+                            "report --packings-mb 0x9",
+                            "report --packings-mb -1",
+                            "run m.yaml --cycles 010",
+                            "run m.yaml --seeds 0x2",
+                            "run m.yaml -j 01",
+                            "run m.yaml -t +2",
+                            "work -j 0x1",
+                            "prune --keep-every 010",
+                            "verify --replay 0x1"}) {
+    const Outcome outcome = shell("exec \"$0\" " + std::string(words));
+    EXPECT_EQ(outcome.code, 2) << words;
+    EXPECT_TRUE(contains(outcome.err, "decimal digits")) << words << ": " << outcome.err;
+  }
+  EXPECT_TRUE(listing().empty());
+}
+
+TEST_F(Words, CharactersThatTurnATextAroundAreShownAsNumbers) {
+  const std::string turns[] = {"\u202e", "\u2066", "\u2069", "\u200e",
+                               "\u200f", "\u061c", "\u202a", "\u2028"};
+  for (const std::string& turn : turns) {
+    write("m.yaml", "experiment: a" + turn + "b\nbase: {gra" + turn + "ins: 1, fluid: st" + turn +
+                        "ill}\nscales: {de" + turn + "sk: {}}\n");
+    const std::string paths[] = {"no" + turn + "ne.yaml", "m.yaml"};
+    for (const std::string& file : paths) {
+      for (const Arguments& words :
+           {Arguments{"plan", file}, Arguments{"run", file}, Arguments{"status", "--store", file},
+            Arguments{"new", "a" + turn}, Arguments{"report", "--out", file + turn},
+            Arguments{"plan", "m.yaml", "--scale", turn}, Arguments{"show", turn},
+            Arguments{"merge", file}}) {
+        const Outcome outcome = run(words);
+        EXPECT_FALSE(contains(outcome.out + outcome.err, turn)) << words[0] << outcome.err;
+      }
+    }
+    EXPECT_TRUE(contains(run({"plan", "m.yaml"}).err, "\\u")) << run({"plan", "m.yaml"}).err;
+  }
+}
+
+TEST_F(Words, CyclesOfAnExportAndCodesOfTheHelpAreTold) {
+  campaign(tiny_manifest("  grains: 200\n", kBothFluids), {"--cycles", "1"});
+  const std::string id = json({"status", "--json"}).at("runs").back().at("id");
+  for (const char* cycles : {"1e999", "0:1e999", "nan", "inf", "0x1", "1:2:3:4", "-1", "1 "}) {
+    const Outcome outcome = run({"export", id, "--to", "vtk", "--out", "v", "--cycles", cycles});
+    EXPECT_EQ(outcome.code, 2) << cycles;
+    EXPECT_TRUE(contains(outcome.err, "--cycles takes A:B")) << outcome.err;
+  }
+  for (const char* words : {"--help", "manual"}) {
+    EXPECT_TRUE(contains(run({words}).out, "1 the machine failed")) << words;
+  }
+}
+
+}  // namespace
+}  // namespace shearcell::test

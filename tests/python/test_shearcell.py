@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The Python package against the program, on a small store: python3 test_shearcell.py PROGRAM SOURCE"""
+import hashlib
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+program, source = sys.argv[1:3]
+del sys.argv[1:3]
+os.environ["SHEARCELL"] = program
+os.environ["PYTHONPATH"] = f"{source}/experiments/python"
+sys.path.insert(0, os.environ["PYTHONPATH"])
+sys.dont_write_bytecode = True
+try:
+    import ase.io
+    import h5py  # noqa: F401
+    import matplotlib  # noqa: F401
+    import numpy as np
+    import pandas
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+from shearcell import ShearcellError, Store
+
+calls = 0
+
+
+def spread(state):
+    """Standard deviation of x and mean y [d]."""
+    global calls
+    calls += 1
+    return {"x_d": state.position[:, 0].std(), "y_d": state.position[:, 1].mean()}
+
+
+def bytes_of(folder):
+    """Every file of the record; derived.sqlite is the program's cache."""
+    files = sorted(p for p in folder.rglob("*") if p.is_file() and p.name != "derived.sqlite")
+    return {str(p): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
+
+
+class Package(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.path = cls.folder / "shearcell-store"
+        subprocess.run([program, "run", f"{source}/experiments/drag.yaml", "--scale", "smoke", "-q",
+                        "--seeds", "1", "--cycles", "2", "--store", str(cls.path)], check=True)
+        cls.before = bytes_of(cls.path)
+        cls.store = Store(cls.path)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def tearDown(self):
+        self.assertEqual(bytes_of(self.path), self.before, "something wrote into the store")
+
+    def test_table_is_that_of_the_program(self):
+        for per, rows in (("checkpoint", 6), ("run", 2)):
+            table = self.store.table(per=per)
+            self.assertEqual(len(table), rows)
+            printed = json.loads(self.store.call("table", "--per", per, "--format", "json"))
+            for row, expected in zip(table.to_dict("records"), printed):
+                for key, value in expected.items():
+                    same = pandas.isna(row[key]) if value in (None, "") else row[key] == value
+                    self.assertTrue(same, f"{key}: {row[key]!r}, not {value!r}")
+        self.assertEqual(set(self.store.table(variant="fluid=cell")["fluid"]), {"cell"})
+
+    def test_checkpoint_is_what_the_program_exports(self):
+        for run in self.store.runs():
+            state = run.checkpoint(1)
+            file = self.folder / f"{run.id}.xyz"
+            self.store.call("export", run.id, "--to", "extxyz", "--cycles", "1", "--out", str(file))
+            exported, own = ase.io.read(file), state.to_ase()
+            self.assertEqual(exported.info["checkpoint"], state.sha256)
+            self.assertEqual(exported.info["d_m"], own.info["d_m"])
+            self.assertEqual(list(exported.symbols), list(own.symbols))
+            for what, a, b in (("position", exported.positions, own.positions),
+                               ("cell", exported.cell.array, own.cell.array),
+                               ("origin", exported.info["Origin"], own.info["Origin"])):
+                self.assertLess(np.max(np.abs(a - b)), 1e-13, what)
+            self.assertEqual(state.position.shape, (600, 3))
+            velocity = own.arrays["velo"]
+            self.assertLess(np.max(np.abs(exported.arrays["velo"] - velocity)), 1e-14 * np.max(velocity))
+            for name in ("type", "q6", "phi_local", "overlap", "structure", "crystallite"):
+                self.assertTrue(np.array_equal(exported.arrays[name], own.arrays[name]), name)
+            self.assertEqual(run.parameters["fluid"], run.variant.split("=")[1])
+            self.assertEqual([c.cycle for c in run.checkpoints()], run.cycles)
+
+    def test_own_measure_is_kept_beside_the_store(self):
+        global calls
+        first = self.store.measure(spread)
+        self.assertEqual((len(first), calls), (6, 6))
+        self.assertEqual(first["y_d"][0], self.store.run(first["run"][0]).checkpoint(0).position[:, 1].mean())
+        kept = json.loads((self.folder / "shearcell-store.measures/spread.json").read_text())
+        self.assertEqual(hashlib.sha256(kept["source"].encode()).hexdigest(), kept["source_sha256"])
+        self.assertEqual(set(kept["checkpoints"]), set(first["checkpoint"]))
+        self.assertTrue(first.equals(self.store.measure(spread)))
+        self.assertEqual(calls, 6, "nothing is computed twice")
+        self.store.measure(spread, fresh=True)
+        self.assertEqual(calls, 12)
+
+        # Another function of that name.
+        other = self.folder / "other.py"
+        other.write_text("def spread(state):\n    return 2\n")
+        sys.path.insert(0, str(self.folder))
+        import other as changed
+
+        self.assertEqual(list(self.store.measure(changed.spread)["spread"]), [2.0] * 6)
+
+    def test_errors_say_what_is_wrong(self):
+        run = self.store.runs()[0]
+        with self.assertRaisesRegex(KeyError, "it has those of cycles"):
+            run.checkpoint(17)
+        with self.assertRaisesRegex(KeyError, "0 runs begin with"):
+            self.store.run("not a run")
+        with self.assertRaisesRegex(ShearcellError, "did you mean fluid=cell"):
+            self.store.table(variant="fluid=cel")
+        with self.assertRaisesRegex(FileNotFoundError, "is not a store"):
+            Store(self.folder / "nowhere")
+        with self.assertRaisesRegex(ValueError, "cannot name a measure"):
+            self.store.measure(lambda state: 1.0)
+        copy = self.folder / "damaged"
+        shutil.copytree(self.path, copy)
+        file = copy / run.records()[-1]["file"]
+        file.write_bytes(file.read_bytes()[:-1] + b"?")
+        with self.assertRaisesRegex(ValueError, "is damaged"):
+            Store(copy).run(run.id).checkpoint()
+
+    def test_tour(self):
+        notebook = json.loads(pathlib.Path(source, "experiments/python/tour.ipynb").read_text())
+        code = [c["source"] for c in notebook["cells"] if c["cell_type"] == "code"]
+        lines = [line for cell in code for line in cell if line.strip()]
+        self.assertLess(len(lines), 30)
+        if shutil.which("jupyter-nbconvert", path="/usr/bin") is None:
+            self.skipTest("needs jupyter-nbconvert and python3-ipykernel")
+        shutil.copy(f"{source}/experiments/python/tour.ipynb", self.folder)
+        done = subprocess.run(["/usr/bin/jupyter-nbconvert", "--to", "notebook", "--execute", "tour.ipynb",
+                               "--output", "executed.ipynb"], cwd=self.folder, capture_output=True, text=True,
+                              env={**os.environ, "MPLBACKEND": "agg"}, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("<svg", (self.folder / "displacement.svg").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
