@@ -42,7 +42,7 @@ std::array<double, 4> draw(std::uint64_t seed, std::size_t grains, std::uint32_t
 }
 
 void look_sometimes(const Look& look, std::uint64_t attempt) {
-  if (look && attempt % 1024 == 0) look();
+  if (look && attempt % 1024 == 1023) look();
 }
 
 // Random sequential addition of discs of diameter d on a wall of `length` by `depth`, periodic

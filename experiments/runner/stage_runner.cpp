@@ -40,6 +40,7 @@ class Attempt {
     }
     store_.start_run(id(), facts, fresh ? std::nullopt : std::optional(beginning.from->sha256),
                      beginning.parent_checkpoint);
+    if (options_.begun) options_.begun();
     if (asks_for_early_end()) end_.emplace(store_, plan_.run, fresh ? 0 : beginning.from->step);
     if (ends_early()) return StageOutcome::completed;
     return guarded([&] {

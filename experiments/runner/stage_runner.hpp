@@ -29,6 +29,7 @@ struct StageOptions {
   std::size_t threads = 1;                          ///< inside this one simulation
   std::size_t ranks = 1;                            ///< processes of another engine
   std::function<void(const std::string&)> damaged;  ///< told of each checkpoint passed over
+  std::function<void()> begun;                      ///< called when an attempt has been recorded
   std::function<void(const StageStatus&)> report;   ///< called a few times a second
 };
 

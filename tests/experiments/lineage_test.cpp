@@ -66,8 +66,8 @@ TEST_F(FigureLineageTest, LeadsToEveryCheckpointAndWhatMadeIt) {
     ASSERT_EQ(input.lines.size(), 4U);
     EXPECT_EQ(input.lines[0].key, "experiment");
     EXPECT_EQ(input.lines[1].key, "sweep.grid.fluid");
-    EXPECT_EQ(input.lines[2].text, "seeds: [4, 9]");
-    EXPECT_EQ(input.lines[3].text, "cycles: 2") << "given at the command line";
+    EXPECT_EQ(input.lines[2].text, "cycles: 2") << "given at the command line";
+    EXPECT_EQ(input.lines[3].text, "seeds: [4, 9]");
   }
   EXPECT_TRUE(check_inputs(store_, lineage).empty());
   const nlohmann::json all = to_json(lineage);

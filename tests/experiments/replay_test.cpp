@@ -101,9 +101,8 @@ TEST_F(ReplayTest, WorksOnPackingsAndOnStatesWithinACycle) {
   Store other(folder_.path() / "other", Access::create);
   const Manifest manifest = parse_manifest(tiny_manifest(), "t");
   const std::vector<StageJob> jobs = declare(other, manifest, expand(manifest));
-  request_stop(true);
   for (const StageJob& job : jobs) {
-    while (run_stage(other, job.id, {}) == StageOutcome::interrupted) {
+    while (run_one_chunk(other, job.id) == StageOutcome::interrupted) {
     }
   }
   request_stop(false);

@@ -13,6 +13,7 @@
 
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/campaign.hpp"
+#include "experiments/runner/stage_runner.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/store.hpp"
 #include "tests/support/files.hpp"
@@ -97,5 +98,13 @@ struct StopWish {
   StopWish(const StopWish&) = delete;
   StopWish& operator=(const StopWish&) = delete;
 };
+
+/// Has a stage interrupted after the first chunk of steps of its attempt.
+inline StageOutcome run_one_chunk(Store& store, const std::string& id) {
+  const StopWish wish;
+  StageOptions options;
+  options.begun = [] { request_stop(true); };
+  return run_stage(store, id, options);
+}
 
 }  // namespace shearcell::test
