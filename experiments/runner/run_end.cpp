@@ -34,6 +34,19 @@ double value_of(const Measures& measures, StopMeasure measure) {
   return 0;
 }
 
+auto first_reached(std::span<const MeasuredCycle> measured, const std::optional<Until>& until) {
+  return std::ranges::find_if(measured, [&](const MeasuredCycle& m) {
+    return until && value_of(m.measures, until->measure) >= until->value;
+  });
+}
+
+// Whether no `until` waits for a measure any more: what remains is a number of cycles.
+bool all_reached(std::span<const RunAsk> asks, std::span<const MeasuredCycle> measured) {
+  return std::ranges::all_of(asks, [&](const RunAsk& ask) {
+    return !ask.until || first_reached(measured, ask.until) != measured.end();
+  });
+}
+
 DerivedKey key_of(const CheckpointRecord& record, const DerivedMeasure& measure) {
   return {record.sha256, measure.key(), analysis_version};
 }
@@ -94,15 +107,11 @@ std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunReco
 }
 
 std::optional<json> ended_early(std::span<const RunAsk> asks,
-                                std::span<const MeasuredCycle> measured) {
-  if (measured.empty()) return std::nullopt;
-  const double now = measured.back().cycle;
+                                std::span<const MeasuredCycle> measured, double now) {
   double end = -1;
   json why;
   for (const auto& [target_cycles, until] : asks) {
-    const auto reached = std::ranges::find_if(measured, [&](const MeasuredCycle& m) {
-      return until && value_of(m.measures, until->measure) >= until->value;
-    });
+    const auto reached = first_reached(measured, until);
     auto own = static_cast<double>(target_cycles);
     if (reached != measured.end()) {
       own = std::min(own, reached->cycle + static_cast<double>(until->extra_cycles));
@@ -160,25 +169,39 @@ RunEnd::RunEnd(const Store& store, const RunRecord& run, std::uint64_t step)
     : store_(store), run_(run.id), cadence_(checkpoint_cadence(run)), cache_(store.folder()) {
   for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
     if (record.state == CheckpointState::rejected || record.step > step) continue;
-    if (!on_cadence(record.cycle)) continue;
-    if (auto measures = kept(record)) {
-      measured_.push_back({record.cycle, *measures});
-      continue;
-    }
-    try {
-      measured_.push_back({record.cycle, measure(record, store.load_checkpoint(record))});
-    } catch (const StoreDamaged&) {
-    } catch (const CheckpointPruned&) {
-    }
+    if (on_cadence(record.cycle)) unmeasured_.push_back(record);
   }
 }
 
 void RunEnd::add(const CheckpointRecord& record, const Checkpoint& checkpoint) {
-  if (on_cadence(record.cycle)) measured_.push_back({record.cycle, measure(record, checkpoint)});
+  if (!on_cadence(record.cycle)) return;
+  if (unmeasured_.empty() && !all_reached(asks_of(store_, run_), measured_)) {
+    measured_.push_back({record.cycle, measure(record, checkpoint)});
+  } else {
+    unmeasured_.push_back(record);
+  }
 }
 
-std::optional<json> RunEnd::ended() const {
-  return ended_early(asks_of(store_, run_), measured_);
+std::optional<json> RunEnd::ended() {
+  if (unmeasured_.empty() && measured_.empty()) return std::nullopt;
+  const double now = unmeasured_.empty() ? measured_.back().cycle : unmeasured_.back().cycle;
+  const std::vector<RunAsk> asks = asks_of(store_, run_);
+  auto next = unmeasured_.begin();
+  for (; next != unmeasured_.end() && !all_reached(asks, measured_); ++next) {
+    if (const auto measures = measures_of(*next)) measured_.push_back({next->cycle, *measures});
+  }
+  unmeasured_.erase(unmeasured_.begin(), next);
+  return ended_early(asks, measured_, now);
+}
+
+std::optional<Measures> RunEnd::measures_of(const CheckpointRecord& record) {
+  if (auto measures = kept(record)) return measures;
+  try {
+    return measure(record, store_.load_checkpoint(record));
+  } catch (const StoreDamaged&) {
+  } catch (const CheckpointPruned&) {
+  }
+  return std::nullopt;
 }
 
 std::optional<Measures> RunEnd::kept(const CheckpointRecord& record) {

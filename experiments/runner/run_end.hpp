@@ -43,11 +43,12 @@ std::uint64_t checkpoint_cadence(const RunRecord& run);
 /// be repeated.
 std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run);
 
-/// Why the run ends at the last of `measured` (its checkpoints on the cadence, in order): every
-/// experiment that shares it has reached the end that it asks for. Nothing while the run continues.
+/// Why the run ends at cycle `now`, that of its last checkpoint: every experiment that shares it
+/// has reached the end that it asks for, by `measured`, its checkpoints on the cadence in order.
+/// Nothing while the run continues.
 /// {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle", "memberships"}.
 std::optional<nlohmann::json> ended_early(std::span<const RunAsk> asks,
-                                          std::span<const MeasuredCycle> measured);
+                                          std::span<const MeasuredCycle> measured, double now);
 
 /// The reason recorded with the end of a run that is complete before its last cycle; else null.
 nlohmann::json end_of(const Store& store, const RunRecord& run);
@@ -58,8 +59,8 @@ std::string describe_end(const nlohmann::json& ended);
 /// Mean cycle at which runs of the store with this `until` ended; empty if there are no such runs.
 std::optional<double> expected_end(const Store& store, const Until& until);
 
-/// Measures the checkpoints of one run and keeps the results in the store's derived.sqlite, where
-/// figures find them.
+/// Measures the checkpoints of one run until every `until` is reached, and keeps the results in the
+/// store's derived.sqlite, where figures find them.
 class RunEnd {
  public:
   /// Takes the checkpoints up to `step` that are recorded already; those that can no longer be read
@@ -69,9 +70,12 @@ class RunEnd {
   /// A checkpoint that has just been recorded.
   void add(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
-  std::optional<nlohmann::json> ended() const;
+  /// Why the run ends at its last checkpoint, as ended_early(). Measures what an experiment that
+  /// came meanwhile needs.
+  std::optional<nlohmann::json> ended();
 
  private:
+  std::optional<Measures> measures_of(const CheckpointRecord& record);
   std::optional<Measures> kept(const CheckpointRecord& record);
   Measures measure(const CheckpointRecord& record, const Checkpoint& checkpoint);
   bool on_cadence(double cycle) const;
@@ -81,6 +85,7 @@ class RunEnd {
   std::uint64_t cadence_;
   DerivedCache cache_;
   std::vector<MeasuredCycle> measured_;
+  std::vector<CheckpointRecord> unmeasured_;  ///< after measured_
 };
 
 }  // namespace shearcell

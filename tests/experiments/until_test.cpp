@@ -40,7 +40,6 @@ TEST(RunEnd, IsTheLongestThatAnyExperimentAsksFor) {
     double reached;  // cycle; -1: the run continues
   };
   const std::vector<Case> cases = {
-      {{ask(50, ten)}, {}, -1},
       {{ask(50, ten)}, measured({1, 9.99}), -1},
       {{ask(50, ten)}, measured({1, 10}), 2},
       {{ask(50, ten)}, measured({1, 12, 3}), 2},        // reached once is reached
@@ -55,7 +54,8 @@ TEST(RunEnd, IsTheLongestThatAnyExperimentAsksFor) {
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(&c - cases.data());
-    const auto why = ended_early(c.asks, c.measured);
+    const double now = 2 * static_cast<double>(c.measured.size()) - 2;
+    const auto why = ended_early(c.asks, c.measured, now);
     ASSERT_EQ(why.has_value(), c.reached >= 0);
     EXPECT_EQ(why ? why->at("reached_at_cycle").get<double>() : -1, c.reached);
   }
@@ -63,7 +63,7 @@ TEST(RunEnd, IsTheLongestThatAnyExperimentAsksFor) {
 
 TEST(RunEnd, IsDescribed) {
   const auto why = ended_early(std::vector{ask(9, Until{StopMeasure::crystalline_percent, 10, 2})},
-                               measured({1, 10, 20}));
+                               measured({1, 10, 20}), 4);
   ASSERT_TRUE(why);
   EXPECT_EQ(describe_end(*why), "crystalline_percent >= 10 at cycle 2 and 2 cycles more");
   EXPECT_EQ(describe_end(nullptr), "");
@@ -137,11 +137,13 @@ TEST_F(UntilTest, EndsTheRunSaysWhyAndKeepsTheMeasures) {
   EXPECT_EQ(expected_end(store_, {StopMeasure::phi, value_, 1}), static_cast<double>(end_));
   EXPECT_EQ(expected_end(store_, {StopMeasure::phi, value_, 2}), std::nullopt);
 
+  // Once it is reached, nothing more is measured.
   DerivedCache cache(store_.folder());
   for (const CheckpointRecord& record : store_.checkpoints(run.id)) {
+    const bool before = record.cycle < static_cast<double>(end_);
     for (const DerivedMeasure* measure : {&scalar_measures(), &crystallite_measure()}) {
       const DerivedKey key{record.sha256, measure->key(), analysis_version};
-      EXPECT_TRUE(cache.get(std::span(&key, 1)).front()) << record.cycle;
+      EXPECT_EQ(cache.get(std::span(&key, 1)).front().has_value(), before) << record.cycle;
     }
   }
   // Asking again asks for nothing.
