@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/derived_measures.hpp"
 
+#include <type_traits>
+
 #include "analysis/crystal.hpp"
 #include "analysis/error.hpp"
 #include "analysis/packing_fraction.hpp"
@@ -11,13 +13,31 @@ namespace {
 
 using nlohmann::json;
 
+/// Calls visit(name, member) for those that are kept together.
+template <class Visit>
+void for_each_kept(Visit&& visit) {
+  for (const ScalarMeasure& scalar : all_scalar_measures()) {
+    std::visit(
+        [&]<class Member>(Member member) {
+          if constexpr (!std::is_same_v<Member, MechanicalMember>) visit(scalar.name, member);
+        },
+        scalar.member);
+  }
+}
+
 json scalars_of(const Analysis& analysis) {
   json scalars;
-  for (const ScalarMeasure& scalar : all_scalar_measures()) {
-    std::visit([&](auto member) { scalars[scalar.name] = analysis.measures.*member; },
-               scalar.member);
-  }
+  for_each_kept(
+      [&](std::string_view name, auto member) { scalars[name] = analysis.measures.*member; });
   return scalars;
+}
+
+json mechanics_of(const Analysis& analysis) {
+  json kept;
+  for (const auto& [name, member] : all_mechanical_quantities()) {
+    kept[name] = analysis.measures.mechanics.*member;
+  }
+  return kept;
 }
 
 json criteria() {
@@ -37,6 +57,14 @@ const DerivedMeasure& scalar_measures() {
   return measure;
 }
 
+const DerivedMeasure& mechanics_measure() {
+  static const DerivedMeasure measure{
+      "mechanics",
+      {{"interior_distance_d", interior_distance}, {"rough_wall_surface_d", rough_wall_surface}},
+      mechanics_of};
+  return measure;
+}
+
 const DerivedMeasure& crystallite_measure() {
   static const DerivedMeasure measure{"crystallites", criteria(), [](const Analysis& analysis) {
                                         return to_json(analysis.crystallites);
@@ -47,11 +75,22 @@ const DerivedMeasure& crystallite_measure() {
 Measures read_measures(const json& result) {
   Measures m;
   try {
-    for (const ScalarMeasure& scalar : all_scalar_measures()) {
-      std::visit([&](auto member) { result.at(scalar.name).get_to(m.*member); }, scalar.member);
-    }
+    for_each_kept([&](std::string_view name, auto member) { result.at(name).get_to(m.*member); });
   } catch (const json::exception& problem) {
     throw AnalysisError(std::string("these are not the scalars of a checkpoint: ") +
+                        problem.what());
+  }
+  return m;
+}
+
+Mechanics read_mechanics(const json& result) {
+  Mechanics m;
+  try {
+    for (const auto& [name, member] : all_mechanical_quantities()) {
+      result.at(name).get_to(m.*member);
+    }
+  } catch (const json::exception& problem) {
+    throw AnalysisError(std::string("these are not the mechanics of a checkpoint: ") +
                         problem.what());
   }
   return m;

@@ -30,10 +30,14 @@ struct DerivedMeasure {
   std::string key() const { return name + " " + parameters.dump(); }
 };
 
-/// All scalars of `Measures`.
+/// All scalars of `Measures` itself.
 const DerivedMeasure& scalar_measures();
 /// What scalar_measures() gave. Throws AnalysisError when it is not that.
 Measures read_measures(const nlohmann::json& result);
+
+/// Mechanics in its own units, and the same back.
+const DerivedMeasure& mechanics_measure();
+Mechanics read_mechanics(const nlohmann::json& result);
 
 /// The CrystalliteMap of a checkpoint; read_crystallite_map() reads it back.
 const DerivedMeasure& crystallite_measure();

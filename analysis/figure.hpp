@@ -66,6 +66,7 @@ struct Figure {
   FigureForm form = FigureForm::curves;
   std::vector<std::string> keys = {};  ///< parameters that it tells apart
   bool at_rest = false;                ///< needs phi_at_rest of cycles 1 to early_cycles
+  bool mechanics = false;              ///< needs Measures::mechanics
 };
 
 /// The value of a parameter, swept or not; null if the run has no such key.

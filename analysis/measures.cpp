@@ -75,8 +75,71 @@ std::span<const ScalarMeasure> all_scalar_measures() {
       {"contacts_per_grain", "1", "contacts with grains and wall grains, mean over all grains",
        &M::contacts_per_grain},
       {"crystallites", "1", "number of crystallites of interior grains", &M::crystallites},
-      {"largest_crystallite", "1", "grains in the largest crystallite", &M::largest_crystallite}};
+      {"largest_crystallite", "1", "grains in the largest crystallite", &M::largest_crystallite},
+      {"pressure_Pa", "Pa", "mean normal stress of interior grains, from contacts",
+       MechanicalMember{&Mechanics::pressure, &MechanicalUnits::stress_Pa}},
+      {"deviator_Pa", "Pa", "sqrt(s:s / 2) of their deviatoric stress s",
+       MechanicalMember{&Mechanics::deviator, &MechanicalUnits::stress_Pa}},
+      {"stress_xx_Pa", "Pa", "stress of interior grains, positive in compression",
+       MechanicalMember{&Mechanics::stress_xx, &MechanicalUnits::stress_Pa}},
+      {"stress_yy_Pa", "Pa", "likewise",
+       MechanicalMember{&Mechanics::stress_yy, &MechanicalUnits::stress_Pa}},
+      {"stress_zz_Pa", "Pa", "likewise",
+       MechanicalMember{&Mechanics::stress_zz, &MechanicalUnits::stress_Pa}},
+      {"stress_xy_Pa", "Pa", "shear stress of interior grains",
+       MechanicalMember{&Mechanics::stress_xy, &MechanicalUnits::stress_Pa}},
+      {"stress_xz_Pa", "Pa", "likewise",
+       MechanicalMember{&Mechanics::stress_xz, &MechanicalUnits::stress_Pa}},
+      {"stress_yz_Pa", "Pa", "likewise",
+       MechanicalMember{&Mechanics::stress_yz, &MechanicalUnits::stress_Pa}},
+      {"kinetic_pressure_Pa", "Pa", "kinetic part, of velocities less the mean flow",
+       MechanicalMember{&Mechanics::kinetic_pressure, &MechanicalUnits::kinetic_stress_Pa}},
+      {"coordination", "1", "contacts per interior grain",
+       MechanicalMember{&Mechanics::coordination, nullptr}},
+      {"rattlers_percent", "%", "interior grains that fewer than four contacts hold",
+       MechanicalMember{&Mechanics::rattlers, nullptr}},
+      {"coordination_without_rattlers", "1", "contacts per interior grain among the others",
+       MechanicalMember{&Mechanics::coordination_without_rattlers, nullptr}},
+      {"force_bottom_x_N", "N", "force of the grains on the bottom wall",
+       MechanicalMember{&Mechanics::force_bottom_x, &MechanicalUnits::force_N}},
+      {"force_bottom_y_N", "N", "likewise",
+       MechanicalMember{&Mechanics::force_bottom_y, &MechanicalUnits::force_N}},
+      {"force_top_x_N", "N", "force of the grains on the top wall",
+       MechanicalMember{&Mechanics::force_top_x, &MechanicalUnits::force_N}},
+      {"force_top_y_N", "N", "likewise",
+       MechanicalMember{&Mechanics::force_top_y, &MechanicalUnits::force_N}},
+      {"force_left_x_N", "N", "force of the grains on the left wall",
+       MechanicalMember{&Mechanics::force_left_x, &MechanicalUnits::force_N}},
+      {"force_left_y_N", "N", "likewise",
+       MechanicalMember{&Mechanics::force_left_y, &MechanicalUnits::force_N}},
+      {"force_right_x_N", "N", "force of the grains on the right wall",
+       MechanicalMember{&Mechanics::force_right_x, &MechanicalUnits::force_N}},
+      {"force_right_y_N", "N", "likewise",
+       MechanicalMember{&Mechanics::force_right_y, &MechanicalUnits::force_N}},
+      {"elastic_energy_per_grain_J", "J", "of all contacts over the number of grains",
+       MechanicalMember{&Mechanics::elastic_energy, &MechanicalUnits::elastic_J}},
+      {"kinetic_energy_per_grain_J", "J", "half a time step after the positions",
+       MechanicalMember{&Mechanics::kinetic_energy, &MechanicalUnits::kinetic_J}},
+      {"gravitational_energy_per_grain_J", "J", "above the bottom wall",
+       MechanicalMember{&Mechanics::height, &MechanicalUnits::weight_J}}};
   return measures;
+}
+
+double ScalarMeasure::of(const Measures& measures) const {
+  if (const auto* mechanical = std::get_if<MechanicalMember>(&member)) {
+    const double value = measures.mechanics.*mechanical->value;
+    return mechanical->unit == nullptr ? value : value * (measures.units.*mechanical->unit);
+  }
+  if (const auto* count = std::get_if<std::size_t Measures::*>(&member)) {
+    return static_cast<double>(measures.**count);
+  }
+  return measures.*std::get<double Measures::*>(member);
+}
+
+const ScalarMeasure* find_measure(std::string_view name) {
+  const auto all = all_scalar_measures();
+  const auto found = std::ranges::find(all, name, &ScalarMeasure::name);
+  return found == all.end() ? nullptr : &*found;
 }
 
 Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions) {
@@ -112,7 +175,12 @@ Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd&
 
 Analysis analyse(const Checkpoint& checkpoint) {
   const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
-  return analyse(checkpoint.cell, pose, checkpoint.state.position);
+  Analysis analysis = analyse(checkpoint.cell, pose, checkpoint.state.position);
+  GrainMeasures& grains = analysis.grains;
+  PackingMechanics found = mechanics(checkpoint, grains.cell_volume, grains.interior);
+  analysis.measures.mechanics = found.packing;
+  grains.pressure = std::move(found.grain_pressure);
+  return analysis;
 }
 
 Measures measure(const Checkpoint& checkpoint) {

@@ -12,6 +12,7 @@
 
 #include "analysis/crystal.hpp"
 #include "analysis/crystallite_map.hpp"
+#include "analysis/mechanics.hpp"
 #include "provenance/checkpoint.hpp"
 
 namespace shearcell {
@@ -31,16 +32,30 @@ struct Measures {
   std::size_t largest_crystallite = 0;  ///< grains in it
   /// phi after a rest (protocols/rest.hpp); not a number unless a figure asked for it.
   double phi_at_rest = std::numeric_limits<double>::quiet_NaN();
+  Mechanics mechanics;  ///< zeros where nothing asked for it
+  MechanicalUnits units;
 };
 
-/// A scalar of Measures, by the name that kept results, tables and exports give it.
+/// A member of Mechanics and the unit that turns it into SI; null for a number that has none.
+struct MechanicalMember {
+  double Mechanics::*value;
+  double MechanicalUnits::*unit;
+};
+
+/// A scalar of Measures, by the name that tables, plots and exports give it.
 struct ScalarMeasure {
   std::string_view name;  ///< with its unit, unless it is a count or a pure number
-  std::string_view unit;  ///< "1", "%" or "d"
+  std::string_view unit;  ///< "1" for none
   std::string_view meaning;
-  std::variant<double Measures::*, std::size_t Measures::*> member;
+  std::variant<double Measures::*, std::size_t Measures::*, MechanicalMember> member;
+
+  bool mechanical() const { return std::holds_alternative<MechanicalMember>(member); }
+  /// In `unit`; not a number where it is unknown.
+  double of(const Measures& measures) const;
 };
 std::span<const ScalarMeasure> all_scalar_measures();
+/// The one of that name, or null.
+const ScalarMeasure* find_measure(std::string_view name);
 
 /// One entry per grain, by grain id.
 struct GrainMeasures {
@@ -49,6 +64,7 @@ struct GrainMeasures {
   std::vector<double> largest_overlap;  ///< delta_max,i [d]
   std::vector<double> phi_local;
   std::vector<double> q6;
+  std::vector<double> pressure;        ///< [k/d]; of a checkpoint
   std::vector<Structure> structure;    ///< of every grain, near the walls too
   std::vector<std::uint8_t> interior;  ///< 1 or 0
   Crystallites crystallites;           ///< of crystalline interior grains
@@ -60,7 +76,8 @@ struct Analysis {
   CrystalliteMap crystallites;  ///< where they are
 };
 
-/// Measures of a packing and of each of its grains. Throws AnalysisError as voronoi() does.
+/// Measures of a packing and of each of its grains; mechanics of a checkpoint only. Throws
+/// AnalysisError as voronoi() does.
 Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions);
 Analysis analyse(const Checkpoint& checkpoint);
 

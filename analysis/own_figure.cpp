@@ -17,21 +17,18 @@
 namespace shearcell {
 namespace {
 
-const ScalarMeasure* find_measure(std::string_view name) {
-  const auto all = all_scalar_measures();
-  const auto found = std::ranges::find(all, name, &ScalarMeasure::name);
-  return found == all.end() ? nullptr : &*found;
+Quantity quantity_of(const ScalarMeasure& measure) {
+  return [&measure](const Measures& m) { return measure.of(m); };
 }
 
-Quantity quantity_of(const ScalarMeasure& measure) {
-  return [member = measure.member](const Measures& m) {
-    return std::visit([&](auto of) { return static_cast<double>(m.*of); }, member);
-  };
+bool is_mechanical(std::string_view name) {
+  const ScalarMeasure* measure = find_measure(name);
+  return measure != nullptr && measure->mechanical();
 }
 
 MeasureColumn column_of(const ScalarMeasure& measure) {
   std::string name(measure.name);
-  std::string unit = measure.unit == "%" ? "percent" : measure.unit == "d" ? "d" : "";
+  std::string unit(measure.unit == "%" ? "percent" : measure.unit == "1" ? "" : measure.unit);
   if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
   return {name, unit, quantity_of(measure)};
 }
@@ -260,6 +257,7 @@ Figure plot_figure(const PlotSpec& plot) {
                   if (plot.log_y) table.chart.y.low = {};
                   return FigureResult{{std::move(table)}, {}};
                 }};
+  figure.mechanics = is_mechanical(plot.x) || is_mechanical(plot.y);
   if (!plot.by.empty()) {
     figure.form = FigureForm::groups;
     figure.keys = {plot.by, plot.x};
@@ -268,8 +266,10 @@ Figure plot_figure(const PlotSpec& plot) {
 }
 
 Figure claim_figure(const ClaimSpec& claim) {
-  return {claim.name, "", FigureNeeds::scalars,
-          [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
+  Figure figure{claim.name, "", FigureNeeds::scalars,
+                [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
+  figure.mechanics = is_mechanical(claim.compare);
+  return figure;
 }
 
 }  // namespace shearcell

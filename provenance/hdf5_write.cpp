@@ -17,10 +17,13 @@ Handle creation_list(hid_t kind) {
   return list;
 }
 
-Handle make_group(const Handle& parent, const std::string& name, std::size_t links) {
+Handle make_group(const Handle& parent, const std::string& name, std::size_t links,
+                  std::size_t attributes) {
   const Handle list = creation_list(H5P_GROUP_CREATE);
-  // By default more than eight links are stored in a heap, which hdf5_read.cpp does not read.
+  // By default more than eight are stored in a heap, which hdf5_read.cpp does not read, and of
+  // which HDF5 1.10 writes bytes that it did not set.
   if (links > 8) H5Pset_link_phase_change(list.get(), 65535, 0);
+  if (attributes > 8) H5Pset_attr_phase_change(list.get(), 65535, 0);
   return {require(H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
                   "group " + name),
           H5Gclose};

@@ -61,8 +61,9 @@ hid_t require(hid_t result, const std::string& what);
 /// Property list for creating files, groups or datasets without modification times.
 Handle creation_list(hid_t kind);
 
-/// `links`: the number of members, if more than 8.
-Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0);
+/// `links` and `attributes`: how many it will have, if more than 8.
+Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0,
+                  std::size_t attributes = 0);
 
 /// A scalar when the shape is empty.
 Handle make_space(const Shape& shape);

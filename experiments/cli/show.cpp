@@ -48,7 +48,7 @@ using Facts = std::vector<std::pair<TableColumn, nlohmann::json>>;
 Facts measures_of(const Store& store, const CheckpointRecord& record) {
   MeasuredCheckpoints found;
   try {
-    found = measure_checkpoints(store, {&record, 1}, {&scalar_measures(), 1}, {});
+    found = measure_checkpoints(store, {&record, 1}, table_measures(), {});
   } catch (const AnalysisError& problem) {  // as a failed run may leave it
     tell_stderr("not measured: {}\n", problem.what());
     return facts_of(record, std::nullopt);
@@ -57,7 +57,9 @@ Facts measures_of(const Store& store, const CheckpointRecord& record) {
     for (const std::string& line : *messages) tell_stderr("not measured: {}\n", line);
   }
   std::optional<Measures> measures;
-  if (found.results.front()) measures = read_measures(found.results.front()->front());
+  if (found.results.front()) {
+    measures = read_table_measures(*found.results.front(), store.run(record.run), record);
+  }
   return facts_of(record, measures);
 }
 

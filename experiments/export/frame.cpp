@@ -31,6 +31,7 @@ void add_grains(const Checkpoint& c, const GrainMeasures& measures, Frame& frame
     frame.phi_local.push_back(measures.phi_local[k]);
     frame.q6.push_back(measures.q6[k]);
     frame.overlap.push_back(measures.largest_overlap[k]);
+    frame.pressure.push_back(measures.pressure[k]);
     frame.structure.push_back(static_cast<std::int32_t>(measures.structure[k]));
     frame.crystallite.push_back(measures.crystallites.label[k] + 1);
   }
@@ -50,6 +51,7 @@ void add_wall_grains(const Checkpoint& c, const WallPose& pose, Frame& frame) {
     frame.type.push_back(1 + static_cast<std::int32_t>(side));
     frame.phi_local.push_back(0);
     frame.q6.push_back(0);
+    frame.pressure.push_back(0);
     frame.overlap.push_back(0);
     frame.structure.push_back(-1);
     frame.crystallite.push_back(-1);
@@ -85,7 +87,9 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
 
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record,
                const SelectedRun& run) {
-  const Analysis analysis = analyse(checkpoint);
+  Analysis analysis = analyse(checkpoint);
+  analysis.measures.units = mechanical_units(run.run, record);
+  for (double& pressure : analysis.grains.pressure) pressure *= analysis.measures.units.stress_Pa;
   const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
   Frame frame;
   frame.step = checkpoint.state.step;
@@ -112,6 +116,7 @@ const std::vector<FrameColumn>& frame_columns() {
       {"phi_local", &Frame::phi_local, nullptr},
       {"q6", &Frame::q6, nullptr},
       {"overlap", &Frame::overlap, nullptr},
+      {"grain_pressure_Pa", &Frame::pressure, nullptr},
       {"structure", nullptr, &Frame::structure},
       {"crystallite", nullptr, &Frame::crystallite},
   };

@@ -40,6 +40,7 @@ struct Frame {
   std::vector<double> phi_local;
   std::vector<double> q6;
   std::vector<double> overlap;            ///< largest, over the diameter
+  std::vector<double> pressure;           ///< of each grain's contacts over its cell [Pa]
   std::vector<std::int32_t> structure;    ///< 0 disordered, 1 FCC, 2 HCP
   std::vector<std::int32_t> crystallite;  ///< 0 none; 1, 2, ... by their lowest grain id
 

@@ -103,7 +103,7 @@ class Trajectory {
     particles_ = frame.particles();
     put_metadata();
     const Handle particles = make_group(file_, "particles");
-    const Handle all = make_group(particles, "all");
+    const Handle all = make_group(particles, "all", 20);
     // MDAnalysis counts the particles of a group of this name, and opens the file without a
     // topology.
     require(
@@ -129,13 +129,13 @@ class Trajectory {
     put_unit(put_dataset(all, "mass", H5T_IEEE_F64LE, mass.data(), {particles_}), "kg");
     const std::vector<double> radius(particles_, frame.radius * nm_per_m);
     put_unit(put_dataset(all, "radius", H5T_IEEE_F64LE, radius.data(), {particles_}), "nm");
-    const Handle observables = make_group(file_, "observables");
+    const Handle observables = make_group(file_, "observables", 2 + frame.scalars.size());
     element(observables, "cycle", H5T_IEEE_F64LE, {}, "");
     element(observables, "theta", H5T_IEEE_F64LE, {}, "rad");
     for (const auto& [name, value] : frame.scalars) {
       element(observables, name, H5T_IEEE_F64LE, {}, "");
     }
-    const Handle parameters = make_group(file_, "parameters");
+    const Handle parameters = make_group(file_, "parameters", 0, frame.facts.size());
     for (const auto& [key, value] : frame.facts) {
       if (value.is_string()) {
         put_attribute(parameters, key, value.get<std::string>());

@@ -31,6 +31,7 @@ struct FigureMeasures {
 std::vector<DerivedMeasure> needed(const Figure& figure) {
   if (figure.needs == FigureNeeds::none) return {};
   std::vector<DerivedMeasure> measures = {scalar_measures()};
+  if (figure.mechanics) measures.push_back(mechanics_measure());
   if (figure.needs == FigureNeeds::crystallites) measures.push_back(crystallite_measure());
   return measures;
 }
@@ -53,7 +54,10 @@ std::vector<std::optional<FigureMeasures>> measures_of(const Store& store, const
       if (!results) continue;
       one.emplace();
       if (!results->empty()) one->measures = read_measures(results->front());
-      if (results->size() > 1) one->crystallites = read_crystallite_map(results->at(1));
+      if (figure.mechanics) one->measures.mechanics = read_mechanics(results->at(1));
+      if (figure.needs == FigureNeeds::crystallites) {
+        one->crystallites = read_crystallite_map(results->back());
+      }
       results.reset();  // JSON takes more memory than the measures
     }
   } catch (const AnalysisError& problem) {
@@ -97,6 +101,7 @@ std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
       checkpoint.step = record.step;
       checkpoint.sha256 = record.sha256;
       checkpoint.measures = one->measures;
+      checkpoint.measures.units = mechanical_units(input.run, record);
       checkpoint.crystallites = std::move(one->crystallites);
       const auto stiffness = record.observables.find("stiffness_N_per_m");
       if (stiffness != record.observables.end()) checkpoint.stiffness_N_per_m = stiffness->second;

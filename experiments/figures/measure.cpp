@@ -2,6 +2,7 @@
 #include "experiments/figures/measure.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -131,6 +132,21 @@ class Measuring {
 };
 
 }  // namespace
+
+MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& checkpoint) {
+  const json none = json::object();
+  const auto parameters = run.resolved.find("parameters");
+  const json& known =
+      parameters != run.resolved.end() && parameters->is_object() ? *parameters : none;
+  const auto number = [&](const char* key) {
+    const auto found = known.find(key);
+    return found != known.end() && found->is_number() ? found->get<double>() : std::nan("");
+  };
+  const auto raised = checkpoint.observables.find("stiffness_N_per_m");
+  return mechanical_units(
+      raised == checkpoint.observables.end() ? number("stiffness_N_per_m") : raised->second,
+      number("mass_kg"), number("diameter_m"), number("gravity_m_per_s2"));
+}
 
 MeasuredCheckpoints measure_checkpoints(const Store& store,
                                         std::span<const CheckpointRecord> records,

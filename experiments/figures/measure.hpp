@@ -46,4 +46,8 @@ MeasuredCheckpoints measure_checkpoints(const Store& store,
                                         std::span<const DerivedMeasure> measures,
                                         const MeasureOptions& options);
 
+/// SI units of the mechanics of a run's checkpoint: by the run's resolved parameters, with the
+/// spring constant that a stiffening records. Not a number where the store does not say them.
+MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& checkpoint);
+
 }  // namespace shearcell

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -79,13 +80,9 @@ std::vector<Column> measures() {
     columns.push_back({{std::string(scalar.name), std::string(scalar.meaning)},
                        [&scalar](const Row& row) -> json {
                          if (!row.measures) return nullptr;
-                         return std::visit(
-                             [&](auto member) -> json {
-                               return std::isfinite(static_cast<double>((*row.measures).*member))
-                                          ? json((*row.measures).*member)
-                                          : json();
-                             },
-                             scalar.member);
+                         const auto* count = std::get_if<std::size_t Measures::*>(&scalar.member);
+                         return count == nullptr ? number(scalar.of(*row.measures))
+                                                 : json((*row.measures).**count);
                        }});
   }
   columns.push_back(of_checkpoint("time_s", "simulated time since the stage began",
@@ -219,6 +216,19 @@ std::string csv_cell(const json& value) {
 
 }  // namespace
 
+std::span<const DerivedMeasure> table_measures() {
+  static const std::array measures = {scalar_measures(), mechanics_measure()};
+  return measures;
+}
+
+Measures read_table_measures(std::span<const json> results, const RunRecord& run,
+                             const CheckpointRecord& checkpoint) {
+  Measures measures = read_measures(results[0]);
+  measures.mechanics = read_mechanics(results[1]);
+  measures.units = mechanical_units(run, checkpoint);
+  return measures;
+}
+
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options) {
   std::vector<SelectedRun> runs = select_runs(store, selection);
@@ -230,8 +240,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
       records.push_back(std::move(record));
     ends.push_back(records.size());
   }
-  MeasuredCheckpoints measured =
-      measure_checkpoints(store, records, {&scalar_measures(), 1}, options);
+  MeasuredCheckpoints measured = measure_checkpoints(store, records, table_measures(), options);
 
   const std::vector<Column> columns = columns_for(runs, per);
   RunTable table;
@@ -245,7 +254,9 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     std::vector<Row> rows;
     for (; next < ends[r]; ++next) {
       Row& row = rows.emplace_back(Row{&runs[r], &records[next]});
-      if (measured.results[next]) row.measures = read_measures(measured.results[next]->front());
+      if (measured.results[next]) {
+        row.measures = read_table_measures(*measured.results[next], runs[r].run, records[next]);
+      }
     }
     if (per == RowPer::checkpoint) {
       for (const Row& row : rows) add(row);

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,12 @@ struct RunTable {
 /// come from the checkpoints at whole cycles, as in the figures. Throws NotFound as select_runs().
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options);
+
+/// What the columns need to know of a checkpoint, and the results of measure_checkpoints() for it
+/// as Measures. Throws AnalysisError when they are something else.
+std::span<const DerivedMeasure> table_measures();
+Measures read_table_measures(std::span<const nlohmann::json> results, const RunRecord& run,
+                             const CheckpointRecord& checkpoint);
 
 /// Every column but those of swept parameters, which are named as in a manifest.
 std::vector<TableColumn> table_columns(RowPer per);

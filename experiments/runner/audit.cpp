@@ -77,7 +77,7 @@ std::string difference(const json& kept, const json& computed, const std::string
 }
 
 const std::vector<const DerivedMeasure*>& kept_measures() {
-  static const std::vector<const DerivedMeasure*> all = {&scalar_measures(),
+  static const std::vector<const DerivedMeasure*> all = {&scalar_measures(), &mechanics_measure(),
                                                          &crystallite_measure()};
   return all;
 }

@@ -50,16 +50,16 @@ TEST(DerivedMeasures, EveryScalarComesBackBitByBit) {
   const Measures& m = analysis.measures;
   const nlohmann::json kept = scalar_measures().from(analysis);
   const Measures back = read_measures(decode_result(encode_result(kept)));
+  std::size_t scalars = 0;
   for (const ScalarMeasure& scalar : all_scalar_measures()) {
-    std::visit(
-        [&](auto member) {
-          EXPECT_EQ(std::memcmp(&(back.*member), &(m.*member), sizeof(m.*member)), 0)
-              << scalar.name;
-        },
-        scalar.member);
+    if (scalar.mechanical()) continue;
+    const double kept_value = scalar.of(back), value = scalar.of(m);
+    EXPECT_EQ(std::memcmp(&kept_value, &value, sizeof(value)), 0) << scalar.name;
+    ++scalars;
   }
   // Each but phi_at_rest, which is kept by itself.
-  EXPECT_EQ(all_scalar_measures().size() * sizeof(double), sizeof(Measures) - sizeof(double))
+  EXPECT_EQ((scalars + 1) * sizeof(double),
+            sizeof(Measures) - sizeof(Mechanics) - sizeof(MechanicalUnits))
       << "a scalar has no entry";
 }
 

@@ -55,9 +55,13 @@ nlohmann::json rows(const Eigen::Matrix3Xd& columns) {
 SelectedRun about() {
   SelectedRun run;
   run.run.id = std::string(64, 'a');
-  run.run.resolved = {
-      {"parameters",
-       {{"stiffness_N_per_m", 654.0}, {"fluid", "still"}, {"steps_per_cycle", 45600}}}};
+  run.run.resolved = {{"parameters",
+                       {{"stiffness_N_per_m", 654.0},
+                        {"mass_kg", 2e-5},
+                        {"diameter_m", 3e-3},
+                        {"gravity_m_per_s2", 9.81},
+                        {"fluid", "still"},
+                        {"steps_per_cycle", 45600}}}};
   run.membership.experiment = "drag";
   run.membership.scale = "smoke";
   run.membership.variant = "fluid=still,amplitude_rad=0.0833";
@@ -77,7 +81,8 @@ CheckpointRecord record_of(const Checkpoint& checkpoint) {
 nlohmann::json truth(const Checkpoint& c) {
   const double d = c.units.diameter_m;
   const WallPose pose = wall_pose(c.cell, c.theta, c.state.wall_height);
-  const Analysis measured = analyse(c);
+  Analysis measured = analyse(c);
+  measured.measures.units = mechanical_units(654.0, 2e-5, 3e-3, 9.81);
   const Eigen::Index grains = c.state.position.cols();
   const auto walls = static_cast<Eigen::Index>(c.cell.wall_grains.size());
   Eigen::Matrix3Xd position(3, grains + walls),
@@ -94,20 +99,35 @@ nlohmann::json truth(const Checkpoint& c) {
     if (side == WallSide::bottom) velocity(1, grains + w) = c.state.wall_velocity * d;
   }
   std::vector<double> phi_local = measured.grains.phi_local, q6 = measured.grains.q6,
-                      overlap = measured.grains.largest_overlap;
+                      overlap = measured.grains.largest_overlap,
+                      pressure = measured.grains.pressure;
   std::vector<int> structure, crystallite, id;
   for (std::size_t i = 0; i < phi_local.size(); ++i) {
     structure.push_back(static_cast<int>(measured.grains.structure[i]));
     crystallite.push_back(measured.grains.crystallites.label[i] + 1);
   }
   for (std::size_t i = 0; i < type.size(); ++i) id.push_back(static_cast<int>(i) + 1);
-  for (auto* numbers : {&phi_local, &q6, &overlap}) numbers->resize(type.size(), 0.0);
+  for (double& of_grain : pressure) of_grain *= 654.0 / 3e-3;
+  for (auto* numbers : {&phi_local, &q6, &overlap, &pressure}) numbers->resize(type.size(), 0.0);
   for (auto* numbers : {&structure, &crystallite}) numbers->resize(type.size(), -1);
   nlohmann::json scalars = {{"cell_height_d", 11.5}};
   for (const ScalarMeasure& scalar : all_scalar_measures()) {
-    std::visit([&](auto member) { scalars[scalar.name] = measured.measures.*member; },
-               scalar.member);
+    scalars[scalar.name] = scalar.of(measured.measures);
   }
+  // Of a few grains in the middle, which touch no wall.
+  std::vector<std::uint8_t> inner(measured.grains.interior.size(), 0);
+  std::vector<int> inner_id;
+  double inner_volume = 0;
+  for (std::size_t i = 0; i < inner.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    if (std::fabs(c.state.position(0, column) - c.cell.width / 2) > 1) continue;
+    if (std::fabs(c.state.position(1, column) - (pose.bottom + pose.top) / 2) > 1.5) continue;
+    inner[i] = 1;
+    inner_id.push_back(static_cast<int>(i) + 1);
+    inner_volume += measured.grains.cell_volume[i] * d * d * d;
+  }
+  const Mechanics m = mechanics(c, measured.grains.cell_volume, inner).packing;
+  const double k_per_d = 654.0 / 3e-3;
   const double height = (pose.top - pose.bottom) * d;
   const double shift = height * pose.tan_theta;
   return {
@@ -118,10 +138,18 @@ nlohmann::json truth(const Checkpoint& c) {
         {"variant", "fluid=still,amplitude_rad=0.0833"},
         {"seed", 7},
         {"stiffness_N_per_m", 654.0},
+        {"mass_kg", 2e-5},
+        {"diameter_m", 3e-3},
+        {"gravity_m_per_s2", 9.81},
         {"fluid", "still"},
         {"steps_per_cycle", 45600}}},
       {"checkpoint", std::string(64, 'b')},
       {"scalars", scalars},
+      {"inner_id", inner_id},
+      {"inner_volume", inner_volume},
+      {"inner_stress",
+       {m.stress_xx * k_per_d, m.stress_yy * k_per_d, m.stress_zz * k_per_d, m.stress_xy * k_per_d,
+        m.stress_xz * k_per_d, m.stress_yz * k_per_d}},
       {"step", c.state.step},
       {"time", c.time_s},
       {"cycle", c.cycle},
@@ -137,6 +165,7 @@ nlohmann::json truth(const Checkpoint& c) {
       {"phi_local", phi_local},
       {"q6", q6},
       {"overlap", overlap},
+      {"grain_pressure_Pa", pressure},
       {"structure", structure},
       {"crystallite", crystallite}};
 }
@@ -173,7 +202,8 @@ TEST(Export, OtherProgramsReadEveryNumber) {
 
 TEST(Export, WritesTheSameBytesTwice) {
   const TemporaryFolder folder;
-  const Frame frame = frame_of(checkpoints().back());
+  Frame frame = frame_of(checkpoints().back(), {}, about());
+  for (int k = 0; k < 20; ++k) frame.facts.emplace_back("key_" + std::to_string(k), 0.5 * k);
   std::string bytes[2];
   for (int k = 0; k < 2; ++k) {
     const fs::path file = folder.path() / ("run" + std::to_string(k) + ".h5");

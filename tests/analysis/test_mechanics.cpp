@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stress, coordination, wall forces and energies: a lattice with a closed form, and sums over all
+// pairs of a disordered packing. tests/export compares the stress with LAMMPS.
+#include "analysis/mechanics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "analysis/derived_measures.hpp"
+#include "analysis/error.hpp"
+#include "analysis/measures.hpp"
+#include "core/contact.hpp"
+#include "tests/analysis/packings.hpp"
+
+namespace shearcell::testing {
+namespace {
+
+Checkpoint checkpoint_of(const Packing& packing) {
+  Checkpoint checkpoint;
+  checkpoint.cell = packing.cell;
+  checkpoint.theta = std::atan(packing.pose.tan_theta);
+  checkpoint.state.position = packing.grains;
+  checkpoint.state.velocity = Eigen::Matrix3Xd::Zero(3, packing.grains.cols());
+  checkpoint.state.wall_height = packing.pose.bottom;
+  return checkpoint;
+}
+
+// n^3 grains of a simple cubic lattice, squeezed so that every contact overlaps by `overlap`.
+Checkpoint squeezed_lattice(int n, double overlap) {
+  const double spacing = 1 - overlap;
+  Packing packing = empty_cell((n - 1) * spacing + 1 - 2 * overlap,
+                               (n - 1) * spacing + 1 - 2 * overlap, n * spacing);
+  packing.grains.resize(3, n * n * n);
+  Eigen::Index i = 0;
+  for (int x = 0; x < n; ++x) {
+    for (int y = 0; y < n; ++y) {
+      for (int z = 0; z < n; ++z) {
+        packing.grains.col(i++) =
+            Eigen::Vector3d(0.5 - overlap + x * spacing, 0.5 - overlap + y * spacing, z * spacing);
+      }
+    }
+  }
+  return checkpoint_of(packing);
+}
+
+TEST(Mechanics, OfASqueezedLatticeIsKnown) {
+  constexpr int n = 6;
+  constexpr double overlap = 0.01, spacing = 1 - overlap;
+  Checkpoint checkpoint = squeezed_lattice(n, overlap);
+  // A linear flow has no temperature.
+  checkpoint.state.velocity.row(0) = (3 * checkpoint.state.position.row(1).array() - 7).matrix();
+  const Analysis found = analyse(checkpoint);
+  const Mechanics& m = found.measures.mechanics;
+  ASSERT_EQ(found.measures.interior_grains, static_cast<std::size_t>(2 * 2 * n));
+  const double stress = overlap / (spacing * spacing);
+  for (const double component : {m.stress_xx, m.stress_yy, m.stress_zz, m.pressure}) {
+    EXPECT_NEAR(component, stress, 1e-12);
+  }
+  for (const double component : {m.stress_xy, m.stress_xz, m.stress_yz, m.deviator}) {
+    EXPECT_NEAR(component, 0, 1e-12);
+  }
+  for (std::size_t i = 0; i < found.grains.interior.size(); ++i) {
+    if (found.grains.interior[i] == 0) continue;
+    EXPECT_NEAR(found.grains.pressure[i], stress, 1e-12);
+  }
+  EXPECT_NEAR(m.kinetic_pressure, 0, 1e-12);
+  EXPECT_EQ(m.coordination, 6);
+  EXPECT_EQ(m.coordination_without_rattlers, 6);
+  EXPECT_EQ(m.rattlers, 0);
+  EXPECT_NEAR(m.force_bottom_y, -n * n * overlap, 1e-12);
+  EXPECT_NEAR(m.force_top_y, n * n * overlap, 1e-12);
+  EXPECT_NEAR(m.force_left_x, -n * n * overlap, 1e-12);
+  EXPECT_NEAR(m.force_right_x, n * n * overlap, 1e-12);
+  EXPECT_NEAR(m.force_left_y, 0, 1e-12);
+  const double contacts = 2.0 * n * n * (n - 1) + n * n * n + 4 * n * n;
+  EXPECT_NEAR(m.elastic_energy, contacts * overlap * overlap / 2 / (n * n * n), 1e-15);
+  EXPECT_NEAR(m.kinetic_energy, checkpoint.state.velocity.squaredNorm() / 2 / (n * n * n), 1e-12);
+  EXPECT_NEAR(m.height, 0.5 - overlap + (n - 1) * spacing / 2, 1e-12);
+}
+
+TEST(Mechanics, TheTemperatureIsThatOfTheFluctuations) {
+  Checkpoint checkpoint = squeezed_lattice(6, 0.01);
+  const double without = analyse(checkpoint).measures.mechanics.kinetic_pressure;
+  EXPECT_EQ(without, 0);
+  for (Eigen::Index i = 0; i < checkpoint.state.position.cols(); ++i) {
+    checkpoint.state.velocity(2, i) = i % 2 == 0 ? 0.5 : -0.5;  // z alternates
+  }
+  // One grain a cell: a density of 1 / spacing^3.
+  EXPECT_NEAR(analyse(checkpoint).measures.mechanics.kinetic_pressure, 0.25 / 3 / std::pow(0.99, 3),
+              1e-12);
+}
+
+TEST(Mechanics, AGrainThatNothingHoldsIsARattler) {
+  constexpr int n = 7;
+  Checkpoint checkpoint = squeezed_lattice(n, 0.01);
+  const Eigen::Matrix3Xd all = checkpoint.state.position;
+  const Eigen::Vector3d middle = all.col((3 * n + 3) * n + 3);
+  std::vector<Eigen::Index> kept;  // without its six neighbours, which leaves theirs five contacts
+  for (Eigen::Index i = 0; i < all.cols(); ++i) {
+    const double distance = (all.col(i) - middle).norm();
+    if (distance < 0.1 || distance > 1.01) kept.push_back(i);
+  }
+  checkpoint.state.position = all(Eigen::all, kept);
+  checkpoint.state.velocity = Eigen::Matrix3Xd::Zero(3, checkpoint.state.position.cols());
+  const Analysis found = analyse(checkpoint);
+  EXPECT_NEAR(found.measures.mechanics.rattlers,
+              100.0 / static_cast<double>(found.measures.interior_grains), 1e-12);
+}
+
+// Every pair, every wall grain and every plane, without a grid, term by term.
+struct BruteForce {
+  Eigen::Matrix3d stress = Eigen::Matrix3d::Zero();
+  std::array<Eigen::Vector3d, 4> force = {};
+  double energy = 0, ends = 0, held_ends = 0;
+  std::vector<int> rattler;
+};
+
+BruteForce brute_force(const Checkpoint& c, const GrainMeasures& grains) {
+  BruteForce sums;
+  sums.force.fill(Eigen::Vector3d::Zero());
+  const Eigen::Matrix3Xd& p = c.state.position;
+  const WallPose pose = wall_pose(c.cell, c.theta, c.state.wall_height);
+  const Eigen::Matrix3Xd walls = wall_grain_positions(c.cell, pose);
+  const Eigen::Index n = p.cols();
+  Eigen::MatrixXi touching = Eigen::MatrixXi::Zero(n, n);
+  Eigen::VectorXi at_walls = Eigen::VectorXi::Zero(n);
+  const auto interior = [&](Eigen::Index i) {
+    return grains.interior[static_cast<std::size_t>(i)] != 0;
+  };
+  double volume = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (interior(i)) volume += grains.cell_volume[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < n + walls.cols(); ++j) {
+      if (i == j) continue;
+      Eigen::Vector3d r = p.col(i) - (j < n ? p.col(j) : walls.col(j - n));
+      r.z() -= c.cell.depth * std::round(r.z() / c.cell.depth);
+      if (r.norm() >= 1) continue;
+      const double overlap = 1 - r.norm();
+      const Eigen::Vector3d on_i = overlap * r.normalized();
+      if (interior(i)) sums.stress += 0.5 * on_i * r.transpose();
+      sums.energy += (j < n ? 0.25 : 0.5) * overlap * overlap;
+      if (j < n) {
+        touching(i, j) = 1;
+      } else {
+        ++at_walls(i);
+        const WallSide side = c.cell.wall_grains[static_cast<std::size_t>(j - n)].side;
+        sums.force[static_cast<std::size_t>(side)] -= on_i;
+      }
+    }
+    const auto planes = wall_planes(c.cell, pose);
+    for (std::size_t w = 0; w < 4; ++w) {
+      const Eigen::Vector3d normal(planes[w].normal[0], planes[w].normal[1], 0);
+      const Eigen::Vector3d point(planes[w].point[0], planes[w].point[1], p(2, i));
+      const double overlap = 0.5 - (p.col(i) - point).dot(normal);
+      if (overlap <= 0) continue;
+      ++at_walls(i);
+      sums.force[w] -= overlap * normal;
+      sums.energy += 0.5 * overlap * overlap;
+    }
+  }
+  sums.stress /= volume;
+  sums.rattler.assign(static_cast<std::size_t>(n), 0);
+  for (bool found = true; found;) {
+    found = false;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      int held = at_walls(i);
+      for (Eigen::Index j = 0; j < n; ++j) {
+        held += sums.rattler[static_cast<std::size_t>(j)] == 0 ? touching(i, j) : 0;
+      }
+      if (held >= 4 || sums.rattler[static_cast<std::size_t>(i)] != 0) continue;
+      sums.rattler[static_cast<std::size_t>(i)] = 1;
+      found = true;
+    }
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!interior(i)) continue;
+    const bool free = sums.rattler[static_cast<std::size_t>(i)] != 0;
+    for (Eigen::Index j = 0; j < n; ++j) {
+      sums.ends += touching(i, j);
+      if (!free && sums.rattler[static_cast<std::size_t>(j)] == 0) {
+        sums.held_ends += touching(i, j);
+      }
+    }
+    sums.ends += at_walls(i);
+    sums.held_ends += free ? 0 : at_walls(i);
+  }
+  return sums;
+}
+
+TEST(Mechanics, EqualsSumsOverAllPairs) {
+  for (const double theta : {0.0, 0.08}) {
+    SCOPED_TRACE(theta);
+    const Checkpoint checkpoint = checkpoint_of(jammed(700, true, theta, 3));
+    const Analysis found = analyse(checkpoint);
+    const Mechanics& m = found.measures.mechanics;
+    const BruteForce all = brute_force(checkpoint, found.grains);
+    const double scale = all.stress.norm();
+    ASSERT_GT(scale, 0);
+    EXPECT_NEAR(m.stress_xx, all.stress(0, 0), 1e-12 * scale);
+    EXPECT_NEAR(m.stress_yy, all.stress(1, 1), 1e-12 * scale);
+    EXPECT_NEAR(m.stress_zz, all.stress(2, 2), 1e-12 * scale);
+    EXPECT_NEAR(m.stress_xy, all.stress(0, 1), 1e-12 * scale);
+    EXPECT_NEAR(m.stress_xz, all.stress(0, 2), 1e-12 * scale);
+    EXPECT_NEAR(m.stress_yz, all.stress(1, 2), 1e-12 * scale);
+    EXPECT_NEAR(m.pressure, all.stress.trace() / 3, 1e-12 * scale);
+    const Eigen::Matrix3d s = all.stress - all.stress.trace() / 3 * Eigen::Matrix3d::Identity();
+    EXPECT_NEAR(m.deviator, std::sqrt(0.5 * (s * s).trace()), 1e-12 * scale);
+    const auto force = [&](WallSide side) { return all.force[static_cast<std::size_t>(side)]; };
+    EXPECT_NEAR(m.force_bottom_y, force(WallSide::bottom).y(), 1e-12);
+    EXPECT_NEAR(m.force_bottom_x, force(WallSide::bottom).x(), 1e-12);
+    EXPECT_NEAR(m.force_top_y, force(WallSide::top).y(), 1e-12);
+    EXPECT_NEAR(m.force_top_x, force(WallSide::top).x(), 1e-12);
+    EXPECT_NEAR(m.force_left_x, force(WallSide::left).x(), 1e-12);
+    EXPECT_NEAR(m.force_left_y, force(WallSide::left).y(), 1e-12);
+    EXPECT_NEAR(m.force_right_x, force(WallSide::right).x(), 1e-12);
+    EXPECT_NEAR(m.force_right_y, force(WallSide::right).y(), 1e-12);
+    EXPECT_NEAR(m.elastic_energy, all.energy / 700, 1e-15);
+    const auto interior = static_cast<double>(found.measures.interior_grains);
+    double rattlers = 0;
+    for (std::size_t i = 0; i < all.rattler.size(); ++i) {
+      rattlers += found.grains.interior[i] != 0 ? all.rattler[i] : 0;
+    }
+    EXPECT_GT(rattlers, 0) << "the case is too easy";
+    EXPECT_NEAR(m.rattlers, 100 * rattlers / interior, 1e-12);
+    EXPECT_NEAR(m.coordination, all.ends / interior, 1e-12);
+    EXPECT_NEAR(m.coordination_without_rattlers, all.held_ends / (interior - rattlers), 1e-12);
+  }
+}
+
+TEST(Mechanics, ComesBackBitByBitAndInSIUnits) {
+  const Analysis found = analyse(checkpoint_of(jammed(300, true, 0, 5)));
+  const nlohmann::json kept = mechanics_measure().from(found);
+  EXPECT_EQ(kept.size() * sizeof(double), sizeof(Mechanics)) << "a member is not kept";
+  Measures back = found.measures;
+  back.mechanics = read_mechanics(decode_result(encode_result(kept)));
+  for (const MechanicalQuantity& quantity : all_mechanical_quantities()) {
+    EXPECT_EQ(back.mechanics.*quantity.member, found.measures.mechanics.*quantity.member)
+        << quantity.name;
+  }
+  EXPECT_THROW(read_mechanics(nlohmann::json::object()), AnalysisError);
+
+  EXPECT_TRUE(std::isnan(find_measure("pressure_Pa")->of(back))) << "k and d are unknown";
+  EXPECT_EQ(find_measure("coordination")->of(back), back.mechanics.coordination);
+  back.units = mechanical_units(654, 2e-5, 3e-3, 9.81);
+  const auto in_si = [&](const char* name) { return find_measure(name)->of(back); };
+  const auto expect = [&](const char* name, double value) {
+    EXPECT_NEAR(in_si(name), value, 1e-12 * std::fabs(value)) << name;
+  };
+  const Mechanics& m = back.mechanics;
+  expect("pressure_Pa", m.pressure * 654 / 3e-3);
+  expect("force_bottom_y_N", m.force_bottom_y * 654 * 3e-3);
+  expect("elastic_energy_per_grain_J", m.elastic_energy * 654 * 9e-6);
+  expect("kinetic_energy_per_grain_J", m.kinetic_energy * 2e-5 * 9e-6);
+  expect("gravitational_energy_per_grain_J", m.height * 2e-5 * 9.81 * 3e-3);
+  expect("kinetic_pressure_Pa", m.kinetic_pressure * 2e-5 / 3e-3);
+}
+
+}  // namespace
+}  // namespace shearcell::testing
