@@ -18,8 +18,10 @@ template <class Visit>
 void for_each_kept(Visit&& visit) {
   for (const ScalarMeasure& scalar : all_scalar_measures()) {
     std::visit(
-        [&]<class Member>(Member member) {
-          if constexpr (!std::is_same_v<Member, MechanicalMember>) visit(scalar.name, member);
+        [&](auto member) {
+          if constexpr (!std::is_same_v<decltype(member), MechanicalMember>) {
+            visit(scalar.name, member);
+          }
         },
         scalar.member);
   }

@@ -38,7 +38,7 @@ struct CurvePoint {
 struct Curve {
   std::string variant;   ///< as the manifest names it, with ';' for ','
   nlohmann::json value;  ///< of the figure's parameter; null if the runs have no such key
-  CurveStyle style;
+  CurveStyle style = {};
   std::vector<const FigureRun*> runs;
   std::vector<CurvePoint> points;  ///< by cycle
 };

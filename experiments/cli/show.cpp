@@ -202,7 +202,7 @@ std::optional<FigureRecord> find_record(const Store& store, const std::string& n
   std::vector<FigureRecord> found;
   std::string names;
   for (FigureRecord& figure : store.figures()) {
-    if (figure.name == name) return std::move(figure);
+    if (figure.name == name) return {std::move(figure)};
     if (figure_name(figure) != name) continue;
     names += (names.empty() ? "" : ", ") + figure.name;
     found.push_back(std::move(figure));
