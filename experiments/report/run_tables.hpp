@@ -11,8 +11,9 @@ namespace shearcell {
 void add_run_tables(const Store& store, const ReportOptions& options, ReportData& data,
                     Report& report);
 
-/// For the front end: [{experiment, runs: [{id, kind, scale, variant, seed, cycle, phi, percent}]}],
-/// the runs in the order of the rows of the table; the last three are arrays with null for no value.
+/// For the front end: [{experiment, runs: [{id, kind, scale, variant, seed, cycle, phi,
+/// percent}]}], the runs in the order of the rows of the table; the last three are arrays with null
+/// for no value.
 nlohmann::json run_traces(const ReportData& data);
 
 }  // namespace shearcell

@@ -56,6 +56,7 @@ TEST_F(CommandLineTable, HasARowForEachCheckpointAndEachRun) {
 }
 
 TEST_F(CommandLineTable, CallsVariantsByTheirLabels) {
+  fs::remove_all(path("shearcell-store"));
   campaign(tiny_manifest("", kBothFluids + "labels: {\"fluid=still\": \"water at rest\"}\n"),
            {"--cycles", "1"});
   EXPECT_TRUE(contains(run({"status"}).out, "  water at rest  ")) << run({"status"}).out;

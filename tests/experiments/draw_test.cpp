@@ -161,7 +161,7 @@ TEST_F(DrawFigure, APlotByAKeyNamesItsCurvesByTheLabelsOfThatKey) {
           tiny_manifest("",
                         "sweep: {grid: {fluid: [still, cell], amplitude_rad: [0.05, "
                         "0.08]}}\nlabels: {\"fluid=still\": water at rest}\n"
-                        "plots: [{name: mean, y: phi, by: fluid}]\n"),
+                        "plots: [{name: mean, y: phi, x: amplitude_rad, by: fluid}]\n"),
           {.scale = {}, .cycles = 1, .seeds = {}});
   FigureOptions options;
   options.folder = folder_.path() / "own";
@@ -170,7 +170,7 @@ TEST_F(DrawFigure, APlotByAKeyNamesItsCurvesByTheLabelsOfThatKey) {
   EXPECT_NE(files.at("mean.gp").find("title 'water at rest'"), std::string::npos)
       << files.at("mean.gp");
   EXPECT_NE(files.at("mean.gp").find("title 'fluid=cell'"), std::string::npos);
-  EXPECT_NE(files.at("mean.csv").find("\nfluid=still,0,"), std::string::npos)
+  EXPECT_NE(files.at("mean.csv").find("\nfluid=still,0.05,"), std::string::npos)
       << files.at("mean.csv");
 }
 

@@ -130,7 +130,7 @@ TEST_F(ReportOfRuns, ShowsTheStateOfEachStepOfTheWorkflow) {
   const Manifest longer = parse_manifest(tiny_manifest("  cycles: 5\n", kBothFluids), "tiny.yaml");
   declare(store_, longer, expand(longer));
   const RunRecord run = runs_of_kind(store_, "shear").front();
-  store_.start_run(run.id, {});
+  store_.start_run(run.id, {}, store_.checkpoints(run.id).back().sha256);
   store_.fail_run(run.id, "blew up");
   const std::string html = make(drawings()).html;
   const std::size_t begin = html.find("<ol class=\"workflow\"");

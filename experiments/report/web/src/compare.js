@@ -91,7 +91,7 @@ export class Comparison {
     const chosen = this.chosen();
     const range = commonRange(chosen.flatMap(({runs}) => runs));
     this.sides.forEach(({facts, panels}, k) => {
-      facts.textContent = `${chosen[k].experiment}: ${factsOf(chosen[k])}`;
+      facts.textContent = `${chosen[k].experiment}, ${chosen[k].name}: ${factsOf(chosen[k])}`;
       panels.replaceChildren();
       for (const {name, chart} of chartsOfVariant(chosen[k].runs, chosen[k].name, range)) {
         const host = document.createElement("div");
