@@ -61,7 +61,8 @@ TEST_F(CommandLineTable, CallsVariantsByTheirLabels) {
            {"--cycles", "1"});
   EXPECT_TRUE(contains(run({"status"}).out, "  water at rest  ")) << run({"status"}).out;
   std::set<std::string> in_status, in_table;
-  for (const auto& one : json({"status", "--json"}).at("runs")) {
+  const nlohmann::json status = json({"status", "--json"});
+  for (const auto& one : status.at("runs")) {
     if (one.at("kind") == "prepare") continue;
     in_status.insert(one.at("name").get<std::string>() + "/" +
                      one.at("variant").get<std::string>());
