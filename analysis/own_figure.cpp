@@ -62,7 +62,8 @@ std::optional<double> value_at(const FigureRun& run, const Quantity& quantity,
 
 /// A copy of the runs in which the curve is the variant: runs that differ in `x` alone, or those
 /// with one value of `by`, share a curve. It has the name of its variant where it is of one.
-std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec& plot) {
+std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec& plot,
+                                const NameVariants& name) {
   std::vector<std::string> keys = varied_keys(runs);
   std::erase(keys, plot.x);
   if (!plot.by.empty()) keys = {plot.by};
@@ -82,8 +83,15 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
     run.variant = text.empty() ? "all" : text;
     names[run.variant].insert(run.name);
   }
+  std::vector<nlohmann::json> curves;
+  for (const FigureRun& run : found) {
+    if (std::ranges::find(curves, run.labels) == curves.end()) curves.push_back(run.labels);
+  }
+  const std::vector<std::string> shared = name ? name(curves) : std::vector<std::string>();
   for (FigureRun& run : found) {
-    if (names.at(run.variant).size() > 1 || run.name.empty()) run.name = run.variant;
+    if (names.at(run.variant).size() == 1 && !run.name.empty()) continue;
+    const auto curve = std::ranges::find(curves, run.labels) - curves.begin();
+    run.name = name && !run.labels.empty() ? shared[static_cast<std::size_t>(curve)] : run.variant;
   }
   return found;
 }
@@ -112,8 +120,9 @@ FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Qu
   return table;
 }
 
-FigureTable against_parameter(const PlotSpec& plot, std::span<const FigureRun> given) {
-  const std::vector<FigureRun> runs = by_curve(given, plot);
+FigureTable against_parameter(const PlotSpec& plot, std::span<const FigureRun> given,
+                              const NameVariants& names) {
+  const std::vector<FigureRun> runs = by_curve(given, plot, names);
   const MeasureColumn y = column_of(*find_measure(plot.y));
   FigureTable table{.name = plot.name, .columns = {"variant", plot.x}, .rows = {}};
   add_columns(y, table.columns);
@@ -167,11 +176,12 @@ FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves)
   return table;
 }
 
-FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given) {
+FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
+                 const NameVariants& names) {
   const bool by_parameter = plot.x != "cycle" && find_measure(plot.x) == nullptr;
-  if (by_parameter) return against_parameter(plot, given);
+  if (by_parameter) return against_parameter(plot, given, names);
   const std::vector<FigureRun> grouped =
-      plot.by.empty() ? std::vector<FigureRun>() : by_curve(given, plot);
+      plot.by.empty() ? std::vector<FigureRun>() : by_curve(given, plot, names);
   const std::span<const FigureRun> runs = plot.by.empty() ? given : grouped;
   const std::vector<Curve> curves =
       curves_by(runs, {}, [](const FigureRun&) { return nullptr; }, {});
@@ -243,10 +253,10 @@ bool is_measure(std::string_view name) {
   return find_measure(name) != nullptr;
 }
 
-Figure plot_figure(const PlotSpec& plot) {
+Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   Figure figure{plot.name, plot.y + " against " + plot.x, FigureNeeds::scalars,
-                [plot](std::span<const FigureRun> runs) {
-                  FigureTable table = draw(plot, runs);
+                [plot, names](std::span<const FigureRun> runs) {
+                  FigureTable table = draw(plot, runs, names);
                   table.chart.x = axis_of(plot.x);
                   if (!plot.x_symbol.empty()) table.chart.x = {.symbol = italic(plot.x_symbol)};
                   if (!plot.x_unit.empty()) table.chart.x.unit = plot.x_unit;

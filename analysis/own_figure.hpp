@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace shearcell {
 
@@ -40,9 +42,14 @@ struct ClaimSpec {
 /// Whether there is a scalar measure of that name.
 bool is_measure(std::string_view name);
 
+/// Names for people of variants, which are objects of keys and values; in their order.
+using NameVariants =
+    std::function<std::vector<std::string>(const std::vector<nlohmann::json>& variants)>;
+
 /// One panel NAME: the measure against `x`, as the supplement's figures are drawn. Against phi,
-/// runs are averaged in bins; against another measure, at each cycle.
-Figure plot_figure(const PlotSpec& plot);
+/// runs are averaged in bins; against another measure, at each cycle. `names` names curves that
+/// several variants share by what these have in common; without it they are called "fluid=still".
+Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
 /// No panel and one verdict (analysis/claims.hpp). Its function throws UsageError unless each
 /// side of `between` fits exactly one variant.

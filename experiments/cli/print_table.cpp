@@ -29,9 +29,9 @@ std::vector<Column> measure(const std::vector<std::string>& header,
                             const std::vector<std::vector<std::string>>& rows) {
   std::vector<Column> columns(header.size());
   for (std::size_t c = 0; c < header.size(); ++c) {
-    columns[c].width = header[c].size();
+    columns[c].width = characters(header[c]);
     for (const auto& row : rows) {
-      columns[c].width = std::max(columns[c].width, row[c].size());
+      columns[c].width = std::max(columns[c].width, characters(row[c]));
       columns[c].right = columns[c].right && is_number(row[c]);
     }
   }
@@ -55,9 +55,10 @@ void narrow(std::vector<Column>& columns, std::size_t limit) {
 }
 
 std::string fitted(const std::string& cell, const Column& column) {
-  if (cell.size() > column.width) return cell.substr(0, column.width - 1) + "~";
-  return column.right ? fmt::format("{:>{}}", cell, column.width)
-                      : fmt::format("{:<{}}", cell, column.width);
+  const std::size_t size = characters(cell);
+  if (size > column.width) return std::string(first_characters(cell, column.width - 1)) + "~";
+  const std::string room(column.width - size, ' ');
+  return column.right ? room + cell : cell + room;
 }
 
 /// States and outcomes that one looks for.

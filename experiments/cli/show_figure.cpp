@@ -22,9 +22,9 @@ std::string cut(const std::string& text, std::size_t used) {
   const auto width = terminal_columns(stdout);
   if (!width) return printable(text, std::string::npos);
   const std::size_t left = *width > used + 3 ? *width - used : 4;
-  std::string shown = printable(text, *width);
-  if (shown.size() > left) shown.replace(left - 3, shown.npos, "...");
-  return shown;
+  const std::string shown = printable(text, std::string::npos);
+  if (characters(shown) <= left) return shown;
+  return std::string(first_characters(shown, left - 3)) + "...";
 }
 
 std::string text_at(const nlohmann::json& object, const char* key) {
@@ -58,26 +58,26 @@ class Machines {
   void print() const {
     for (std::size_t b = 0; b < builds_.size(); ++b) {
       const nlohmann::json& build = builds_[b]["build"];
-      fmt::print("build {}   {}\n", b + 1,
-                 cut(fmt::format("shearcell {} ({}), {} {}", text_at(build, "version"),
-                                 text_at(build, "commit"), text_at(build, "compiler"),
-                                 text_at(build, "type")),
-                     10));
-      fmt::print("          {}\n", cut(text_at(build, "flags"), 10));
+      tell("build {}   {}\n", b + 1,
+           cut(fmt::format("shearcell {} ({}), {} {}", text_at(build, "version"),
+                           text_at(build, "commit"), text_at(build, "compiler"),
+                           text_at(build, "type")),
+               10));
+      tell("          {}\n", cut(text_at(build, "flags"), 10));
       std::string libraries;
       for (const auto& [name, version] : builds_[b]["libraries"].items()) {
         libraries += (libraries.empty() ? "" : ", ") + name + " " +
                      text_at(builds_[b]["libraries"], name.c_str());
       }
-      if (!libraries.empty()) fmt::print("          {}\n", cut(libraries, 10));
+      if (!libraries.empty()) tell("          {}\n", cut(libraries, 10));
     }
     for (std::size_t h = 0; h < hosts_.size(); ++h) {
       const nlohmann::json& host = hosts_[h];
-      fmt::print("host {}    {}\n", h + 1,
-                 cut(text_at(host, "host") + ", " + text_at(host, "system"), 10));
-      fmt::print("          {}\n", cut(fmt::format("{}, {} cores, {}", text_at(host, "cpu"),
-                                                   text_at(host, "cores"), text_at(host, "simd")),
-                                       10));
+      tell("host {}    {}\n", h + 1,
+           cut(text_at(host, "host") + ", " + text_at(host, "system"), 10));
+      tell("          {}\n", cut(fmt::format("{}, {} cores, {}", text_at(host, "cpu"),
+                                             text_at(host, "cores"), text_at(host, "simd")),
+                                 10));
     }
   }
 
@@ -94,7 +94,7 @@ class Machines {
 
 void print_manifests(const FigureLineage& lineage) {
   for (const ManifestText& manifest : lineage.manifests) {
-    fmt::print("\nmanifest  {}\n  sha256  {}\n", cut(manifest.path, 10), manifest.sha256);
+    tell("\nmanifest  {}\n  sha256  {}\n", cut(manifest.path, 10), manifest.sha256);
     std::vector<ManifestLine> shown;
     for (const FigureInput& input : lineage.inputs) {
       if (input.manifest != manifest.sha256) continue;
@@ -108,7 +108,7 @@ void print_manifests(const FigureLineage& lineage) {
     std::sort(shown.begin(), shown.end(),
               [](const ManifestLine& a, const ManifestLine& b) { return a.line < b.line; });
     for (const ManifestLine& line : shown) {
-      fmt::print("  line {:>4}  {}\n", line.line, cut(line.text, 13));
+      tell("  line {:>4}  {}\n", line.line, cut(line.text, 13));
     }
   }
 }
@@ -116,25 +116,25 @@ void print_manifests(const FigureLineage& lineage) {
 void print_attempts(const RunLineage& stage, Machines& machines) {
   for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
     const Attempt& attempt = stage.attempts[a];
-    fmt::print("  attempt {:<3} {}  {}, build {}, host {}\n", a + 1, moment(attempt.started_at),
-               name_of(attempt.outcome), machines.build(attempt.host), machines.host(attempt.host));
-    if (!attempt.why.empty()) fmt::print("              {}\n", cut(attempt.why, 14));
+    tell("  attempt {:<3} {}  {}, build {}, host {}\n", a + 1, moment(attempt.started_at),
+         name_of(attempt.outcome), machines.build(attempt.host), machines.host(attempt.host));
+    if (!attempt.why.empty()) tell("              {}\n", cut(attempt.why, 14));
     if (!attempt.from_checkpoint.empty()) {
-      fmt::print("  from        {}\n", attempt.from_checkpoint);
+      tell("  from        {}\n", attempt.from_checkpoint);
     }
   }
 }
 
 void print_checkpoints(const std::vector<std::string>& checkpoints, const RunLineage& run) {
-  fmt::print("  {:>6}  {:>2}  checkpoint\n", "cycle", "at");
+  tell("  {:>6}  {:>2}  checkpoint\n", "cycle", "at");
   for (const std::string& sha256 : checkpoints) {
     const CheckpointHistory* known = run.find(sha256);
     if (known == nullptr) {
-      fmt::print("  {:>6}  {:>2}  {}\n", "?", "?", sha256);
+      tell("  {:>6}  {:>2}  {}\n", "?", "?", sha256);
       continue;
     }
-    fmt::print("  {:>6g}  {:>2}  {}\n", known->record.cycle,
-               known->attempt ? std::to_string(*known->attempt + 1) : "?", sha256);
+    tell("  {:>6g}  {:>2}  {}\n", known->record.cycle,
+         known->attempt ? std::to_string(*known->attempt + 1) : "?", sha256);
   }
 }
 
@@ -142,16 +142,16 @@ void print_input(const FigureInput& input, const RunLineage& run, Machines& mach
   std::set<int> numbers;
   for (const ManifestLine& line : input.lines) numbers.insert(line.line);
   const std::string lines = numbers.empty() ? "?" : fmt::format("{}", fmt::join(numbers, ", "));
-  fmt::print("\nrun       {}\n", input.run);
-  fmt::print("  {}\n", cut(fmt::format("{} {}, seed {}, {} grains; manifest {:.8}, lines {}",
-                                       input.experiment, input.variant, input.seed, run.run.grains,
-                                       input.manifest, lines),
-                           2));
+  tell("\nrun       {}\n", input.run);
+  tell("  {}\n",
+       cut(fmt::format("{} {}, seed {}, {} grains; manifest {:.8}, lines {}", input.experiment,
+                       input.variant, input.seed, run.run.grains, input.manifest, lines),
+           2));
   if (input.overrides.is_object()) {
     for (const auto& [key, values] : input.overrides.items()) {
-      fmt::print("  {}\n", cut(fmt::format("given at the command line: {} {} (manifest: {})", key,
-                                           text_at(values, "run"), text_at(values, "manifest")),
-                               2));
+      tell("  {}\n", cut(fmt::format("given at the command line: {} {} (manifest: {})", key,
+                                     text_at(values, "run"), text_at(values, "manifest")),
+                         2));
     }
   }
   print_attempts(run, machines);
@@ -159,8 +159,8 @@ void print_input(const FigureInput& input, const RunLineage& run, Machines& mach
 }
 
 void print_stage_before(const RunLineage& stage, Machines& machines) {
-  fmt::print("\nbefore    {}\n  {}, seed {}, {} grains\n", stage.run.id, cut(stage.run.kind, 50),
-             text_at(stage.run.resolved, "seed"), stage.run.grains);
+  tell("\nbefore    {}\n  {}, seed {}, {} grains\n", stage.run.id, cut(stage.run.kind, 50),
+       text_at(stage.run.resolved, "seed"), stage.run.grains);
   print_attempts(stage, machines);
   std::vector<std::string> checkpoints;
   for (const CheckpointHistory& c : stage.checkpoints) {
@@ -178,12 +178,12 @@ void print(const FigureLineage& lineage) {
     by = fmt::format(", build {}, host {}", machines.build(made), machines.host(made));
   }
   const std::string scale = text_at(facts, "scale");
-  fmt::print("figure    {}, {} scale, analysis version {}\n", lineage.record.name,
-             scale.empty() ? "base" : cut(scale, 50), text_at(facts, "analysis_version"));
-  fmt::print("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at),
-             lineage.record.seq, by);
+  tell("figure    {}, {} scale, analysis version {}\n", cut(lineage.record.name, 40),
+       scale.empty() ? "base" : cut(scale, 50), text_at(facts, "analysis_version"));
+  tell("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at), lineage.record.seq,
+       by);
   for (const auto& [name, sha256] : lineage.outputs) {
-    fmt::print("  {:<12}{}\n", cut(name, 66), sha256);
+    tell("  {:<12}{}\n", cut(name, 66), sha256);
   }
   print_manifests(lineage);
   for (const FigureInput& input : lineage.inputs) {
@@ -195,7 +195,7 @@ void print(const FigureLineage& lineage) {
     if (is_input) continue;
     print_stage_before(stage, machines);
   }
-  fmt::print("\n");
+  tell("\n");
   machines.print();
 }
 
@@ -222,21 +222,20 @@ nlohmann::json check_json(const std::filesystem::path& file, const PublishedFile
 
 void print_check(const std::filesystem::path& file, const PublishedFile& found,
                  const std::vector<InputFault>& faults, std::size_t inputs) {
-  fmt::print("file      {}\n", cut(file.string(), 10));
+  tell("file      {}\n", cut(file.string(), 10));
   if (found.verdict == PublishedFile::Verdict::matches) {
-    fmt::print("verdict   matches what event {} recorded\n", found.record.seq);
+    tell("verdict   matches what event {} recorded\n", found.record.seq);
   } else {
-    fmt::print("verdict   WAS CHANGED since event {}, or another store made it\n",
-               found.record.seq);
-    fmt::print("  is      {}\n  was     {}\n", found.sha256, found.recorded);
+    tell("verdict   WAS CHANGED since event {}, or another store made it\n", found.record.seq);
+    tell("  is      {}\n  was     {}\n", found.sha256, found.recorded);
   }
   if (faults.empty()) {
-    fmt::print("inputs    {} checkpoints, all present and right\n\n", inputs);
+    tell("inputs    {} checkpoints, all present and right\n\n", inputs);
     return;
   }
-  fmt::print("inputs    {} checkpoints, {} of them not as they were\n", inputs, faults.size());
-  for (const InputFault& fault : faults) fmt::print("  {}\n  {}\n", fault.checkpoint, fault.what);
-  fmt::print("\n");
+  tell("inputs    {} checkpoints, {} of them not as they were\n", inputs, faults.size());
+  for (const InputFault& fault : faults) tell("  {}\n  {}\n", fault.checkpoint, fault.what);
+  tell("\n");
 }
 
 }  // namespace

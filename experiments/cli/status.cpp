@@ -16,6 +16,7 @@
 #include "experiments/cluster/queue_view.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/progress.hpp"
+#include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
 #include "experiments/runner/terminal.hpp"
@@ -43,7 +44,7 @@ nlohmann::json facts(const Lease& lease) {
            1e-3 * (static_cast<double>(now_ms()) - static_cast<double>(lease.renewed_at_ms))}};
 }
 
-nlohmann::json facts(const SelectedRun& selected) {
+nlohmann::json facts(const SelectedRun& selected, const VariantNames& names) {
   const RunRecord& run = selected.run;
   const Membership& first = selected.membership;
   return {{"id", run.id},
@@ -52,6 +53,7 @@ nlohmann::json facts(const SelectedRun& selected) {
           {"experiment", first.experiment},
           {"scale", first.scale},
           {"variant", first.variant},
+          {"name", names.of(first)},
           {"seed", first.seed},
           {"state", name_of(run.state)},
           {"cycle", run.cycle},
@@ -95,10 +97,10 @@ struct Shown {
   }
 };
 
-std::vector<std::string> row(const Shown& shown) {
+std::vector<std::string> row(const Shown& shown, const VariantNames& names) {
   const RunRecord& run = shown.run;
   return {run.id.substr(0, 8),
-          shown.membership.variant,
+          names.of(shown.membership),
           std::to_string(shown.membership.seed),
           std::to_string(run.grains),
           fmt::format("{}{}", name_of(shown.state()), shown.held ? " *" : ""),
@@ -181,13 +183,14 @@ void print(const Store& store, const std::vector<SelectedRun>& runs,
   std::vector<std::string> experiments;
   std::map<std::string, std::vector<std::vector<std::string>>> tables;
   std::map<RunState, std::size_t> count;
+  const VariantNames names(store);
   for (const auto& [run, first] : runs) {
     const std::string name = first.experiment + " at scale " + first.scale;
     if (!tables.contains(name)) experiments.push_back(name);
     const auto queued = queue.runs.find(run.id);
     const Shown shown{run, first, by_run.contains(run.id),
                       queued == queue.runs.end() ? nullptr : &queued->second};
-    tables[name].push_back(row(shown));
+    tables[name].push_back(row(shown, names));
     if (!queue.runs.empty()) tables[name].back().push_back(shown.queue());
     ++count[shown.state()];
   }
@@ -223,9 +226,10 @@ void print(const Store& store, const std::vector<SelectedRun>& runs,
 void print_facts(const Store& store, const std::vector<SelectedRun>& runs,
                  const std::map<std::string, Lease>& by_run, const QueueView& queue) {
   nlohmann::json list = nlohmann::json::array();
+  const VariantNames names(store);
   for (const SelectedRun& selected : runs) {
     const RunRecord& run = selected.run;
-    list.push_back(facts(selected));
+    list.push_back(facts(selected, names));
     list.back()["ended"] = end_of(store, run);
     const auto held = by_run.find(run.id);
     list.back()["holder"] = held == by_run.end() ? nlohmann::json() : facts(held->second);

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "analysis/own_figure.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/names.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/errors.hpp"
@@ -108,9 +109,12 @@ class Chosen {
 
 /// What was asked for up to the end of the runs, and is not there: a manifest may state a denser
 /// cadence than the runs were made with.
-std::optional<std::string> never_made(const std::vector<CollectedRun>& runs) {
-  std::size_t checkpoints = 0;
-  std::set<std::string> lacking;
+std::vector<std::string> never_made(const std::vector<CollectedRun>& runs) {
+  struct Lack {
+    std::size_t checkpoints = 0;
+    std::set<std::string> runs;
+  };
+  Lack ours, lammps;
   for (const CollectedRun& run : runs) {
     if (run.run.kind != "shear" || run.checkpoints.empty()) continue;
     std::set<double> cycles;
@@ -121,14 +125,23 @@ std::optional<std::string> never_made(const std::vector<CollectedRun>& runs) {
       missing += cycles.contains(cycle) ? 0 : 1;
     }
     if (missing == 0) continue;
-    checkpoints += missing;
-    lacking.insert(run.run.id.substr(0, 8));
+    Lack& lack = engine_of(run.run.resolved) == EngineKind::lammps ? lammps : ours;
+    lack.checkpoints += missing;
+    lack.runs.insert(run.run.id.substr(0, 8));
   }
-  if (lacking.empty()) return std::nullopt;
-  return fmt::format(
-      "{} checkpoints that the manifest asks for were never made (runs {}); `shearcell run` with "
-      "the manifest, or `shearcell resume RUN`, computes them",
-      checkpoints, some_of(lacking));
+  std::vector<std::string> notes;
+  const auto add = [&](const Lack& lack, const char* remedy) {
+    if (lack.runs.empty()) return;
+    notes.push_back(
+        fmt::format("{} checkpoints that the manifest asks for were never made (runs {}); {}",
+                    lack.checkpoints, some_of(lack.runs), remedy));
+  };
+  add(ours, "`shearcell run` with the manifest, or `shearcell resume RUN`, computes them");
+  add(lammps,
+      "these runs are of LAMMPS, which does not repeat bits: `run` and `resume` leave them out, "
+      "and "
+      "the checkpoints cannot be made later");
+  return notes;
 }
 
 std::string unknown_name(const char* what, const std::string& name,
@@ -149,7 +162,10 @@ std::vector<Figure> own_figures(const RegisteredManifest& manifest) {
   std::vector<Figure> figures;
   const std::optional<Manifest> read_one = read(manifest);
   if (!read_one) return figures;
-  for (const PlotSpec& plot : read_one->plots) figures.push_back(plot_figure(plot));
+  const auto names = [labels = read_one->labels](const std::vector<nlohmann::json>& variants) {
+    return variant_names(variants, labels);
+  };
+  for (const PlotSpec& plot : read_one->plots) figures.push_back(plot_figure(plot, names));
   for (const ClaimSpec& claim : read_one->claims) figures.push_back(claim_figure(claim));
   return figures;
 }
@@ -277,7 +293,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }
   if (wanted.figure.needs != FigureNeeds::none) {
-    if (auto note = never_made(collected.runs)) collected.notes.push_back(std::move(*note));
+    for (std::string& note : never_made(collected.runs)) collected.notes.push_back(std::move(note));
   }
   return collected;
 }

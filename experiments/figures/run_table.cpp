@@ -11,6 +11,7 @@
 #include "analysis/onset.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/runner/registered.hpp"
 
 namespace shearcell {
 namespace {
@@ -55,14 +56,14 @@ Column observable(const char* name, const char* meaning, const char* recorded = 
           }};
 }
 
-std::vector<Column> names() {
+std::vector<Column> names(const VariantNames& variants) {
   return {
       of_run("experiment", "name of the manifest's experiment",
              [](const SelectedRun& s) { return s.membership.experiment; }),
       of_run("scale", "scale of the manifest",
              [](const SelectedRun& s) { return s.membership.scale; }),
-      of_run("variant", "swept parameters and their values",
-             [](const SelectedRun& s) { return s.membership.variant; }),
+      of_run("variant", "its label in the manifest, or what varies in it",
+             [variants](const SelectedRun& s) { return variants.of(s.membership); }),
       of_run("run", "id", [](const SelectedRun& s) { return s.run.id; }),
       of_run("seed", "of the random numbers",
              [](const SelectedRun& s) { return s.membership.seed; }),
@@ -164,12 +165,13 @@ json swept_value(const Field& field, const SelectedRun& selected) {
   return felt ? get_value(field, record.parameters) : json();
 }
 
-std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per) {
+std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per,
+                                const VariantNames& variants) {
   std::set<std::string> swept;
   for (const SelectedRun& run : runs) {
     for (const auto& [key, value] : run.membership.labels.items()) swept.insert(key);
   }
-  std::vector<Column> columns = names();
+  std::vector<Column> columns = names(variants);
   for (const Field& field : schema()) {
     if (!swept.contains(std::string(field.name))) continue;
     columns.push_back({{std::string(field.name), std::string(field.doc)},
@@ -242,7 +244,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
   }
   MeasuredCheckpoints measured = measure_checkpoints(store, records, table_measures(), options);
 
-  const std::vector<Column> columns = columns_for(runs, per);
+  const std::vector<Column> columns = columns_for(runs, per, VariantNames(store));
   RunTable table;
   for (const Column& column : columns) table.columns.push_back(column);
   const auto add = [&](const Row& row) {
@@ -274,7 +276,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
 }
 
 std::vector<TableColumn> table_columns(RowPer per) {
-  const std::vector<Column> columns = columns_for({}, per);
+  const std::vector<Column> columns = columns_for({}, per, VariantNames({}, {}));
   return {columns.begin(), columns.end()};
 }
 

@@ -2,6 +2,7 @@
 // Collects what is wrong with a manifest, so that its writer sees all of it at once.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +24,8 @@ class ProblemList {
   /// A key that is not `allowed` in the map at `path`; says which name is meant.
   void add_unknown(const Node& key, std::string_view path,
                    std::span<const std::string_view> allowed);
+
+  std::size_t size() const { return problems_.size(); }
 
   /// Throws ManifestError when there are any.
   void raise();

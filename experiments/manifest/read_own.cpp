@@ -201,6 +201,7 @@ ClaimSpec read_claim(const Node& node, std::set<string>& taken, ProblemList& pro
                          "It takes `[1, 15]`.");
           }
         } else {
+          const std::size_t problems_before = problems.size();
           const auto sides = read_list(value, path, "[{fluid: still}, {fluid: cell}]", problems);
           for (std::size_t k = 0; k < std::min<std::size_t>(sides.size(), 2); ++k) {
             claim.between[k] = json::object();
@@ -208,7 +209,9 @@ ClaimSpec read_claim(const Node& node, std::set<string>& taken, ProblemList& pro
               read_where(name, of, path, claim.between[k], problems);
             }
           }
-          if (sides.size() != 2 || claim.between[0].empty() || claim.between[1].empty()) {
+          const bool two =
+              sides.size() == 2 && !claim.between[0].empty() && !claim.between[1].empty();
+          if (!two && problems.size() == problems_before) {
             problems.add(value.at, path, "does not name two variants", "",
                          "It takes `[{fluid: still}, {fluid: cell}]`.");
           }

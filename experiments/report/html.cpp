@@ -60,18 +60,25 @@ std::string text_html(const Text& text) {
   return html;
 }
 
+std::string card_label(std::string_view head) {
+  return head.empty()
+             ? ""
+             : fmt::format("<span class=\"card-label\" aria-hidden=\"true\">{}</span>", head);
+}
+
 std::string html_table(const HtmlRow& head, const std::vector<HtmlRow>& rows,
                        std::string_view css_class) {
   const auto add = [&](std::string& html, const HtmlRow& row, const char* tag) {
     html += "<tr>";
     for (std::size_t k = 0; k < row.size(); ++k) {
       const bool number = head[k].starts_with('#');
+      const std::string_view name = std::string_view(head[k]).substr(number ? 1 : 0);
       html += fmt::format("<{0}{1}>{2}</{0}>", tag, number ? " class=\"number\"" : "",
-                          std::string_view(row[k]).substr(&row == &head && number ? 1 : 0));
+                          &row == &head ? std::string(name) : card_label(name) + row[k]);
     }
     html += "</tr>\n";
   };
-  std::string html = fmt::format("<table class=\"{}\"><thead>", css_class);
+  std::string html = fmt::format("<table class=\"cards {}\"><thead>", css_class);
   add(html, head, "th");
   html += "</thead><tbody>\n";
   for (const HtmlRow& row : rows) add(html, row, "td");

@@ -19,6 +19,10 @@ std::string escape_html(std::string_view text);
 
 std::string text_html(const Text& text);
 
+/// The heading of a cell's column (markup), for pages too narrow for a row: there the style sheet
+/// shows each row as a card.
+std::string card_label(std::string_view head);
+
 /// Cells hold markup, in which foreign text is already escaped. A heading that begins with '#'
 /// makes its column one of numbers, aligned to the right.
 using HtmlRow = std::vector<std::string>;

@@ -11,6 +11,7 @@
 #include "experiments/figures/parallel_reads.hpp"
 #include "experiments/report/frames.hpp"
 #include "experiments/report/html.hpp"
+#include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
@@ -163,6 +164,7 @@ Frame make_frame(const Store& store, const CheckpointRecord& record) {
   const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
   const PackedFrame packed = pack_frame(checkpoint, pose, analysis.grains);
   return {{{"name", frame_name(record)},
+           {"cycle", record.cycle},
            {"sha256", record.sha256},
            {"facts", facts_of(analysis.measures, checkpoint.theta)},
            {"cell",
@@ -196,6 +198,7 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
                           const std::function<void(std::size_t, std::size_t)>& report) {
   Packings packings;
   std::vector<ChosenRun> runs = choose(store, experiments, scale, choice);
+  const VariantNames names(store);
   weigh(store, runs, packings);
   std::vector<std::size_t> stored;
   for (const ChosenRun& run : runs) stored.push_back(run.checkpoints.size());
@@ -225,7 +228,7 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
     packings.frames += list.size();
     if (list.empty()) continue;
     packings.runs.push_back({{"id", run.run.id},
-                             {"label", fmt::format("{}, seed {}, N = {}", run.membership.variant,
+                             {"label", fmt::format("{}, seed {}, N = {}", names.of(run.membership),
                                                    run.membership.seed, run.run.grains)},
                              {"experiment", run.membership.experiment},
                              {"grains", run.grains},

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiments/report/html.hpp"
+#include "experiments/report/run_tables.hpp"
 #include "experiments/report/web_assets.hpp"
 #include "provenance/sha256.hpp"
 
@@ -85,6 +86,7 @@ std::string overview_html(const ReportData& data) {
   std::string html = "<nav aria-label=\"Experiments\">" +
                      html_table({"question", "verdict", "figures", "#stages"}, rows, "overview") +
                      "\n<p class=\"small\">";
+  if (data.interactive) html += "<a href=\"#compare\">Two variants side by side</a> · ";
   if (!data.packings.runs.empty()) html += "<a href=\"#packings\">Packings in 3D</a> · ";
   if (!data.accuracy.empty()) html += "<a href=\"#accuracy\">Error against cost</a> · ";
   return html +
@@ -103,6 +105,13 @@ std::string packings_html(const ReportData& data) {
       "turn; click, then use the wheel to zoom.</p>\n</section>\n",
       count(data.packings.frames, "checkpoint"), count(data.packings.runs.size(), "run"),
       data.packings.largest_step);
+}
+
+/// The front end fills it.
+std::string compare_html(const ReportData& data) {
+  if (!data.interactive) return "";
+  return "<section id=\"compare\" hidden>\n<h2>Two variants side by side</h2>\n<div "
+         "class=\"comparison\"></div>\n</section>\n";
 }
 
 /// Figures of all experiments together.
@@ -158,7 +167,10 @@ std::string data_html(const ReportData& data) {
   }
   return fmt::format(
       "<script type=\"application/json\" id=\"report-data\">{}</script>\n<script>{}</script>\n",
-      script_json({{"charts", charts}, {"packings", data.packings.runs}}), front_end_script());
+      script_json({{"charts", charts},
+                   {"packings", data.packings.runs},
+                   {"experiments", run_traces(data)}}),
+      front_end_script());
 }
 
 }  // namespace
@@ -169,8 +181,8 @@ std::string report_page(const ReportData& data) {
   for (const ReportExperiment& experiment : data.experiments) {
     html += experiment_html(data, experiment);
   }
-  html += across_html(data) + packings_html(data) + accuracy_html(data) + runs_html(data) +
-          about_html(data);
+  html += across_html(data) + compare_html(data) + packings_html(data) + accuracy_html(data) +
+          runs_html(data) + about_html(data);
   return html + "</main>\n" + data_html(data) + "</body>\n</html>\n";
 }
 

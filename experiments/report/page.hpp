@@ -16,6 +16,12 @@ std::string report_page(const ReportData& data);
 /// The experiment's question, verdict, figures and runs.
 std::string experiment_html(const ReportData& data, const ReportExperiment& experiment);
 
+/// What the experiment is made of, from its manifest to its figures, with the states of each.
+std::string workflow_html(const ReportData& data, const ReportExperiment& experiment);
+
+/// A row for each run: its parameters and results.
+std::string run_table_html(const ReportData& data, const ReportExperiment& experiment);
+
 /// A figure: its panels, claims and lineage.
 std::string figure_html(const ReportData& data, const ReportFigure& figure);
 

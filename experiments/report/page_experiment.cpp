@@ -5,7 +5,6 @@
 
 #include "experiments/report/html.hpp"
 #include "experiments/report/page.hpp"
-#include "experiments/runner/progress.hpp"
 
 namespace shearcell {
 namespace {
@@ -22,61 +21,16 @@ std::string table_html(const ReportPanel& panel) {
   for (const std::vector<TextTable::Cell>& row : panel.text.rows) {
     HtmlRow& cells = rows.emplace_back();
     for (const TextTable::Cell& cell : row) {
-      cells.push_back(
-          {fmt::format("<span style=\"color: {}\">{}</span>", cell.colour, text_html(cell.text))});
+      cells.push_back({cell.colour == TextTable::Cell().colour
+                           ? text_html(cell.text)
+                           : fmt::format("<span class=\"tint\" style=\"--tint: {}\">{}</span>",
+                                         cell.colour, text_html(cell.text))});
     }
   }
   const HtmlRow head = std::move(rows.front());
   rows.erase(rows.begin());
   return scroll_box(panel.name, html_table(head, rows), "scroll tall") + "<p class=\"small\">" +
          text_html(panel.text.note) + "</p>";
-}
-
-std::string progress_of(const RunRecord& run) {
-  if (run.kind == "prepare") return "";
-  return fmt::format("{:.6g} / {}", run.cycle, run.target_cycles);
-}
-
-const Membership& member_of(const RunRecord& run, const std::string& experiment) {
-  return *std::find_if(run.memberships.begin(), run.memberships.end(),
-                       [&](const Membership& m) { return m.experiment == experiment; });
-}
-
-HtmlRow run_row(const ReportData& data, const RunRecord& run, const std::string& experiment) {
-  const Membership& member = member_of(run, experiment);
-  const bool timed = run.wall_seconds > 0;
-  const double rate = timed ? run.particle_steps / run.wall_seconds * 1e-6 : 0;
-  const bool shown = std::any_of(data.packings.runs.begin(), data.packings.runs.end(),
-                                 [&](const nlohmann::json& p) { return p.at("id") == run.id; });
-  const std::string state(name_of(run.state));
-  return {fmt::format("<a class=\"id\" href=\"#run-{}\">{}</a>", escape_html(run.id.substr(0, 12)),
-                      escape_html(run.id.substr(0, 8))),
-          escape_html(member.scale),
-          escape_html(data.names->of(member)),
-          std::to_string(member.seed),
-          std::to_string(run.grains),
-          "<span class=\"state " + state + "\">" + state + "</span>",
-          progress_of(run),
-          rate > 0 ? fmt::format("{:.1f}", rate) : "",
-          timed ? format_duration(run.wall_seconds) : "",
-          shown ? fmt::format("<a hidden data-packing=\"{}\" href=\"#packings\">3D</a>",
-                              escape_html(run.id))
-                : ""};
-}
-
-std::string run_table(const ReportData& data, const ReportExperiment& experiment) {
-  const auto completed =
-      std::count_if(experiment.runs.begin(), experiment.runs.end(),
-                    [](const RunRecord& run) { return run.state == RunState::completed; });
-  std::vector<HtmlRow> rows;
-  for (const RunRecord& run : experiment.runs) rows.push_back(run_row(data, run, experiment.name));
-  const HtmlRow head = {
-      "run",   "scale", "variant", "#seed",
-      "#N",    "state", "#cycle",  "#<span title=\"million particle-steps per second\">M/s</span>",
-      "#time", ""};
-  return fmt::format("<details class=\"runs\"><summary>Runs: {} of {} stages completed</summary>\n",
-                     completed, experiment.runs.size()) +
-         scroll_box("Runs of " + experiment.name, html_table(head, rows)) + "</details>\n";
 }
 
 }  // namespace
@@ -132,10 +86,10 @@ std::string panel_html(const ReportData& data, const ReportPanel& panel) {
         fmt::format("<p class=\"warning\">No drawing: {}</p>", escape_html(data.drawing_trouble));
   }
   return fmt::format(
-      "<figure id=\"panel-{3}\">\n{1}\n<figcaption>{0} <button type=\"button\" hidden "
+      "<figure id=\"panel-{3}\"{4}>\n{1}\n<figcaption>{0} <button type=\"button\" hidden "
       "data-csv=\"{3}\">CSV</button></figcaption>\n<details class=\"numbers\"><summary>Numbers of "
       "{0}</summary><pre tabindex=\"0\" id=\"csv-{3}\">{2}</pre></details>\n</figure>\n",
-      name, plot, escape_html(panel.csv), id);
+      name, plot, escape_html(panel.csv), id, panel.text.rows.empty() ? "" : " class=\"wide\"");
 }
 
 std::string experiment_html(const ReportData& data, const ReportExperiment& experiment) {
@@ -149,10 +103,11 @@ std::string experiment_html(const ReportData& data, const ReportExperiment& expe
   } else if (const auto ruling = ruling_of(data, experiment)) {
     html += "<p class=\"verdict\">Verdict: " + ruling_html(ruling) + "</p>\n";
   }
+  html += workflow_html(data, experiment);
   for (const std::size_t figure : experiment.figures) {
     html += figure_html(data, data.figures.at(figure));
   }
-  return html + run_table(data, experiment) + "</section>\n";
+  return html + run_table_html(data, experiment) + "</section>\n";
 }
 
 }  // namespace shearcell

@@ -110,12 +110,19 @@ std::string span_of_cycles(const FigureInput& input, const RunLineage& run) {
   return any ? fmt::format("{:g} to {:g}", first, last) : "?";
 }
 
+/// Lines may break after its commas.
+std::string breakable(const std::string& variant) {
+  std::string html;
+  for (const char c : escape_html(variant)) html += c == ',' ? ",<wbr>" : std::string(1, c);
+  return html;
+}
+
 std::string inputs_table(const ReportFigure& figure) {
   std::vector<HtmlRow> rows;
   for (const FigureInput& input : figure.lineage.inputs) {
     std::set<int> lines;
     for (const ManifestLine& line : input.lines) lines.insert(line.line);
-    rows.push_back({run_link(input.run), escape_html(input.experiment), escape_html(input.variant),
+    rows.push_back({run_link(input.run), escape_html(input.experiment), breakable(input.variant),
                     std::to_string(input.seed), std::to_string(input.checkpoints.size()),
                     span_of_cycles(input, figure.lineage.runs.at(input.run)),
                     fmt::format("{}", fmt::join(lines, ", "))});

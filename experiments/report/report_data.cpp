@@ -11,6 +11,7 @@
 #include "analysis/plot.hpp"
 #include "experiments/figures/collect.hpp"
 #include "experiments/report/accuracy_charts.hpp"
+#include "experiments/report/run_tables.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/temporary_folder.hpp"
@@ -24,7 +25,12 @@ using nlohmann::json;
 std::vector<ReportExperiment> experiments_of(const Store& store) {
   std::vector<ReportExperiment> found;
   for (RegisteredManifest& manifest : newest_manifests(store)) {
-    found.push_back({std::move(manifest.experiment), std::move(manifest.question), {}, {}});
+    const std::optional<Manifest> known = read(manifest);
+    ReportExperiment& experiment = found.emplace_back();
+    experiment.name = std::move(manifest.experiment);
+    experiment.question = std::move(manifest.question);
+    experiment.manifest = std::move(manifest.sha256);
+    experiment.labelled = known && !known->labels.empty();
   }
   const std::vector<RunRecord> runs = store.runs();
   for (ReportExperiment& experiment : found) {
@@ -92,25 +98,30 @@ void add_figures(const Store& store, const ReportOptions& options, ReportData& d
   WantedFigures wanted = wanted_figures(store);
   std::set<std::string> notes(wanted.unknown.begin(), wanted.unknown.end());
   for (const WantedFigure& figure : in_order_of_needs(std::move(wanted.figures))) {
+    const auto home =
+        std::ranges::find(data.experiments, figure.experiment, &ReportExperiment::name);
     try {
       ReportFigure one = figure_of(store, figure, options, records, data);
       const FigureSummary& summary = one.summary;
       report.damage.insert(report.damage.end(), summary.damage.begin(), summary.damage.end());
       notes.insert(summary.pruned.begin(), summary.pruned.end());
       notes.insert(summary.notes.begin(), summary.notes.end());
-      const auto home =
-          std::ranges::find(data.experiments, figure.experiment, &ReportExperiment::name);
       if (home != data.experiments.end()) home->figures.push_back(data.figures.size());
       data.figures.push_back(std::move(one));
     } catch (const UsageError& problem) {
       notes.insert("figure " + figure.path() + ": " + problem.what());
+      if (home != data.experiments.end()) home->unmade.push_back(figure.figure.name);
     }
   }
   report.notes.assign(notes.begin(), notes.end());
 }
 
 void add_runs(const Store& store, ReportData& data) {
-  for (const ReportExperiment& experiment : data.experiments) {
+  for (ReportExperiment& experiment : data.experiments) {
+    if (auto manifest = find_manifest(store, experiment.manifest)) {
+      experiment.manifest_path = manifest->path;
+      data.manifests.try_emplace(experiment.manifest, std::move(*manifest));
+    }
     for (const RunRecord& run : experiment.runs) {
       if (data.runs.contains(run.id)) continue;
       for (RunLineage& stage : run_lineage(store, run.id)) {
@@ -135,7 +146,6 @@ ReportData collect_report(const Store& store, const ReportOptions& options, Repo
   data.program = host_facts().at("build");
   data.interactive = options.interactive && has_front_end();
   data.experiments = experiments_of(store);
-  data.names.emplace(store);
   if (data.experiments.empty()) {
     throw NotFound(store.folder().string() +
                    ": the store holds no experiment; `shearcell run` one first");
@@ -144,6 +154,7 @@ ReportData collect_report(const Store& store, const ReportOptions& options, Repo
   for (const ReportExperiment& experiment : data.experiments) names.push_back(experiment.name);
   add_figures(store, options, data, report);
   add_runs(store, data);
+  add_run_tables(store, options, data, report);
   if (options.accuracy) data.accuracy = read_accuracy_charts(*options.accuracy);
   if (data.interactive) {
     data.packings = collect_packings(store, names, options.scale, options.packings, options.workers,

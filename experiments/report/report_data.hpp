@@ -10,6 +10,7 @@
 
 #include "experiments/figures/draw.hpp"
 #include "experiments/figures/lineage.hpp"
+#include "experiments/figures/run_table.hpp"
 #include "experiments/report/packings.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/runner/registered.hpp"
@@ -40,8 +41,15 @@ struct ReportFigure {
 struct ReportExperiment {
   std::string name;
   std::string question;
-  std::vector<std::size_t> figures;  ///< of ReportData::figures
-  std::vector<RunRecord> runs;
+  std::string manifest;  ///< SHA-256 of its newest version
+  std::string manifest_path = {};
+  bool labelled = false;                  ///< that version has names for variants
+  std::vector<std::size_t> figures = {};  ///< of ReportData::figures
+  std::vector<std::string> unmade = {};   ///< figures that its runs do not allow
+  std::vector<RunRecord> runs = {};
+  RunTable table = {};  ///< a row for each run but those that settle packings
+  std::vector<nlohmann::json> traces =
+      {};  ///< of each row: {"cycle": [], "phi": [], "percent": []}
 };
 
 struct ReportData {
@@ -51,7 +59,6 @@ struct ReportData {
   std::vector<ReportExperiment> experiments;
   std::vector<ReportFigure> figures;       ///< those of `experiments`, and those about all of them
   std::map<std::string, RunLineage> runs;  ///< by id
-  std::optional<VariantNames> names;
   std::map<std::string, ManifestText> manifests;
   std::vector<ReportPanel> accuracy;
   Packings packings;

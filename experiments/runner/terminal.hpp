@@ -26,6 +26,12 @@ bool shows_colours(std::FILE* stream);
 /// \u202e.
 std::string for_terminal(std::string_view text);
 
+/// Characters of a UTF-8 text: each code point counts as one column.
+std::size_t characters(std::string_view text);
+
+/// The first `count` characters of a UTF-8 text, or all of it.
+std::string_view first_characters(std::string_view text, std::size_t count);
+
 /// fmt::print, of texts that may be a stranger's.
 template <typename... Arguments>
 void tell(fmt::format_string<Arguments...> format, Arguments&&... arguments) {

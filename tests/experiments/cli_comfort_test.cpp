@@ -177,6 +177,25 @@ TEST_F(Comfort, TablesFitTheTerminalAndHaveColoursThereAlone) {
   EXPECT_EQ(on_terminal(80, "TERM=dumb", "status").find('\x1b'), std::string::npos);
 }
 
+TEST_F(Comfort, TablesAreCutBetweenCharacters) {
+  std::string long_name;
+  for (int k = 0; k < 20; ++k) long_name += "ϕ";
+  campaign(tiny_manifest("", kBothFluids + "labels: {\"fluid=still\": " + long_name + "}\n"),
+           {"--cycles", "1"});
+  EXPECT_NE(run({"status"}).out.find(long_name + "  "), std::string::npos);
+  for (int columns = 50; columns < 60; ++columns) {
+    const std::string shown = on_terminal(columns, "NO_COLOR=1", "status");
+    const std::size_t at = shown.find("ϕ");
+    ASSERT_NE(at, std::string::npos) << shown;
+    std::size_t end = at;
+    while (shown.compare(end, 2, "ϕ") == 0) end += 2;
+    EXPECT_EQ(shown.substr(end, 3), "~  ") << columns << "\n" << shown;
+    const std::size_t line = shown.rfind('\n', at) + 1;
+    const std::size_t bytes = shown.find('\r', at) - line;
+    EXPECT_LE(bytes - (end - at) / 2, static_cast<std::size_t>(columns)) << shown;
+  }
+}
+
 TEST_F(Comfort, ExportsTheCyclesThatAreAskedFor) {
   campaign(tiny_manifest());
   std::string id;

@@ -53,6 +53,24 @@ TEST_F(CommandLineLineage, ShowsAFigureWithoutCuttingItInAPipe) {
   }
 }
 
+// As a store from elsewhere may hold them.
+TEST_F(CommandLineLineage, ShowsNamesOfTheLogEscaped) {
+  const std::string name = "S2\x1b[2J\u202e";
+  {
+    Store store(path("shearcell-store"), Access::write);
+    nlohmann::json facts = store.figures().at(0).provenance;
+    facts["outputs"] = {{"S2a\x1b[2J.csv", "\u202e"}};
+    facts["inputs"].clear();
+    facts["analysis_version"] = "\x1b]0;1\x07";
+    store.record_figure(name, facts);
+  }
+  const Outcome shown = run({"show", name});
+  ASSERT_EQ(shown.code, 0) << shown.err;
+  EXPECT_EQ(shown.out.find_first_of("\x1b\x07"), std::string::npos) << shown.out;
+  EXPECT_FALSE(contains(shown.out, "\u202e")) << shown.out;
+  EXPECT_TRUE(contains(shown.out, "S2\\x1b[2J\\u202e")) << shown.out;
+}
+
 TEST_F(CommandLineLineage, JudgesAPublishedFile) {
   const Outcome sound = run({"show", "out/tiny/S2a.csv"});
   EXPECT_EQ(sound.code, 0) << sound.err;

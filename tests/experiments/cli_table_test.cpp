@@ -55,6 +55,23 @@ TEST_F(CommandLineTable, HasARowForEachCheckpointAndEachRun) {
   }
 }
 
+TEST_F(CommandLineTable, CallsVariantsByTheirLabels) {
+  fs::remove_all(path("shearcell-store"));
+  campaign(tiny_manifest("", kBothFluids + "labels: {\"fluid=still\": \"water at rest\"}\n"),
+           {"--cycles", "1"});
+  EXPECT_TRUE(contains(run({"status"}).out, "  water at rest  ")) << run({"status"}).out;
+  std::set<std::string> in_status, in_table;
+  const nlohmann::json status = json({"status", "--json"});
+  for (const auto& one : status.at("runs")) {
+    if (one.at("kind") == "prepare") continue;
+    in_status.insert(one.at("name").get<std::string>() + "/" +
+                     one.at("variant").get<std::string>());
+  }
+  EXPECT_EQ(in_status.size(), 2U);
+  for (const auto& row : table({"--per", "run"})) in_table.insert(row.at("variant"));
+  EXPECT_TRUE(in_table.contains("water at rest"));
+}
+
 TEST_F(CommandLineTable, WritesTheSameAsCsvOverItsOwnFilesOnly) {
   const Outcome printed = run({"table", "--per", "run"});
   ASSERT_EQ(printed.code, 0) << printed.err;

@@ -155,6 +155,59 @@ TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {
   EXPECT_THROW(wanted_figures(store_, {"overlaps"}), NotFound);
 }
 
+// Two variants share a curve, which the label of neither names.
+TEST_F(DrawFigure, APlotByAKeyNamesItsCurvesByTheLabelsOfThatKey) {
+  compute(store_,
+          tiny_manifest("",
+                        "sweep: {grid: {fluid: [still, cell], amplitude_rad: [0.05, "
+                        "0.08]}}\nlabels: {\"fluid=still\": water at rest}\n"
+                        "plots: [{name: mean, y: phi, x: amplitude_rad, by: fluid}]\n"),
+          {.scale = {}, .cycles = 1, .seeds = {}});
+  FigureOptions options;
+  options.folder = folder_.path() / "own";
+  draw_figure(store_, wanted_figures(store_, {"mean"}).figures.at(0), options);
+  const auto files = contents("own");
+  EXPECT_NE(files.at("mean.gp").find("title 'water at rest'"), std::string::npos)
+      << files.at("mean.gp");
+  EXPECT_NE(files.at("mean.gp").find("title 'fluid=cell'"), std::string::npos);
+  EXPECT_NE(files.at("mean.csv").find("\nfluid=still,0.05,"), std::string::npos)
+      << files.at("mean.csv");
+}
+
+TEST_F(DrawFigure, TheNoteOnMissingCheckpointsSaysWhichRunsCannotMakeThem) {
+  compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 2}\n"));
+  compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 1}\n"));
+  const WantedFigure wanted{*find_figure("S2"), "tiny"};
+  EXPECT_TRUE(collect_runs(store_, wanted, {}).notes.empty()) << "made in the second run";
+  const RunRecord ours = runs_of_kind(store_, "shear").front();
+  RunDeclaration other;
+  other.id = std::string(64, 'b');
+  other.kind = "shear";
+  other.parent = ours.parent;
+  other.resolved = ours.resolved;
+  other.resolved["parameters"]["engine"] = "lammps";
+  other.grains = ours.grains;
+  other.target_cycles = 2;
+  other.membership = ours.memberships.back();
+  other.membership.variant = "engine=lammps";
+  store_.declare_run(other);
+  store_.start_run(other.id, {});
+  for (const CheckpointRecord& record : store_.checkpoints(ours.id)) {
+    if (record.cycle == 1) continue;
+    Checkpoint checkpoint = store_.load_checkpoint(record);
+    checkpoint.run = other.id;
+    store_.record_checkpoint(other.id, checkpoint);
+  }
+  const std::vector<std::string> notes = collect_runs(store_, wanted, {}).notes;
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(
+      notes[0].find("1 checkpoints that the manifest asks for were never made (runs bbbbbbbb)"),
+      std::string::npos)
+      << notes[0];
+  EXPECT_NE(notes[0].find("LAMMPS"), std::string::npos) << notes[0];
+  EXPECT_EQ(notes[0].find("computes them"), std::string::npos) << notes[0];
+}
+
 TEST_F(DrawFigure, AnAverageOverAnotherParameterIsRefused) {
   compute(store_, tiny_manifest("", kBothFluids));
   FigureOptions options;

@@ -6,6 +6,8 @@ import {mkdirSync, readFileSync, statSync} from "node:fs";
 import {createRequire} from "node:module";
 import {join, resolve} from "node:path";
 import {pathToFileURL} from "node:url";
+import {layoutChecks} from "./browser_layout.mjs";
+import {runChecks} from "./browser_runs.mjs";
 
 const [modules, report, shots] = process.argv.slice(2, 5).map((path) => resolve(path));
 const wanted = process.argv.slice(5);
@@ -59,16 +61,16 @@ async function richestPlot(page) {
   return plot;
 }
 
-const pixels = (page) => page.locator('[data-part="canvas"]').screenshot();
+const pixels = (page) => page.locator('#packings [data-part="canvas"]').screenshot();
 
 async function openPackings(page) {
   await page.locator("#packings").scrollIntoViewIfNeeded();
-  await page.locator('[data-part="run"] option').first().waitFor({state: "attached"});
+  await page.locator('#packings [data-part="run"] option').first().waitFor({state: "attached"});
   await page.waitForTimeout(300);
 }
 
 async function slide(page, part, value) {
-  await page.locator(`[data-part="${part}"]`).evaluate((slider, at) => {
+  await page.locator(`#packings [data-part="${part}"]`).evaluate((slider, at) => {
     slider.value = String(at);
     slider.dispatchEvent(new Event("input", {bubbles: true}));
   }, value);
@@ -206,7 +208,7 @@ const checks = {
     expect(await lineage.getAttribute("open") !== null, "keyboard: lineage does not open");
 
     await openPackings(page);
-    const view = page.locator('[data-part="canvas"]');
+    const view = page.locator('#packings [data-part="canvas"]');
     await view.focus();
     const still = await pixels(page);
     await page.keyboard.press("ArrowLeft");
@@ -234,14 +236,14 @@ const checks = {
   async packings() {
     const page = await open("packings");
     await openPackings(page);
-    const box = page.locator(".viewer");
+    const box = page.locator("#packings .viewer");
     const last = await pixels(page);
     await box.screenshot({path: join(shots, "packing.png")});
     expect(last.length > 20000, "packings: the picture is all but empty");
     await slide(page, "cycle", 0);
     const first = await pixels(page);
     expect(!first.equals(last), "packings: the slider changes nothing");
-    const name = await page.locator('[data-part="cycle-text"]').textContent();
+    const name = await page.locator('#packings [data-part="cycle-text"]').textContent();
     expect(/^(cycle|state) 0/.test(name), `packings: the first one is '${name}'`);
 
     const changes = async (what, action) => {
@@ -250,36 +252,36 @@ const checks = {
       await page.waitForTimeout(250);
       expect(!before.equals(await pixels(page)), `packings: ${what} changes nothing`);
     };
-    const choose = (part, value) => page.locator(`[data-part="${part}"]`).selectOption(value);
+    const choose = (part, value) => page.locator(`#packings [data-part="${part}"]`).selectOption(value);
     await changes("colour by q6", () => choose("colour", "q6"));
     await box.screenshot({path: join(shots, "packing-q6.png")});
     await changes("colour by phi_local", () => choose("colour", "phi"));
     await changes("colour by class", () => choose("colour", "class"));
-    await changes("hiding wall grains", () => page.locator('[data-part="walls"]').uncheck());
-    await changes("hiding the cell", () => page.locator('[data-part="box"]').uncheck());
+    await changes("hiding wall grains", () => page.locator('#packings [data-part="walls"]').uncheck());
+    await changes("hiding the cell", () => page.locator('#packings [data-part="box"]').uncheck());
     await changes("small disordered grains", () => choose("disordered", "small"));
     await changes("full size again", () => choose("disordered", "full"));
     await changes("a clip plane", () => choose("cut-axis", "x"));
     await changes("moving it", () => slide(page, "cut-at", 250));
-    await changes("its other side", () => page.locator('[data-part="cut-side"]').check());
+    await changes("its other side", () => page.locator('#packings [data-part="cut-side"]').check());
     await box.screenshot({path: join(shots, "packing-cut.png")});
     await choose("cut-axis", "none");
     await changes("a drag", async () => {
-      const area = await page.locator('[data-part="canvas"]').boundingBox();
+      const area = await page.locator('#packings [data-part="canvas"]').boundingBox();
       await page.mouse.move(area.x + area.width / 2, area.y + area.height / 2);
       await page.mouse.down();
       await page.mouse.move(area.x + area.width / 2 + 90, area.y + area.height / 2 + 30, {steps: 4});
       await page.mouse.up();
     });
-    await page.locator('[data-part="reset"]').click();
-    const area = await page.locator('[data-part="canvas"]').boundingBox();
+    await page.locator('#packings [data-part="reset"]').click();
+    const area = await page.locator('#packings [data-part="canvas"]').boundingBox();
     await page.mouse.move(area.x + area.width / 2, area.y + area.height / 2);
-    const told = await page.locator('[data-part="grain"]').textContent();
+    const told = await page.locator('#packings [data-part="grain"]').textContent();
     expect(/grain \d+: .*q6 = /.test(told), `packings: pointing tells '${told}'`);
-    const runs = await page.locator('[data-part="run"] option').count();
+    const runs = await page.locator('#packings [data-part="run"] option').count();
     for (let run = 0; run < runs; ++run) {
       await choose("run", String(run));
-      const key = await page.locator('[data-part="key"]').textContent();
+      const key = await page.locator('#packings [data-part="key"]').textContent();
       expect(/disordered \d+/.test(key), `packings: run ${run} shows '${key}'`);
     }
     console.log(`  ${runs} runs`);
@@ -329,6 +331,8 @@ const checks = {
   }
 };
 
+const tools = {open, expect, shots, drawAllPlots};
+Object.assign(checks, runChecks(tools), layoutChecks(tools));
 for (const [name, check] of Object.entries(checks)) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
   console.log(name);

@@ -22,6 +22,14 @@ TEST(Html, ReplacesWhatNoPageMayHold) {
   EXPECT_EQ(escape_html("cut \xCF"), "cut \uFFFD");
 }
 
+TEST(Html, CellsOfATableNameTheirColumns) {
+  const std::string html = html_table({"run", "#<i>N</i>", ""}, {{"a", "600", "x"}});
+  EXPECT_NE(html.find("<th class=\"number\"><i>N</i></th>"), std::string::npos) << html;
+  EXPECT_NE(html.find("<td class=\"number\">" + card_label("<i>N</i>") + "600</td><td>x</td>"),
+            std::string::npos)
+      << html;
+}
+
 TEST(Html, JsonCannotEndItsScriptElement) {
   const nlohmann::json value = {{"</script><!--", "<script>&amp;\u2028]]>"}, {"n", 1.5}};
   const std::string text = script_json(value);

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
+#include "experiments/figures/run_table.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
@@ -89,6 +91,67 @@ TEST_F(ReportOfRuns, GivesTheFrontEndPlotsAndPackings) {
   const auto walls = run.at("wall_grains").get<std::size_t>();
   const auto bytes = run.at("frames")[0].at("data").get<std::string>();
   EXPECT_EQ(bytes.size(), (6 * (grains + walls) + 7 * grains + 2) / 3 * 4);
+}
+
+TEST_F(ReportOfRuns, HasTheTableOfRunsInBothForms) {
+  const RunTable table = run_table(store_, {}, RowPer::run, {});
+  ASSERT_EQ(table.rows.size(), 2U);
+  const auto column = [&](const std::string& name) {
+    return std::ranges::find(table.columns, name, &TableColumn::name) - table.columns.begin();
+  };
+  for (const Report& report : {make(), make(drawings())}) {
+    EXPECT_EQ(count(report.html, "<tbody data-row="), 2U);
+    EXPECT_EQ(count(report.html, "data-key=\"fluid\""), 1U);
+    for (const auto& row : table.rows) {
+      const nlohmann::json& phi = row[static_cast<std::size_t>(column("phi"))];
+      EXPECT_EQ(count(report.html, "data-value=\"" + phi.dump() + "\""), 1U) << phi;
+    }
+  }
+}
+
+TEST_F(ReportOfRuns, GivesTheFrontEndTheTraceOfEachRun) {
+  if (!has_front_end()) GTEST_SKIP() << "built without Node: there is no front end";
+  const RunTable table = run_table(store_, {}, RowPer::checkpoint, {});
+  const nlohmann::json experiments = data_of(make().html).at("experiments");
+  ASSERT_EQ(experiments.size(), 1U);
+  const nlohmann::json& runs = experiments[0].at("runs");
+  ASSERT_EQ(runs.size(), 2U);
+  std::set<std::string> variants;
+  for (const auto& run : runs) {
+    EXPECT_EQ(run.at("cycle"), (nlohmann::json{0.0, 1.0, 2.0}));
+    EXPECT_EQ(run.at("percent").size(), 3U);
+    EXPECT_NEAR(run.at("phi")[0].get<double>(), 0.6, 0.1);
+    variants.insert(run.at("variant"));
+  }
+  EXPECT_EQ(variants, (std::set<std::string>{"fluid=cell", "fluid=still"}));
+}
+
+TEST_F(ReportOfRuns, ShowsTheStateOfEachStepOfTheWorkflow) {
+  const Manifest longer = parse_manifest(tiny_manifest("  cycles: 5\n", kBothFluids), "tiny.yaml");
+  declare(store_, longer, expand(longer));
+  const RunRecord run = runs_of_kind(store_, "shear").front();
+  store_.start_run(run.id, {}, store_.checkpoints(run.id).back().sha256);
+  store_.fail_run(run.id, "blew up");
+  const std::string html = make(drawings()).html;
+  const std::size_t begin = html.find("<ol class=\"workflow\"");
+  ASSERT_NE(begin, std::string::npos);
+  const std::string flow = html.substr(begin, html.find("</ol>", begin) - begin);
+  for (const char* part : {"<h4>Manifest</h4>", ">tiny.yaml</a>", "</span> 1 done",
+                           "</span> 1 failed", "</span> 1 waiting", "</span> 7 stored",
+                           "</span> 6 to come, at most", "<a href=\"#figure-tiny-S2\">S2</a>"}) {
+    EXPECT_EQ(count(flow, part), 1U) << part << "\n" << flow;
+  }
+}
+
+TEST_F(ReportOf, CallsVariantsByTheirLabels) {
+  compute(store_, tiny_manifest("", kBothFluids + "labels: {\"fluid=still\": water at rest}\n"));
+  const Report report = make();
+  EXPECT_EQ(count(report.html, "data-key=\"variant\""), 1U);
+  EXPECT_GE(count(report.html, "water at rest"), report.interactive ? 4U : 1U);
+  if (report.interactive) {
+    EXPECT_EQ(data_of(report.html).at("packings")[0].at("label").get<std::string>().find("water"),
+              0U);
+  }
 }
 
 TEST_F(ReportOfRuns, AllowsOnlyItsOwnScript) {

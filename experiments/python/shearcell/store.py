@@ -105,7 +105,7 @@ class Store:
             for run in self.runs(**select):
                 for record in run.records():
                     result = kept.of(record["sha256"], lambda: Checkpoint(run, record))
-                    rows.append({"experiment": run.experiment, "variant": run.variant,
+                    rows.append({"experiment": run.experiment, "variant": run.facts["name"],
                                  "run": run.id, "seed": run.seed, "cycle": record["cycle"],
                                  "checkpoint": record["sha256"], **result})
         finally:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The markup of the packing viewer; viewer.js finds its parts by `data-part`.
+// The markup of the packing viewer; viewer.js and pane.js find its parts by `data-part`.
 
 export const controls = `<div class="controls">
 <label>Run <select data-part="run"></select></label>
@@ -18,18 +18,21 @@ export const controls = `<div class="controls">
 <label><input type="checkbox" data-part="box" checked> cell</label>
 </div>
 <p class="warning" data-part="trouble" hidden>This browser has no WebGL 2, so packings cannot be shown.</p>
-<div class="stage3d" data-part="stage">
-<canvas data-part="canvas" tabindex="0" role="img" aria-label="The packing. Arrow keys turn it, plus and minus zoom, 0 shows all."></canvas>
-<div class="key3d" data-part="key"></div>
-</div>
+<div class="panes" data-part="panes"></div>
 <div class="timeline">
 <button type="button" data-part="play">Play</button>
 <label class="grow"><span class="visually-hidden">Checkpoint</span>
 <input type="range" data-part="cycle" min="0" max="0" step="1" value="0"></label>
 <output data-part="cycle-text"></output>
 </div>
-<p class="facts"><span data-part="facts"></span> <span>checkpoint <code data-part="checkpoint"></code></span></p>
-<p class="facts" data-part="grain" role="status"></p>
 <p><button type="button" data-part="reset">First view</button>
 <button type="button" data-part="save">Save PNG</button></p>
+`;
+
+export const pane = `<div class="stage3d" data-part="stage">
+<canvas data-part="canvas" tabindex="0" role="img" aria-label="The packing. Arrow keys turn it, plus and minus zoom, 0 shows all."></canvas>
+<div class="key3d" data-part="key"></div>
+</div>
+<p class="facts"><span data-part="facts"></span> <span>checkpoint <code data-part="checkpoint"></code></span></p>
+<p class="facts" data-part="grain" role="status"></p>
 `;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Adds plots, packings and downloads to the page; everything else works without scripts.
+// Adds plots, packings, comparisons and downloads to the page; everything else works without scripts.
+import {Comparison} from "./compare.js";
 import {Plot} from "./plot.js";
+import {RunTable} from "./run_table.js";
 import {saveText} from "./save.js";
 import {addThemeSwitch} from "./theme.js";
 import {Viewer} from "./viewer.js";
@@ -35,7 +37,7 @@ function addViewer() {
   if (!section || data.packings.length === 0) return;
   section.hidden = false;
   let viewer = null;
-  const open = () => (viewer ??= new Viewer(section, data.packings));
+  const open = () => (viewer ??= new Viewer(section.querySelector(".viewer"), data.packings));
   const watcher = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
     watcher.disconnect();
@@ -46,6 +48,25 @@ function addViewer() {
     link.hidden = false;
     link.addEventListener("click", () => open().showRunCalled(link.dataset.packing));
   }
+}
+
+function addRunTables() {
+  for (const host of document.querySelectorAll("[data-runs]")) {
+    const known = data.experiments.find(({experiment}) => experiment === host.dataset.runs);
+    new RunTable(host, known.runs);
+  }
+}
+
+function addComparison() {
+  const section = document.getElementById("compare");
+  if (data.experiments.every(({runs}) => runs.every((run) => !run.cycle))) return;
+  section.hidden = false;
+  const watcher = new IntersectionObserver((entries) => {
+    if (!entries.some((entry) => entry.isIntersecting)) return;
+    watcher.disconnect();
+    new Comparison(section.querySelector(".comparison"), data.experiments, data.packings);
+  }, {rootMargin: "300px"});
+  watcher.observe(section);
 }
 
 function addDownloads() {
@@ -68,6 +89,8 @@ const theme = document.getElementById("theme");
 theme.parentElement.hidden = false;
 addThemeSwitch(theme);
 addPlots();
+addRunTables();
+addComparison();
 addViewer();
 addDownloads();
 window.addEventListener("hashchange", openTarget);

@@ -8,7 +8,7 @@ import {saveSvg} from "./save.js";
 import {extentOf, makeScale} from "./scales.js";
 import {plainText, writeHtmlText} from "./text.js";
 
-const margin = {left: 66, right: 14, top: 12, bottom: 52};
+const margin = {left: 66, right: 24, top: 12, bottom: 52};
 let plots = 0;
 
 export class Plot {
@@ -37,7 +37,7 @@ export class Plot {
 
   description() {
     const {x, y, series} = this.chart;
-    const names = series.map((one) => plainText(one.title)).join("; ");
+    const names = series.map((one) => plainText(one.title)).filter(Boolean).join("; ");
     return `${this.name}: ${plainText(y.label)} against ${plainText(x.label)}. Series: ` +
       `${names || "none"}. Arrow keys read values, plus and minus zoom, 0 shows all.`;
   }
@@ -132,12 +132,21 @@ export class Plot {
   addLegend() {
     const legend = document.createElement("div");
     legend.className = "legend";
+    // A series without a title belongs to the entry before it.
+    const groups = [];
     this.chart.series.forEach((one, index) => {
+      if (one.title.length > 0 || groups.length === 0) groups.push([]);
+      groups.at(-1).push(index);
+    });
+    for (const group of groups) {
+      const one = this.chart.series[group[0]];
+      if (one.title.length === 0) continue;
       const entry = document.createElement("button");
       entry.type = "button";
       entry.setAttribute("aria-pressed", "true");
       entry.title = "Show or hide this curve";
-      entry.classList.toggle("without-data", one.points.length === 0);
+      const empty = group.every((index) => this.chart.series[index].points.length === 0);
+      entry.classList.toggle("without-data", empty);
       const key = svg("svg", {class: "key", width: 26, height: 14, "aria-hidden": "true"});
       dress(key, one.colour);
       if (one.line) svg("path", {class: one.dashed ? "line dashed" : "line", d: "M0 7H26"}, key);
@@ -146,12 +155,13 @@ export class Plot {
       writeHtmlText(title, one.title);
       entry.append(key, title);
       entry.addEventListener("click", () => {
-        if (!this.hidden.delete(index)) this.hidden.add(index);
-        entry.setAttribute("aria-pressed", String(!this.hidden.has(index)));
+        const shows = this.hidden.has(group[0]);
+        for (const index of group) this.hidden[shows ? "delete" : "add"](index);
+        entry.setAttribute("aria-pressed", String(shows));
         this.redraw();
       });
       legend.append(entry);
-    });
+    }
     this.host.append(legend);
   }
 }

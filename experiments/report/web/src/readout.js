@@ -54,7 +54,7 @@ export function addReadout(plot) {
     const marker = svg("circle", {class: "marker", cx: at[0], cy: at[1], r: 7}, plot.overlay);
     dress(marker, found.one.colour);
     const title = document.createElement("strong");
-    writeHtmlText(title, found.one.title);
+    writeHtmlText(title, found.one.name ?? found.one.title);
     const [x, y, xError, yError] = found.one.points[found.index];
     note.replaceChildren(title, quantity(plot.chart.x.label, plot.scales.x, x - found.one.shift, xError),
       quantity(plot.chart.y.label, plot.scales.y, y, yError));

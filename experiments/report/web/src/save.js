@@ -50,7 +50,7 @@ export function plotAsSvg(plot) {
 
 function addLegend(plot, copy) {
   const entries = [...plot.host.querySelectorAll(".legend button[aria-pressed=true]")];
-  const series = plot.visibleSeries();
+  const series = plot.visibleSeries().filter((one) => one.title.length > 0);
   entries.forEach((entry, row) => {
     const group = entry.querySelector("svg").cloneNode(true);
     group.setAttribute("x", 66);

@@ -26,9 +26,10 @@ export function cellCorners(cell) {
 const edges = [0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7];
 
 export class PackingScene {
-  // Throws if the browser has no WebGL 2.
-  constructor(canvas) {
+  // Throws if the browser has no WebGL 2. `turned` is called when the reader turns, moves or zooms it.
+  constructor(canvas, turned) {
     this.canvas = canvas;
+    this.turned = turned;
     this.renderer = new WebGLRenderer({canvas, antialias: true, alpha: false});
     this.scene = new Scene();
     this.spheres = new Spheres();
@@ -42,7 +43,11 @@ export class PackingScene {
     canvas.addEventListener("focus", () => (this.controls.enableZoom = true));
     canvas.addEventListener("blur", () => (this.controls.enableZoom = false));
     canvas.style.touchAction = "pan-y";
-    this.controls.addEventListener("change", () => this.draw());
+    this.following = false;
+    this.controls.addEventListener("change", () => {
+      this.draw();
+      if (!this.following) this.turned();
+    });
     this.span = 10;
     this.pending = false;
     canvas.addEventListener("webglcontextrestored", () => this.draw());
@@ -63,6 +68,7 @@ export class PackingScene {
     const {width, depth, bottom, top} = this.cell;
     this.span = Math.hypot(width, depth, top - bottom);
     const centre = new Vector3(width / 2, (bottom + top) / 2, depth / 2);
+    this.centre = centre;
     this.controls.target.copy(centre);
     this.camera.position.copy(centre).addScaledVector(firstDirection, this.span);
     this.camera.near = -2 * this.span;
@@ -103,6 +109,21 @@ export class PackingScene {
 
   nearer(factor) {
     this.camera.zoom = Math.min(40, Math.max(0.2, this.camera.zoom * factor));
+    this.camera.updateProjectionMatrix();
+    this.draw();
+    this.turned();
+  }
+
+  // Takes the direction, the zoom and the shift of another view.
+  lookAs(other) {
+    if (!this.cell || !other.cell) return;
+    const away = other.camera.position.clone().sub(other.controls.target);
+    this.controls.target.copy(other.controls.target).sub(other.centre).add(this.centre);
+    this.camera.position.copy(this.controls.target).addScaledVector(away.normalize(), this.span);
+    this.camera.zoom = other.camera.zoom;
+    this.following = true;
+    this.controls.update();
+    this.following = false;
     this.camera.updateProjectionMatrix();
     this.draw();
   }

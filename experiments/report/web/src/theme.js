@@ -44,9 +44,8 @@ export function addThemeSwitch(select) {
 
 const channels = (text) => (text.match(/[\d.]+/g) ?? [128, 128, 128]).slice(0, 3).map(Number);
 
-// Of the 3D view, as red, green and blue from 0 to 255.
-export function pageColours() {
-  const probe = document.querySelector(".viewer .stage3d");
+// Of a 3D view, as red, green and blue from 0 to 255.
+export function pageColours(probe) {
   const style = getComputedStyle(probe);
   return {background: channels(style.backgroundColor), line: channels(style.color)};
 }

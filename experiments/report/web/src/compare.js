@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two variants side by side: every seed over the cycles on common axes, and a packing of each.
+import {Plot} from "./plot.js";
+import {chartsOfVariant, commonRange} from "./traces.js";
+import {Viewer} from "./viewer.js";
+
+// Runs that differ in their seed alone.
+function variantsOf(experiments) {
+  const variants = new Map();
+  for (const {experiment, runs} of experiments) {
+    const scales = new Set(runs.map((run) => run.scale));
+    for (const run of runs) {
+      const name = scales.size > 1 ? `${run.variant} (${run.scale || "base"})` : run.variant;
+      const key = JSON.stringify([experiment, run.scale, run.variant]);
+      if (!variants.has(key)) variants.set(key, {experiment, name, runs: []});
+      variants.get(key).runs.push(run);
+    }
+  }
+  return [...variants.values()].filter(({runs}) => runs.some((run) => run.cycle));
+}
+
+const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
+
+function factsOf({runs}) {
+  const last = (key) => runs.map((run) => run[key]?.at(-1)).filter((value) => value != null);
+  const text = [`${runs.length} ${runs.length === 1 ? "run" : "runs"}`];
+  if (last("phi").length > 0) {
+    text.push(`mean of the last ϕ ${mean(last("phi")).toFixed(4)}`,
+      `mean of the last percentage ${mean(last("percent")).toFixed(1)} %`);
+  }
+  return text.join(", ");
+}
+
+export class Comparison {
+  constructor(host, experiments, packings) {
+    this.variants = variantsOf(experiments);
+    this.packings = packings;
+    const sides = document.createElement("div");
+    sides.className = "sides";
+    host.append(sides);
+    this.sides = ["Left", "Right"].map((label, k) => this.addSide(sides, label, k));
+    this.note = document.createElement("p");
+    this.note.className = "small";
+    this.view = document.createElement("div");
+    host.append(this.note, this.view);
+    this.viewer = null;
+    const watcher = new IntersectionObserver((entries) => {
+      if (!entries.some((entry) => entry.isIntersecting)) return;
+      watcher.disconnect();
+      this.viewer = new Viewer(this.view, packings, 2);
+      this.showPackings();
+    }, {rootMargin: "200px"});
+    if (packings.length > 0) watcher.observe(this.view);
+    this.show();
+  }
+
+  addSide(parent, label, k) {
+    const side = document.createElement("div");
+    side.className = "side";
+    const choice = document.createElement("label");
+    const select = document.createElement("select");
+    choice.append(`${label} `, select);
+    const groups = new Map();
+    this.variants.forEach(({experiment, name}, index) => {
+      if (!groups.has(experiment)) {
+        const group = document.createElement("optgroup");
+        group.label = experiment;
+        groups.set(experiment, group);
+        select.append(group);
+      }
+      const option = document.createElement("option");
+      option.value = String(index);
+      option.textContent = name;
+      groups.get(experiment).append(option);
+    });
+    select.value = String(Math.min(k, this.variants.length - 1));
+    select.addEventListener("change", () => this.show());
+    const facts = document.createElement("p");
+    facts.className = "small";
+    const panels = document.createElement("div");
+    side.append(choice, facts, panels);
+    parent.append(side);
+    return {select, facts, panels};
+  }
+
+  chosen() {
+    return this.sides.map(({select}) => this.variants[Number(select.value)]);
+  }
+
+  show() {
+    const chosen = this.chosen();
+    const range = commonRange(chosen.flatMap(({runs}) => runs));
+    this.sides.forEach(({facts, panels}, k) => {
+      facts.textContent = `${chosen[k].experiment}, ${chosen[k].name}: ${factsOf(chosen[k])}`;
+      panels.replaceChildren();
+      for (const {name, chart} of chartsOfVariant(chosen[k].runs, chosen[k].name, range)) {
+        const host = document.createElement("div");
+        host.className = "plot";
+        panels.append(host);
+        new Plot(host, chart, name);
+      }
+    });
+    this.showPackings();
+  }
+
+  showPackings() {
+    const found = this.chosen().map(({runs}) =>
+      this.packings.find((packing) => runs.some((run) => run.id === packing.id)));
+    const without = this.chosen().filter((_, k) => !found[k]).map(({name}) => name);
+    this.note.textContent = without.length > 0
+      ? `No packing of ${without.join(", ")} is in this file; --runs-per-experiment and ` +
+        "--packings-mb of shearcell report add more." : "";
+    this.view.hidden = found.every((packing) => !packing);
+    this.viewer?.showRuns(found);
+  }
+}

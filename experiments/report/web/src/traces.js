@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Charts of runs over their cycles, as experiments/report/run_tables.cpp gives them: {cycle, phi,
+// percent, seed, variant, kind, ...}.
+import {italic, plain} from "./text.js";
+
+const quantities = [
+  {key: "phi", name: "phi", axis: {label: [...plain("volume fraction "), ...italic("ϕ")], unit: []}},
+  {key: "percent", name: "crystalline",
+    axis: {label: plain("percentage crystalline"), unit: plain("%"), low: 0}}
+];
+
+export const colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+const grey = "#8f98a3";
+
+const pointsOf = (run, key) => (run.cycle ?? [])
+  .map((cycle, index) => [cycle, run[key][index]])
+  .filter(([, value]) => value !== null);
+
+const seriesOf = (run, key, title, colour, point) => ({
+  title, name: plain(`seed ${run.seed}`), colour, point, line: true, dashed: false, band: false,
+  shift: 0, points: pointsOf(run, key)
+});
+
+// The checkpoints of a stiffening are counted, and have no cycles.
+const abscissa = (run) => run.kind === "stiffen" ? plain("state of the stiffening")
+  : [...plain("shear cycle "), ...italic("n")];
+
+const chartOf = (quantity, label, series, range = {}) => ({
+  x: {label, unit: [], log: false, whole: true, ...range.cycle},
+  y: {unit: [], log: false, whole: false, ...quantity.axis, ...range[quantity.key]},
+  title: [], series, lines: []
+});
+
+// One run, and behind it the others of its variant: [{name, chart}].
+export function chartsOfRun(run, others) {
+  return quantities.map((quantity) => ({
+    name: `${quantity.name}-${run.id.slice(0, 8)}`,
+    chart: chartOf(quantity, abscissa(run), [
+      ...others.map((one, index) => seriesOf(one, quantity.key,
+        index === 0 ? plain("other seeds") : [], grey, 0)),
+      seriesOf(run, quantity.key, plain(`seed ${run.seed}`), colours[0], 7)
+    ])
+  }));
+}
+
+// All seeds of a variant, on axes that `range` holds together.
+export function chartsOfVariant(runs, name, range) {
+  return quantities.map((quantity) => ({
+    name: `${quantity.name}-${name}`,
+    chart: chartOf(quantity, abscissa(runs[0]), runs.map((run, index) => seriesOf(run, quantity.key,
+      plain(`seed ${run.seed}`), colours[index % colours.length], 0)), range)
+  }));
+}
+
+// The ends of the axes that show all of these runs, with a little room.
+export function commonRange(runs) {
+  const range = {};
+  const add = (key, values) => {
+    const [low, high] = [Math.min(...values), Math.max(...values)];
+    const room = 0.04 * (high - low) || 0.05 * Math.abs(high) || 1;
+    if (values.length > 0) range[key] = {low: low - room, high: high + room};
+  };
+  add("cycle", runs.flatMap((run) => run.cycle ?? []));
+  for (const {key} of quantities) {
+    add(key, runs.flatMap((run) => pointsOf(run, key).map(([, value]) => value)));
+  }
+  if (range.percent) range.percent.low = 0;
+  return range;
+}

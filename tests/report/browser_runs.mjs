@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Checks of the tables of runs, of two variants side by side, and of the workflow.
+import {join} from "node:path";
+
+// The first table with more than one run, as the page shows it.
+async function openTable(page) {
+  const name = await page.locator("[data-runs]").evaluateAll((hosts) =>
+    hosts.find((host) => host.querySelectorAll("tbody").length > 3).dataset.runs);
+  const table = page.locator(`[data-runs="${name}"]`);
+  await table.scrollIntoViewIfNeeded();
+  const column = async (key) => table.evaluate((host, wanted) => {
+    const at = [...host.querySelectorAll("th")].findIndex((head) => head.dataset.key === wanted);
+    return [...host.querySelectorAll("tbody:not([hidden])")]
+      .map((body) => body.rows[0].cells[at].dataset.value);
+  }, key);
+  return {table, column};
+}
+
+export function runChecks({open, expect, shots}) {
+  return {
+    async sorting() {
+      const page = await open("sorting");
+      const {table, column} = await openTable(page);
+      const declared = await column("run");
+      const head = table.locator('th[data-key="phi"]');
+      await head.getByRole("button").click();
+      const up = (await column("phi")).map(Number);
+      expect(up.length > 1 && up.every((phi, k) => k === 0 || phi >= up[k - 1]),
+        `sorting: phi ascending: ${up}`);
+      expect(await head.getAttribute("aria-sort") === "ascending", "sorting: no aria-sort");
+      await head.getByRole("button").press("Enter");
+      const down = (await column("phi")).map(Number);
+      expect(down.join() === [...up].reverse().join(), `sorting: phi descending: ${down}`);
+      await table.locator('th[data-key="state"]').getByRole("button").click();
+      expect(await head.getAttribute("aria-sort") === null, "sorting: by two columns at once");
+      expect([...await column("run")].sort().join() === [...declared].sort().join(),
+        "sorting: rows were lost");
+      await page.context().close();
+    },
+
+    async filtering() {
+      const page = await open("filtering");
+      const {table, column} = await openTable(page);
+      const all = await column("phi");
+      const limit = [...all].map(Number).sort((a, b) => a - b)[Math.floor(all.length / 2)];
+      const input = table.getByRole("searchbox");
+      const shown = async (text) => {
+        await input.fill(text);
+        return column("phi");
+      };
+      const above = await shown(`phi>${limit}`);
+      expect(above.length > 0 && above.length < all.length && above.every((phi) => phi > limit),
+        `filtering: phi>${limit}: ${above}`);
+      expect(await table.locator("output").textContent() === `${above.length} of ${all.length} runs`,
+        "filtering: the count is another");
+      const [run] = await column("run");
+      expect((await shown(run.slice(0, 8))).length === 1, "filtering: a text of one row");
+      expect((await shown(`seed=1 phi<=${limit}`)).length > 0, "filtering: two conditions");
+      expect((await column("seed")).every((seed) => seed === "1"), "filtering: another seed");
+      expect((await shown("nothing like it")).length === 0, "filtering: a text of no row");
+      expect((await shown("")).length === all.length, "filtering: an empty filter hides rows");
+      await page.context().close();
+    },
+
+    async traces() {
+      const page = await open("traces");
+      const {table} = await openTable(page);
+      const body = table.locator("tbody").nth(1);
+      await body.locator('td:has(.state)').click();
+      const plots = body.locator(".trace svg.canvas");
+      expect(await plots.count() === 2, "traces: not two plots");
+      const labels = await body.locator(".trace .label").allTextContents();
+      for (const label of ["volume fraction ϕ", "percentage crystalline  [%]", "shear cycle n"]) {
+        expect(labels.includes(label), `traces: labels ${labels}`);
+      }
+      expect(await body.locator(".trace .symbol").count() > 3, "traces: no points");
+      await body.scrollIntoViewIfNeeded();
+      await page.screenshot({path: join(shots, "trace.png")});
+      await table.locator('th[data-key="phi"]').getByRole("button").click();
+      const following = await table.locator("tr.trace").evaluate((line) =>
+        line.parentElement.classList.contains("open") && line.previousElementSibling !== null);
+      expect(following, "traces: it does not follow its row when rows are sorted");
+      const opener = table.locator("tbody.open .disclosure");
+      await opener.focus();
+      await page.keyboard.press("Enter");
+      expect(await table.locator("tr.trace").count() === 0, "traces: Enter does not close it");
+      await page.keyboard.press("Enter");
+      expect(await table.locator("tr.trace").count() === 1, "traces: Enter does not open it");
+      await table.locator(".trace button").first().focus();
+      await page.keyboard.press("Escape");
+      expect(await table.locator("tr.trace").count() === 0, "traces: Escape does not close it");
+      expect(await page.evaluate(() => document.activeElement.className === "disclosure"),
+        "traces: the focus is lost");
+      await page.context().close();
+    },
+
+    async compare() {
+      const page = await open("compare", {viewport: {width: 1400, height: 900}});
+      const section = page.locator("#compare");
+      await section.scrollIntoViewIfNeeded();
+      await section.locator(".side svg.canvas").first().waitFor();
+      expect(await section.locator(".side svg.canvas").count() === 4, "compare: not four plots");
+      const ticks = (side, plot) => section.locator(".side").nth(side).locator("svg.canvas").nth(plot)
+        .locator(".axes text").allTextContents();
+      for (const plot of [0, 1]) {
+        expect((await ticks(0, plot)).join() === (await ticks(1, plot)).join(),
+          `compare: plots ${plot} have different axes`);
+      }
+      const boxes = await section.locator(".side").evaluateAll((sides) =>
+        sides.map((side) => side.getBoundingClientRect()).map(({left, right, top}) => ({left, right, top})));
+      expect(boxes[0].top === boxes[1].top && boxes[0].right <= boxes[1].left,
+        "compare: they are not side by side");
+      await section.locator(".comparison > div").last().scrollIntoViewIfNeeded();
+      await section.locator(".pane canvas").nth(1).waitFor();
+      await page.waitForTimeout(300);
+      const pictures = section.locator(".pane canvas");
+      const before = await pictures.nth(1).screenshot();
+      await pictures.nth(0).focus();
+      await page.keyboard.press("ArrowLeft");
+      await page.keyboard.press("ArrowLeft");
+      await page.waitForTimeout(250);
+      const turned = await pictures.nth(1).screenshot();
+      expect(!before.equals(turned), "compare: the other packing does not turn");
+      await section.locator('[data-part="colour"]').selectOption("q6");
+      await page.waitForTimeout(250);
+      expect(!turned.equals(await pictures.nth(1).screenshot()), "compare: one is not coloured");
+      await section.screenshot({path: join(shots, "compare.png")});
+      const left = section.locator(".side").nth(0);
+      const facts = await left.locator(".small").textContent();
+      await left.locator("select").selectOption({index: 2});
+      expect(await left.locator(".small").textContent() !== facts, "compare: the choice is not followed");
+      await page.context().close();
+    },
+
+    async workflow() {
+      const page = await open("workflow");
+      const flows = await page.locator(".workflow").evaluateAll((all) => all.map((flow) =>
+        [...flow.querySelectorAll(".box")].map((box) => box.innerText.replace(/\s+/g, " "))));
+      expect(flows.length > 5, `workflow: ${flows.length}`);
+      for (const boxes of flows) {
+        expect(boxes.map((text) => text.split(" ")[0]).join() ===
+          "Manifest,Packings,Runs,Checkpoints,Figures", `workflow: ${boxes}`);
+        expect(/\d+ done/.test(boxes[2]) && /\d+ stored/.test(boxes[3]), `workflow: ${boxes}`);
+      }
+      const counted = await page.locator("section.experiment").first().evaluate((section) => ({
+        rows: section.querySelectorAll("[data-runs] tbody").length,
+        done: parseInt(section.querySelector(".workflow .box:nth-child(3) li").innerText.match(/\d+/)[0], 10)
+      }));
+      expect(counted.rows === counted.done, `workflow: ${counted.done} runs of ${counted.rows}`);
+      await page.context().close();
+    }
+  };
+}
