@@ -296,9 +296,7 @@ void add_plan(CLI::App& app, Context& context) {
   add_engine_option(*command, options->expand);
   add_common_options(*command, context, true);
   command->footer(
-      "A run that the store does not know is compared with the nearest one that it knows: the "
-      "values\n"
-      "in which they differ are what makes it new.\n"
+      "For each new run, prints the values in which it differs from the nearest known one.\n"
       "Examples:\n  shearcell plan experiments/drag.yaml --scale paper");
   command->callback([options, &context] { plan(*options, context); });
 }

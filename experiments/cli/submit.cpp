@@ -334,11 +334,13 @@ void add_submit(CLI::App& app, Context& context) {
   add_job_options(*command, *options);
   add_common_options(*command, context, true);
   command->footer(
-      "Each task computes the runs of some packings in a store of its own, under\n"
-      "STORE/submissions; a job after the array folds these stores into STORE. Near its time limit "
-      "a\n"
-      "task writes checkpoints and queues itself again. Runs that are done or queued are not\n"
-      "submitted, so submit again at any time. STORE must be on a disk that all nodes see.\n"
+      "Each task computes the runs of some packings in its own store under STORE/submissions; a "
+      "job\n"
+      "after the array merges these stores into STORE. Near its time limit a task writes "
+      "checkpoints\n"
+      "and queues itself again. Runs that are done or queued are left out, so you can submit again "
+      "at\n"
+      "any time. Put STORE on a disk that all nodes see.\n"
       "Examples:\n"
       "  shearcell submit experiments/drag.yaml --scale paper --partition long --time 24:00:00\n"
       "  shearcell submit experiments/*.yaml --scale desk --scratch /scratch --sbatch=--mem=4G\n"

@@ -32,7 +32,15 @@ class ProblemList {
   std::vector<ManifestProblem> problems_;
 };
 
-/// Keys at the top level of a manifest.
+/// A key at the top level of a manifest.
+struct ManifestKey {
+  std::string_view name;
+  std::string_view example;  ///< a value, as YAML
+  std::string_view meaning;
+};
+std::span<const ManifestKey> manifest_keys();
+
+/// Their names.
 std::span<const std::string_view> manifest_sections();
 
 /// "scales.smoke" and "grains" -> "scales.smoke.grains".
