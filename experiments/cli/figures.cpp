@@ -112,7 +112,7 @@ void figures(FigureArguments& options, Context& context) {
   if (context.json) print_json({{"figures", list}});
 }
 
-/// "S2: NAME; tells apart KEYS", one line each.
+/// Name, title and the keys that it compares, for each figure.
 std::string list_of_figures() {
   std::string text;
   for (const Figure& figure : all_figures()) {

@@ -46,7 +46,7 @@ std::string entry(const Field& field) {
          fmt::format("  # {}: {}\n", field.name, value_text(get_value(field, {})));
 }
 
-/// The figures and the keys that they tell apart, as comments.
+/// The figures and the keys that they compare, as comments.
 std::string figure_comments() {
   std::string text = "# Figures, and the keys that an experiment varies for them:\n";
   for (const Figure& figure : all_figures()) {

@@ -30,7 +30,7 @@ struct PlanOptions {
 };
 
 std::optional<Store> open_if_there(const std::string& folder) {
-  // A folder that `run` would take for a new store is none yet.
+  // An empty folder is not a store yet; `run` would create one there.
   std::error_code ignored;
   if (!std::filesystem::exists(folder) ||
       (std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder, ignored))) {
@@ -118,7 +118,7 @@ void print_numerics(const std::vector<Line>& lines) {
               rows);
 }
 
-// What to know of runs by another engine.
+// A note on runs by another engine.
 std::vector<std::string> notes_of(const Plan& plan) {
   if (!asks_for_lammps(plan)) return {};
   std::vector<std::string> notes = lammps_caveats();

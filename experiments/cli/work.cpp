@@ -133,7 +133,7 @@ void work(const WorkOptions& options, Context& context) {
   place.finish();
   report(result, context);
   if (stop_requested()) {
-    // With work left it goes on later, whatever else happened to it.
+    // With work left the task continues later, whatever else happened to it.
     const bool work_left = result.interrupted + result.blocked > 0;
     if (work_left || context.exit_code == kInterrupted) {
       context.exit_code = work_left ? kInterrupted : kDone;

@@ -38,7 +38,7 @@ std::string queue_job(const std::filesystem::path& folder, const std::string& sc
 /// What of the jobs of these names is waiting, running or about to end. Throws ClusterError.
 std::vector<QueuedTask> ask_queue(const std::vector<std::string>& names);
 
-/// What `squeue` printed, line by line; lines that are none of its own are passed over.
+/// What `squeue` printed, line by line; other lines are skipped.
 std::vector<QueuedTask> read_queue(const std::string& output);
 
 }  // namespace shearcell

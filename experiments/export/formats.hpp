@@ -25,9 +25,9 @@ FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 enum class Lengths { diameters, metres };
 
 /// Extended XYZ in one file; the comment line of each frame holds the run, its parameters and the
-/// scalars. Species H stands for a grain and He for a wall grain, since readers want chemical
-/// symbols; `type` tells which wall. Lengths in grain diameters (the radius of a sphere is then
-/// 0.5, as OVITO and ASE expect numbers of order 1), d_m tells d in metres; or in metres.
+/// scalars. Species H is a grain and He a wall grain, because readers require chemical
+/// symbols; `type` is the wall. Lengths in grain diameters (the radius of a sphere is then
+/// 0.5, as OVITO and ASE expect numbers of order 1), with d in metres as d_m; or in metres.
 FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths);
 inline FrameWriter extxyz_in_diameters(const std::filesystem::path& file) {
   return extxyz_writer(file, Lengths::diameters);

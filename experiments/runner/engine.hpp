@@ -19,7 +19,7 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
-  /// Goes on for about 50 ms and tells where it is, as Protocol::advance does. Throws
+  /// Advances for about 50 ms and returns its progress, as Protocol::advance does. Throws
   /// NumericalFailure, and EngineError when another program failed.
   virtual StageProgress advance() = 0;
 

@@ -11,11 +11,11 @@ namespace shearcell {
 /// SIGPIPE: nobody needs to read the progress of a campaign.
 void catch_stop_signals();
 
-/// The same for a task of a batch system, which tells of an end to come by SIGTERM or SIGUSR1, may
-/// do so several times, and kills by itself when its patience is over: only the first one counts.
+/// The same for a task of a batch system, which announces the end by SIGTERM or SIGUSR1, perhaps
+/// several times, and kills the task later. Only the first signal counts.
 void catch_batch_signals();
 
-/// Whether one of them came.
+/// Whether one of them arrived.
 bool stop_requested();
 
 /// Work was given up because of such a wish, before there was a state to record.

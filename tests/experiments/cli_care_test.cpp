@@ -188,7 +188,7 @@ TEST_F(Sharing, TwoProgramsDoEachRunOnce) {
   ASSERT_EQ(run({"run", text, "-q", "--store", "whole"}).code, 0);
   const Running first = start_beside({"run", text, "-j", "1", "--json"}, "first");
   const Running second = start_beside({"run", text, "-j", "1", "--json"}, "second");
-  // Meanwhile `status` tells who is at work.
+  // Meanwhile `status` shows which program holds the run.
   bool seen_two = false, seen = false;
   for (int look = 0; look < 400 && !seen_two; ++look) {
     const Outcome status = run({"status", "--json"});
