@@ -31,10 +31,10 @@ void complain(const FigureSummary& result, std::set<std::string>& told) {
   for (const std::string& line : result.damage) tell_stderr("left out: {}\n", line);
   for (const std::string& line : result.pruned) tell_stderr("left out: {}\n", line);
   for (const std::string& sha256 : result.changed) {
-    tell_stderr("checkpoint {:.12}: the kept measures were different; replaced\n", sha256);
+    tell_stderr("checkpoint {:.12}: the cached measures differed and were replaced\n", sha256);
   }
   if (!result.cache_trouble.empty()) {
-    tell_stderr("measures cannot be kept: {}\n", result.cache_trouble);
+    tell_stderr("measures cannot be cached: {}\n", result.cache_trouble);
   }
   if (!result.plot_error.empty()) tell_stderr("no plot: {}\n", result.plot_error);
 }

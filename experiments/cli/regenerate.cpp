@@ -45,7 +45,7 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
     }
     return facts;
   };
-  if (sound(store, record)) return say("kept", "it is there and sound");
+  if (sound(store, record)) return say("kept", "the file is intact");
   if (const auto why = why_not_again(store.run(record.run))) {
     context.exit_code = kOtherError;
     facts["why"] = *why;

@@ -171,7 +171,7 @@ void print(const Estimate& left) {
   tell("left: {} stages, {:.3g} particle-steps, {} {} with {} at a time{}\n", left.work.stages,
        left.work.particle_steps, left.at_most ? "at most" : "about",
        format_duration(left.seconds()), left.at_a_time,
-       left.running ? ": until " + local_time(left.seconds()) : "; nobody computes them now");
+       left.running ? ": until " + local_time(left.seconds()) : "; no program computes them now");
 }
 
 /// A table for each experiment, each run under the first that declared it, and what is to be said

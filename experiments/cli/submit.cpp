@@ -257,7 +257,7 @@ std::string check_value(const std::string& text) {
 
 std::string check_sbatch(const std::string& text) {
   if (text.starts_with("--") && text.size() > 2) return check_value(text);
-  return fmt::format("'{}' is no long option of sbatch; write --sbatch=--qos=long", text);
+  return fmt::format("'{}' is not a long option of sbatch; write --sbatch=--qos=long", text);
 }
 
 void check_time(const JobOptions& job) {
@@ -266,7 +266,7 @@ void check_time(const JobOptions& job) {
   const auto limit = slurm_seconds(job.time);
   if (!limit) {
     throw CLI::ValidationError("--time", "'" + job.time +
-                                             "' is no time limit of Slurm's: write MINUTES, "
+                                             "' is not a time limit of Slurm: write MINUTES, "
                                              "HH:MM:SS or DAYS-HH:MM:SS");
   }
   if (*limit <= needed) {
@@ -296,7 +296,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
   command.add_option("--account,-A", job.account, "Account")->check(check_value);
   command
       .add_option("--time", job.time,
-                  "Time limit of one start of a task; it goes on until it is done")
+                  "Time limit of one start of a task; it restarts until it is done")
       ->check(check_value)
       ->type_name("HH:MM:SS");
   add_count(command, "--array-size", options.array_size, "Most tasks (default: one per packing)",

@@ -40,7 +40,8 @@ std::optional<Head> read_head(const std::vector<std::string>& words) {
     if (error == std::errc() && stop == end && is_sha256_hex(head.hash)) return head;
   }
   throw CLI::ValidationError(
-      "--against", "'" + text + "' is no head; give what `verify` told: SEQ and 64 hex digits");
+      "--against",
+      "'" + text + "' is not a head; give SEQ and 64 hex digits, as `verify` prints them");
 }
 
 // A new sample for every new event, and the same one again for the same store.

@@ -58,7 +58,7 @@ TEST_F(Care, PruneShowsFirstAndRegenerateBringsBack) {
   EXPECT_EQ(objects(), files);
   EXPECT_EQ(run({"figures", "S2"}).code, 0);
   EXPECT_EQ(run({"verify"}).code, 0);
-  EXPECT_TRUE(contains(run({"regenerate", sha}).out, "it is there and sound"));
+  EXPECT_TRUE(contains(run({"regenerate", sha}).out, "the file is intact"));
   EXPECT_EQ(run({"regenerate", "no-such"}).code, 2);
 }
 
