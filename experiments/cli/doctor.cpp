@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `doctor`: what this machine has of what the program can use, and what speed to expect.
+// `doctor`: checks the machine for everything that the program can use, and measures its speed.
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/vfs.h>

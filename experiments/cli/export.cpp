@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `export`: runs in a form that other programs read.
+// `export`: writes runs in the formats of other programs.
 #include <fmt/format.h>
 
 #include <algorithm>

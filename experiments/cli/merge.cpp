@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `merge`: folds other stores into this one.
+// `merge`: merges other stores into this one.
 #include <fmt/format.h>
 
 #include <memory>

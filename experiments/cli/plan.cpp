@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plan`: what a manifest expands to, what of it is done, and what the rest will cost.
+// `plan`: the runs of a manifest, which of them are done, and what the rest costs.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `rebuild`: derives every table from the events again.
+// `rebuild`: rebuilds every table from the events.
 #include <fmt/format.h>
 
 #include "experiments/cli/command.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `submit`: hands what is left of a campaign to a cluster as an array job.
+// `submit`: queues the rest of a campaign on a cluster as an array job.
 #include <fmt/format.h>
 
 #include <filesystem>

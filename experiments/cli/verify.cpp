@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `verify`: whether the store still is what was written, and whether it can be computed again.
+// `verify`: checks that the store is unchanged and, on request, that it can be recomputed.
 #include <fmt/format.h>
 
 #include <charconv>

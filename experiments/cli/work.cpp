@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `work`: what a task of an array job does with the store that `submit` made for it.
+// `work`: one task of an array job, on the store that `submit` made for it.
 #include <fmt/format.h>
 
 #include <chrono>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the runs that were handed to a cluster stand: in the queue, and by their tasks' reports.
+// The state of submitted runs: their place in the queue and the reports of their tasks.
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of a campaign is left to do, and which task of an array job does which part of it.
+// Which stages of a campaign are left to do, and which task of an array job computes which.
 #pragma once
 
 #include <cstddef>

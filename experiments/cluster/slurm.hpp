@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slurm's own programs, asked with argument vectors.
+// Calls Slurm's own programs, with argument vectors.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files for the field's tools. Each takes frames in turn and is whole when the last one was given;
-// all have the same particles, numbered from 1, and say which run and parameters they come from.
+// Files for the field's tools. Each writer takes frames in turn; its file is complete after the
+// last one. All files hold the same particles, numbered from 1, and name their run and parameters.
 // Text has 17 digits, enough to read back the same double.
 #pragma once
 

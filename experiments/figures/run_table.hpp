@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a store says of its runs as one table: a row for each checkpoint or each run, a column for
-// each swept parameter and each scalar measure.
+// The runs of a store as one table: a row for each checkpoint or each run, a column for each swept
+// parameter and each scalar measure.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What people call the variants of an experiment. Identity and CSV files use Variant::name().
+// Names of variants for people. Identity and CSV files use Variant::name().
 #pragma once
 
 #include <nlohmann/json.hpp>

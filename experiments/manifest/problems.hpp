@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collects what is wrong with a manifest, so that its writer sees all of it at once.
+// Collects every problem of a manifest, so that all are reported at once.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What takes a stage on: our own simulation in this process, or LAMMPS beside it.
+// The engine that advances a stage: our own simulation in this process, or LAMMPS in another.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What sets a stage that the store does not know apart from the nearest one that it knows.
+// The values in which a new stage differs from the nearest known one.
 #pragma once
 
 #include <cstdint>

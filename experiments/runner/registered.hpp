@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The manifests that a store was given, and what they call their variants.
+// The manifests that are registered in a store, and their names for variants.
 #pragma once
 
 #include <map>

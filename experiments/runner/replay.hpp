@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes recorded states again, from a kept state before them, to prove or to restore them.
+// Recomputes recorded states from an earlier kept state, to prove or to restore them.
 #pragma once
 
 #include <cstdint>

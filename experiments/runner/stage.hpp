@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One stage of a run as the store knows it, made ready to be stepped: the same for a first
+// One stage of a run, made from its record and ready to be stepped: the same for a first
 // computation, a continuation and a replay.
 #pragma once
 

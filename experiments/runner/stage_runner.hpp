@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes one stage of a run from what the store knows about it, and records what comes out.
+// Computes one stage of a run from its records in the store, and records the result.
 #pragma once
 
 #include <cstdint>

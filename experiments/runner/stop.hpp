@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SIGINT, SIGTERM and SIGHUP as a wish to stop: runs write a checkpoint and end; a second signal
-// kills.
+// SIGINT, SIGTERM and SIGHUP as a request to stop: runs write a checkpoint and end; a second
+// signal kills.
 #pragma once
 
 #include <stdexcept>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the terminal behind a stream can show.
+// What the terminal of a stream can display.
 #pragma once
 
 #include <fmt/format.h>

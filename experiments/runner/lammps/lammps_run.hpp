@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LAMMPS at work on one task: in a temporary folder of its own, alone or under mpirun.
+// Runs LAMMPS for one task, in a temporary folder, alone or under mpirun.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LAMMPS settles loose grains as protocols/settle does: it takes the steps between two looks, and
-// what our protocol sees in the state that it left decides whether there are more.
+// LAMMPS settles loose grains as protocols/settle does: it takes the steps between two checks, and
+// our protocol decides from the resulting state whether more are needed.
 #pragma once
 
 #include <cstddef>
