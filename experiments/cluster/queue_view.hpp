@@ -14,7 +14,7 @@ namespace shearcell {
 
 struct QueuedRun {
   std::string job;    ///< "17_3": task 3 of array job 17; "" when it was never queued
-  std::string state;  ///< "pending", "running", ...; "ended" when the queue knows it no more
+  std::string state;  ///< "pending", "running", ...; "ended" when it left the queue
   std::string reason;
   std::string node;
   std::optional<ReportedRun> reported;

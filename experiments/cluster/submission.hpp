@@ -53,8 +53,8 @@ void ask_queue(std::vector<OpenSubmission>& submissions);
 std::vector<MergeReport> fold(Store& store, const Submission& submission);
 
 /// Records a submission of these shares and makes a store for each task, holding what is known of
-/// its runs. `facts` joins the event. Throws ConcurrencyConflict when somebody else submitted since
-/// `seen` such events were read.
+/// its runs. `facts` joins the event. Throws ConcurrencyConflict when another program submitted
+/// since `seen` such events were read.
 Submission prepare_submission(Store& store, const std::vector<Share>& shares, nlohmann::json facts,
                               std::size_t seen);
 

@@ -37,7 +37,7 @@ struct RunTable {
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options);
 
-/// Every column but those of swept parameters, which are named as in a manifest.
+/// Every column except those of swept parameters, which are named as in a manifest.
 std::vector<TableColumn> table_columns(RowPer per);
 
 /// Names and values of what is known of one checkpoint, in the order of the columns.
@@ -49,7 +49,7 @@ std::string to_csv(const RunTable& table);
 /// An array of objects, one for each row, keys in the order of the columns.
 std::string to_json(const RunTable& table);
 
-/// Whether a file begins as one of the two does.
+/// Whether a file begins like one of the two.
 bool is_table(std::string_view beginning);
 
 }  // namespace shearcell

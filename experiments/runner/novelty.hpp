@@ -36,7 +36,7 @@ class KnownRuns {
   /// Null when there is no run with this id.
   const RunRecord* find(const std::string& id) const;
 
-  /// Nothing when the store knows the stage, or none of its kind.
+  /// Nothing when the store has the stage, or no stage of its kind.
   std::optional<Novelty> novelty(const StageSpec& stage) const;
 
  private:

@@ -13,7 +13,7 @@
 
 namespace shearcell {
 
-/// What a registered manifest says of figures.
+/// The figures, labels, plots and claims of a registered manifest.
 struct RegisteredManifest {
   std::string sha256;
   std::string experiment;

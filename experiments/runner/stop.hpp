@@ -18,16 +18,16 @@ void catch_batch_signals();
 /// Whether one of them arrived.
 bool stop_requested();
 
-/// Work was given up because of such a wish, before there was a state to record.
+/// Work ended because of such a request, before there was a state to record.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// Throws Interrupted if there is such a wish.
+/// Throws Interrupted if a stop is requested.
 void give_up_if_requested();
 
-/// Asks to stop as a signal would; `false` takes the wish back.
+/// Requests a stop as a signal would; `false` withdraws it.
 void request_stop(bool stop);
 
 }  // namespace shearcell

@@ -25,7 +25,7 @@ struct LammpsTask {
   State state;               ///< from which it begins
   std::uint64_t end = 0;     ///< step at which it ends
   std::uint64_t stride = 1;  ///< a frame at every multiple of it, and at the end
-  std::uint64_t look = 100;  ///< steps between two looks for a file `stop`, which ends it early
+  std::uint64_t look = 100;  ///< steps between two checks for a file `stop`, which ends it early
   bool added_mass = true;    ///< false: the drag as LAMMPS users take it, wrong by order dt
 };
 

@@ -12,7 +12,7 @@
 namespace shearcell {
 
 /// Loose grains -> at rest, by our criterion. `scene` is the protocol's; the result's step counts
-/// those that LAMMPS took. The watchdog looks where the protocol does. Throws NumericalFailure as
+/// those that LAMMPS took. The watchdog checks where the protocol does. Throws NumericalFailure as
 /// the protocol does, after its time limit above all, and EngineError. `seen` gets what came back
 /// after each look.
 LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protocol,
