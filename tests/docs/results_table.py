@@ -19,7 +19,7 @@ END = "<!-- end of results -->\n"
 # Figure, beginning of the claim in the verdict, and the cells "claim" and "supplement" of README.md.
 HEADLINES = [
     ("S1", "B.2: phi_u falls by about 2 % over a hundredfold k", "fall of phi_u over a hundredfold k", "roughly 2 %"),
-    ("S1", "B.2: phi (Eq. S4) stays the same over a hundredfold k", "change of phi over a hundredfold k", "none"),
+    ("S1", "B.2: phi (Eq. S4) stays the same over a hundredfold k", "change of phi over a hundredfold k", "no change"),
     ("S2", "B.3: phi is the same at cycles", "phi, moving less still fluid", "equal"),
     ("S2", "B.3: crystallization begins", "onset cycle, moving over still fluid", "equal"),
     ("S3", "B.4: phi is the same at cycles 1 to 15 for steps of 7.0e-5", "phi, time step 7.0e-5 s less 4.4e-5 s", "equal"),
@@ -64,10 +64,13 @@ def measured(claim):
     convert, unit = conversion(claim["quantity"])
     ends = [None if end is None else convert(end) for end in claim["interval"] or (None, None)]
     value = convert(claim["estimate"])
+    if ends == [None, None]:
+        return f"{digits(value)}{unit} (unbounded)"
     if None in ends:
         return f"{digits(value)}{unit} ({digits(ends[0])} to {digits(ends[1])})"
     width = abs(ends[1] - ends[0]) / 2
-    decimals = 3 if width == 0 else max(0, 1 - math.floor(math.log10(width)))
+    # The last digit is the first digit of a quarter of the interval.
+    decimals = 3 if width == 0 else max(0, -math.floor(math.log10(width / 2)))
     return f"{value:.{decimals}f}{unit} ({ends[0]:.{decimals}f} to {ends[1]:.{decimals}f})"
 
 
