@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The size from which on a crystallite is more likely to grow than to shrink. Supplement C.
+// The size above which a crystallite is more likely to grow than to shrink. Supplement C.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the crystallites of one checkpoint are and which grains they hold: what tracking needs, in
-// a form that is kept.
+// The crystallites of one checkpoint, their places and their grains, in a form that can be stored,
+// for tracking.
 #pragma once
 
 #include <Eigen/Core>

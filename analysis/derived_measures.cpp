@@ -106,7 +106,7 @@ std::vector<std::byte> encode_result(const json& result) {
 
 json decode_result(std::span<const std::byte> bytes) {
   json result = parse_cbor(bytes);
-  if (result.is_discarded()) throw AnalysisError("a kept result is no CBOR");
+  if (result.is_discarded()) throw AnalysisError("a cached result is not CBOR");
   return result;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one error that analysis raises: the input is no packing that can be measured.
+// The error that analysis throws when its input is not a packing that it can measure.
 #pragma once
 
 #include <stdexcept>

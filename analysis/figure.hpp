@@ -64,7 +64,7 @@ struct Figure {
   FigureNeeds needs = FigureNeeds::scalars;
   std::function<FigureResult(std::span<const FigureRun> runs)> make;
   FigureForm form = FigureForm::curves;
-  std::vector<std::string> keys = {};  ///< parameters that it tells apart
+  std::vector<std::string> keys = {};  ///< parameters that its curves compare
   bool at_rest = false;                ///< needs phi_at_rest of cycles 1 to early_cycles
   bool mechanics = false;              ///< needs Measures::mechanics
 };
@@ -74,13 +74,13 @@ nlohmann::json parameter_of(const FigureRun& run, const std::string& key);
 /// The same as a number; NaN if it is not a number.
 double number_of(const FigureRun& run, const std::string& key);
 
-/// Those of `keys` that tell the variants apart: each varies, and without any one of them two
+/// Those of `keys` that distinguish the variants: each varies, and without any one of them two
 /// variants would be equal. Of keys that advance together the first stays. `variants` are objects
 /// of swept keys and values.
 std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,
                                             std::vector<std::string> keys);
 
-/// The swept keys of the runs that tell their variants apart.
+/// The swept keys of the runs that distinguish their variants.
 std::vector<std::string> varied_keys(std::span<const FigureRun> runs);
 
 /// Every figure, in the order of the supplement.

@@ -30,9 +30,9 @@ class Dual {
         grains_(grains),
         delaunay_(sites, grains, cell.depth, first_margin_spacings * spacing()) {}
 
-  /// Measures all cells. More images can only make them smaller, so a sphere around a corner that
-  /// holds no image within the margin tells what a wider margin would have to hold, and the second
-  /// pass is the last.
+  /// Measures all cells. More images can only make cells smaller. So the first pass bounds the
+  /// margin that is needed, by spheres around the corners that hold no image, and the second pass
+  /// is the last.
   VoronoiDiagram measure(WallGrainCells wall_grain_cells);
 
  private:

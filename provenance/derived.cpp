@@ -54,7 +54,7 @@ void DerivedCache::open() {
   if (type != fs::file_type::regular && type != fs::file_type::not_found) {
     return give_up(
         file_.string() +
-        ": measures are kept in this file, but it is a folder, link or device; remove it");
+        ": measures are cached in this file, but it is a folder, link or device; remove it");
   }
   if (read_only_ && type == fs::file_type::not_found) return;
   database_.emplace(file_, read_only_ ? sqlite::Open::existing : sqlite::Open::create);

@@ -118,7 +118,7 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
 
 FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
   FigureTable table;
-  table.name = std::string("C");  // not assigned: GCC 12 warns of an overlap that is none
+  table.name = std::string("C");  // not assigned: GCC 12 warns of an overlap that does not exist
   table.columns = {"amplitude_rad",      "size_grains",    "grow_probability",
                    "shrink_probability", "binomial_error", "delta_rho",
                    "delta_rho_error",    "crystallites",   "runs"};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figure S1: phi_u falls as the springs of a packing are made stiffer, phi stays where it is.
-// Supplement B.2.
+// Figure S1: phi_u falls as the springs of a packing are made stiffer, phi does not. Supplement
+// B.2.
 #include <array>
 #include <cmath>
 #include <map>

@@ -66,7 +66,8 @@ void add_bench(CLI::App& app, Context& context) {
       "  shearcell bench stability --quick\n  shearcell bench engines --size 600 --cycles 1");
   auto options = std::make_shared<SpeedOptions>();
   CLI::App* rate = command->add_subcommand(
-      "speed", "Particle-steps per second in the sheared rough cell, and where the time goes");
+      "speed",
+      "Measure particle-steps per second in the sheared rough cell, and the share of each part");
   add_count(*rate, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000);
   add_count(*rate, "--threads", options->threads, "Threads inside one run", "T", 1, 1024);
   add_count(*rate, "--repeats", options->repeats, "Number of timings; the median is printed", "N",
@@ -75,8 +76,7 @@ void add_bench(CLI::App& app, Context& context) {
              60);
   rate->add_flag("--json", context.json, "Print JSON for programs");
   rate->footer(
-      "Every kernel that this machine can run is timed, after a check that all give the same "
-      "state.\n"
+      "Checks that all kernels of this machine give the same state, then times each.\n"
       "Examples:\n  shearcell bench speed --size 600 5200\n"
       "  shearcell bench speed --size 18200 --threads 1 2 --json");
   rate->callback([options, &context] {

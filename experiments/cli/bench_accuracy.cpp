@@ -75,7 +75,7 @@ void add_bench_accuracy(CLI::App& bench, Context& context) {
   auto options = std::make_shared<AccuracyOptions>();
   options->measure.jobs = std::max(1U, std::thread::hardware_concurrency());
   CLI::App* command = bench.add_subcommand(
-      "accuracy", "Error against cost of integrators, time steps and stiffness");
+      "accuracy", "Measure error against cost of integrators, time steps and stiffness");
   command->add_flag("--quick", options->measure.quick,
                     "Seconds instead of minutes: the same tables from fewer runs");
   add_count(*command, "--jobs", options->measure.jobs, "Runs computed at once", "J", 1, 1024);

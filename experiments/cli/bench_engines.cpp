@@ -141,7 +141,7 @@ void add_bench_engines(CLI::App& bench, Context& context) {
   auto options = std::make_shared<EngineCheckOptions>();
   auto weightless = std::make_shared<bool>(false);
   CLI::App* command = bench.add_subcommand(
-      "engines", "LAMMPS and our engine compared: trajectories, means over seeds, speed");
+      "engines", "Compare LAMMPS and our engine: trajectories, means over seeds, speed");
   add_count(*command, "--size", options->grains, "Number of grains", "N", 100, 100'000'000);
   add_count(*command, "--steps", options->steps, "Time steps of trajectories and timing", "S", 1,
             1'000'000);
@@ -160,8 +160,9 @@ void add_bench_engines(CLI::App& bench, Context& context) {
   command->add_flag("--json", context.json, "Print JSON for programs");
   command->footer(
       "Ends with code 3 if the engines do not agree: trajectories within the effect of rounding,\n"
-      "means within their scatter over seeds. Both shear our packings; --settle compares LAMMPS's\n"
-      "own with them. Means of three cycles at N = 2000 take minutes.\n"
+      "means within their scatter over seeds. Both shear our packings; --settle also compares "
+      "packings\n"
+      "that LAMMPS settles. Means of three cycles at N = 2000 take minutes.\n"
       "Examples:\n  shearcell bench engines --size 600 --cycles 1 --settle\n"
       "  shearcell bench engines --size 100000 --no-gravity --cycles 0 --mpi 2");
   command->callback([options, weightless, &context] {

@@ -44,7 +44,7 @@ void stability(const StabilityOptions& options, Context& context) {
 void add_bench_stability(CLI::App& bench, Context& context) {
   auto options = std::make_shared<StabilityOptions>();
   CLI::App* command = bench.add_subcommand(
-      "stability", "Hard cases: each must give the right answer or be stopped with the reason");
+      "stability", "Run hard cases: each must give the right answer or be stopped with the reason");
   command->add_option("--only", options->only, "Names of cases, or their beginnings")
       ->type_name("NAME")
       ->check(unknown_case, "");

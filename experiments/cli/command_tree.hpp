@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The commands and options of the program as data, read off the parser, so that what is made from
-// them (completion, the manual page) cannot differ from what the program takes.
+// The commands and options of the program as data, read from the parser, so that completion,
+// manual page and reference always match it.
 #pragma once
 
 #include <CLI/CLI.hpp>

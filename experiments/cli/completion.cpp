@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `completion`: what a shell needs to complete commands, options and paths.
+// `completion`: scripts with which a shell completes commands, options and paths.
 #include <fmt/format.h>
 
 #include <algorithm>

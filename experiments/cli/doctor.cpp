@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `doctor`: what this machine has of what the program can use, and what speed to expect.
+// `doctor`: checks the machine for everything that the program can use, and measures its speed.
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/vfs.h>
@@ -172,7 +172,7 @@ void doctor(const Context& context, bool with_speed) {
 }  // namespace
 
 void add_doctor(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("doctor", "Say what this machine has, and how fast it is");
+  CLI::App* command = app.add_subcommand("doctor", "Check this machine and measure its speed");
   add_common_options(*command, context, true);
   auto no_speed = std::make_shared<bool>(false);
   command->add_flag("--no-speed", *no_speed, "Do not measure (about five seconds)");

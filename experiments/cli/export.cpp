@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `export`: runs in a form that other programs read.
+// `export`: writes runs in the formats of other programs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -268,7 +268,7 @@ void export_runs(const ExportOptions& options, Context& context) {
 
 void add_export(CLI::App& app, Context& context) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "Write runs in a form that others read");
+  CLI::App* command = app.add_subcommand("export", "Write runs in the formats of other programs");
   CLI::Option* named = command->add_option(
       "run", options->runs, "Run ids, or unique beginnings of them (default: all selected)");
   add_selection_options(*command, options->selection);
@@ -292,15 +292,13 @@ void add_export(CLI::App& app, Context& context) {
   }
   command->footer(
       formats +
-      "Each file says which run, seed and parameters it comes from, in which units, and holds "
-      "every\n"
-      "scalar measure of each frame and for each grain id, radius, velocity, phi_local, q6, "
-      "structure,\n"
-      "crystallite and largest overlap; wall grains and the tilted cell are in it. One RUN is "
-      "written\n"
-      "to PATH, several to the folder PATH with a name each. PATH must be new; that of a crate may "
-      "be\n"
-      "an earlier export of the same run.\n"
+      "Each file holds its run, seed, parameters and units, every scalar measure of each frame, "
+      "and for\n"
+      "each grain id, radius, velocity, phi_local, q6, structure, crystallite and largest overlap, "
+      "with\n"
+      "wall grains and the tilted cell. Writes one RUN to PATH, several to the folder PATH with a "
+      "name\n"
+      "each. PATH must be new; that of a crate may be an earlier export of the same run.\n"
       "Examples:\n"
       "  shearcell export 3f9a --to extxyz --cycles 0:60:10 --out run.xyz\n"
       "  shearcell export 3f9a --to vtk --out frames\n"

@@ -31,10 +31,10 @@ void complain(const FigureSummary& result, std::set<std::string>& told) {
   for (const std::string& line : result.damage) tell_stderr("left out: {}\n", line);
   for (const std::string& line : result.pruned) tell_stderr("left out: {}\n", line);
   for (const std::string& sha256 : result.changed) {
-    tell_stderr("checkpoint {:.12}: the kept measures were different; replaced\n", sha256);
+    tell_stderr("checkpoint {:.12}: the cached measures differed and were replaced\n", sha256);
   }
   if (!result.cache_trouble.empty()) {
-    tell_stderr("measures cannot be kept: {}\n", result.cache_trouble);
+    tell_stderr("measures cannot be cached: {}\n", result.cache_trouble);
   }
   if (!result.plot_error.empty()) tell_stderr("no plot: {}\n", result.plot_error);
 }
@@ -112,7 +112,7 @@ void figures(FigureArguments& options, Context& context) {
   if (context.json) print_json({{"figures", list}});
 }
 
-/// "S2: NAME; tells apart KEYS", one line each.
+/// Name, title and the keys that it compares, for each figure.
 std::string list_of_figures() {
   std::string text;
   for (const Figure& figure : all_figures()) {
@@ -132,7 +132,7 @@ void add_figures(CLI::App& app, Context& context) {
   how.folder = "shearcell-figures";
   CLI::App* command = app.add_subcommand("figures", "Draw figures from the store alone");
   command->add_option("figure", options->names, "Figures, as S2 (default: all)");
-  command->add_flag("--all", options->all, "All that the store's manifests ask for");
+  command->add_flag("--all", options->all, "Every figure that the store's manifests list");
   command
       ->add_option("--experiment", options->experiment,
                    "Only of this experiment, which need not list the figures named")
@@ -150,19 +150,18 @@ void add_figures(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"single", "double"}))
       ->default_str("single");
   command->add_flag("--fresh", how.fresh,
-                    "Measure every checkpoint again and compare with what is kept");
+                    "Measure every checkpoint again and compare with the cache");
   add_common_options(*command, context, true);
   command->footer(
-      "A figure belongs to one experiment: those whose manifests list it under `figures` each get\n"
-      "their own, beside the plots and claims of the manifest. Written are CSV, SVG and PDF of "
-      "each\n"
-      "panel, NAME.caption.txt, NAME.verdict.json (the verdicts on\n"
-      "the supplement's claims) and NAME.lineage.json (the checkpoints that they come from).\n"
-      "Measures of checkpoints are kept in the store's derived.sqlite, which may be deleted at "
-      "any\n"
-      "time.\n"
-      "Figures, and the keys that their experiment varies (other keys too where a figure has a\n"
-      "curve for each variant; others average):\n" +
+      "Draws each figure once for every experiment that lists it, and the plots and claims of "
+      "their\n"
+      "manifests. Writes CSV, SVG and PDF of each panel, NAME.caption.txt, NAME.verdict.json "
+      "(verdicts\n"
+      "on claims) and NAME.lineage.json (the checkpoints behind it). Caches measures in the "
+      "store's\n"
+      "derived.sqlite, which you may delete at any time.\n"
+      "Figures and the keys that they compare (some have a curve for each value of other keys "
+      "too):\n" +
       list_of_figures() +
       "Examples:\n  shearcell figures S2 --out figures\n"
       "  shearcell figures S2 --experiment drag\n  shearcell figures --all");

@@ -78,7 +78,7 @@ int run(int argc, char** argv) {
   CLI::App app{kDescription, "shearcell"};
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());
-  app.require_subcommand(0, 1);  // so that a word that is none is named
+  app.require_subcommand(0, 1);  // so that the error names a word that is no subcommand
   for (const auto add :
        {add_plan,   add_run,        add_status, add_log,  add_show,   add_verify,     add_rebuild,
         add_prune,  add_regenerate, add_submit, add_work, add_merge,  add_table,      add_figures,

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `manual`: the manual page, in roff, from the same texts as --help.
+// `manual`: the manual page, in roff, from the same texts as --help; or the reference, in Markdown.
 #include <fmt/format.h>
+
+#include <memory>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/command_tree.hpp"
+#include "experiments/cli/reference.hpp"
 #include "experiments/runner/host.hpp"
 
 namespace shearcell::cli {
@@ -73,8 +76,15 @@ std::string manual(const std::vector<CommandEntry>& tree) {
 
 void add_manual(CLI::App& app, Context&) {
   CLI::App* command = app.add_subcommand("manual", "Print the manual page, in roff");
-  command->footer("Examples:\n  shearcell manual | man -l -");
-  command->callback([&app] { fmt::print("{}", manual(command_tree(app))); });
+  auto markdown = std::make_shared<bool>(false);
+  command->add_flag("--markdown", *markdown,
+                    "Print the reference of manifest keys, measures and commands instead");
+  command->footer(
+      "Examples:\n  shearcell manual | man -l -\n  shearcell manual --markdown > reference.md");
+  command->callback([&app, markdown] {
+    const std::vector<CommandEntry> tree = command_tree(app);
+    fmt::print("{}", *markdown ? reference_markdown(tree) : manual(tree));
+  });
 }
 
 }  // namespace shearcell::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `merge`: folds other stores into this one.
+// `merge`: merges other stores into this one.
 #include <fmt/format.h>
 
 #include <memory>
@@ -40,19 +40,18 @@ void merge(const std::vector<std::string>& sources, Context& context) {
 
 void add_merge(CLI::App& app, Context& context) {
   auto sources = std::make_shared<std::vector<std::string>>();
-  CLI::App* command =
-      app.add_subcommand("merge", "Fold the runs of other stores into the one that --store names");
+  CLI::App* command = app.add_subcommand("merge", "Merge other stores into this one");
   command->add_option("source", *sources, "Folders of the stores to merge")
       ->required()
       ->type_name("STORE");
   add_common_options(*command, context, true);
   command->footer(
-      "The chain of each source and every copied file are checked first, and two stores that tell\n"
-      "different states of one run at one step are refused, before anything is changed. The "
-      "sources\n"
-      "stay as they are, and merging twice changes nothing. Kept measures come along if three that "
-      "are\n"
-      "computed again are right.\n"
+      "Checks the chain of each source and every file to copy before anything changes. Refuses "
+      "two\n"
+      "stores that record different states of one run at one step. The sources stay unchanged, "
+      "and\n"
+      "merging twice changes nothing. Cached measures are copied if three recomputed ones are "
+      "right.\n"
       "Examples:\n  shearcell merge task-1 task-2 --store all");
   command->callback([sources, &context] { merge(*sources, context); });
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `new`: writes a manifest to begin with, from the schema, so that it cannot name a key that is
-// not.
+// `new`: writes a commented manifest from the schema, so that every key in it exists.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -47,7 +46,7 @@ std::string entry(const Field& field) {
          fmt::format("  # {}: {}\n", field.name, value_text(get_value(field, {})));
 }
 
-/// The figures and the keys that they tell apart, as comments.
+/// The figures and the keys that they compare, as comments.
 std::string figure_comments() {
   std::string text = "# Figures, and the keys that an experiment varies for them:\n";
   for (const Figure& figure : all_figures()) {
@@ -66,7 +65,7 @@ std::string text_of(const std::string& experiment) {
       "question: What is to be found out?\n"
       "{}"
       "figures: [S2]\n"
-      "# Plots and claims of your own (experiments/manifest/README.md):\n"
+      "# Plots and claims of your own (`shearcell manual --markdown`):\n"
       "# plots:\n"
       "#   - {{name: compaction, y: phi, x: cycle, show: traces}}\n"
       "# claims:\n"
@@ -126,13 +125,13 @@ void make(std::filesystem::path file) {
 }  // namespace
 
 void add_new(CLI::App& app, Context&) {
-  CLI::App* command = app.add_subcommand("new", "Write a manifest to begin with");
+  CLI::App* command = app.add_subcommand("new", "Write a commented manifest");
   auto name = std::make_shared<std::string>();
   command->add_option("name", *name, "Name of the experiment, or path of the file")->required();
   command->footer(
-      "It has every key with its meaning and default, the sweep of `drag`, and three scales. A "
-      "file\n"
-      "that exists is left alone.\n"
+      "Writes every key with its meaning and default, the sweep of `drag`, and three scales. "
+      "Refuses\n"
+      "to overwrite a file.\n"
       "Examples:\n  shearcell new softer\n  shearcell new studies/softer.yaml");
   command->callback([name] { make(*name); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plan`: what a manifest expands to, what of it is done, and what the rest will cost.
+// `plan`: the runs of a manifest, which of them are done, and what the rest costs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct PlanOptions {
 };
 
 std::optional<Store> open_if_there(const std::string& folder) {
-  // A folder that `run` would take for a new store is none yet.
+  // An empty folder is not a store yet; `run` would create one there.
   std::error_code ignored;
   if (!std::filesystem::exists(folder) ||
       (std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder, ignored))) {
@@ -118,7 +118,7 @@ void print_numerics(const std::vector<Line>& lines) {
               rows);
 }
 
-// What to know of runs by another engine.
+// A note on runs by another engine.
 std::vector<std::string> notes_of(const Plan& plan) {
   if (!asks_for_lammps(plan)) return {};
   std::vector<std::string> notes = lammps_caveats();
@@ -296,9 +296,7 @@ void add_plan(CLI::App& app, Context& context) {
   add_engine_option(*command, options->expand);
   add_common_options(*command, context, true);
   command->footer(
-      "A run that the store does not know is compared with the nearest one that it knows: the "
-      "values\n"
-      "in which they differ are what makes it new.\n"
+      "For each new run, prints the values in which it differs from the nearest known one.\n"
       "Examples:\n  shearcell plan experiments/drag.yaml --scale paper");
   command->callback([options, &context] { plan(*options, context); });
 }

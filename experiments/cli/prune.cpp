@@ -111,10 +111,8 @@ void add_prune(CLI::App& app, Context& context) {
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
   add_common_options(*command, context, true);
   command->footer(
-      "Lists the files first and asks. It never deletes the newest checkpoint of a run, those "
-      "that\n"
-      "other stages started from, or those of LAMMPS. Records stay; figures name the checkpoints\n"
-      "that they lack.\n"
+      "Lists the files and asks. Never deletes the newest checkpoint of a run, those that other\n"
+      "stages started from, or those of LAMMPS. Records stay, and `regenerate` recomputes a file.\n"
       "Examples:\n  shearcell prune --keep-every 10\n  shearcell prune --state failed --yes");
   command->callback([options, &context] { prune(*options, context); });
 }

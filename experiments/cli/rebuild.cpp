@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `rebuild`: derives every table from the events again.
+// `rebuild`: rebuilds every table from the events.
 #include <fmt/format.h>
 
 #include "experiments/cli/command.hpp"
@@ -23,12 +23,12 @@ void rebuild(Context& context) {
 
 void add_rebuild(CLI::App& app, Context& context) {
   CLI::App* command =
-      app.add_subcommand("rebuild", "Derive every table of the store from its events again");
+      app.add_subcommand("rebuild", "Rebuild the tables of the store from its events");
   add_common_options(*command, context, true);
   command->footer(
-      "For a store of which `verify` says that a table is not what the events give. The events "
-      "and\n"
-      "the checkpoints stay as they are.\n"
+      "Use it when `verify` reports a table that differs from the events. Events and checkpoints "
+      "do\n"
+      "not change.\n"
       "Examples:\n  shearcell rebuild");
   command->callback([&context] { rebuild(context); });
 }

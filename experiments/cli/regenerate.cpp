@@ -45,7 +45,7 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
     }
     return facts;
   };
-  if (sound(store, record)) return say("kept", "it is there and sound");
+  if (sound(store, record)) return say("kept", "the file is intact");
   if (const auto why = why_not_again(store.run(record.run))) {
     context.exit_code = kOtherError;
     facts["why"] = *why;
@@ -100,8 +100,9 @@ void add_regenerate(CLI::App& app, Context& context) {
   add_threads_option(*command, wish->threads, "Threads, for large cells");
   add_common_options(*command, context, true);
   command->footer(
-      "Steps from the nearest earlier checkpoint. State and file must have the recorded hashes;\n"
-      "otherwise nothing is written, ReplayDiverged is recorded, and the exit code is 4.\n"
+      "Steps from the nearest earlier checkpoint. If the state or the file does not have the "
+      "recorded\n"
+      "hash, writes nothing, records ReplayDiverged and ends with code 4.\n"
       "Examples:\n  shearcell regenerate 2a2c47ca");
   command->callback([wish, &context] { regenerate(*wish, context); });
 }

@@ -119,9 +119,9 @@ void add_run(CLI::App& app, Context& context) {
       "  shearcell run experiments/drag.yaml --scale desk --cycles 100   # extend\n"
       "  shearcell run experiments/drag.yaml --scale smoke --engine lammps --mpi 2\n"
       "\n"
-      "Runs that the store holds are not computed again. Ctrl-C writes checkpoints and ends with\n"
-      "code 85; run again, or resume, to continue bit for bit. Several programs on one machine\n"
-      "may run on one store: they share the work.");
+      "Computes only what the store does not hold. Press Ctrl-C to write checkpoints and end with\n"
+      "code 85; `run` again, or `resume`, continues bit for bit. Start several programs on one\n"
+      "machine and one store to share the work.");
   command->callback([options, &context] { run(*options, context); });
 
   auto resume_options = std::make_shared<RunOptions>();

@@ -241,9 +241,11 @@ void add_show(CLI::App& app, Context& context) {
       ->required();
   add_common_options(*command, context, true);
   command->footer(
-      "Of a figure: its files, manifest lines, runs, seeds, attempts, builds, hosts and the\n"
-      "SHA-256 of every checkpoint in it. Of a file (CSV, SVG or lineage): whether it is what the\n"
-      "store recorded, and whether every checkpoint behind it still is; exit code 4 when not.\n"
+      "For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and "
+      "the\n"
+      "SHA-256 of every checkpoint in it. For a file (CSV, SVG or lineage): checks that it is what "
+      "the\n"
+      "store recorded and that every checkpoint behind it is intact; exit code 4 if not.\n"
       "Examples:\n  shearcell show 3f9a\n  shearcell show drag/S2\n  shearcell show "
       "figures/drag/S2a.csv");
   command->callback([name, &context] { show(*name, context); });

@@ -256,7 +256,7 @@ void show_published(const Store& store, const std::filesystem::path& file, Conte
   }
   const FigureLineage lineage = figure_lineage(store, found->record);
   const std::vector<InputFault> faults = check_inputs(store, lineage);
-  // A checkpoint that was pruned on purpose is gone, and not damaged.
+  // A checkpoint that was pruned on purpose is not damage.
   const bool damaged = std::any_of(faults.begin(), faults.end(),
                                    [](const InputFault& f) { return f.what != "pruned"; });
   if (damaged || found->verdict == PublishedFile::Verdict::changed) {

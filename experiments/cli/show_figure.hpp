@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The part of `show` that is about figures and the files that were made of them.
+// The part of `show` for figures and their files.
 #pragma once
 
 #include <filesystem>

@@ -173,7 +173,7 @@ void print(const Estimate& left) {
   tell("left: {} stages, {:.3g} particle-steps, {} {} with {} at a time{}\n", left.work.stages,
        left.work.particle_steps, left.at_most ? "at most" : "about",
        format_duration(left.seconds()), left.at_a_time,
-       left.running ? ": until " + local_time(left.seconds()) : "; nobody computes them now");
+       left.running ? ": until " + local_time(left.seconds()) : "; no program computes them now");
 }
 
 /// A table for each experiment, each run under the first that declared it, and what is to be said
@@ -340,13 +340,14 @@ void add_status(CLI::App& app, Context& context) {
                              ->check(unfit_interval)
                              ->excludes("--json");
   command->footer(
-      "M/s is million particle-steps per second over all recorded work. A run that is running and\n"
-      "held by nobody was killed; `resume` continues it. --watch ends when no stage is left, or\n"
-      "nobody has worked for 10 s and nothing is queued. Runs on a cluster show their place in "
-      "its\n"
-      "queue and the progress that their tasks report. What is left is estimated from the speed "
-      "of\n"
-      "the runs so far.\n"
+      "M/s is million particle-steps per second over all recorded work. A run that is `running` "
+      "but\n"
+      "that no program holds was killed; `resume` continues it. --watch ends when no stage is "
+      "left, or\n"
+      "when no program has worked for 10 s and nothing is queued. Runs on a cluster show their "
+      "place\n"
+      "in its queue and the progress of their tasks. The time left is estimated from the speed so "
+      "far.\n"
       "Examples:\n  shearcell status\n  shearcell status --watch\n  shearcell status --json\n"
       "  shearcell status --experiment drag --state failed");
   command->callback([watched, interval, selection, &context] {

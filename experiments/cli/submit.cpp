@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `submit`: hands what is left of a campaign to a cluster as an array job.
+// `submit`: queues the rest of a campaign on a cluster as an array job.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -257,7 +257,7 @@ std::string check_value(const std::string& text) {
 
 std::string check_sbatch(const std::string& text) {
   if (text.starts_with("--") && text.size() > 2) return check_value(text);
-  return fmt::format("'{}' is no long option of sbatch; write --sbatch=--qos=long", text);
+  return fmt::format("'{}' is not a long option of sbatch; write --sbatch=--qos=long", text);
 }
 
 void check_time(const JobOptions& job) {
@@ -266,7 +266,7 @@ void check_time(const JobOptions& job) {
   const auto limit = slurm_seconds(job.time);
   if (!limit) {
     throw CLI::ValidationError("--time", "'" + job.time +
-                                             "' is no time limit of Slurm's: write MINUTES, "
+                                             "' is not a time limit of Slurm: write MINUTES, "
                                              "HH:MM:SS or DAYS-HH:MM:SS");
   }
   if (*limit <= needed) {
@@ -296,7 +296,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
   command.add_option("--account,-A", job.account, "Account")->check(check_value);
   command
       .add_option("--time", job.time,
-                  "Time limit of one start of a task; it goes on until it is done")
+                  "Time limit of one start of a task; it restarts until it is done")
       ->check(check_value)
       ->type_name("HH:MM:SS");
   add_count(command, "--array-size", options.array_size, "Most tasks (default: one per packing)",
@@ -334,11 +334,13 @@ void add_submit(CLI::App& app, Context& context) {
   add_job_options(*command, *options);
   add_common_options(*command, context, true);
   command->footer(
-      "Each task computes the runs of some packings in a store of its own, under\n"
-      "STORE/submissions; a job after the array folds these stores into STORE. Near its time limit "
-      "a\n"
-      "task writes checkpoints and queues itself again. Runs that are done or queued are not\n"
-      "submitted, so submit again at any time. STORE must be on a disk that all nodes see.\n"
+      "Each task computes the runs of some packings in its own store under STORE/submissions; a "
+      "job\n"
+      "after the array merges these stores into STORE. Near its time limit a task writes "
+      "checkpoints\n"
+      "and queues itself again. Runs that are done or queued are left out, so you can submit again "
+      "at\n"
+      "any time. Put STORE on a disk that all nodes see.\n"
       "Examples:\n"
       "  shearcell submit experiments/drag.yaml --scale paper --partition long --time 24:00:00\n"
       "  shearcell submit experiments/*.yaml --scale desk --scratch /scratch --sbatch=--mem=4G\n"

@@ -39,7 +39,7 @@ void table(const TableOptions& options, Context& context) {
       tell_stderr("not measured: {}\n", line);
     }
   }
-  if (!made.trouble.empty()) tell_stderr("measures cannot be kept: {}\n", made.trouble);
+  if (!made.trouble.empty()) tell_stderr("measures cannot be cached: {}\n", made.trouble);
   if (!made.damage.empty()) context.exit_code = kStoreDamaged;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `verify`: whether the store still is what was written, and whether it can be computed again.
+// `verify`: checks that the store is unchanged and, on request, that it can be recomputed.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -40,7 +40,8 @@ std::optional<Head> read_head(const std::vector<std::string>& words) {
     if (error == std::errc() && stop == end && is_sha256_hex(head.hash)) return head;
   }
   throw CLI::ValidationError(
-      "--against", "'" + text + "' is no head; give what `verify` told: SEQ and 64 hex digits");
+      "--against",
+      "'" + text + "' is not a head; give SEQ and 64 hex digits, as `verify` prints them");
 }
 
 // A new sample for every new event, and the same one again for the same store.
@@ -180,29 +181,32 @@ void verify(const VerifyOptions& options, Context& context) {
 
 void add_verify(CLI::App& app, Context& context) {
   auto options = std::make_shared<VerifyOptions>();
-  CLI::App* command =
-      app.add_subcommand("verify", "Check the event chain, every file's hash and the projections");
+  CLI::App* command = app.add_subcommand(
+      "verify", "Check the event chain, every file's hash and the derived tables");
   command->add_option("--against", options->against, "A head that an earlier `verify` printed")
       ->expected(1, 2)
       ->type_name("SEQ HASH");
   add_count(*command, "--replay", options->replay, "Recompute K sampled checkpoints", "K", 1,
             1'000'000'000);
   add_count(*command, "--measures", options->measures,
-            "Recompute the kept measures of K sampled checkpoints (default: 8)", "K");
+            "Recompute the cached measures of K sampled checkpoints (default: 8)", "K");
   add_count(*command, "--seed", options->seed, "Seed of the sample (default: from the head)");
   add_threads_option(*command, options->threads, "Threads of a replay, for large cells");
   add_common_options(*command, context, true);
   command->footer(
-      "Proves that no event or file was changed or lost; that each file is the one its event\n"
-      "describes (step, cycle, time, units, grains, observables, state); that runs have the\n"
-      "parameters and labels that their ids stand for; that the tables follow from the events.\n"
-      "--replay K proves for the sampled states that they, and all that is recorded with them,\n"
-      "follow bit for bit from the checkpoint before, and records the outcome. --measures K\n"
-      "proves the measures that derived.sqlite keeps of the sampled checkpoints.\n"
-      "Cannot prove: what is not sampled; when, where and how fast a run was computed; LAMMPS's\n"
-      "trajectories; that the log was not written anew from its first event, or its end cut off.\n"
-      "Against the last, keep the head that is printed away from the store: --against proves that\n"
-      "the log extends it.\n"
+      "Proves that no event or file was changed or lost; that each file is the one that its event\n"
+      "describes (step, cycle, time, units, grains, observables, state); that each run has the\n"
+      "parameters and labels of its id; that the tables follow from the events.\n"
+      "--replay K recomputes K sampled checkpoints from the ones before, compares every bit of "
+      "the\n"
+      "state and of all that is recorded with it, and records the outcome. --measures K "
+      "recomputes\n"
+      "what derived.sqlite caches of K sampled checkpoints.\n"
+      "Cannot prove: what is not sampled; when, where and how fast a run was computed; "
+      "trajectories\n"
+      "of LAMMPS; that nobody rewrote the log from its first event or cut off its end. To detect "
+      "the\n"
+      "last, keep the printed head away from the store and pass it to --against.\n"
       "Examples:\n  shearcell verify --json\n  shearcell verify --replay 5\n"
       "  shearcell verify --against 16 4358ffe4f2a9...");
   command->callback([options, &context] { verify(*options, context); });

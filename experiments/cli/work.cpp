@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `work`: what a task of an array job does with the store that `submit` made for it.
+// `work`: one task of an array job, on the store that `submit` made for it.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -133,7 +133,7 @@ void work(const WorkOptions& options, Context& context) {
   place.finish();
   report(result, context);
   if (stop_requested()) {
-    // With work left it goes on later, whatever else happened to it.
+    // With work left the task continues later, whatever else happened to it.
     const bool work_left = result.interrupted + result.blocked > 0;
     if (work_left || context.exit_code == kInterrupted) {
       context.exit_code = work_left ? kInterrupted : kDone;
@@ -147,7 +147,7 @@ void work(const WorkOptions& options, Context& context) {
 void add_work(CLI::App& app, Context& context) {
   auto options = std::make_shared<WorkOptions>();
   CLI::App* command =
-      app.add_subcommand("work", "Compute one task's share of what `submit` handed to a cluster");
+      app.add_subcommand("work", "Compute one task of a cluster job that `submit` queued");
   add_count(*command, "--jobs,-j", options->jobs, "Runs at a time (default: 1)", "J", 1, 1024);
   add_threads_option(*command, options->threads, "Threads inside each run (default: 1)");
   command
@@ -157,9 +157,11 @@ void add_work(CLI::App& app, Context& context) {
   command->add_flag("--leave-failed", options->leave_failed, "Do not try failed runs again");
   add_common_options(*command, context, true);
   command->footer(
-      "--store names the task's store. SIGTERM and SIGUSR1 make it write checkpoints and end with\n"
-      "code 85, however often they come; started again it goes on bit for bit. A copy on scratch\n"
-      "is folded back every five minutes and at the end.\n"
+      "--store names the task's store. On SIGTERM or SIGUSR1 it writes checkpoints and ends with "
+      "code\n"
+      "85; started again, it continues bit for bit. With --scratch, copies the store back every "
+      "five\n"
+      "minutes and at the end.\n"
       "Examples:\n  shearcell work --store shearcell-store/submissions/3f9a12bc45de/task-1 -j 2");
   command->callback([options, &context] { work(*options, context); });
 }

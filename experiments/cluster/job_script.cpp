@@ -90,7 +90,7 @@ std::optional<std::string> unfit_value(std::string_view text) {
   if (!text.empty() && text.find_first_not_of(kSafe) == std::string_view::npos) {
     return std::nullopt;
   }
-  return fmt::format("'{}' is no value for Slurm: one word without spaces or quotes is", text);
+  return fmt::format("'{}' is not a value for Slurm; give one word without spaces or quotes", text);
 }
 
 std::optional<double> slurm_seconds(std::string_view time) {

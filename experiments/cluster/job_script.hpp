@@ -11,7 +11,7 @@
 
 namespace shearcell {
 
-/// What a user asks of Slurm. Empty texts leave the choice to the cluster.
+/// Options for Slurm. Empty texts leave the choice to the cluster.
 struct JobOptions {
   std::string partition;
   std::string account;
@@ -29,7 +29,7 @@ struct JobPlaces {
   std::filesystem::path folder;   ///< of the submission; holds task-1, task-2, ...
 };
 
-/// Why Slurm cannot be given the path: it would read a backslash or a control character otherwise.
+/// Why a path cannot be passed to Slurm (a backslash or control character); nothing when it can.
 std::optional<std::string> unfit_path(const std::filesystem::path& path);
 
 /// Why the text may not stand in a script as an option's value; nothing when it may.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is to be submitted: what is left of some plans and nobody is at work on, shared out.
+// What to submit: the stages of some plans that are not done and not held, divided among tasks.
 #pragma once
 
 #include <cstddef>

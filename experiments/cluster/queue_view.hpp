@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the runs that were handed to a cluster stand: in the queue, and by their tasks' reports.
+// The state of submitted runs: their place in the queue and the reports of their tasks.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ namespace shearcell {
 
 struct QueuedRun {
   std::string job;    ///< "17_3": task 3 of array job 17; "" when it was never queued
-  std::string state;  ///< "pending", "running", ...; "ended" when the queue knows it no more
+  std::string state;  ///< "pending", "running", ...; "ended" when it left the queue
   std::string reason;
   std::string node;
   std::optional<ReportedRun> reported;

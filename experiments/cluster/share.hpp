@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of a campaign is left to do, and which task of an array job does which part of it.
+// Which stages of a campaign are left to do, and which task of an array job computes which.
 #pragma once
 
 #include <cstddef>
@@ -31,8 +31,8 @@ struct Share {
 /// each once, in the order of the plans.
 std::vector<Bundle> work_left(const std::vector<Plan>& plans, const std::vector<RunRecord>& known);
 
-/// Deals the bundles out, the largest first and each to the task that has least to do: equal ones
-/// go round. At most `tasks` shares, none empty. The same bundles give the same shares.
+/// Distributes the bundles, the largest first, each to the task with the least work; equal ones in
+/// turn. At most `tasks` shares, none empty. The same bundles give the same shares.
 std::vector<Share> share_out(std::vector<Bundle> bundles, std::size_t tasks);
 
 }  // namespace shearcell

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slurm's own programs, asked with argument vectors.
+// Calls Slurm's own programs, with argument vectors.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace shearcell {
 
-/// Slurm is not there, does not answer, or refuses. Says what it said and what can be done.
+/// Slurm is missing, does not answer, or refuses. The message holds its answer and the remedy.
 class ClusterError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -27,7 +27,7 @@ struct QueuedTask {
   std::string node;                   ///< where it runs
 };
 
-/// Throws ClusterError when there is no `sbatch` here.
+/// Throws ClusterError when `sbatch` is not installed.
 void require_slurm();
 
 /// Queues the script `folder/script` as a job of this name and returns its number. Throws
@@ -35,10 +35,10 @@ void require_slurm();
 std::string queue_job(const std::filesystem::path& folder, const std::string& script,
                       const std::string& name, const std::vector<std::string>& options);
 
-/// What of the jobs of these names is waiting, running or about to end. Throws ClusterError.
+/// The jobs of these names that wait, run or are about to end. Throws ClusterError.
 std::vector<QueuedTask> ask_queue(const std::vector<std::string>& names);
 
-/// What `squeue` printed, line by line; lines that are none of its own are passed over.
+/// What `squeue` printed, line by line; other lines are skipped.
 std::vector<QueuedTask> read_queue(const std::string& output);
 
 }  // namespace shearcell

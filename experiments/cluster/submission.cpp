@@ -30,7 +30,7 @@ bool is_id(const std::string& text) {
 void apply(std::vector<Submission>& known, const Event& event) {
   const json body = event.body();
   const std::string id = body.at("submission");
-  if (!is_id(id)) throw StoreDamaged(fmt::format("'{}' is no submission's id", id));
+  if (!is_id(id)) throw StoreDamaged(fmt::format("'{}' is not the id of a submission", id));
   if (event.type == "CampaignSubmitted") {
     Submission& made = known.emplace_back();
     made.id = id;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was handed to a cluster, as the store's log tells it, and where it stands.
+// Submissions to a cluster, as recorded in the store's log, and their state.
 //
 // CampaignSubmitted is recorded before the jobs are queued and JobQueued after; the jobs have the
 // submission's name, so the queue can be asked about them even if a crash falls in between.
@@ -49,12 +49,12 @@ std::vector<OpenSubmission> open_submissions(const Store& store);
 std::vector<OpenSubmission> unfinished_submissions(const Store& store);
 void ask_queue(std::vector<OpenSubmission>& submissions);
 
-/// Folds in what the tasks of a submission recorded. Task stores that are gone are passed over.
+/// Folds in what the tasks of a submission recorded. Task stores that no longer exist are skipped.
 std::vector<MergeReport> fold(Store& store, const Submission& submission);
 
 /// Records a submission of these shares and makes a store for each task, holding what is known of
-/// its runs. `facts` joins the event. Throws ConcurrencyConflict when somebody else submitted since
-/// `seen` such events were read.
+/// its runs. `facts` joins the event. Throws ConcurrencyConflict when another program submitted
+/// since `seen` such events were read.
 Submission prepare_submission(Store& store, const std::vector<Share>& shares, nlohmann::json facts,
                               std::size_t seen);
 

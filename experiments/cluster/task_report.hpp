@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far a task is, in a small file beside its store: the store itself is read by nobody else
-// while the task runs, because SQLite's locks may not reach from one machine to another.
+// The progress of a task, in a small file beside its store. No other machine opens the store
+// itself while the task runs, because SQLite's locks may not work between machines.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files for the field's tools. Each takes frames in turn and is whole when the last one was given;
-// all have the same particles, numbered from 1, and say which run and parameters they come from.
+// Files for the field's tools. Each writer takes frames in turn; its file is complete after the
+// last one. All files hold the same particles, numbered from 1, and name their run and parameters.
 // Text has 17 digits, enough to read back the same double.
 #pragma once
 
@@ -25,9 +25,9 @@ FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 enum class Lengths { diameters, metres };
 
 /// Extended XYZ in one file; the comment line of each frame holds the run, its parameters and the
-/// scalars. Species H stands for a grain and He for a wall grain, since readers want chemical
-/// symbols; `type` tells which wall. Lengths in grain diameters (the radius of a sphere is then
-/// 0.5, as OVITO and ASE expect numbers of order 1), d_m tells d in metres; or in metres.
+/// scalars. Species H is a grain and He a wall grain, because readers require chemical
+/// symbols; `type` is the wall. Lengths in grain diameters (the radius of a sphere is then
+/// 0.5, as OVITO and ASE expect numbers of order 1), with d in metres as d_m; or in metres.
 FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths);
 inline FrameWriter extxyz_in_diameters(const std::filesystem::path& file) {
   return extxyz_writer(file, Lengths::diameters);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One checkpoint as other programs want it: every particle with its measures, in SI units.
+// One checkpoint for other programs: every particle with its measures, in SI units.
 #pragma once
 
 #include <Eigen/Core>

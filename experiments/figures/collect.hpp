@@ -21,7 +21,7 @@ struct WantedFigure {
   std::string path() const;
 };
 
-/// What registered manifests ask for.
+/// The figures that registered manifests list.
 struct WantedFigures {
   /// By experiment; in each those of the supplement in its order, then plots and claims.
   std::vector<WantedFigure> figures;

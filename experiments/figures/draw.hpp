@@ -49,7 +49,7 @@ struct ComputedFigure {
   nlohmann::json lineage;  ///< as the figure's record has it; `outputs` is empty
 };
 
-/// Tables, verdicts and inputs of a figure. Reads the store and writes nothing but measures into
+/// Tables, verdicts and inputs of a figure. Reads the store and writes only measures into
 /// derived.sqlite; options.folder is not used. A checkpoint whose measures are kept is not read;
 /// one that would have to be read and is damaged or pruned is left out and named. Throws NotFound
 /// if the store holds no run for the figure, and UsageError if the figure would average over a

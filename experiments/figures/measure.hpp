@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures of many checkpoints: those that the store keeps are read; the others are computed,
-// several at a time, and kept.
+// Measures of many checkpoints: reads the cached ones, computes the others, several at a time, and
+// caches them.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Work on many checkpoints at once, of which some may be unreadable.
+// Work on many checkpoints at once, some of which may be unreadable.
 #pragma once
 
 #include <cstddef>

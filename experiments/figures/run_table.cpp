@@ -64,15 +64,15 @@ std::vector<Column> names(const VariantNames& variants) {
              [](const SelectedRun& s) { return s.membership.scale; }),
       of_run("variant", "its label in the manifest, or what varies in it",
              [variants](const SelectedRun& s) { return variants.of(s.membership); }),
-      of_run("run", "id", [](const SelectedRun& s) { return s.run.id; }),
-      of_run("seed", "of the random numbers",
+      of_run("run", "id of the run", [](const SelectedRun& s) { return s.run.id; }),
+      of_run("seed", "seed of the random numbers",
              [](const SelectedRun& s) { return s.membership.seed; }),
   };
 }
 
 std::vector<Column> measures() {
   std::vector<Column> columns = {
-      of_checkpoint("cycle", "cycles since the shear began; of a stiffening its steps",
+      of_checkpoint("cycle", "cycles since the shear began, or steps of a stiffening",
                     [](const CheckpointRecord& c) { return c.cycle; }),
       of_checkpoint("checkpoint", "SHA-256 of the checkpoint's file",
                     [](const CheckpointRecord& c) { return c.sha256; }),
@@ -91,7 +91,8 @@ std::vector<Column> measures() {
   for (const Column& column :
        {observable("cell_height_d", "distance of the bottom and top wall"),
         observable("largest_overlap_d", "largest overlap of two grains"),
-        observable("kinetic_energy_per_grain_m_d2_per_s2", "mean over grains; m is their mass"),
+        observable("kinetic_energy_per_grain_m_d2_per_s2",
+                   "mean kinetic energy; m is the mass of a grain"),
         observable("wall_force_imbalance", "net force on the moving wall over its load"),
         observable("raised_stiffness_N_per_m", "spring constant of a stiffening",
                    "stiffness_N_per_m"),
@@ -122,7 +123,7 @@ void add_onset(const std::string& method, const std::string& meaning, OnsetMetho
        }});
   columns.push_back({{"onset_" + method + "_cycle", "cycle of that onset"},
                      [=](const Row& row) { return onset(row, observed(&RunOnset::cycle)); }});
-  columns.push_back({{"onset_" + method + "_phi", "packing fraction there"},
+  columns.push_back({{"onset_" + method + "_phi", "packing fraction at that onset"},
                      [=](const Row& row) { return onset(row, observed(&RunOnset::phi)); }});
 }
 
@@ -141,15 +142,17 @@ std::vector<Column> ends() {
   for (const Column& column :
        {of_run("state", "declared, running, interrupted, failed or completed",
                [](const SelectedRun& s) { return name_of(s.run.state); }),
-        of_run("state_hash", "of the newest state; equal states have equal hashes",
+        of_run("state_hash", "hash of the newest state; equal states have equal hashes",
                [](const SelectedRun& s) { return s.run.state_hash; }),
         of_run("target_cycles", "length that the experiment asks for",
                [](const SelectedRun& s) { return s.membership.target_cycles; }),
         of_run("wall_time_s", "time that the run took to compute, over all attempts",
                [](const SelectedRun& s) { return number(s.run.wall_seconds); }),
-        of_run("particle_steps_per_s", "mean speed of the computation", [](const SelectedRun& s) {
-          return number(s.run.particle_steps / s.run.wall_seconds);
-        })}) {
+        of_run("particle_steps_per_s",
+               "mean speed of the computation, in particle-steps per second",
+               [](const SelectedRun& s) {
+                 return number(s.run.particle_steps / s.run.wall_seconds);
+               })}) {
     columns.push_back(column);
   }
   return columns;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a store says of its runs as one table: a row for each checkpoint or each run, a column for
-// each swept parameter and each scalar measure.
+// The runs of a store as one table: a row for each checkpoint or each run, a column for each swept
+// parameter and each scalar measure.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -44,7 +44,7 @@ std::span<const DerivedMeasure> table_measures();
 Measures read_table_measures(std::span<const nlohmann::json> results, const RunRecord& run,
                              const CheckpointRecord& checkpoint);
 
-/// Every column but those of swept parameters, which are named as in a manifest.
+/// Every column except those of swept parameters, which are named as in a manifest.
 std::vector<TableColumn> table_columns(RowPer per);
 
 /// Names and values of what is known of one checkpoint, in the order of the columns.
@@ -56,7 +56,7 @@ std::string to_csv(const RunTable& table);
 /// An array of objects, one for each row, keys in the order of the columns.
 std::string to_json(const RunTable& table);
 
-/// Whether a file begins as one of the two does.
+/// Whether a file begins like one of the two.
 bool is_table(std::string_view beginning);
 
 }  // namespace shearcell

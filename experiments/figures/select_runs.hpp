@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which runs of a store are meant: the filters --experiment, --scale, --variant, --seed, --state.
+// Selects runs of a store by the filters --experiment, --scale, --variant, --seed, --state.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What no single value tells: whether the values of a variant can be simulated together.
+// Checks whether the values of a variant can be simulated together.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The one place where SI parameters become the engine's units (grain diameter d, grain mass m,
-// second), and what follows from them before anything is simulated.
+// second), and quantities that follow from them before anything is simulated.
 #pragma once
 
 #include "core/filling.hpp"

@@ -27,7 +27,7 @@ Position position(const YAML::Mark& mark) {
 }
 
 // Length of the UTF-8 sequence at the start of `text`; 0 when it is not one. Overlong forms,
-// surrogates and code points beyond U+10FFFF are none.
+// surrogates and code points beyond U+10FFFF are not allowed.
 std::size_t utf8_length(string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run is called: the SHA-256 of the values that decide its bits, and of nothing else.
+// The id of a run: the SHA-256 of the values that decide its bits, and of nothing else.
 #pragma once
 
 #include <cstdint>

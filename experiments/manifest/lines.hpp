@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which lines of a manifest make a run what it is, and what the command line gave instead.
+// Which lines of a manifest define a run, and which values the command line replaced.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A manifest: one experiment as a YAML text, read and checked as a whole. Whatever its bytes are,
-// reading it ends in a Manifest or in a ManifestError that says where and how to mend it.
+// A manifest: one experiment as a YAML text, read and checked as a whole. For any bytes, reading
+// ends in a Manifest or in a ManifestError that names the place and the remedy.
 #pragma once
 
 #include <cstdint>

@@ -31,7 +31,7 @@ std::vector<std::string> keys_of(const std::vector<json>& variants) {
   return keys;
 }
 
-/// Four digits, if they tell the values apart.
+/// Four digits, if they distinguish the values.
 std::string short_text(const json& value, const std::string& key,
                        const std::vector<json>& variants) {
   if (!value.is_number_float()) return value_text(value);

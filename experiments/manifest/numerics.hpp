@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run's numbers say of it before it is run: how its time step compares with the springs, and
-// how deep its grains will overlap.
+// What follows from the numbers of a run before it starts: its time step compared with the
+// springs, and the expected overlap of its grains.
 #pragma once
 
 #include <optional>

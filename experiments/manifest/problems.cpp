@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
@@ -14,11 +15,37 @@ namespace shearcell {
 using std::string;
 using std::string_view;
 
+std::span<const ManifestKey> manifest_keys() {
+  static constexpr std::array<ManifestKey, 12> keys = {{
+      {"experiment", "drag", "required; its name: letters, digits, - and _"},
+      {"question", "Does the fluid matter?", "what the experiment is to find out, for people"},
+      {"figures", "[S2]", "figures of the supplement to draw"},
+      {"labels", "{\"fluid=still\": fluid at rest}", "names of variants in figures and tables"},
+      {"plots", "[{name: compaction, y: phi, x: cycle}]", "figures of your own"},
+      {"claims",
+       "[{name: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: cell}], "
+       "margin: 0.001}]",
+       "claims of your own, decided like those of the supplement"},
+      {"base", "{grains: 7900}", "parameters of every run; others have their default"},
+      {"sweep", "{grid: {fluid: [still, cell]}}",
+       "parameters that vary: `grid` takes every combination, keys of `zip` advance together"},
+      {"seeds", "6", "seeds 1 to 6, or a list; default 1"},
+      {"checkpoints", "{every_cycles: 1}", "cycles between checkpoints; default 1"},
+      {"until", "{crystalline_percent: 10, extra_cycles: 15}",
+       "ends a run so many cycles after the measure reaches the value; default: at `cycles`"},
+      {"scales", "{smoke: {grains: 600, seeds: 2, cycles: 5}}",
+       "named sizes, which override the keys above; default `desk`"},
+  }};
+  return keys;
+}
+
 std::span<const string_view> manifest_sections() {
-  static constexpr std::array<string_view, 12> sections = {
-      "experiment", "question", "figures", "labels",      "plots", "claims",
-      "base",       "sweep",    "seeds",   "checkpoints", "until", "scales"};
-  return sections;
+  static const std::vector<string_view> names = [] {
+    std::vector<string_view> all;
+    for (const ManifestKey& key : manifest_keys()) all.push_back(key.name);
+    return all;
+  }();
+  return names;
 }
 
 void ProblemList::add(Position at, string key, string problem, string got, string remedy) {
@@ -51,7 +78,7 @@ void ProblemList::add_unknown(const Node& key, string_view path,
     add(key.at, full, "is an unknown key", "",
         fmt::format("Known here: {}.", fmt::join(allowed, ", ")));
   } else {
-    add(key.at, full, "is an unknown key", "", "experiments/manifest/README.md lists the keys.");
+    add(key.at, full, "is an unknown key", "", "`shearcell manual --markdown` lists the keys.");
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collects what is wrong with a manifest, so that its writer sees all of it at once.
+// Collects every problem of a manifest, so that all are reported at once.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,15 @@ class ProblemList {
   std::vector<ManifestProblem> problems_;
 };
 
-/// Keys at the top level of a manifest.
+/// A key at the top level of a manifest.
+struct ManifestKey {
+  std::string_view name;
+  std::string_view example;  ///< a value, as YAML
+  std::string_view meaning;
+};
+std::span<const ManifestKey> manifest_keys();
+
+/// Their names.
 std::span<const std::string_view> manifest_sections();
 
 /// "scales.smoke" and "grains" -> "scales.smoke.grains".

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `labels`, `plots` and `claims`: how a manifest names its variants, and the figures of its own.
+// Reads `labels`, `plots` and `claims` of a manifest.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts that manifests are made of: values, counts, lists, sweeps. What is wrong goes to a
-// ProblemList, and reading goes on.
+// Reads the parts of manifests: values, counts, lists, sweeps. Problems go to a ProblemList, and
+// reading continues.
 #pragma once
 
 #include <cstdint>

@@ -79,7 +79,7 @@ std::vector<Field> cell_fields() {
   using P = Parameters;
   return {
       names("walls", "", choice<&P::walls>(), kPrepare,
-            "texture of the walls; rough ones carry fixed wall grains"),
+            "texture of the walls; rough walls carry fixed wall grains"),
       names("moving_wall", "", choice<&P::moving_wall>(), kPrepare,
             "the wall that moves vertically under the pressure (B.6)"),
       number("height_over_width", "", "1", &P::height_over_width, 0.1, false, 100, kPrepare,
@@ -93,7 +93,7 @@ std::vector<Field> cell_fields() {
                 kPrepare, "wall grain centres lie up to this depth behind the wall plane"),
       integer("wall_grain_draw", "", &P::wall_grain_draw, 0, 1e6,
               {.stage = Stage::prepare, .omitted_at = "0"},
-              "another number draws other wall grains, from the same seed"),
+              "draws other wall grains from the same seed"),
       above_zero("wall_mass_grains_per_d2", "", "m/d^2", &P::wall_mass_grains_per_d2, 1e6, kPrepare,
                  "mass of the moving wall per area"),
       from_zero("wall_drag_grains_per_d2_s", "", "m/(d^2 s)", &P::wall_drag_grains_per_d2_s, 1e9,
@@ -112,9 +112,9 @@ std::vector<Field> settle_fields() {
              "time step while settling; not tied to that of the shear, so that variants of "
              "the latter share their packing; `auto` keeps Table I's part of the stability limit"),
       above_zero("settle_force_tolerance", "", "1", &P::settle_force_tolerance, 1, kPrepare,
-                 "settled when the moving wall's force imbalance over P A_w is below this"),
+                 "settling ends when the moving wall's force imbalance over P A_w is below this"),
       above_zero("settle_kinetic_tolerance", "", "1", &P::settle_kinetic_tolerance, 1, kPrepare,
-                 "and the kinetic energy per grain over P d^3 is below this"),
+                 "settling also needs a kinetic energy per grain over P d^3 below this"),
       above_zero("settle_time_limit_s", "", "s", &P::settle_time_limit_s, 1e6, kPrepare,
                  "simulated time after which a packing that has not settled is a failure"),
       above_zero("max_overlap_diameters", "", "d", &P::max_overlap_diameters, 0.5,
@@ -157,13 +157,13 @@ std::vector<Field> stiffen_fields() {
   using P = Parameters;
   return {
       integer("stiffness_decades", "", &P::stiffness_decades, 0, 6, kNoKey,
-              "under protocol stiffen the spring constant is raised by 10 to this power (B.2); a "
+              "under protocol stiffen: the spring constant is raised by 10 to this power (B.2); a "
               "larger value extends a run"),
       integer("stiffness_steps_per_decade", "", &P::stiffness_steps_per_decade, 1, 100, kStiffen,
-              "in this many equal factors for each power of ten (B.2)"),
+              "number of equal factors for each power of ten (B.2)"),
       above_zero("minimize_force_tolerance", "", "1", &P::minimize_force_tolerance, 1, kStiffen,
-                 "and then the enthalpy is minimized until the largest net force on a grain over "
-                 "P d^2, and that on the moving wall over P A_w, are below this"),
+                 "after each factor the enthalpy is minimized until the largest net force on a "
+                 "grain over P d^2, and that on the moving wall over P A_w, are below this"),
   };
 }
 

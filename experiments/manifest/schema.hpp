@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of manifest parameters: name, unit, type, range, part in a run's identity, meaning.
-// Validation, suggestions, identity and the reference in README.md use it.
+// Validation, suggestions, identity and experiments/REFERENCE.md use it.
 #pragma once
 
 #include <cstddef>
@@ -89,7 +89,7 @@ std::string expected_values(const Field& field);
 /// Names of all parameters, in schema order.
 std::vector<std::string_view> field_names();
 
-/// The table of keys in experiments/manifest/README.md.
+/// The table of parameters in experiments/REFERENCE.md.
 std::string schema_markdown();
 
 }  // namespace shearcell

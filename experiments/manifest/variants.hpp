@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The variants of an experiment at one scale: what base, scale and sweep come to together.
+// The variants of an experiment at one scale: base, scale and sweep combined.
 #pragma once
 
 #include <cstdint>

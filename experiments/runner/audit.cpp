@@ -61,16 +61,16 @@ std::string difference(const json& kept, const json& computed, const std::string
     const auto a = kept.get<double>(), b = computed.get<double>();
     const bool same = a == b || (std::isnan(a) && std::isnan(b)) ||
                       std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
-    return same ? "" : fmt::format("{}: {} is kept and {} computed", place, a, b);
+    return same ? "" : fmt::format("{}: {} is cached, {} is computed", place, a, b);
   }
   const bool nested = kept.is_structured() && kept.type() == computed.type();
   if (!nested || kept.size() != computed.size()) {
-    return kept == computed ? "" : place + ": what is kept is something else";
+    return kept == computed ? "" : place + ": the cached value has another type";
   }
   const json a = kept.flatten(), b = computed.flatten();
   if (a.size() != b.size()) return place + ": its structure is another one";
   for (const auto& [path, value] : b.items()) {
-    if (!a.contains(path)) return place + path + ": it is not kept";
+    if (!a.contains(path)) return place + path + ": it is not cached";
     if (auto found = difference(a.at(path), value, place + path); !found.empty()) return found;
   }
   return "";

@@ -149,10 +149,10 @@ class Campaign {
     told_held_ = held;
     std::set<std::string> holders;
     for (const Lease& lease : store_.leases()) holders.insert(describe(lease.holder));
-    progress_.note(fmt::format(
-        "waiting for {} stage{} that another program is at work on ({}); a stage is free "
-        "when its holder has ended or been silent for {} s",
-        held, held == 1 ? "" : "s", fmt::join(holders, "; "), kLongestLeaseMs / 1000));
+    progress_.note(
+        fmt::format("waiting for {} stage{} that another program computes ({}); a stage is free "
+                    "when its holder has ended or been silent for {} s",
+                    held, held == 1 ? "" : "s", fmt::join(holders, "; "), kLongestLeaseMs / 1000));
   }
 
   JobState run_job(std::size_t j, bool was_held) {

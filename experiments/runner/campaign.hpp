@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs many stages, as many at once as there are workers, each after the one that it continues.
+// Runs many stages, as many at once as there are workers, each after its parent.
 #pragma once
 
 #include <cstddef>

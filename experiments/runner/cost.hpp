@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stages that are still to do will take, estimated before they run.
+// Estimates the cost of stages before they run.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What takes a stage on: our own simulation in this process, or LAMMPS beside it.
+// The engine that advances a stage: our own simulation in this process, or LAMMPS in another.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
-  /// Goes on for about 50 ms and tells where it is, as Protocol::advance does. Throws
+  /// Advances for about 50 ms and returns its progress, as Protocol::advance does. Throws
   /// NumericalFailure, and EngineError when another program failed.
   virtual StageProgress advance() = 0;
 
-  /// Ends before the stage does. No checkpoint is due when there is no state beyond the last one
-  /// that was recorded, since another program did not answer.
+  /// Ends before the stage does. No checkpoint is due if another program did not answer, so that
+  /// there is no state beyond the last recorded one.
   virtual StageProgress halt() = 0;
 
   /// What is recorded of the state at which the last call to one of these left it, or of the
@@ -36,8 +36,8 @@ class Engine {
   virtual std::uint64_t evaluations() const = 0;  ///< of the forces since construction
 };
 
-/// Takes the beginning's cell and state over. For a stage of LAMMPS throws EngineError when it is
-/// not installed.
+/// Takes ownership of the beginning's cell and state. For a stage of LAMMPS throws EngineError when
+/// it is not installed.
 std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,
                                     const EngineOptions& options);
 
@@ -45,7 +45,7 @@ std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning
 /// program, processes}. Throws EngineError when it is not installed.
 nlohmann::json engine_facts(const StagePlan& plan, const EngineOptions& options);
 
-/// What LAMMPS cannot do, or not exactly, of what our own simulation does; one sentence each.
+/// Features of our own simulation that LAMMPS lacks or has only approximately, one sentence each.
 std::vector<std::string> lammps_caveats();
 
 }  // namespace shearcell

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where and with what a run was computed: recorded with every attempt, part of no identity.
+// Host and build of a computation: recorded with every attempt, part of no identity.
 #pragma once
 
 #include <nlohmann/json.hpp>

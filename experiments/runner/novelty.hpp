@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What sets a stage that the store does not know apart from the nearest one that it knows.
+// The values in which a new stage differs from the nearest known one.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ class KnownRuns {
   /// Null when there is no run with this id.
   const RunRecord* find(const std::string& id) const;
 
-  /// Nothing when the store knows the stage, or none of its kind.
+  /// Nothing when the store has the stage, or no stage of its kind.
   std::optional<Novelty> novelty(const StageSpec& stage) const;
 
  private:

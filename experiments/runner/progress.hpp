@@ -25,9 +25,9 @@ class Progress {
   void end(const std::string& name, const std::string& how, bool done);
   /// The stage is left to another program.
   void drop(const std::string& name);
-  /// A line that stays, unless progress is not wanted.
+  /// A permanent line, unless progress is off.
   void note(const std::string& line);
-  /// A line that stays.
+  /// A permanent line.
   void say(const std::string& line);
 
  private:

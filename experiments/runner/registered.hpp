@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The manifests that a store was given, and what they call their variants.
+// The manifests that are registered in a store, and their names for variants.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace shearcell {
 
-/// What a registered manifest says of figures.
+/// The figures, labels, plots and claims of a registered manifest.
 struct RegisteredManifest {
   std::string sha256;
   std::string experiment;

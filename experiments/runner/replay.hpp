@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes recorded states again, from a kept state before them, to prove or to restore them.
+// Recomputes recorded states from an earlier kept state, to prove or to restore them.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace shearcell {
 
-/// Where a state that was computed again parts from the one that is recorded.
+/// Where a recomputed state differs from the recorded one.
 struct Divergence {
   std::uint64_t same_step = 0;   ///< last step known to be the same: where the replay began
   std::uint64_t first_step = 0;  ///< first step known to differ
@@ -36,7 +36,7 @@ struct Replay {
 /// those that another engine made cannot.
 std::vector<CheckpointRecord> replayable(const Store& store);
 
-/// Why the checkpoints of a run cannot be computed again bit for bit; nothing where they can.
+/// Why the checkpoints of a run cannot be recomputed bit for bit; nothing if they can.
 std::optional<std::string> why_not_again(const RunRecord& run);
 
 /// `count` of them without repetition, or all; the same for the same seed.
@@ -48,8 +48,8 @@ std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std:
 /// observables), and records ReplayVerified or ReplayDiverged.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
-/// The same, and keeps the file: a pruned, missing or damaged checkpoint is there again, with the
-/// same SHA-256. When it came out otherwise, ReplayDiverged is recorded and nothing is kept.
+/// The same, and keeps the file: a pruned, missing or damaged checkpoint is restored with the
+/// same SHA-256. If the bytes differ, ReplayDiverged is recorded and nothing is kept.
 Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 }  // namespace shearcell

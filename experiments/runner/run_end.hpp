@@ -25,7 +25,7 @@ struct MeasuredCycle {
   Measures measures;
 };
 
-/// What one experiment asks of a run.
+/// The length and end that one experiment asks of a run.
 struct RunAsk {
   std::uint64_t target_cycles = 0;
   std::optional<Until> until;

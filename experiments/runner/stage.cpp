@@ -110,7 +110,7 @@ Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::stri
   if (!parent) {
     throw StoreDamaged("run " + run.parent.substr(0, 12) + ": the settled packing that run " +
                        run.id.substr(0, 12) +
-                       " starts from is missing; run the manifest again to make it anew");
+                       " starts from is missing; run the manifest again to recompute it");
   }
   parent->checkpoint.state.step = 0;
   return {std::move(parent->checkpoint.cell), std::move(parent->checkpoint.state), std::nullopt,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One stage of a run as the store knows it, made ready to be stepped: the same for a first
+// One stage of a run, made from its record and ready to be stepped: the same for a first
 // computation, a continuation and a replay.
 #pragma once
 
@@ -52,14 +52,14 @@ Beginning beginning_before(Store& store, const StagePlan& plan,
 /// Takes the beginning's cell and state over.
 Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads);
 
-/// Steps between two looks at the outside: about 50 ms of work.
+/// Steps between two checks for signals and leases: about 50 ms of work.
 std::uint64_t chunk_steps(std::size_t grains);
 
 /// What is recorded of the present state: a function of the state alone. Throws NumericalFailure
-/// rather than keep a state that went wrong.
+/// instead of recording an invalid state.
 Checkpoint make_checkpoint(const StagePlan& plan, const Simulation& simulation, double cycle);
 
-/// The same of a state that was looked at elsewhere; `scene` is what acts on it now.
+/// The same of a state from elsewhere; `scene` is what acts on it now.
 Checkpoint make_checkpoint(const StagePlan& plan, const Cell& cell, const Scene& scene,
                            const State& state, double cycle);
 

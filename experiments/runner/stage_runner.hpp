@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes one stage of a run from what the store knows about it, and records what comes out.
+// Computes one stage of a run from its records in the store, and records the result.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace shearcell {
 
-/// How a stage ended in this process. `held`: another program is at work on it, and nothing was
-/// begun. `lost`: another program took it over, completed it or recorded a later state meanwhile.
+/// How a stage ended in this process. `held`: another program holds it, and nothing was begun.
+/// `lost`: another program took its lease, completed it or recorded a later state meanwhile.
 enum class StageOutcome : std::uint8_t { completed, interrupted, failed, held, lost };
 
-/// Where a running stage stands, for people who watch.
+/// The progress of a running stage.
 struct StageStatus {
   double cycle = 0;
   double target_cycles = 0;  ///< 0 for a stage without cycles
@@ -28,7 +28,7 @@ struct StageStatus {
 struct StageOptions {
   std::size_t threads = 1;                          ///< inside this one simulation
   std::size_t ranks = 1;                            ///< processes of another engine
-  std::function<void(const std::string&)> damaged;  ///< told of each checkpoint passed over
+  std::function<void(const std::string&)> damaged;  ///< called for each skipped checkpoint
   std::function<void()> begun;                      ///< called when an attempt has been recorded
   std::function<void(const StageStatus&)> report;   ///< called a few times a second
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SIGINT, SIGTERM and SIGHUP as a wish to stop: runs write a checkpoint and end; a second signal
-// kills.
+// SIGINT, SIGTERM and SIGHUP as a request to stop: runs write a checkpoint and end; a second
+// signal kills.
 #pragma once
 
 #include <stdexcept>
@@ -11,23 +11,23 @@ namespace shearcell {
 /// SIGPIPE: nobody needs to read the progress of a campaign.
 void catch_stop_signals();
 
-/// The same for a task of a batch system, which tells of an end to come by SIGTERM or SIGUSR1, may
-/// do so several times, and kills by itself when its patience is over: only the first one counts.
+/// The same for a task of a batch system, which announces the end by SIGTERM or SIGUSR1, perhaps
+/// several times, and kills the task later. Only the first signal counts.
 void catch_batch_signals();
 
-/// Whether one of them came.
+/// Whether one of them arrived.
 bool stop_requested();
 
-/// Work was given up because of such a wish, before there was a state to record.
+/// Work ended because of such a request, before there was a state to record.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// Throws Interrupted if there is such a wish.
+/// Throws Interrupted if a stop is requested.
 void give_up_if_requested();
 
-/// Asks to stop as a signal would; `false` takes the wish back.
+/// Requests a stop as a signal would; `false` withdraws it.
 void request_stop(bool stop);
 
 }  // namespace shearcell

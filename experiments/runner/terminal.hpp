@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the terminal behind a stream can show.
+// What the terminal of a stream can display.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ std::optional<std::size_t> terminal_columns(std::FILE* stream);
 /// (https://no-color.org) is not set to anything.
 bool shows_colours(std::FILE* stream);
 
-/// Without what a terminal takes for a command: bytes that are not UTF-8 and control characters
+/// The text without control sequences: bytes that are not UTF-8 and control characters
 /// other than a line's end, also those that change the direction of a text, are shown as \x1b or
 /// \u202e.
 std::string for_terminal(std::string_view text);
@@ -32,7 +32,7 @@ std::size_t characters(std::string_view text);
 /// The first `count` characters of a UTF-8 text, or all of it.
 std::string_view first_characters(std::string_view text, std::size_t count);
 
-/// fmt::print, of texts that may be a stranger's.
+/// fmt::print of untrusted texts.
 template <typename... Arguments>
 void tell(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   const std::string text = fmt::format(format, std::forward<Arguments>(arguments)...);

@@ -43,7 +43,7 @@ Kicked prepare(std::size_t grains) {
     const auto a = uniform_pair({static_cast<std::uint32_t>(i), 0, 0, 9}, 1);
     const auto b = uniform_pair({static_cast<std::uint32_t>(i), 1, 0, 9}, 1);
     kicked.state.velocity.col(i) = Eigen::Vector3d(a[0] - 0.5, a[1] - 0.5, b[0] - 0.5) * 10;
-    // LAMMPS wants every position inside its box.
+    // LAMMPS needs every position inside its box.
     double& z = kicked.state.position(2, i);
     z -= kicked.cell.depth * std::floor(z / kicked.cell.depth);
   }
@@ -52,7 +52,7 @@ Kicked prepare(std::size_t grains) {
   return kicked;
 }
 
-// The leapfrog wants velocities half a step before: one step from rest gives the accelerations.
+// The leapfrog needs velocities half a step earlier: one step from rest gives the accelerations.
 Simulation simulate(const Kicked& kicked, double drag_rate) {
   Scene scene = kicked.scene;
   scene.drag_rate = 0;

@@ -56,7 +56,7 @@ TEST(WorkLeft, LeavesOutWhatTheStoreHolds) {
   const auto more = work_left(plans(text, of(2)), store.runs());
   ASSERT_EQ(more.size(), 1U);
   EXPECT_EQ(more[0].runs.size(), 2U);
-  // A longer run goes on: its packing and its first cycles cost nothing.
+  // A longer run continues: its packing and its first cycles cost nothing.
   const auto longer = work_left(plans(text, of(1, 5)), store.runs());
   ASSERT_EQ(longer.size(), 1U);
   EXPECT_NEAR(longer[0].particle_steps, 2 * 3.0 * kStepsPerCycle * kGrains, 1);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stores for tasks, what comes back from them, and what the log tells of it. Slurm has no part
-// here.
+// Stores for tasks, folding them, and the events that record it; without Slurm.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,54 +1,142 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of results in README.md, from the verdicts that are committed beside the figures.
+"""The tables of results, from the verdicts that are committed beside the figures.
 
     python3 results_table.py README.md RESULTS_FOLDER [--write]
 
-Without --write it ends with code 1 if the table between the marks differs from the verdicts.
+README.md has one row for each claim of HEADLINES that has been decided, RESULTS_FOLDER/README.md a row for every claim.
+Ends with code 1 if a table between the marks differs from the verdicts; --write makes them equal.
 """
 import json
+import math
 import pathlib
+import re
 import sys
 
 BEGIN = "<!-- results, by tests/docs/results_table.py -->\n"
 END = "<!-- end of results -->\n"
 
+# Figure, beginning of the claim in the verdict, and the cells "claim" and "supplement" of README.md.
+HEADLINES = [
+    ("S1", "B.2: phi_u falls by about 2 % over a hundredfold k", "fall of phi_u over a hundredfold k", "roughly 2 %"),
+    ("S1", "B.2: phi (Eq. S4) stays the same over a hundredfold k", "change of phi over a hundredfold k", "no change"),
+    ("S2", "B.3: phi is the same at cycles", "phi, moving less still fluid", "equal"),
+    ("S2", "B.3: crystallization begins", "onset cycle, moving over still fluid", "equal"),
+    ("S3", "B.4: phi is the same at cycles 1 to 15 for steps of 7.0e-5", "phi, time step 7.0e-5 s less 4.4e-5 s", "equal"),
+    ("S3", "B.4: at 4.4e-5 s the average overlap", "mean overlap [d]", "less than 0.001"),
+    ("B5", "B.5: at cycles", "phi gained by pauses", "higher"),
+    ("S4", "B.6: phi is the same at cycles", "phi, moving top less moving bottom wall", "equal"),
+    ("C", "C: the critical size at A = 0.0833", "critical size [grains], A = 0.0833", "about 16"),
+    ("S6", "D: the onset at A = 0.0833 rad is the same", "phi at the onset, with less without gravity", "equal"),
+    ("walls", "walls: between rough ones the onset", "phi at the onset, A = 0.0833", "0.646 +- 0.001"),
+    ("S7", "E: crystallites are more probable near the top", "nuclei in the upper less the lower third", "more near the top"),
+]
+# Where README.md takes them from; of several verdicts on a claim, the one with the most runs.
+SOURCES = ("desk", "load/top")
 
-def number(value):
+# How a quantity of a verdict is shown: the pattern of its name, what converts its value, and a unit.
+SHOWN = [
+    (r"relative fall of phi_u less ([\d.]+)", lambda value, base: 100 * (value + base), " %"),
+    (r"phi at the onset less ([\d.]+)", lambda value, base: value + base, ""),
+    (r"relative difference from ([\d.]+)", lambda value, base: base * (1 + value), ""),
+    (r"log2 of the ratio", lambda value, base: 2**value, ""),
+    (r"relative difference", lambda value, base: 100 * value, " %"),
+    (r"percentage", lambda value, base: value, " points"),
+]
+
+
+def digits(value):
     return "unbounded" if value is None else f"{value:.3g}"
 
 
-def row(claim, link):
-    low, high = claim["interval"] or (None, None)
-    measured = "not measured"
-    if claim["estimate"] is not None:
-        measured = f"{number(claim['estimate'])} ({number(low)} to {number(high)})"
-    runs = str(claim["runs"])
-    if claim["runs_needed"]:
-        runs += f" of {claim['runs_needed']}"
-    cells = [link, claim["claim"], claim["quantity"], measured, number(claim["margin"]), runs, claim["verdict"]]
+def conversion(quantity):
+    for pattern, convert, unit in SHOWN:
+        if found := re.search(pattern, quantity):
+            base = float(found[1]) if found.groups() else None
+            return lambda value: convert(value, base), unit
+    return lambda value: value, ""
+
+
+def measured(claim):
+    """The estimate with its interval, in the unit in which the supplement states the quantity."""
+    if claim["estimate"] is None:
+        return "not measured"
+    convert, unit = conversion(claim["quantity"])
+    ends = [None if end is None else convert(end) for end in claim["interval"] or (None, None)]
+    value = convert(claim["estimate"])
+    if ends == [None, None]:
+        return f"{digits(value)}{unit} (unbounded)"
+    if None in ends:
+        return f"{digits(value)}{unit} ({digits(ends[0])} to {digits(ends[1])})"
+    width = abs(ends[1] - ends[0]) / 2
+    # The last digit is the first digit of a quarter of the interval.
+    decimals = 3 if width == 0 else max(0, -math.floor(math.log10(width / 2)))
+    return f"{value:.{decimals}f}{unit} ({ends[0]:.{decimals}f} to {ends[1]:.{decimals}f})"
+
+
+def runs(claim):
+    return f"{claim['runs']} of {claim['runs_needed']}" if claim["runs_needed"] else str(claim["runs"])
+
+
+def row(cells):
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
 
 
-def table(page, results):
-    rows = ["| figure | claim | quantity | measured (90 % interval) | margin | runs | verdict |\n", "|---|---|---|---|---|---|---|\n"]
+def header(names):
+    return row(names) + "|" + "---|" * len(names) + "\n"
+
+
+def verdicts(results):
+    """(place below the results, figure, its drawing, claim) for every claim."""
     for path in sorted(results.glob("**/*.verdict.json")):
         figure = path.name.split(".")[0]
-        drawings = sorted(path.parent.glob(f"{figure}*.svg"))
-        place = path.parent.relative_to(results)
-        link = f"[{place}/{figure}]({drawings[0].relative_to(page.parent)})"
+        drawing = sorted(path.parent.glob(f"{figure}*.svg"))[0]
         for claim in json.loads(path.read_text())["claims"]:
-            rows.append(row(claim, link))
-            link = ""
-    return "".join(rows)
+            yield path.parent.relative_to(results).as_posix(), figure, drawing, claim
 
 
-page, results = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-text = page.read_text()
-begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
-wanted = table(page, results)
-if "--write" in sys.argv[3:]:
-    page.write_text(text[:begin] + wanted + text[end:])
-elif text[begin:end] != wanted:
-    sys.exit(f"{page.name} says\n{text[begin:end]}\nand the verdicts in {results} say\n{wanted}\n"
-             "`results_table.py README.md RESULTS --write` makes them the same.")
+def headlines(page, results):
+    text = header(["claim", "supplement", "ours (90 % interval)", "runs", "verdict"])
+    for figure, beginning, name, supplement in HEADLINES:
+        found = [(claim, drawing) for place, of, drawing, claim in verdicts(results)
+                 if of == figure and claim["claim"].startswith(beginning) and "(P on" not in claim["claim"]
+                 and place.startswith(SOURCES)]
+        if not found:
+            continue
+        claim, drawing = max(found, key=lambda one: one[0]["runs"])
+        verdict = f"[{claim['verdict']}]({drawing.relative_to(page.parent).as_posix()})"
+        text += row([name, supplement, measured(claim), runs(claim), verdict])
+    return text
+
+
+def all_claims(page, results):
+    text = header(["figure", "claim", "quantity", "measured (90 % interval)", "margin", "runs", "verdict"])
+    last = None
+    for place, figure, drawing, claim in verdicts(results):
+        link = f"[{place}/{figure}]({drawing.relative_to(page.parent).as_posix()})"
+        low, high = claim["interval"] or (None, None)
+        value = "not measured"
+        if claim["estimate"] is not None:
+            value = f"{digits(claim['estimate'])} ({digits(low)} to {digits(high)})"
+        text += row(["" if link == last else link, claim["claim"], claim["quantity"], value, digits(claim["margin"]),
+                     runs(claim), claim["verdict"]])
+        last = link
+    return text
+
+
+def main():
+    readme, results = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+    faults = []
+    for page, make in ((readme, headlines), (results / "README.md", all_claims)):
+        text = page.read_text()
+        begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
+        wanted = make(page, results)
+        if "--write" in sys.argv[3:]:
+            page.write_text(text[:begin] + wanted + text[end:])
+        elif text[begin:end] != wanted:
+            faults.append(f"{page} says\n{text[begin:end]}\nand the verdicts in {results} say\n{wanted}")
+    if faults:
+        sys.exit("\n".join(faults) + "\n`results_table.py README.md RESULTS --write` makes them the same.")
+
+
+main()

@@ -100,7 +100,7 @@ TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
   const auto pruned = json({"prune", "--keep-every", "2", "--yes", "--json"});
   EXPECT_EQ(pruned["kept_of_other_engines"], 1);
   const Outcome again = run({"regenerate", b["checkpoints"][1]["sha256"]});
-  EXPECT_EQ(again.code, 0) << "it is there and sound";
+  EXPECT_EQ(again.code, 0) << "the file is intact";
   fs::remove(path("shearcell-store") / b["checkpoints"][1]["file"].get<std::string>());
   const Outcome refused = run({"regenerate", b["checkpoints"][1]["sha256"]});
   EXPECT_EQ(refused.code, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One loose filling settled by our engine and by LAMMPS: the same steps at first, packings of one
-// kind in the end, and an end where there is none.
+// One loose filling settled by our engine and by LAMMPS: equal first steps, packings with equal
+// statistics, and an error when the grains do not settle.
 #include <gtest/gtest.h>
 
 #include <cmath>

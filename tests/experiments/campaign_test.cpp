@@ -59,7 +59,7 @@ TEST_F(CampaignTest, ComputesEachPackingOnceForBothFluids) {
     EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0, 1, 2}));
     EXPECT_EQ(run.particle_steps, static_cast<double>(kGrains * 2 * kStepsPerCycle));
   }
-  // Cycle 0 is the packing itself, for both; then the fluid tells them apart.
+  // Cycle 0 is the same packing for both; afterwards they differ.
   const Checkpoint settled = store_.load_checkpoint(store_.checkpoints(packings[0].id).back());
   for (const RunRecord& run : sheared) {
     const Checkpoint first = store_.load_checkpoint(store_.checkpoints(run.id).front());

@@ -58,7 +58,7 @@ TEST_F(Care, PruneShowsFirstAndRegenerateBringsBack) {
   EXPECT_EQ(objects(), files);
   EXPECT_EQ(run({"figures", "S2"}).code, 0);
   EXPECT_EQ(run({"verify"}).code, 0);
-  EXPECT_TRUE(contains(run({"regenerate", sha}).out, "it is there and sound"));
+  EXPECT_TRUE(contains(run({"regenerate", sha}).out, "the file is intact"));
   EXPECT_EQ(run({"regenerate", "no-such"}).code, 2);
 }
 
@@ -188,7 +188,7 @@ TEST_F(Sharing, TwoProgramsDoEachRunOnce) {
   ASSERT_EQ(run({"run", text, "-q", "--store", "whole"}).code, 0);
   const Running first = start_beside({"run", text, "-j", "1", "--json"}, "first");
   const Running second = start_beside({"run", text, "-j", "1", "--json"}, "second");
-  // Meanwhile `status` tells who is at work.
+  // Meanwhile `status` shows which program holds the run.
   bool seen_two = false, seen = false;
   for (int look = 0; look < 400 && !seen_two; ++look) {
     const Outcome status = run({"status", "--json"});

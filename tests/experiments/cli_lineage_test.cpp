@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the program tells of published figures, and the crates that it exports.
+// The lineage that the program prints for published figures, and the crates that it exports.
 #include <gtest/gtest.h>
 
 #include <cstdio>

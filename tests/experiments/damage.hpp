@@ -17,7 +17,7 @@ using Damage = std::function<void(const std::filesystem::path& store)>;
 /// Statements on the log, without this program's limits and triggers.
 Damage sql(const std::string& statements);
 
-/// Changes events and computes the chain anew: what a forger who knows the format would do.
+/// Changes events and recomputes the chain, as a forger who knows the format would.
 Damage forged(const std::function<void(Event&)>& change);
 
 /// The same of the payload of every event of a type.

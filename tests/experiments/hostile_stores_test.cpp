@@ -182,14 +182,14 @@ std::vector<Case> damaged_tables() {
            "4 of them measured now"),
       told(
           "measures_in_a_folder", "figures S2", 0,
-          [](auto& s) { folder_instead(s / "derived.sqlite"); }, "measures cannot be kept"),
+          [](auto& s) { folder_instead(s / "derived.sqlite"); }, "measures cannot be cached"),
       told(
           "measures_through_a_link", "figures S2", 0,
           [](auto& s) {
             fs::rename(s / "derived.sqlite", s / "x");
             fs::create_symlink(s / "x", s / "derived.sqlite");
           },
-          "measures cannot be kept", "remove it"),
+          "measures cannot be cached", "remove it"),
   };
 }
 

@@ -140,7 +140,7 @@ TEST_F(Interruption, IsNotInvitedByALongWayBetweenCheckpoints) {
   EXPECT_GT(refused, 5);
 }
 
-// A run that is interrupted within a cycle goes on at the cadence that was declared.
+// A run that is interrupted within a cycle continues at the declared cadence.
 TEST_F(Interruption, KeepsTheCadenceOfItsCheckpoints) {
   const std::string text = tiny_manifest("", "checkpoints: {every_cycles: 2}\n");
   const Manifest manifest = parse_manifest(text, "t");

@@ -35,7 +35,7 @@ std::vector<std::string> bad_manifests() {
   return names;
 }
 
-// What load_manifest has to say about a file; empty when it takes it.
+// The messages of load_manifest for a file; empty when it accepts it.
 std::string message_for(const fs::path& path) {
   try {
     load_manifest(path);

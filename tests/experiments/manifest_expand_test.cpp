@@ -232,7 +232,7 @@ TEST(Expand, AnUntilIsReadOverriddenAndPartOfNoIdentity) {
   }
 }
 
-// The shortest text that tells the variants apart, with the labels of the manifest.
+// The shortest text that distinguishes the variants, with the labels of the manifest.
 TEST(Expand, NamesVariants) {
   const auto names = [](const std::string& rest) {
     Strings found;

@@ -4,9 +4,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <numbers>
 #include <set>
 #include <string>
@@ -33,16 +30,6 @@ TEST(Schema, NamesAreUniqueAndDefaultsAllowed) {
       EXPECT_EQ(value_text(std::get<json>(value)), omitted) << field.name;
     }
   }
-}
-
-TEST(Schema, TheReadmeHoldsTheTableOfKeys) {
-  const auto path = std::filesystem::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments" /
-                    "manifest" / "README.md";
-  std::ifstream stream(path);
-  const std::string readme{std::istreambuf_iterator<char>(stream), {}};
-  EXPECT_NE(readme.find(schema_markdown()), std::string::npos)
-      << "The table in " << path << " must read:\n"
-      << schema_markdown();
 }
 
 TEST(Suggest, FindsWhatWasMeant) {

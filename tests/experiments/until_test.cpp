@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `until`: a run ends where a measure says, at the same checkpoint whoever computes it.
+// `until`: a run ends where a measure reaches a value, at the same checkpoint in every program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

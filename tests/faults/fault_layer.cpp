@@ -79,7 +79,7 @@ bool is_ours(std::string_view path) {
   return folder && path.starts_with(folder);
 }
 
-// The file's path, or "" when the descriptor is none of the folder's.
+// The file's path, or "" when the descriptor is outside the folder.
 struct OpenFile {
   char path[PATH_MAX] = "";
 

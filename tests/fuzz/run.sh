@@ -21,10 +21,10 @@ for target in $targets; do programs="$programs fuzz_$target"; done
 # shellcheck disable=SC2086  # one word a target
 cmake --build "$build" --target $programs >&2
 
-# The keys of all parameters, from the table that a test compares with the schema.
+# The keys of all parameters, from the reference that the program printed.
 dictionary="$build/manifest.dict"
 { cat tests/fuzz/manifest.dict
-  sed -n 's/^| `\([a-zA-Z_0-9]*\)` | .*/"\1: "/p' experiments/manifest/README.md; } >"$dictionary"
+  sed -n '/^## Parameters/,/^## Measures/s/^| `\([a-zA-Z_0-9]*\)` | .*/"\1: "/p' experiments/REFERENCE.md; } >"$dictionary"
 
 # In memory where there is some: the target `store` waits for every file that it syncs.
 [ -n "${TMPDIR:-}" ] || [ ! -w /dev/shm ] || TMPDIR=/dev/shm

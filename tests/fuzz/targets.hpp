@@ -23,7 +23,7 @@ struct Target {
 
 extern const Target manifest_target;    ///< text of a manifest: read, check, expand
 extern const Target events_target;      ///< lines of events: upcast, fold, query
-extern const Target checkpoint_target;  ///< bytes of a checkpoint file, as they are and sealed anew
+extern const Target checkpoint_target;  ///< bytes of a checkpoint file, as they are and reframed
 extern const Target store_target;       ///< a store with changed bytes or with forged events
 extern const Target
     published_target;  ///< a CSV and the lineage beside it, as `show FILE` reads them

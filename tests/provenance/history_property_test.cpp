@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever happens to a store, its tables are what its events tell: derived step by step, derived
-// anew, from events of older layouts, and told by a fold that shares no code with them.
+// The tables of a store always follow from its events: derived step by step, rebuilt, derived from
+// events of older layouts, and computed by a fold that shares no code with them.
 #include <algorithm>
 #include <optional>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One run has one holder, whoever else asks for it, and a holder that is gone holds nothing.
+// A run has one holder at a time, and a dead holder loses its lease.
 #include "provenance/lease.hpp"
 
 #include <gtest/gtest.h>

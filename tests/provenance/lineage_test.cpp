@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The log tells of every checkpoint which attempt made it, with what, and from what.
+// The log records for every checkpoint the attempt, build and state that it came from.
 #include "provenance/lineage.hpp"
 
 #include <gtest/gtest.h>

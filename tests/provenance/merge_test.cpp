@@ -45,7 +45,7 @@ class MergeTest : public ::testing::Test {
     }
   }
 
-  /// Every row of the tables, without what tells when, by whom and in how many attempts it was
+  /// Every row of the tables, without the facts of when, by whom and in how many attempts it was
   /// computed: seq and ordinals, times, attempts, efforts.
   std::map<std::string, std::set<std::string>> facts(const std::string& name) const {
     const std::vector<std::pair<std::string, std::string>> queries = {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run that is cut anywhere, kept as a checkpoint and read back ends in the bits of one that was
-// left alone, whatever it computes and on whatever it goes on.
+// A run that is cut anywhere, stored as a checkpoint and read back ends in the same bits as an
+// uninterrupted one, for every kind of run and every kernel that continues it.
 #include <algorithm>
 
 #include "provenance/checkpoint.hpp"

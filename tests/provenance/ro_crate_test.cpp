@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An exported crate keeps what RO-Crate 1.1, Process Run Crate 0.5 and PROV-JSON demand, and tells
-// what the log does.
+// An exported crate meets RO-Crate 1.1, Process Run Crate 0.5 and PROV-JSON, and agrees with the
+// log.
 #include "provenance/ro_crate.hpp"
 
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The indented blocks of the section, but for the one that shows a prompt and its output.
+/// The indented blocks of the section, except those that show a prompt and its output.
 std::string commands_of_the_readme() {
   std::istringstream readme(
       test::read_bytes(fs::path(SHEARCELL_TEST_DATA) / "../../provenance/README.md"));

@@ -124,7 +124,8 @@ class Deck {
         scene_.stiffness / 2);
   }
 
-  // `wall/region` would do for these too, but tells the force on the wall of the first step only.
+  // `wall/region` would work for these too, but reports the force on the wall for the first step
+  // only.
   void flat_plane(const char* name, const char* face) {
     add(text_, "fix {0}_plane grains wall/harmonic {1} v_{0} {2:.17g} 1 0.5 units box", name, face,
         scene_.stiffness / 2);

@@ -5,7 +5,7 @@
 // LAMMPS's `fix nve` with an explicit drag -b v is our leapfrog with the implicit one, exactly,
 // when every mass is raised by b dt/2: with m' = m + b dt/2,
 //   v + (dt/m') (F + b u - b v) = [(1 - b dt/2m) v + dt (F/m + b/m u)] / (1 + b dt/2m).
-// So the two differ by rounding alone. README.md tells how each part of the scene is said.
+// So the two differ by rounding alone. README.md lists how each part of the scene is written.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct LammpsTask {
   State state;               ///< from which it begins
   std::uint64_t end = 0;     ///< step at which it ends
   std::uint64_t stride = 1;  ///< a frame at every multiple of it, and at the end
-  std::uint64_t look = 100;  ///< steps between two looks for a file `stop`, which ends it early
+  std::uint64_t look = 100;  ///< steps between two checks for a file `stop`, which ends it early
   bool added_mass = true;    ///< false: the drag as LAMMPS users take it, wrong by order dt
 };
 

@@ -99,7 +99,7 @@ LammpsProgram find_lammps() {
   const std::string name = named == nullptr || *named == '\0' ? "lmp" : named;
   const auto path = find_program(name);
   if (!path) {
-    throw EngineError("LAMMPS is not here: there is no program " + name +
+    throw EngineError("LAMMPS is not installed: there is no program " + name +
                       ". Install the Debian package lammps, or name the program in "
                       "SHEARCELL_LAMMPS");
   }

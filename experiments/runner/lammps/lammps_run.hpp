@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LAMMPS at work on one task: in a temporary folder of its own, alone or under mpirun.
+// Runs LAMMPS for one task, in a temporary folder, alone or under mpirun.
 #pragma once
 
 #include <chrono>
@@ -24,8 +24,8 @@ struct LammpsProgram {
 /// not answer and a stop is requested. Removes what killed runs left behind.
 LammpsProgram find_lammps();
 
-/// Steps between two looks of LAMMPS at whether it is to stop, and of us at how far it is: about
-/// half a second of work.
+/// Steps between two checks of LAMMPS for a request to stop, and of this program for progress:
+/// about half a second of work.
 std::uint64_t lammps_look_steps(std::size_t grains, std::size_t ranks);
 
 class LammpsRun {
@@ -33,20 +33,20 @@ class LammpsRun {
   /// Starts it, with `ranks` processes under mpirun when that is more than one. Throws EngineError.
   LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
 
-  /// The next frame, waited for at most so long. Throws EngineError, with LAMMPS's own words, when
-  /// it ended without one.
+  /// The next frame; waits at most so long. Throws EngineError with LAMMPS's message if it ended
+  /// without one.
   std::optional<State> next_frame(std::chrono::milliseconds patience);
 
-  /// Asks it to write one frame more, soon, and end.
+  /// Asks it to write one more frame and end.
   void ask_to_stop();
 
-  /// The step where it was last seen.
+  /// The last step that it reported.
   std::uint64_t step();
 
-  /// Waits for its end. Throws EngineError when that was not a good one.
+  /// Waits for its end. Throws EngineError if it failed.
   void finish();
 
-  /// Wall seconds of its time loop, as it told itself, and memory [bytes] of its largest process;
+  /// Wall seconds of its time loop, as it printed them, and memory [bytes] of its largest process;
   /// after `finish`.
   double loop_seconds() const;
   std::size_t peak_bytes() const { return process_->peak_bytes(); }

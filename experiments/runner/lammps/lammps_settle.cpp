@@ -11,7 +11,7 @@ LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protoc
                               std::size_t ranks, const std::function<void(const State&)>& seen) {
   LammpsResult settled{loose, 0, 0};
   for (;;) {
-    // One step of our own, which is thrown away: the protocol tells before it whether the packing
+    // One step of our own, which is discarded: before it the protocol decides whether the packing
     // has settled, with it what acts on the grains now, and the watchdog looks at them.
     Simulation look(cell, scene, settled.state);
     if (protocol.advance(look, 1).finished) return settled;
