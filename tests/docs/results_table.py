@@ -27,7 +27,7 @@ HEADLINES = [
     ("B5", "B.5: at cycles", "phi gained by pauses", "higher"),
     ("S4", "B.6: phi is the same at cycles", "phi, moving top less moving bottom wall", "equal"),
     ("C", "C: the critical size at A = 0.0833", "critical size [grains], A = 0.0833", "about 16"),
-    ("S6", "D: the onset at A = 0.0833 rad is the same", "phi at the onset, with less without gravity", "equal"),
+    ("S6", "D: the onset at A = 0.0833 rad is the same", "phi at the onset, without less with gravity", "equal"),
     ("walls", "walls: between rough ones the onset", "phi at the onset, A = 0.0833", "0.646 +- 0.001"),
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper less the lower third", "more near the top"),
 ]
