@@ -163,7 +163,7 @@ std::string plain_text(const Text& text) {
 std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
   std::string text = title + ".";
   bool bars = false, bands = false;
-  std::vector<std::string> lines;
+  std::vector<std::string> lines, notes;
   for (const FigureTable& table : tables) {
     const Chart& chart = table.chart;
     if (chart.series.empty()) continue;
@@ -173,6 +173,9 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
       for (const ChartPoint& p : points_of(table, series)) {
         if (p.y_error) (series.band ? bands : bars) = true;
       }
+    }
+    if (!chart.note.empty() && std::ranges::find(notes, chart.note) == notes.end()) {
+      notes.push_back(chart.note);
     }
     for (const ReferenceLine& line : chart.lines) {
       const std::string name = plain_text(line.title);
@@ -184,6 +187,7 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
                                                            : bars        ? "Bars"
                                                                          : "Bands");
   }
+  for (const std::string& note : notes) text += " " + note + ".";
   if (!lines.empty()) text += fmt::format(" Reference lines: {}.", fmt::join(lines, "; "));
   return text;
 }

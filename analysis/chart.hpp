@@ -112,6 +112,7 @@ struct Chart {
   Text title = {};          ///< above the frame; figures have none
   bool wide = false;        ///< drawn over two columns of a journal (17.8 cm), not one (8.6 cm)
   std::string letter = {};  ///< of the panel: "a"
+  std::string note = {};    ///< a sentence of the caption, without its full stop
 };
 
 /// A table that is drawn as text: the first row is the heading.

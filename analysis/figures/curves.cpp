@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <string_view>
@@ -238,6 +239,38 @@ std::vector<Series> series_of(std::span<const Curve> curves, const SeriesColumns
   return series;
 }
 
+namespace {
+
+/// Where runs end at different cycles, a mean over those that are left jumps: it ends with the
+/// first of them, and each run continues as a thin line. Returns whether there are such lines.
+bool follow_runs(const Curve& curve, const Quantity& quantity, Series& mean,
+                 std::vector<Series>& single) {
+  double first_end = std::numeric_limits<double>::infinity();
+  for (const FigureRun* run : curve.runs) {
+    if (!run->checkpoints.empty()) first_end = std::min(first_end, run->checkpoints.back().cycle);
+  }
+  if (static_cast<double>(curve.points.back().cycle) <= first_end) return false;
+  mean.columns = {};
+  for (const CurvePoint& point : curve.points) {
+    const auto cycle = static_cast<double>(point.cycle);
+    const RunStatistics statistics = over(point, quantity);
+    if (cycle > first_end || !statistics.mean) continue;
+    mean.points.push_back({cycle, *statistics.mean, std::nullopt, statistics.standard_error});
+  }
+  for (const FigureRun* run : curve.runs) {
+    Series line{.colour = mean.colour, .point = 0, .join = Join::line, .thin = true};
+    for (const CheckpointMeasures& c : run->checkpoints) {
+      const double value = quantity(c.measures);
+      if (c.cycle < first_end || !std::isfinite(value)) continue;
+      line.points.push_back({c.cycle, value});
+    }
+    if (line.points.size() > 1) single.push_back(std::move(line));
+  }
+  return true;
+}
+
+}  // namespace
+
 FigureTable against_cycle(const std::string& name, std::span<const Curve> curves,
                           std::span<const MeasureColumn> measures, Axis y) {
   FigureTable table{.name = name, .columns = {"variant", "cycle"}, .rows = {}};
@@ -256,6 +289,13 @@ FigureTable against_cycle(const std::string& name, std::span<const Curve> curves
       .series = series_of(curves, {.x = "cycle",
                                    .y = column_name(measures.front(), "mean"),
                                    .y_error = column_name(measures.front(), "standard_error")})};
+  std::vector<Series> single;
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    if (follow_runs(curves[k], measures.front().quantity, table.chart.series[k], single)) {
+      table.chart.note = "Thin lines: single runs, from where the first run of a curve has ended";
+    }
+  }
+  std::ranges::move(single, std::back_inserter(table.chart.series));
   return table;
 }
 

@@ -17,6 +17,8 @@
 namespace shearcell {
 namespace {
 
+constexpr std::size_t kShownNames = 20;
+
 using nlohmann::json;
 using std::string;
 using std::string_view;
@@ -94,7 +96,9 @@ string read_one_of(const Node& node, const string& path, const std::vector<strin
   const string near = node.kind == Node::Kind::scalar ? suggest_name(node.text, known).name : "";
   problems.add(node.at, path,
                near.empty() ? "is unknown" : fmt::format("is unknown, the nearest is {}", near),
-               shown(node), fmt::format("Known are {}.", fmt::join(known, ", ")));
+               shown(node),
+               known.size() > kShownNames ? "`shearcell manual --markdown` lists them."
+                                          : fmt::format("Known are {}.", fmt::join(known, ", ")));
   return "";
 }
 

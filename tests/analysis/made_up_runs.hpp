@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,6 +35,28 @@ inline FigureRun made_up_run(const std::string& key, const nlohmann::json& value
     run.checkpoints.push_back(checkpoint);
   }
   return run;
+}
+
+/// phi and the percentage rise from cycle to cycle, and are higher by `shift`.
+inline FigureRun rising_run(const std::string& fluid, std::uint64_t seed, int cycles,
+                            double shift) {
+  return made_up_run("fluid", fluid, seed, cycles, [shift](int n, Measures& m) {
+    m.phi = 0.6005 + 0.01 * n + shift;
+    m.phi_uncorrected = 0.61 + 0.01 * n + shift;
+    m.mean_overlap = 0.002;
+    m.crystalline_percent = n + 100 * shift;
+  });
+}
+
+/// One run with a moving fluid and two in a fluid at rest.
+inline std::vector<FigureRun> two_variants() {
+  return {rising_run("cell", 1, 2, 0), rising_run("still", 1, 1, 0),
+          rising_run("still", 2, 1, 0.02)};
+}
+
+/// Figure S2 of these runs.
+inline std::vector<FigureTable> s2(std::span<const FigureRun> runs) {
+  return find_figure("S2")->make(runs).tables;
 }
 
 /// A map in which each list of grains is a crystallite. Grains need not be in order.

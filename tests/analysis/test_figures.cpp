@@ -30,25 +30,9 @@ namespace {
 namespace fs = std::filesystem;
 
 using testing::made_up_run;
-
-FigureRun rising_run(const std::string& fluid, std::uint64_t seed, int cycles, double shift) {
-  return made_up_run("fluid", fluid, seed, cycles, [shift](int n, Measures& m) {
-    m.phi = 0.6005 + 0.01 * n + shift;
-    m.phi_uncorrected = 0.61 + 0.01 * n + shift;
-    m.mean_overlap = 0.002;
-    m.crystalline_percent = n + 100 * shift;
-  });
-}
-
-std::vector<FigureRun> two_variants() {
-  return {rising_run("cell", 1, 2, 0), rising_run("still", 1, 1, 0),
-          rising_run("still", 2, 1, 0.02)};
-}
-
-std::vector<FigureTable> s2(std::span<const FigureRun> runs) {
-  const Figure* figure = find_figure("S2");
-  return figure != nullptr ? figure->make(runs).tables : std::vector<FigureTable>{};
-}
+using testing::rising_run;
+using testing::s2;
+using testing::two_variants;
 
 TEST(FigureS2, ARowPerVariantAndCycle) {
   const std::vector<FigureTable> tables = s2(two_variants());
@@ -220,100 +204,6 @@ TEST(Plot, UnnamedVariantsAndNoRunsAreDrawnToo) {
       EXPECT_GT(fs::file_size(draw_svg(table, folder.path())), 1000U);
     }
   }
-}
-
-/// Runs of a sweep of drag and fluid, named as the program names them.
-std::vector<FigureRun> two_parameters() {
-  std::vector<FigureRun> runs;
-  for (const char* fluid : {"still", "cell"}) {
-    for (const double drag : {0.001, 0.002, 0.004}) {
-      for (const std::uint64_t seed : {1U, 2U, 3U}) {
-        FigureRun run = rising_run(fluid, seed, 3, 1000 * drag + 0.001 * static_cast<double>(seed));
-        run.labels["drag_kg_per_s"] = drag;
-        run.variant = fmt::format("fluid={},drag_kg_per_s={}", fluid, drag);
-        run.name = fmt::format("fluid={}, b={} kg/s", fluid, drag);
-        runs.push_back(std::move(run));
-      }
-    }
-  }
-  return runs;
-}
-
-TEST(Curves, AreNamedAndStyledByWhatVaries) {
-  const FigureTable table = s2(two_parameters())[0];
-  std::set<std::string> titles;
-  std::set<std::pair<std::string, int>> looks;
-  for (const Series& one : table.chart.series) {
-    titles.insert(plain_text(one.title));
-    looks.emplace(one.colour, one.point);
-  }
-  EXPECT_EQ(titles.size(), 6U);
-  EXPECT_TRUE(titles.contains("fluid=cell, b=0.002 kg/s"));
-  EXPECT_EQ(looks.size(), 6U);
-  EXPECT_EQ(find_figure("S2")->make(two_parameters()).verdicts.at(0).note, "there are no such runs")
-      << "three variants have fluid=still";
-}
-
-TEST(Curves, KeepTheStylesOfTheSupplementForItsOwnVariants) {
-  std::vector<FigureRun> runs = two_variants();
-  runs[0].name = "fluid=cell", runs[1].name = runs[2].name = "fluid=still";
-  EXPECT_EQ(plain_text(s2(runs)[0].chart.series.at(0).title), "v_fluid = 0");
-  runs[1].name = runs[2].name = "water at rest";
-  runs[1].named = runs[2].named = true;
-  const Series still = s2(runs)[0].chart.series.at(0);
-  EXPECT_EQ(plain_text(still.title), "water at rest") << "a label of the manifest";
-  EXPECT_EQ(still.point, 9) << "the supplement's symbol";
-}
-
-TEST(Curves, NeverShareALabel) {
-  std::vector<FigureRun> runs = two_parameters();
-  for (FigureRun& run : runs) run.name = "the same";
-  EXPECT_THROW(s2(runs), AnalysisError);
-}
-
-TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
-  const std::vector<FigureRun> runs = two_parameters();
-  const auto table = [&](const PlotSpec& plot) {
-    return plot_figure(plot).make(runs).tables.at(0);
-  };
-  EXPECT_EQ(table({.name = "own", .y = "phi"}).rows.size(), 6U * 4U);
-  EXPECT_EQ(table({.name = "own", .y = "crystalline_percent", .x = "phi"}).columns.at(1),
-            "phi_low");
-  EXPECT_EQ(table({.name = "own", .y = "phi", .x = "mean_overlap_d"}).columns.at(4),
-            "mean_overlap_mean_d");
-  const FigureTable drag = table({.name = "own", .y = "phi", .x = "drag_kg_per_s", .cycle = 2});
-  EXPECT_TRUE(
-      to_csv(drag).starts_with("variant,drag_kg_per_s,phi_mean,phi_standard_error,runs\n"
-                               "fluid=cell,0.001,1.6225,0.000577350269,3\n"))
-      << to_csv(drag);
-  EXPECT_EQ(drag.chart.series.size(), 2U) << "a curve for each fluid";
-  const FigureTable traces = table({.name = "own", .y = "phi", .traces = true});
-  EXPECT_EQ(traces.chart.series.size(), 18U) << "every run";
-  EXPECT_EQ(
-      std::ranges::count_if(traces.chart.series, [](const Series& s) { return !s.title.empty(); }),
-      6)
-      << "each variant once in the key";
-  EXPECT_TRUE(table({.name = "own", .y = "phi", .log_y = true}).chart.y.log);
-  EXPECT_EQ(table({.name = "own", .y = "phi", .by = "fluid"}).chart.series.size(), 2U);
-}
-
-TEST(OwnClaim, IsDecidedAsThoseOfTheSupplement) {
-  ClaimSpec claim{
-      .name = "own", .compare = "phi", .first = 1, .last = 2, .between = {}, .margin = 0.5};
-  const nlohmann::json soft = {{"fluid", "still"}, {"drag_kg_per_s", 0.001}};
-  const nlohmann::json hard = {{"fluid", "still"}, {"drag_kg_per_s", 0.004}};
-  const auto verdict = [&] { return claim_figure(claim).make(two_parameters()).verdicts.at(0); };
-  claim.between = {soft, hard};
-  EXPECT_EQ(verdict().ruling, Ruling::differs) << "they are 3 apart";
-  EXPECT_NEAR(verdict().estimate.value(), -3, 1e-9);
-  claim.between = {hard, soft};
-  claim.higher = true;
-  EXPECT_EQ(verdict().ruling, Ruling::agrees);
-  EXPECT_EQ(verdict().claim,
-            "own: phi, mean over cycles 1 to 2 is higher by more than 0.5 for drag_kg_per_s=0.004, "
-            "fluid=still than for drag_kg_per_s=0.001, fluid=still");
-  claim.between = {nlohmann::json{{"fluid", "still"}}, hard};
-  EXPECT_THROW(verdict(), UsageError) << "three variants";
 }
 
 // Swept in two parameters: the name has a comma, at which gnuplot would cut it.

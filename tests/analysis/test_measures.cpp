@@ -14,6 +14,7 @@ Checkpoint checkpoint_of(const Packing& p, double theta) {
   c.theta = theta;
   c.cell = p.cell;
   c.state.position = p.grains;
+  c.state.velocity = Eigen::Matrix3Xd::Zero(3, p.grains.cols());
   c.state.wall_height = p.pose.bottom;
   return c;
 }

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Curves: their names and styles, where their means end; plots and claims of a manifest.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "analysis/error.hpp"
+#include "analysis/figure.hpp"
+#include "analysis/own_figure.hpp"
+#include "provenance/errors.hpp"
+#include "tests/analysis/made_up_runs.hpp"
+
+namespace shearcell {
+namespace {
+
+using testing::rising_run;
+using testing::s2;
+using testing::two_variants;
+
+/// Runs of a sweep of drag and fluid, named as the program names them.
+std::vector<FigureRun> two_parameters() {
+  std::vector<FigureRun> runs;
+  for (const char* fluid : {"still", "cell"}) {
+    for (const double drag : {0.001, 0.002, 0.004}) {
+      for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        FigureRun run = rising_run(fluid, seed, 3, 1000 * drag + 0.001 * static_cast<double>(seed));
+        run.labels["drag_kg_per_s"] = drag;
+        run.variant = fmt::format("fluid={},drag_kg_per_s={}", fluid, drag);
+        run.name = fmt::format("fluid={}, b={} kg/s", fluid, drag);
+        runs.push_back(std::move(run));
+      }
+    }
+  }
+  return runs;
+}
+
+TEST(Curves, AreNamedAndStyledByWhatVaries) {
+  const FigureTable table = s2(two_parameters())[0];
+  std::set<std::string> titles;
+  std::set<std::pair<std::string, int>> looks;
+  for (const Series& one : table.chart.series) {
+    titles.insert(plain_text(one.title));
+    looks.emplace(one.colour, one.point);
+  }
+  EXPECT_EQ(titles.size(), 6U);
+  EXPECT_TRUE(titles.contains("fluid=cell, b=0.002 kg/s"));
+  EXPECT_EQ(looks.size(), 6U);
+  EXPECT_EQ(find_figure("S2")->make(two_parameters()).verdicts.at(0).note, "there are no such runs")
+      << "three variants have fluid=still";
+}
+
+TEST(Curves, KeepTheStylesOfTheSupplementForItsOwnVariants) {
+  std::vector<FigureRun> runs = two_variants();
+  runs[0].name = "fluid=cell", runs[1].name = runs[2].name = "fluid=still";
+  EXPECT_EQ(plain_text(s2(runs)[0].chart.series.at(0).title), "v_fluid = 0");
+  runs[1].name = runs[2].name = "water at rest";
+  runs[1].named = runs[2].named = true;
+  const Series still = s2(runs)[0].chart.series.at(0);
+  EXPECT_EQ(plain_text(still.title), "water at rest") << "a label of the manifest";
+  EXPECT_EQ(still.point, 9) << "the supplement's symbol";
+}
+
+TEST(Curves, NeverShareALabel) {
+  std::vector<FigureRun> runs = two_parameters();
+  for (FigureRun& run : runs) run.name = "the same";
+  EXPECT_THROW(s2(runs), AnalysisError);
+}
+
+TEST(Curves, EndTheirMeanWithTheFirstRunThatEnds) {
+  const std::vector<FigureRun> whole = {rising_run("still", 1, 6, 0),
+                                        rising_run("still", 2, 6, 0.01)};
+  const FigureTable before = find_figure("S2")->make(whole).tables.at(0);
+  ASSERT_EQ(before.chart.series.size(), 1U);
+  EXPECT_EQ(points_of(before, before.chart.series[0]).size(), 7U);
+  EXPECT_TRUE(before.chart.note.empty());
+
+  std::vector<FigureRun> runs = whole;
+  runs[1].checkpoints.resize(5);  // up to cycle 4
+  const FigureTable table = find_figure("S2")->make(runs).tables.at(0);
+  EXPECT_EQ(table.rows.size(), before.rows.size()) << "the numbers of those that are left";
+  ASSERT_EQ(table.chart.series.size(), 2U) << "the mean and the run that goes on";
+  const std::vector<ChartPoint> mean = points_of(table, table.chart.series[0]);
+  const std::vector<ChartPoint> rest = points_of(table, table.chart.series[1]);
+  const std::vector<ChartPoint> all = points_of(before, before.chart.series[0]);
+  ASSERT_EQ(mean.size(), 5U);
+  for (std::size_t n = 0; n < mean.size(); ++n) {
+    EXPECT_EQ(mean[n].x, static_cast<double>(n));
+    EXPECT_NEAR(mean[n].y, all[n].y, 1e-9);
+    EXPECT_NEAR(mean[n].y_error.value(), all[n].y_error.value(), 1e-9);
+  }
+  ASSERT_EQ(rest.size(), 3U);
+  for (std::size_t n = 0; n < rest.size(); ++n) {
+    EXPECT_EQ(rest[n].x, static_cast<double>(4 + n));
+    EXPECT_EQ(rest[n].y, runs[0].checkpoints[4 + n].measures.phi);
+  }
+  EXPECT_TRUE(table.chart.series[1].thin);
+  EXPECT_TRUE(table.chart.series[1].title.empty());
+  const std::vector<FigureTable> tables = {table};
+  EXPECT_NE(caption_of("A title", tables).find(" Thin lines: single runs, "), std::string::npos);
+}
+
+TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
+  const std::vector<FigureRun> runs = two_parameters();
+  const auto table = [&](const PlotSpec& plot) {
+    return plot_figure(plot).make(runs).tables.at(0);
+  };
+  EXPECT_EQ(table({.name = "own", .y = "phi"}).rows.size(), 6U * 4U);
+  EXPECT_EQ(table({.name = "own", .y = "crystalline_percent", .x = "phi"}).columns.at(1),
+            "phi_low");
+  EXPECT_EQ(table({.name = "own", .y = "phi", .x = "mean_overlap_d"}).columns.at(4),
+            "mean_overlap_mean_d");
+  const FigureTable drag = table({.name = "own", .y = "phi", .x = "drag_kg_per_s", .cycle = 2});
+  EXPECT_TRUE(
+      to_csv(drag).starts_with("variant,drag_kg_per_s,phi_mean,phi_standard_error,runs\n"
+                               "fluid=cell,0.001,1.6225,0.000577350269,3\n"))
+      << to_csv(drag);
+  EXPECT_EQ(drag.chart.series.size(), 2U) << "a curve for each fluid";
+  const FigureTable traces = table({.name = "own", .y = "phi", .traces = true});
+  EXPECT_EQ(traces.chart.series.size(), 18U) << "every run";
+  EXPECT_EQ(
+      std::ranges::count_if(traces.chart.series, [](const Series& s) { return !s.title.empty(); }),
+      6)
+      << "each variant once in the key";
+  EXPECT_TRUE(table({.name = "own", .y = "phi", .log_y = true}).chart.y.log);
+  EXPECT_EQ(table({.name = "own", .y = "phi", .by = "fluid"}).chart.series.size(), 2U);
+}
+
+TEST(OwnClaim, IsDecidedAsThoseOfTheSupplement) {
+  ClaimSpec claim{
+      .name = "own", .compare = "phi", .first = 1, .last = 2, .between = {}, .margin = 0.5};
+  const nlohmann::json soft = {{"fluid", "still"}, {"drag_kg_per_s", 0.001}};
+  const nlohmann::json hard = {{"fluid", "still"}, {"drag_kg_per_s", 0.004}};
+  const auto verdict = [&] { return claim_figure(claim).make(two_parameters()).verdicts.at(0); };
+  claim.between = {soft, hard};
+  EXPECT_EQ(verdict().ruling, Ruling::differs) << "they are 3 apart";
+  EXPECT_NEAR(verdict().estimate.value(), -3, 1e-9);
+  claim.between = {hard, soft};
+  claim.higher = true;
+  EXPECT_EQ(verdict().ruling, Ruling::agrees);
+  EXPECT_EQ(verdict().claim,
+            "own: phi, mean over cycles 1 to 2 is higher by more than 0.5 for drag_kg_per_s=0.004, "
+            "fluid=still than for drag_kg_per_s=0.001, fluid=still");
+  claim.between = {nlohmann::json{{"fluid", "still"}}, hard};
+  EXPECT_THROW(verdict(), UsageError) << "three variants";
+}
+
+}  // namespace
+}  // namespace shearcell
