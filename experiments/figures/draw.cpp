@@ -160,10 +160,13 @@ void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>
     const auto [known, first] = groups.try_emplace(std::move(group), run.labels);
     for (const auto& [key, value] : run.labels.items()) {
       if (known->second.value(key, nlohmann::json()) == value) continue;
+      const bool of_manifest = find_figure(wanted.figure.name) == nullptr;
       throw UsageError(fmt::format(
-          "figure {} would average over the values of {} that experiment {} sweeps; give each an "
-          "experiment of its own, or state a plot in the manifest (`plots`)",
-          wanted.figure.name, key, wanted.experiment));
+          "figure {} would average over the values of {} that experiment {} sweeps; {}",
+          wanted.figure.name, key, wanted.experiment,
+          of_manifest ? "leave out its `by` for a curve of each variant"
+                      : "give each an experiment of its own, or state a plot in the manifest "
+                        "(`plots`)"));
     }
   }
 }

@@ -156,6 +156,22 @@ TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {
 }
 
 // Two variants share a curve, which the label of neither names.
+TEST_F(DrawFigure, NothingAveragesOverAnotherSweptParameter) {
+  compute(store_,
+          tiny_manifest("",
+                        "sweep: {grid: {fluid: [still, cell], amplitude_rad: [0.05, "
+                        "0.08]}}\nplots: [{name: mean, y: phi, by: fluid}]\n"),
+          {.scale = {}, .cycles = 1, .seeds = {}});
+  try {
+    draw_figure(store_, wanted_figures(store_, {"mean"}).figures.at(0), {});
+    FAIL() << "it averaged over the amplitudes";
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(),
+                 "figure mean would average over the values of amplitude_rad that experiment tiny "
+                 "sweeps; leave out its `by` for a curve of each variant");
+  }
+}
+
 TEST_F(DrawFigure, APlotByAKeyNamesItsCurvesByTheLabelsOfThatKey) {
   compute(store_,
           tiny_manifest("",
