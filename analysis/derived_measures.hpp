@@ -5,9 +5,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/measures.hpp"
@@ -18,26 +20,40 @@ namespace shearcell {
 /// version is then computed again. tests/analysis/test_derived_measures.cpp pins results to it.
 inline constexpr std::uint64_t analysis_version = 1;
 
+/// What a result is taken from.
+struct MeasureInput {
+  const Analysis& analysis;
+  const Checkpoint* checkpoint = nullptr;  ///< only scalars and crystallites do without
+  /// The same run's checkpoint so many cycles earlier, valid until the next call; null where the
+  /// run has none.
+  std::function<const Checkpoint*(std::uint64_t cycles)> earlier = {};
+};
+
 /// One result that can be kept, with what it depends on besides the checkpoint. Several are taken
 /// from one Analysis, so that the Voronoi cells are found once. A result may be anything JSON
 /// holds, binary arrays (nlohmann::json::binary) of one entry per grain included.
 struct DerivedMeasure {
   std::string name;
   nlohmann::json parameters;
-  nlohmann::json (*from)(const Analysis&);
+  nlohmann::json (*from)(const MeasureInput& input);
+  /// Adds a result to the measures; null where it is read by a function of its own. Throws
+  /// AnalysisError for a result of something else.
+  void (*read)(const nlohmann::json& result, Measures& measures) = nullptr;
+  std::vector<std::uint64_t> earlier = {};  ///< cycles back to the other checkpoints it needs
 
   /// Name and parameters as one text: equal texts, equal computation.
   std::string key() const { return name + " " + parameters.dump(); }
 };
 
+/// Every result that can be kept.
+std::span<const DerivedMeasure> all_derived_measures();
+/// The one of that name, which must exist.
+const DerivedMeasure& derived_measure(std::string_view name);
+
 /// All scalars of `Measures` itself.
 const DerivedMeasure& scalar_measures();
 /// What scalar_measures() gave. Throws AnalysisError when it is not that.
 Measures read_measures(const nlohmann::json& result);
-
-/// Mechanics in its own units, and the same back.
-const DerivedMeasure& mechanics_measure();
-Mechanics read_mechanics(const nlohmann::json& result);
 
 /// The CrystalliteMap of a checkpoint; read_crystallite_map() reads it back.
 const DerivedMeasure& crystallite_measure();

@@ -66,7 +66,8 @@ struct Figure {
   FigureForm form = FigureForm::curves;
   std::vector<std::string> keys = {};  ///< parameters that its curves compare
   bool at_rest = false;                ///< needs phi_at_rest of cycles 1 to early_cycles
-  bool mechanics = false;              ///< needs Measures::mechanics
+  /// Names of the derived measures that it needs besides the scalars (derived_measures.hpp).
+  std::vector<std::string> derived = {};
 };
 
 /// The value of a parameter, swept or not; null if the run has no such key.

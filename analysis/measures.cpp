@@ -2,6 +2,7 @@
 #include "analysis/measures.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -125,8 +126,77 @@ std::span<const ScalarMeasure> all_scalar_measures() {
        "kinetic energy over the number of grains, half a time step later",
        MechanicalMember{&Mechanics::kinetic_energy, &MechanicalUnits::kinetic_J}},
       {"gravitational_energy_per_grain_J", "J", "weight times mean height above the bottom wall",
-       MechanicalMember{&Mechanics::height, &MechanicalUnits::weight_J}}};
+       MechanicalMember{&Mechanics::height, &MechanicalUnits::weight_J}},
+      {"cna_crystalline_percent", "%",
+       "FCC and HCP grains among interior grains, by common neighbour analysis",
+       NumberOf{"lattices"}},
+      {"cna_fcc_percent", "%", "FCC grains likewise", NumberOf{"lattices"}},
+      {"cna_hcp_percent", "%", "HCP grains likewise", NumberOf{"lattices"}},
+      {"cna_bcc_percent", "%", "BCC grains likewise", NumberOf{"lattices"}},
+      {"msd_1_cycle_d2", "d^2",
+       "mean squared displacement of interior grains over 1 cycle, in the frame of the walls",
+       NumberOf{"motion"}},
+      {"msd_10_cycles_d2", "d^2", "the same over 10 cycles", NumberOf{"motion"}},
+      {"msd_100_cycles_d2", "d^2", "the same over 100 cycles", NumberOf{"motion"}},
+      {"d2min_1_cycle_d2", "d^2",
+       "mean non-affine squared displacement D^2_min of interior grains over 1 cycle",
+       NumberOf{"motion"}},
+      {"d2min_10_cycles_d2", "d^2", "the same over 10 cycles", NumberOf{"motion"}},
+      {"d2min_100_cycles_d2", "d^2", "the same over 100 cycles", NumberOf{"motion"}},
+      {"reversible_percent", "%",
+       "interior grains at most 0.01 d from where they were a cycle before", NumberOf{"motion"}},
+      {"msd_inside_crystal_d2", "d^2",
+       "mean squared displacement over 1 cycle of crystalline grains among crystalline ones",
+       NumberOf{"motion"}},
+      {"msd_crystal_boundary_d2", "d^2", "the same of crystalline grains with other neighbours",
+       NumberOf{"motion"}},
+      {"msd_disordered_d2", "d^2", "the same of grains that are not crystalline",
+       NumberOf{"motion"}}};
   return measures;
+}
+
+std::string_view ScalarMeasure::derived() const {
+  if (const auto* number = std::get_if<NumberOf>(&member)) return number->derived;
+  return std::holds_alternative<MechanicalMember>(member) ? "mechanics" : "scalars";
+}
+
+std::span<const CurveMeasure> all_curve_measures() {
+  static constexpr CurveMeasure measures[] = {
+      {"pair_correlation", "1", "g(r) of interior grains", "distance_d", "d", "pair_correlation"},
+      {"structure_factor", "1", "S(k) of interior grains", "wave_number_per_d", "1/d",
+       "structure_factor"},
+      {"phi_profile", "1", "packing fraction of a layer (Eq. S4)", "height_d", "d", "profiles"},
+      {"pressure_profile_Pa", "Pa", "mean normal stress of a layer, from contacts", "height_d", "d",
+       "profiles", &MechanicalUnits::stress_Pa},
+      {"coordination_profile", "1", "contacts per grain of a layer, with grains and wall grains",
+       "height_d", "d", "profiles"},
+      {"crystalline_profile_percent", "%", "crystalline grains of a layer", "height_d", "d",
+       "profiles"},
+      {"crystalline_by_q6_window_percent", "%",
+       "crystalline grains, if |q6 - q6 of a lattice| is below this", "q6_window", "1",
+       "sensitivity"},
+      {"crystalline_by_phi_local_percent", "%", "crystalline grains, if phi_local is above this",
+       "phi_local_threshold", "1", "sensitivity"},
+      {"largest_by_face", "1",
+       "grains in the largest crystallite, if faces connect from this share of a mean cell surface",
+       "connecting_face", "1", "sensitivity"}};
+  return measures;
+}
+
+MeasuredCurve CurveMeasure::of(const Measures& measures) const {
+  const auto found = measures.curves.find(name);
+  if (found == measures.curves.end()) return {};
+  MeasuredCurve curve = found->second;
+  if (si != nullptr) {
+    for (double& y : curve.y) y *= measures.units.*si;
+  }
+  return curve;
+}
+
+const CurveMeasure* find_curve_measure(std::string_view name) {
+  const auto all = all_curve_measures();
+  const auto found = std::ranges::find(all, name, &CurveMeasure::name);
+  return found == all.end() ? nullptr : &*found;
 }
 
 double ScalarMeasure::of(const Measures& measures) const {
@@ -136,6 +206,10 @@ double ScalarMeasure::of(const Measures& measures) const {
   }
   if (const auto* count = std::get_if<std::size_t Measures::*>(&member)) {
     return static_cast<double>(measures.**count);
+  }
+  if (std::holds_alternative<NumberOf>(member)) {
+    const auto found = measures.numbers.find(name);
+    return found == measures.numbers.end() ? std::nan("") : found->second;
   }
   return measures.*std::get<double Measures::*>(member);
 }
@@ -157,6 +231,7 @@ Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd&
   grains.cell_surface = std::move(diagram.surface);
   Overlaps contact = overlaps(cell, pose, positions);
   grains.largest_overlap = std::move(contact.largest);
+  grains.contacts = std::move(contact.contacts);
   grains.interior = interior_grains(cell, pose, positions);
 
   all.grains = grains.q6.size();
@@ -168,7 +243,7 @@ Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd&
   all.phi_uncorrected = fractions.phi_uncorrected;
   all.mean_overlap = contact.mean;
   const auto contacts =
-      std::accumulate(contact.contacts.begin(), contact.contacts.end(), std::int64_t{0});
+      std::accumulate(grains.contacts.begin(), grains.contacts.end(), std::int64_t{0});
   all.contacts_per_grain = static_cast<double>(contacts) / static_cast<double>(all.grains);
 
   find_structures(grains);

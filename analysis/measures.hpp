@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <span>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -16,6 +18,11 @@
 #include "provenance/checkpoint.hpp"
 
 namespace shearcell {
+
+/// A function measured on one packing, as g(r): values at ascending x.
+struct MeasuredCurve {
+  std::vector<double> x, y;
+};
 
 /// Of one packing. Means over no grain at all are not a number.
 struct Measures {
@@ -34,6 +41,9 @@ struct Measures {
   double phi_at_rest = std::numeric_limits<double>::quiet_NaN();
   Mechanics mechanics;  ///< zeros where nothing asked for it
   MechanicalUnits units;
+  /// What else was asked for (derived_measures.hpp), by the names of the measures.
+  std::map<std::string, double, std::less<>> numbers;
+  std::map<std::string, MeasuredCurve, std::less<>> curves;
 };
 
 /// A member of Mechanics and the unit that turns it into SI; null for a number that has none.
@@ -42,14 +52,20 @@ struct MechanicalMember {
   double MechanicalUnits::*unit;
 };
 
+/// One of Measures::numbers.
+struct NumberOf {
+  std::string_view derived;  ///< the DerivedMeasure that has it
+};
+
 /// A scalar of Measures, by the name that tables, plots and exports give it.
 struct ScalarMeasure {
   std::string_view name;  ///< with its unit, unless it is a count or a pure number
   std::string_view unit;  ///< "1" for none
   std::string_view meaning;
-  std::variant<double Measures::*, std::size_t Measures::*, MechanicalMember> member;
+  std::variant<double Measures::*, std::size_t Measures::*, MechanicalMember, NumberOf> member;
 
-  bool mechanical() const { return std::holds_alternative<MechanicalMember>(member); }
+  /// Name of the DerivedMeasure that it is kept in.
+  std::string_view derived() const;
   /// In `unit`; not a number where it is unknown.
   double of(const Measures& measures) const;
 };
@@ -57,11 +73,28 @@ std::span<const ScalarMeasure> all_scalar_measures();
 /// The one of that name, or null.
 const ScalarMeasure* find_measure(std::string_view name);
 
+/// A function of Measures, by the name that tables and plots give it.
+struct CurveMeasure {
+  std::string_view name;  ///< with its unit, unless it is a pure number
+  std::string_view unit;  ///< "1" for none
+  std::string_view meaning;
+  std::string_view x, x_unit;
+  std::string_view derived;               ///< the DerivedMeasure that has it
+  double MechanicalUnits::*si = nullptr;  ///< turns it into its unit; null for a pure number
+
+  /// In `unit`; empty where it was not measured.
+  MeasuredCurve of(const Measures& measures) const;
+};
+std::span<const CurveMeasure> all_curve_measures();
+/// The one of that name, or null.
+const CurveMeasure* find_curve_measure(std::string_view name);
+
 /// One entry per grain, by grain id.
 struct GrainMeasures {
   std::vector<double> cell_volume;      ///< [d^3]
   std::vector<double> cell_surface;     ///< [d^2]
   std::vector<double> largest_overlap;  ///< delta_max,i [d]
+  std::vector<std::int32_t> contacts;   ///< with grains and wall grains
   std::vector<double> phi_local;
   std::vector<double> q6;
   std::vector<double> pressure;        ///< [k/d]; of a checkpoint

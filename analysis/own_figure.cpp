@@ -21,16 +21,22 @@ Quantity quantity_of(const ScalarMeasure& measure) {
   return [&measure](const Measures& m) { return measure.of(m); };
 }
 
-bool is_mechanical(std::string_view name) {
-  const ScalarMeasure* measure = find_measure(name);
-  return measure != nullptr && measure->mechanical();
+/// "phi_profile" and "", "pressure" and "Pa" of "pressure_Pa".
+std::pair<std::string, std::string> name_and_unit(std::string_view measure, std::string_view of) {
+  std::string name(measure);
+  std::string unit(of == "%" ? "percent" : of == "1" ? "" : of == "d^2" ? "d2" : of);
+  if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
+  return {name, unit};
 }
 
 MeasureColumn column_of(const ScalarMeasure& measure) {
-  std::string name(measure.name);
-  std::string unit(measure.unit == "%" ? "percent" : measure.unit == "1" ? "" : measure.unit);
-  if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
-  return {name, unit, quantity_of(measure)};
+  auto [name, unit] = name_and_unit(measure.name, measure.unit);
+  return {std::move(name), std::move(unit), quantity_of(measure)};
+}
+
+Axis named_axis(std::string name, std::string_view unit) {
+  std::ranges::replace(name, '_', ' ');
+  return {.name = std::move(name), .unit = unit == "1" ? Text() : Text(std::string(unit))};
 }
 
 /// "largest crystallite" of "largest_crystallite".
@@ -39,25 +45,22 @@ Axis axis_of(const std::string& key) {
   if (key == "phi") return phi_axis();
   if (key == "crystalline_percent") return crystalline_axis();
   if (key == "mean_overlap_d") return overlap_axis();
-  std::string name = key;
-  Text unit;
   if (const ScalarMeasure* measure = find_measure(key)) {
-    name = column_of(*measure).name;
-    if (measure->unit != "1") unit = std::string(measure->unit);
+    return named_axis(column_of(*measure).name, measure->unit);
   }
-  std::ranges::replace(name, '_', ' ');
-  return {.name = std::move(name), .unit = std::move(unit)};
+  if (const CurveMeasure* measure = find_curve_measure(key)) {
+    return named_axis(name_and_unit(measure->name, measure->unit).first, measure->unit);
+  }
+  return named_axis(key, "1");
 }
 
-/// Where `x` is a parameter: the measure at one cycle.
-std::optional<double> value_at(const FigureRun& run, const Quantity& quantity,
-                               const std::optional<std::uint64_t>& cycle) {
-  if (run.checkpoints.empty()) return std::nullopt;
-  if (!cycle) return quantity(run.checkpoints.back().measures);
-  for (const CheckpointMeasures& c : run.checkpoints) {
-    if (c.cycle == static_cast<double>(*cycle)) return quantity(c.measures);
-  }
-  return std::nullopt;
+/// The checkpoint at a cycle, or the last one; null if there is none.
+const Measures* measures_at(const FigureRun& run, const std::optional<std::uint64_t>& cycle) {
+  if (run.checkpoints.empty()) return nullptr;
+  if (!cycle) return &run.checkpoints.back().measures;
+  const auto found =
+      std::ranges::find(run.checkpoints, static_cast<double>(*cycle), &CheckpointMeasures::cycle);
+  return found == run.checkpoints.end() ? nullptr : &found->measures;
 }
 
 /// A copy of the runs in which the curve is the variant: runs that differ in `x` alone, or those
@@ -135,10 +138,11 @@ FigureTable against_parameter(const PlotSpec& plot, std::span<const FigureRun> g
     std::map<std::uint64_t, std::map<double, double>> by_seed;
     for (const FigureRun* run : curve.runs) {
       const double at = number_of(*run, plot.x);
-      const auto value = value_at(*run, y.quantity, plot.cycle);
-      if (!std::isfinite(at) || !value || !std::isfinite(*value)) continue;
-      values[at].push_back(*value);
-      by_seed[run->seed][at] = *value;
+      const Measures* measures = measures_at(*run, plot.cycle);
+      const double value = measures == nullptr ? std::nan("") : y.quantity(*measures);
+      if (!std::isfinite(at) || !std::isfinite(value)) continue;
+      values[at].push_back(value);
+      by_seed[run->seed][at] = value;
     }
     Text title = curve.style.title;  // once in the key
     for (const auto& [seed, points] : by_seed) {
@@ -176,15 +180,62 @@ FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves)
   return table;
 }
 
+/// A measured curve of one checkpoint: its mean over the runs at each x, or each run's.
+FigureTable measured_curves(const PlotSpec& plot, const CurveMeasure& measure,
+                            std::span<const Curve> curves) {
+  const auto [name, unit] = name_and_unit(measure.name, measure.unit);
+  const MeasureColumn y{name, unit, {}};
+  FigureTable table{.name = plot.name, .columns = {"variant", std::string(measure.x)}, .rows = {}};
+  add_columns(y, table.columns);
+  table.columns.emplace_back("runs");
+  std::vector<Series> single;
+  for (const Curve& curve : curves) {
+    std::map<double, std::vector<double>> values;
+    Text title = curve.style.title;  // once in the key
+    for (const FigureRun* run : curve.runs) {
+      const Measures* measures = measures_at(*run, plot.cycle);
+      if (measures == nullptr) continue;
+      single.push_back({.title = std::exchange(title, Text()),
+                        .colour = curve.style.colour,
+                        .point = 0,
+                        .join = Join::line,
+                        .thin = true});
+      const MeasuredCurve measured = measure.of(*measures);
+      for (std::size_t i = 0; i < measured.x.size(); ++i) {
+        if (!std::isfinite(measured.y[i])) continue;
+        values[measured.x[i]].push_back(measured.y[i]);
+        single.back().points.push_back({measured.x[i], measured.y[i]});
+      }
+    }
+    for (const auto& [x, of] : values) {
+      auto& row = table.rows.emplace_back(std::vector<TableValue>{curve.variant, x});
+      const RunStatistics over = over_runs(of);
+      add_values(over, row);
+      row.emplace_back(static_cast<std::int64_t>(over.runs));
+    }
+  }
+  table.chart.series = series_of(curves, {.x = std::string(measure.x),
+                                          .y = column_name(y, "mean"),
+                                          .y_error = column_name(y, "standard_error")});
+  // Hundreds of values: symbols would hide the curve.
+  for (Series& series : table.chart.series) series.point = 0;
+  if (plot.traces) table.chart.series = std::move(single);
+  if (curves.size() == 1) table.chart.series.front().title = {};
+  return table;
+}
+
 FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
                  const NameVariants& names) {
-  const bool by_parameter = plot.x != "cycle" && find_measure(plot.x) == nullptr;
+  const CurveMeasure* measured = find_curve_measure(plot.y);
+  const bool by_parameter =
+      measured == nullptr && plot.x != "cycle" && find_measure(plot.x) == nullptr;
   if (by_parameter) return against_parameter(plot, given, names);
   const std::vector<FigureRun> grouped =
       plot.by.empty() ? std::vector<FigureRun>() : by_curve(given, plot, names);
   const std::span<const FigureRun> runs = plot.by.empty() ? given : grouped;
   const std::vector<Curve> curves =
       curves_by(runs, {}, [](const FigureRun&) { return nullptr; }, {});
+  if (measured != nullptr) return measured_curves(plot, *measured, curves);
   const ScalarMeasure& measure = *find_measure(plot.y);
   if (plot.traces) {
     const ScalarMeasure* x = find_measure(plot.x);
@@ -250,14 +301,20 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> run
 }  // namespace
 
 bool is_measure(std::string_view name) {
-  return find_measure(name) != nullptr;
+  return find_measure(name) != nullptr || find_curve_measure(name) != nullptr;
 }
 
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
-  Figure figure{plot.name, plot.y + " against " + plot.x, FigureNeeds::scalars,
-                [plot, names](std::span<const FigureRun> runs) {
+  const CurveMeasure* measured = find_curve_measure(plot.y);
+  const std::string x(measured == nullptr ? plot.x : measured->x);
+  Figure figure{plot.name, plot.y + " against " + x, FigureNeeds::scalars,
+                [plot, names, measured](std::span<const FigureRun> runs) {
                   FigureTable table = draw(plot, runs, names);
                   table.chart.x = axis_of(plot.x);
+                  if (measured != nullptr) {
+                    table.chart.x = named_axis(name_and_unit(measured->x, measured->x_unit).first,
+                                               measured->x_unit);
+                  }
                   if (!plot.x_symbol.empty()) table.chart.x = {.symbol = italic(plot.x_symbol)};
                   if (!plot.x_unit.empty()) table.chart.x.unit = plot.x_unit;
                   table.chart.y = axis_of(plot.y);
@@ -267,10 +324,13 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
                   if (plot.log_y) table.chart.y.low = {};
                   return FigureResult{{std::move(table)}, {}};
                 }};
-  figure.mechanics = is_mechanical(plot.x) || is_mechanical(plot.y);
+  if (measured != nullptr) figure.derived.emplace_back(measured->derived);
+  for (const std::string& name : {plot.x, plot.y}) {
+    if (const ScalarMeasure* one = find_measure(name)) figure.derived.emplace_back(one->derived());
+  }
   if (!plot.by.empty()) {
     figure.form = FigureForm::groups;
-    figure.keys = {plot.by, plot.x};
+    figure.keys = {plot.by, x};
   }
   return figure;
 }
@@ -278,7 +338,7 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
 Figure claim_figure(const ClaimSpec& claim) {
   Figure figure{claim.name, "", FigureNeeds::scalars,
                 [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
-  figure.mechanics = is_mechanical(claim.compare);
+  figure.derived.emplace_back(find_measure(claim.compare)->derived());
   return figure;
 }
 

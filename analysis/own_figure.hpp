@@ -17,13 +17,14 @@ struct Figure;
 
 struct PlotSpec {
   std::string name;
-  std::string y;            ///< a scalar measure (analysis/measures.hpp)
-  std::string x = "cycle";  ///< "cycle", a scalar measure, or a parameter
+  std::string y;            ///< a scalar or curve measure (analysis/measures.hpp)
+  std::string x = "cycle";  ///< "cycle", a scalar measure, or a parameter; unused by curves
   std::string by = {};      ///< a curve for each value of it; "": for each variant
   bool traces = false;      ///< every run's curve, not their mean with its error
   bool log_x = false, log_y = false;
-  std::optional<std::uint64_t> cycle = {};  ///< with a parameter as x; default: the last one
-  std::string x_symbol = {}, x_unit = {};   ///< of that parameter; "" for none
+  std::optional<std::uint64_t> cycle =
+      {};  ///< of curves, or with a parameter as x; default: the last one
+  std::string x_symbol = {}, x_unit = {};  ///< of that parameter; "" for none
 
   bool operator==(const PlotSpec&) const = default;
 };
@@ -39,7 +40,7 @@ struct ClaimSpec {
   bool operator==(const ClaimSpec&) const = default;
 };
 
-/// Whether there is a scalar measure of that name.
+/// Whether there is a scalar or curve measure of that name.
 bool is_measure(std::string_view name);
 
 /// Names for people of variants, which are objects of keys and values; in their order.
@@ -47,7 +48,8 @@ using NameVariants =
     std::function<std::vector<std::string>(const std::vector<nlohmann::json>& variants)>;
 
 /// One panel NAME: the measure against `x`, as the supplement's figures are drawn. Against phi,
-/// runs are averaged in bins; against another measure, at each cycle. `names` names curves that
+/// runs are averaged in bins; against another measure, at each cycle; a curve measure against its
+/// own x, at one cycle. `names` names curves that
 /// several variants share by what these have in common; without it they are called "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 

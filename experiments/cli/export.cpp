@@ -127,8 +127,9 @@ std::vector<std::string> frames(const Store& store, const SelectedRun& run,
   };
   {
     const FrameWriter writers[] = {writer(Writers)...};
+    MeasureSources sources(store);
     for (const CheckpointRecord& record : records) {
-      const Frame frame = frame_of(store.load_checkpoint(record), record, run);
+      const Frame frame = frame_of(store.load_checkpoint(record), record, run, &sources);
       for (const FrameWriter& write : writers) write(frame);
     }
   }
@@ -294,8 +295,10 @@ void add_export(CLI::App& app, Context& context) {
       formats +
       "Each file holds its run, seed, parameters and units, every scalar measure of each frame, "
       "and for\n"
-      "each grain id, radius, velocity, phi_local, q6, structure, crystallite and largest overlap, "
-      "with\n"
+      "each grain id, radius, velocity, phi_local, q6, largest overlap, contacts, pressure, "
+      "structure (by q6),\n"
+      "lattice (by common neighbours), crystallite, and displacement and D^2_min over the cycle "
+      "before, with\n"
       "wall grains and the tilted cell. Writes one RUN to PATH, several to the folder PATH with a "
       "name\n"
       "each. PATH must be new; that of a crate may be an earlier export of the same run.\n"

@@ -232,6 +232,7 @@ void plan(const PlanOptions& options, Context& context) {
   if (context.json) {
     nlohmann::json list = nlohmann::json::array();
     for (const Line& line : lines) {
+      const StageBound bound = stage_bound(*line.run, *line.stage);
       list.push_back({{"id", line.stage->key},
                       {"parent", line.stage->parent},
                       {"stage", name_of(line.stage->stage)},
@@ -246,7 +247,9 @@ void plan(const PlanOptions& options, Context& context) {
                       {"expected_overlap_d", expected_overlap(line.run->parameters)},
                       {"new", facts(line.novelty)},
                       {"particle_steps_left", line.left.particle_steps},
-                      {"bytes_left", line.left.bytes}});
+                      {"bytes_left", line.left.bytes},
+                      {"most_particle_steps", bound.particle_steps},
+                      {"memory_bytes", bound.memory_bytes}});
     }
     print_json({{"experiment", expanded.experiment},
                 {"scale", expanded.scale},

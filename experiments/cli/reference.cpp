@@ -58,6 +58,13 @@ std::string measure_reference() {
     text +=
         fmt::format("| `{}` | {} | {} |\n", column.name, plots ? "plot" : "", cell(column.meaning));
   }
+  text +=
+      "\nCurves, of `shearcell table --curve` and as `y` of `plots`:\n\n"
+      "| curve | against | meaning |\n|---|---|---|\n";
+  for (const CurveMeasure& curve : all_curve_measures()) {
+    text += fmt::format("| `{}` | `{}` | {} |\n", curve.name, curve.x,
+                        cell(std::string(curve.meaning)));
+  }
   return text;
 }
 

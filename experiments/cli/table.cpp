@@ -17,14 +17,18 @@ struct TableOptions {
   RunSelection selection;
   std::string per = std::string(name_of(RowPer::checkpoint));
   std::string format = "csv";
+  std::string curve;
   std::string out;
 };
 
 void table(const TableOptions& options, Context& context) {
   const Store store(context.store, Access::read);
   if (!options.out.empty()) require_ours(options.out, is_table);
-  const RunTable made =
-      run_table(store, options.selection, value_of<RowPer>(options.per).value(), measure_options());
+  const CurveMeasure* curve = find_curve_measure(options.curve);
+  const RunTable made = curve != nullptr
+                            ? curve_table(store, options.selection, *curve, measure_options())
+                            : run_table(store, options.selection,
+                                        value_of<RowPer>(options.per).value(), measure_options());
   const bool json = context.json || options.format == "json";
   const std::string text = json ? to_json(made) : to_csv(made);
   if (options.out.empty()) {
@@ -43,6 +47,20 @@ void table(const TableOptions& options, Context& context) {
   if (!made.damage.empty()) context.exit_code = kStoreDamaged;
 }
 
+std::vector<std::string> curve_names() {
+  std::vector<std::string> names;
+  for (const CurveMeasure& curve : all_curve_measures()) names.emplace_back(curve.name);
+  return names;
+}
+
+std::string curves_text() {
+  std::string text;
+  for (const CurveMeasure& curve : all_curve_measures()) {
+    text += fmt::format("  {:<37} {}; against {}\n", curve.name, curve.meaning, curve.x);
+  }
+  return text;
+}
+
 std::string columns_text(RowPer per) {
   std::string text;
   for (const TableColumn& column : table_columns(per)) {
@@ -58,9 +76,15 @@ void add_table(CLI::App& app, Context& context) {
   CLI::App* command =
       app.add_subcommand("table", "Write runs and their measures as one table, CSV or JSON");
   add_selection_options(*command, options->selection);
-  command->add_option("--per", options->per, "One row for each checkpoint or each run")
-      ->check(CLI::IsMember({"checkpoint", "run"}))
-      ->capture_default_str();
+  CLI::Option* per =
+      command->add_option("--per", options->per, "One row for each checkpoint or each run")
+          ->check(CLI::IsMember({"checkpoint", "run"}))
+          ->capture_default_str();
+  command
+      ->add_option("--curve", options->curve,
+                   "A row for each value of this curve at each checkpoint")
+      ->check(CLI::IsMember(curve_names()))
+      ->excludes(per);
   CLI::Option* format = command->add_option("--format", options->format, "csv or json")
                             ->check(CLI::IsMember({"csv", "json"}))
                             ->capture_default_str();
@@ -74,10 +98,12 @@ void add_table(CLI::App& app, Context& context) {
       columns_text(RowPer::run) +
       "The last ones, from critical_size on, are those of --per run, whose measures are of the "
       "newest\ncheckpoint. A row for each experiment that shares a run, up to the cycles that it "
-      "asks for.\n"
+      "asks for.\n\nCurves:\n" +
+      curves_text() +
       "Examples:\n"
       "  shearcell table --experiment drag --out drag.csv\n"
       "  shearcell table --per run --variant fluid=cell --format json\n"
+      "  shearcell table --curve pair_correlation --out g_of_r.csv\n"
       "  python3 -c 'import pandas, sys; print(pandas.read_csv(sys.stdin))' < drag.csv");
   command->callback([options, &context] { table(*options, context); });
 }

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/common_neighbours.hpp"
+#include "analysis/motion.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -32,8 +35,36 @@ void add_grains(const Checkpoint& c, const GrainMeasures& measures, Frame& frame
     frame.q6.push_back(measures.q6[k]);
     frame.overlap.push_back(measures.largest_overlap[k]);
     frame.pressure.push_back(measures.pressure[k]);
+    frame.contacts.push_back(measures.contacts[k]);
     frame.structure.push_back(static_cast<std::int32_t>(measures.structure[k]));
     frame.crystallite.push_back(measures.crystallites.label[k] + 1);
+  }
+}
+
+void add_lattices(const Checkpoint& c, const WallPose& pose, Frame& frame) {
+  for (const Lattice lattice : common_neighbour_analysis(c.cell, pose, c.state.position)) {
+    frame.lattice.push_back(static_cast<std::int32_t>(lattice));
+  }
+}
+
+void add_motion(const Checkpoint& c, const std::optional<Checkpoint>& earlier, Frame& frame) {
+  if (!earlier) {
+    frame.displacement.assign(frame.grains, std::nan(""));
+    frame.nonaffine.assign(frame.grains, std::nan(""));
+    return;
+  }
+  Motion moved = motion(*earlier, c);
+  for (const auto& way : moved.displacement.colwise()) frame.displacement.push_back(way.norm());
+  frame.nonaffine = std::move(moved.nonaffine);
+}
+
+/// What `table` measures besides an Analysis; only its scalars.
+void add_numbers(const Checkpoint& checkpoint, const CheckpointRecord& record,
+                 MeasureSources& sources, Analysis& analysis) {
+  for (const DerivedMeasure& measure : table_measures()) {
+    sources.key(record, measure);
+    const auto result = sources.measure(record, checkpoint, analysis, measure);
+    if (result) measure.read(*result, analysis.measures);
   }
 }
 
@@ -53,6 +84,10 @@ void add_wall_grains(const Checkpoint& c, const WallPose& pose, Frame& frame) {
     frame.q6.push_back(0);
     frame.pressure.push_back(0);
     frame.overlap.push_back(0);
+    frame.displacement.push_back(0);
+    frame.nonaffine.push_back(0);
+    frame.contacts.push_back(0);
+    frame.lattice.push_back(-1);
     frame.structure.push_back(-1);
     frame.crystallite.push_back(-1);
   }
@@ -85,9 +120,10 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
 
 }  // namespace
 
-Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record,
-               const SelectedRun& run) {
+Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const SelectedRun& run,
+               MeasureSources* sources) {
   Analysis analysis = analyse(checkpoint);
+  if (sources != nullptr) add_numbers(checkpoint, record, *sources, analysis);
   analysis.measures.units = mechanical_units(run.run, record);
   for (double& pressure : analysis.grains.pressure) pressure *= analysis.measures.units.stress_Pa;
   const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
@@ -106,6 +142,8 @@ Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record,
   add_facts(record, run, analysis.measures, frame);
   place_cell(checkpoint, pose, frame);
   add_grains(checkpoint, analysis.grains, frame);
+  add_lattices(checkpoint, pose, frame);
+  add_motion(checkpoint, sources == nullptr ? std::nullopt : sources->earlier(record, 1), frame);
   add_wall_grains(checkpoint, pose, frame);
   return frame;
 }
@@ -117,7 +155,11 @@ const std::vector<FrameColumn>& frame_columns() {
       {"q6", &Frame::q6, nullptr},
       {"overlap", &Frame::overlap, nullptr},
       {"grain_pressure_Pa", &Frame::pressure, nullptr},
+      {"displacement_d", &Frame::displacement, nullptr},
+      {"d2min_d2", &Frame::nonaffine, nullptr},
+      {"contacts", nullptr, &Frame::contacts},
       {"structure", nullptr, &Frame::structure},
+      {"lattice", nullptr, &Frame::lattice},
       {"crystallite", nullptr, &Frame::crystallite},
   };
   return columns;

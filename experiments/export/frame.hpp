@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "experiments/figures/run_table.hpp"
+#include "experiments/runner/measure_sources.hpp"
 #include "provenance/checkpoint.hpp"
 
 namespace shearcell {
 
 /// The grains by id, then the wall grains. Arrays have one entry, or one column, per particle. Wall
-/// grains have measures of zero, and structure and crystallite -1.
+/// grains have measures of zero, and structure, lattice and crystallite -1.
 struct Frame {
   std::uint64_t step = 0;
   double time_s = 0;
@@ -41,15 +42,20 @@ struct Frame {
   std::vector<double> q6;
   std::vector<double> overlap;            ///< largest, over the diameter
   std::vector<double> pressure;           ///< of each grain's contacts over its cell [Pa]
+  std::vector<double> displacement;       ///< over the cycle before [d]; NaN without one
+  std::vector<double> nonaffine;          ///< D^2_min over the cycle before [d^2]; NaN likewise
+  std::vector<std::int32_t> contacts;     ///< with grains and wall grains
+  std::vector<std::int32_t> lattice;      ///< by common neighbours: 0 none, 1 FCC, 2 HCP, 3 BCC
   std::vector<std::int32_t> structure;    ///< 0 disordered, 1 FCC, 2 HCP
   std::vector<std::int32_t> crystallite;  ///< 0 none; 1, 2, ... by their lowest grain id
 
   std::size_t particles() const { return type.size(); }
 };
 
-/// Throws AnalysisError as analyse() does.
+/// Without `sources`, what needs earlier checkpoints is not a number. Throws AnalysisError as
+/// analyse() does.
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
-               const SelectedRun& run = {});
+               const SelectedRun& run = {}, MeasureSources* sources = nullptr);
 
 /// A column of per-particle numbers in a format that has columns.
 struct FrameColumn {

@@ -47,8 +47,8 @@ std::vector<double> phi_at_rest(const Store& store, std::span<const CheckpointRe
   const DerivedMeasure measure = scalars_at_rest();
   const auto found = measure_checkpoints(store, early, std::span(&measure, 1), with_rest);
   for (std::size_t n = 0; n < early.size(); ++n) {
-    const auto& results = found.results[n];
-    if (results) phi[place[n]] = read_measures(results->front()).phi;
+    const nlohmann::json& result = found.results[n].front();
+    if (!result.is_null()) phi[place[n]] = read_measures(result).phi;
   }
   return phi;
 }

@@ -31,7 +31,11 @@ struct FigureMeasures {
 std::vector<DerivedMeasure> needed(const Figure& figure) {
   if (figure.needs == FigureNeeds::none) return {};
   std::vector<DerivedMeasure> measures = {scalar_measures()};
-  if (figure.mechanics) measures.push_back(mechanics_measure());
+  for (const std::string& name : figure.derived) {
+    if (std::ranges::find(measures, name, &DerivedMeasure::name) == measures.end()) {
+      measures.push_back(derived_measure(name));
+    }
+  }
   if (figure.needs == FigureNeeds::crystallites) measures.push_back(crystallite_measure());
   return measures;
 }
@@ -45,20 +49,20 @@ std::vector<std::optional<FigureMeasures>> measures_of(const Store& store, const
   for (const CollectedRun& input : inputs) {
     records.insert(records.end(), input.checkpoints.begin(), input.checkpoints.end());
   }
-  MeasuredCheckpoints found = measure_checkpoints(store, records, needed(figure),
+  const std::vector<DerivedMeasure> measures = needed(figure);
+  MeasuredCheckpoints found = measure_checkpoints(store, records, measures,
                                                   {options.workers, options.fresh, options.report});
   std::vector<std::optional<FigureMeasures>> measured;
   try {
     for (auto& results : found.results) {
       std::optional<FigureMeasures>& one = measured.emplace_back();
-      if (!results) continue;
+      if (std::ranges::any_of(results, &nlohmann::json::is_null)) continue;
       one.emplace();
-      if (!results->empty()) one->measures = read_measures(results->front());
-      if (figure.mechanics) one->measures.mechanics = read_mechanics(results->at(1));
+      one->measures = read_results(measures, results);
       if (figure.needs == FigureNeeds::crystallites) {
-        one->crystallites = read_crystallite_map(results->back());
+        one->crystallites = read_crystallite_map(results.back());
       }
-      results.reset();  // JSON takes more memory than the measures
+      results.clear();  // JSON takes more memory than the measures
     }
   } catch (const AnalysisError& problem) {
     throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +

@@ -9,6 +9,7 @@
 
 #include "analysis/error.hpp"
 #include "experiments/figures/parallel_reads.hpp"
+#include "experiments/runner/measure_sources.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 
@@ -16,7 +17,7 @@ namespace shearcell {
 namespace {
 
 using nlohmann::json;
-using Results = std::optional<std::vector<json>>;
+using Results = std::vector<json>;
 
 // Results are kept in batches: one transaction each would take longer than a small analysis.
 constexpr std::size_t kBatch = 64;
@@ -25,20 +26,29 @@ class Measuring {
  public:
   Measuring(const Store& store, std::span<const CheckpointRecord> records,
             std::span<const DerivedMeasure> measures, const MeasureOptions& options)
-      : store_(store), measures_(measures), options_(options), cache_(store.folder()) {
+      : store_(store),
+        sources_(store),
+        measures_(measures),
+        options_(options),
+        cache_(store.folder()) {
     std::map<std::string_view, std::size_t> known;  // a run of two experiments comes twice
     for (const CheckpointRecord& record : records) {
       const auto [entry, fresh] = known.try_emplace(record.sha256, distinct_.size());
       if (fresh) distinct_.push_back(&record);
       place_.push_back(entry->second);
     }
-    results_.resize(distinct_.size());
+    for (const CheckpointRecord* record : distinct_) {
+      for (const DerivedMeasure& measure : measures_)
+        keys_.push_back(sources_.key(*record, measure));
+    }
+    results_.assign(distinct_.size(), Results(measures_.size()));
   }
 
   MeasuredCheckpoints run() {
     look_up();
     for (std::size_t i = 0; i < distinct_.size(); ++i) {
-      if (options_.fresh || !results_[i]) todo_.push_back(i);
+      const bool lacks = std::ranges::any_of(results_[i], &json::is_null);
+      if (options_.fresh || lacks) todo_.push_back(i);
     }
     outcome_.kept = distinct_.size() - todo_.size();
     UnreadCheckpoints unread;
@@ -64,28 +74,12 @@ class Measuring {
   }
 
  private:
-  std::vector<DerivedKey> keys(std::size_t i) const {
-    std::vector<DerivedKey> list;
-    for (const DerivedMeasure& measure : measures_) {
-      list.push_back({distinct_[i]->sha256, measure.key(), analysis_version});
-    }
-    return list;
-  }
-
   void look_up() {
-    std::vector<DerivedKey> all;
-    for (std::size_t i = 0; i < distinct_.size(); ++i) {
-      for (DerivedKey& key : keys(i)) all.push_back(std::move(key));
-    }
-    const auto found = cache_.get(all);
-    for (std::size_t i = 0; i < distinct_.size(); ++i) {
+    const auto found = cache_.get(keys_);
+    for (std::size_t k = 0; k < keys_.size(); ++k) {
+      if (!found[k]) continue;
       try {
-        std::vector<json> results;
-        for (std::size_t m = 0; m < measures_.size(); ++m) {
-          const auto& content = found[i * measures_.size() + m];
-          if (content) results.push_back(decode_result(*content));
-        }
-        if (results.size() == measures_.size()) results_[i] = std::move(results);
+        results_[k / measures_.size()][k % measures_.size()] = decode_result(*found[k]);
       } catch (const AnalysisError&) {
         // Foreign bytes with a correct hash: computed again and replaced.
       }
@@ -93,22 +87,25 @@ class Measuring {
   }
 
   void compute(std::size_t i) {
-    const Results before = std::exchange(results_[i], std::nullopt);
-    Checkpoint checkpoint = store_.load_checkpoint(*distinct_[i]);
-    if (options_.prepare) options_.prepare(*distinct_[i], checkpoint);
+    const CheckpointRecord& record = *distinct_[i];
+    const Results before =
+        options_.fresh ? std::exchange(results_[i], Results(measures_.size())) : results_[i];
+    Checkpoint checkpoint = store_.load_checkpoint(record);
+    if (options_.prepare) options_.prepare(record, checkpoint);
     const Analysis analysis = analyse(checkpoint);
-    std::vector<json> results;
     std::vector<DerivedObject> objects;
-    std::vector<DerivedKey> names = keys(i);
     bool changed = false;
     for (std::size_t m = 0; m < measures_.size(); ++m) {
-      results.push_back(measures_[m].from(analysis));
-      objects.push_back({std::move(names[m]), encode_result(results[m])});
-      changed = changed || (before && encode_result((*before)[m]) != objects[m].content);
+      if (!results_[i][m].is_null()) continue;
+      auto result = sources_.measure(record, checkpoint, analysis, measures_[m]);
+      if (!result) continue;
+      objects.push_back({keys_[i * measures_.size() + m], encode_result(*result)});
+      const bool known = !before[m].is_null();
+      changed = changed || (known && encode_result(before[m]) != objects.back().content);
+      results_[i][m] = std::move(*result);
     }
-    results_[i] = std::move(results);
     const std::lock_guard lock(mutex_);
-    if (changed) outcome_.changed.push_back(distinct_[i]->sha256);
+    if (changed) outcome_.changed.push_back(record.sha256);
     std::move(objects.begin(), objects.end(), std::back_inserter(pending_));
     if (pending_.size() >= kBatch) keep();
   }
@@ -119,10 +116,12 @@ class Measuring {
   }
 
   const Store& store_;
+  MeasureSources sources_;
   const std::span<const DerivedMeasure> measures_;
   const MeasureOptions& options_;
   std::vector<const CheckpointRecord*> distinct_;
   std::vector<std::size_t> place_;  // of each record in distinct_
+  std::vector<DerivedKey> keys_;    // of each in distinct_, in the order of the measures
   std::vector<std::size_t> todo_;
   std::vector<Results> results_;  // of each checkpoint that is left; a thread writes only its own
   std::mutex mutex_;              // guards the members below while threads run
@@ -132,6 +131,14 @@ class Measuring {
 };
 
 }  // namespace
+
+Measures read_results(std::span<const DerivedMeasure> measures, std::span<const json> results) {
+  Measures found;
+  for (std::size_t m = 0; m < measures.size(); ++m) {
+    if (!results[m].is_null() && measures[m].read != nullptr) measures[m].read(results[m], found);
+  }
+  return found;
+}
 
 MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& checkpoint) {
   const json none = json::object();

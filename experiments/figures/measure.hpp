@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,9 +26,9 @@ struct MeasureOptions {
 };
 
 struct MeasuredCheckpoints {
-  /// In the order of the records; for each the results in the order of the measures, or nothing
-  /// if the checkpoint had to be read and could not be.
-  std::vector<std::optional<std::vector<nlohmann::json>>> results;
+  /// In the order of the records; for each the results in the order of the measures, null where the
+  /// checkpoint, or an earlier one, had to be read and could not be.
+  std::vector<std::vector<nlohmann::json>> results;
   std::size_t computed = 0;         ///< checkpoints
   std::size_t kept = 0;             ///< checkpoints whose results were kept
   std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each, sorted
@@ -45,6 +44,11 @@ MeasuredCheckpoints measure_checkpoints(const Store& store,
                                         std::span<const CheckpointRecord> records,
                                         std::span<const DerivedMeasure> measures,
                                         const MeasureOptions& options);
+
+/// All results of one checkpoint, each read by its measure. Throws AnalysisError for a result that
+/// is not what its key says.
+Measures read_results(std::span<const DerivedMeasure> measures,
+                      std::span<const nlohmann::json> results);
 
 /// SI units of the mechanics of a run's checkpoint: by the run's resolved parameters, with the
 /// spring constant that a stiffening records. Not a number where the store does not say them.

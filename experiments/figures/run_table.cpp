@@ -70,13 +70,15 @@ std::vector<Column> names(const VariantNames& variants) {
   };
 }
 
+std::vector<Column> which_checkpoint() {
+  return {of_checkpoint("cycle", "cycles since the shear began, or steps of a stiffening",
+                        [](const CheckpointRecord& c) { return c.cycle; }),
+          of_checkpoint("checkpoint", "SHA-256 of the checkpoint's file",
+                        [](const CheckpointRecord& c) { return c.sha256; })};
+}
+
 std::vector<Column> measures() {
-  std::vector<Column> columns = {
-      of_checkpoint("cycle", "cycles since the shear began, or steps of a stiffening",
-                    [](const CheckpointRecord& c) { return c.cycle; }),
-      of_checkpoint("checkpoint", "SHA-256 of the checkpoint's file",
-                    [](const CheckpointRecord& c) { return c.sha256; }),
-  };
+  std::vector<Column> columns = which_checkpoint();
   for (const ScalarMeasure& scalar : all_scalar_measures()) {
     columns.push_back({{std::string(scalar.name), std::string(scalar.meaning)},
                        [&scalar](const Row& row) -> json {
@@ -168,8 +170,9 @@ json swept_value(const Field& field, const SelectedRun& selected) {
   return felt ? get_value(field, record.parameters) : json();
 }
 
-std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per,
-                                const VariantNames& variants) {
+/// The columns that tell runs apart.
+std::vector<Column> columns_of_runs(const std::vector<SelectedRun>& runs,
+                                    const VariantNames& variants) {
   std::set<std::string> swept;
   for (const SelectedRun& run : runs) {
     for (const auto& [key, value] : run.membership.labels.items()) swept.insert(key);
@@ -180,6 +183,12 @@ std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per
     columns.push_back({{std::string(field.name), std::string(field.doc)},
                        [&field](const Row& row) { return swept_value(field, *row.selected); }});
   }
+  return columns;
+}
+
+std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per,
+                                const VariantNames& variants) {
+  std::vector<Column> columns = columns_of_runs(runs, variants);
   for (Column& column : measures()) columns.push_back(std::move(column));
   if (per == RowPer::run) {
     for (Column& column : ends()) columns.push_back(std::move(column));
@@ -194,6 +203,34 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const SelectedR
     return c.state == CheckpointState::rejected || c.cycle > end;
   });
   return found;
+}
+
+/// Runs with their checkpoints, one after the other, and the results of each.
+struct Selected {
+  std::vector<SelectedRun> runs;
+  std::vector<CheckpointRecord> records;
+  std::vector<std::size_t> ends;  // of each run in the records
+  std::vector<std::vector<json>> results;
+};
+
+Selected select_and_measure(const Store& store, const RunSelection& selection,
+                            std::span<const DerivedMeasure> measures, const MeasureOptions& options,
+                            RunTable& table) {
+  Selected all;
+  all.runs = select_runs(store, selection);
+  std::erase_if(all.runs, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
+  for (const SelectedRun& run : all.runs) {
+    for (CheckpointRecord& record : checkpoints_of(store, run)) {
+      all.records.push_back(std::move(record));
+    }
+    all.ends.push_back(all.records.size());
+  }
+  MeasuredCheckpoints measured = measure_checkpoints(store, all.records, measures, options);
+  all.results = std::move(measured.results);
+  table.damage = std::move(measured.damage);
+  table.pruned = std::move(measured.pruned);
+  table.trouble = std::move(measured.trouble);
+  return all;
 }
 
 FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
@@ -222,59 +259,74 @@ std::string csv_cell(const json& value) {
 }  // namespace
 
 std::span<const DerivedMeasure> table_measures() {
-  static const std::array measures = {scalar_measures(), mechanics_measure()};
+  static const std::array measures = {scalar_measures(), derived_measure("mechanics"),
+                                      derived_measure("lattices"), derived_measure("motion")};
   return measures;
 }
 
-Measures read_table_measures(std::span<const json> results, const RunRecord& run,
-                             const CheckpointRecord& checkpoint) {
-  Measures measures = read_measures(results[0]);
-  measures.mechanics = read_mechanics(results[1]);
+std::optional<Measures> read_table_measures(std::span<const json> results, const RunRecord& run,
+                                            const CheckpointRecord& checkpoint) {
+  if (results.front().is_null()) return std::nullopt;
+  Measures measures = read_results(table_measures(), results);
   measures.units = mechanical_units(run, checkpoint);
   return measures;
 }
 
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options) {
-  std::vector<SelectedRun> runs = select_runs(store, selection);
-  std::erase_if(runs, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
-  std::vector<CheckpointRecord> records;
-  std::vector<std::size_t> ends;
-  for (const SelectedRun& run : runs) {
-    for (CheckpointRecord& record : checkpoints_of(store, run))
-      records.push_back(std::move(record));
-    ends.push_back(records.size());
-  }
-  MeasuredCheckpoints measured = measure_checkpoints(store, records, table_measures(), options);
-
-  const std::vector<Column> columns = columns_for(runs, per, VariantNames(store));
   RunTable table;
+  const Selected all = select_and_measure(store, selection, table_measures(), options, table);
+  const std::vector<Column> columns = columns_for(all.runs, per, VariantNames(store));
   for (const Column& column : columns) table.columns.push_back(column);
   const auto add = [&](const Row& row) {
     std::vector<json>& cells = table.rows.emplace_back();
     for (const Column& column : columns) cells.push_back(column.cell(row));
   };
   std::size_t next = 0;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
+  for (std::size_t r = 0; r < all.runs.size(); ++r) {
     std::vector<Row> rows;
-    for (; next < ends[r]; ++next) {
-      Row& row = rows.emplace_back(Row{&runs[r], &records[next]});
-      if (measured.results[next]) {
-        row.measures = read_table_measures(*measured.results[next], runs[r].run, records[next]);
-      }
+    for (; next < all.ends[r]; ++next) {
+      Row& row = rows.emplace_back(Row{&all.runs[r], &all.records[next]});
+      row.measures = read_table_measures(all.results[next], all.runs[r].run, all.records[next]);
     }
     if (per == RowPer::checkpoint) {
       for (const Row& row : rows) add(row);
       continue;
     }
-    const FigureRun history = history_of(runs[r], rows);
-    Row last = rows.empty() ? Row{&runs[r]} : rows.back();
-    if (runs[r].run.kind == name_of(Stage::shear)) last.history = &history;
+    const FigureRun history = history_of(all.runs[r], rows);
+    Row last = rows.empty() ? Row{&all.runs[r]} : rows.back();
+    if (all.runs[r].run.kind == name_of(Stage::shear)) last.history = &history;
     add(last);
   }
-  table.damage = std::move(measured.damage);
-  table.pruned = std::move(measured.pruned);
-  table.trouble = std::move(measured.trouble);
+  return table;
+}
+
+RunTable curve_table(const Store& store, const RunSelection& selection, const CurveMeasure& measure,
+                     const MeasureOptions& options) {
+  const std::array measures = {derived_measure(measure.derived)};
+  RunTable table;
+  const Selected all = select_and_measure(store, selection, measures, options, table);
+  std::vector<Column> columns = columns_of_runs(all.runs, VariantNames(store));
+  for (Column& column : which_checkpoint()) columns.push_back(std::move(column));
+  for (const Column& column : columns) table.columns.push_back(column);
+  table.columns.push_back({std::string(measure.x), ""});
+  table.columns.push_back({std::string(measure.name), std::string(measure.meaning)});
+  std::size_t next = 0;
+  for (std::size_t r = 0; r < all.runs.size(); ++r) {
+    for (; next < all.ends[r]; ++next) {
+      const Row row{&all.runs[r], &all.records[next]};
+      Measures found = read_results(measures, all.results[next]);
+      found.units = mechanical_units(all.runs[r].run, all.records[next]);
+      const MeasuredCurve curve = measure.of(found);
+      std::vector<json> cells;
+      for (const Column& column : columns) cells.push_back(column.cell(row));
+      for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        table.rows.push_back(cells);
+        table.rows.back().push_back(number(curve.x[i]));
+        table.rows.back().push_back(number(curve.y[i]));
+      }
+    }
+  }
   return table;
 }
 

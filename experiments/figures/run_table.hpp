@@ -38,11 +38,17 @@ struct RunTable {
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options);
 
+/// A row for each value of a measured curve at each checkpoint: the run's columns, the cycle, the
+/// checkpoint, x and y. Otherwise as run_table().
+RunTable curve_table(const Store& store, const RunSelection& selection, const CurveMeasure& measure,
+                     const MeasureOptions& options);
+
 /// What the columns need to know of a checkpoint, and the results of measure_checkpoints() for it
-/// as Measures. Throws AnalysisError when they are something else.
+/// as Measures, nothing if it could not be read. Throws AnalysisError when they are something else.
 std::span<const DerivedMeasure> table_measures();
-Measures read_table_measures(std::span<const nlohmann::json> results, const RunRecord& run,
-                             const CheckpointRecord& checkpoint);
+std::optional<Measures> read_table_measures(std::span<const nlohmann::json> results,
+                                            const RunRecord& run,
+                                            const CheckpointRecord& checkpoint);
 
 /// Every column except those of swept parameters, which are named as in a manifest.
 std::vector<TableColumn> table_columns(RowPer per);

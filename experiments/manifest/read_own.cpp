@@ -138,13 +138,17 @@ PlotSpec read_plot(const Node& node, std::set<string>& taken, ProblemList& probl
                                                        "show", "log", "at_cycle"};
   const string example = "{name: compaction, y: phi, x: cycle}";
   PlotSpec plot;
+  std::optional<Position> x_at;
   read_entries(node, "plots", known, 2, example, problems, [&](const Node& key, const Node& value) {
     const string path = join_path("plots", key.text);
     if (key.text == "name") {
       plot.name = read_own_name(value, path, taken, problems);
     } else if (key.text == "y") {
-      plot.y = read_one_of(value, path, measure_names(), problems);
+      std::vector<string_view> names = measure_names();
+      for (const CurveMeasure& curve : all_curve_measures()) names.push_back(curve.name);
+      plot.y = read_one_of(value, path, names, problems);
     } else if (key.text == "x") {
+      x_at = value.at;
       std::vector<string_view> names = with_measures({"cycle"});
       for (const string_view name : field_names()) names.push_back(name);
       plot.x = read_one_of(value, path, names, problems);
@@ -160,6 +164,11 @@ PlotSpec read_plot(const Node& node, std::set<string>& taken, ProblemList& probl
       plot.cycle = read_count(value, path, kLastCycle, problems);
     }
   });
+  const CurveMeasure* curve = find_curve_measure(plot.y);
+  if (curve != nullptr && x_at) {
+    problems.add(*x_at, "plots.x", fmt::format("does not go with {}", curve->name), plot.x,
+                 fmt::format("Leave it out: {} is drawn against {}.", curve->name, curve->x));
+  }
   if (const Field* field = is_measure(plot.x) ? nullptr : find_field(plot.x)) {
     plot.x_symbol = field->symbol;
     if (!field->symbol.empty() && field->unit != "1") plot.x_unit = field->unit;

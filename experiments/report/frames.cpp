@@ -16,6 +16,16 @@ void put_word(double value, std::vector<std::byte>& bytes) {
   bytes.push_back(static_cast<std::byte>(word >> 8U));
 }
 
+std::byte byte_of(const GrainField& field, double value) {
+  constexpr double most = 254;
+  constexpr auto unknown = std::byte{255};
+  if (!field.classes.empty()) return static_cast<std::byte>(static_cast<unsigned>(value));
+  double share = (value - field.low) / (field.high - field.low);
+  if (field.logarithmic) share = std::log(value / field.low) / std::log(field.high / field.low);
+  if (std::isnan(share)) return unknown;
+  return static_cast<std::byte>(std::lround(most * std::clamp(share, 0.0, 1.0)));
+}
+
 /// Grains, then wall grains, with z folded into the period.
 Eigen::Matrix3Xd all_positions(const Checkpoint& checkpoint, const WallPose& pose) {
   const Eigen::Matrix3Xd& grains = checkpoint.state.position;
@@ -32,7 +42,7 @@ Eigen::Matrix3Xd all_positions(const Checkpoint& checkpoint, const WallPose& pos
 }  // namespace
 
 PackedFrame pack_frame(const Checkpoint& checkpoint, const WallPose& pose,
-                       const GrainMeasures& grains) {
+                       const GrainMeasures& grains, std::span<const GrainField> fields) {
   const Eigen::Matrix3Xd position = all_positions(checkpoint, pose);
   PackedFrame frame;
   frame.origin = position.rowwise().minCoeff();
@@ -51,11 +61,23 @@ PackedFrame pack_frame(const Checkpoint& checkpoint, const WallPose& pose,
     frame.bytes.push_back(
         static_cast<std::byte>(static_cast<unsigned>(grains.structure[i]) + interior));
   }
+  for (const GrainField& field : fields) {
+    for (const double value : field.value) frame.bytes.push_back(byte_of(field, value));
+  }
   return frame;
 }
 
-std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains) {
-  const std::size_t bytes = 6 * (grains + wall_grains) + 7 * grains;
+nlohmann::json to_json(const GrainField& field) {
+  if (!field.classes.empty()) return {{"key", field.key}, {"classes", field.classes}};
+  return {{"key", field.key},
+          {"unit", field.unit},
+          {"low", field.low},
+          {"high", field.high},
+          {"log", field.logarithmic}};
+}
+
+std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains, std::size_t fields) {
+  const std::size_t bytes = 6 * (grains + wall_grains) + (7 + fields) * grains;
   return (bytes + 2) / 3 * 4;
 }
 

@@ -4,13 +4,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "analysis/chart.hpp"
+#include "analysis/common_neighbours.hpp"
 #include "analysis/measures.hpp"
+#include "analysis/motion.hpp"
+#include "analysis/profiles.hpp"
+#include "experiments/figures/measure.hpp"
 #include "experiments/figures/parallel_reads.hpp"
 #include "experiments/report/frames.hpp"
 #include "experiments/report/html.hpp"
+#include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
 
@@ -18,6 +24,10 @@ namespace shearcell {
 namespace {
 
 using nlohmann::json;
+using namespace nlohmann::literals;
+
+constexpr std::size_t kFields = 6;          // of make_fields()
+constexpr std::size_t kFactsInPage = 2500;  // [bytes]: facts, profiles and braces
 
 struct ChosenRun {
   RunRecord run;
@@ -95,7 +105,7 @@ void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings)
         const Checkpoint last = store.load_checkpoint(run.checkpoints.back());
         run.wall_grains = last.cell.wall_grains.size();
         run.grains = static_cast<std::size_t>(last.state.position.cols());
-        run.bytes = frame_size_in_page(run.grains, run.wall_grains) + 700;  // facts and braces
+        run.bytes = frame_size_in_page(run.grains, run.wall_grains, kFields) + kFactsInPage;
       } catch (const StoreDamaged& damage) {
         packings.notes.emplace_back(damage.what());
         run.checkpoints.pop_back();
@@ -153,16 +163,72 @@ json vector_json(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
+/// Ranges are the same for all packings of a run, so that colours can be compared.
+std::vector<GrainField> make_fields(const Checkpoint& checkpoint, const WallPose& pose,
+                                    const GrainMeasures& grains,
+                                    const std::optional<Checkpoint>& earlier,
+                                    const MechanicalUnits& units, double pressure_Pa) {
+  GrainField lattice{"lattice", "", 0, 0, false, {"none", "FCC", "HCP", "BCC"}, {}};
+  for (const Lattice of :
+       common_neighbour_analysis(checkpoint.cell, pose, checkpoint.state.position)) {
+    lattice.value.push_back(static_cast<double>(of));
+  }
+  const double high_kPa = pressure_Pa > 0 ? 3e-3 * pressure_Pa : 3;
+  GrainField pressure{"pressure", "kPa", 0, high_kPa, false, {}, grains.pressure};
+  for (double& value : pressure.value) value *= 1e-3 * units.stress_Pa;
+  GrainField contacts{"contacts", "", 0, 12, false, {}, {}};
+  contacts.value.assign(grains.contacts.begin(), grains.contacts.end());
+  GrainField overlap{"overlap", "d", 0, 0.02, false, {}, grains.largest_overlap};
+  GrainField moved{"displacement", "d", 1e-3, 1, true, {}, {}};
+  GrainField nonaffine{"d2min", "d\u00b2", 1e-6, 1, true, {}, {}};
+  if (earlier) {
+    Motion motion = shearcell::motion(*earlier, checkpoint);
+    for (const auto& way : motion.displacement.colwise()) moved.value.push_back(way.norm());
+    nonaffine.value = std::move(motion.nonaffine);
+  } else {
+    moved.value.assign(grains.q6.size(), std::nan(""));
+    nonaffine.value = moved.value;
+  }
+  return {std::move(lattice), std::move(pressure), std::move(contacts),
+          std::move(overlap), std::move(moved),    std::move(nonaffine)};
+}
+
+json rounded(const std::vector<double>& values, double unit = 1) {
+  json list = json::array();
+  for (const double value : values) {
+    const double scaled = std::round(value * unit * 1e4) / 1e4;
+    list.push_back(std::isfinite(scaled) ? json(scaled) : json());
+  }
+  return list;
+}
+
+json profiles_json(const Checkpoint& checkpoint, const GrainMeasures& grains,
+                   const MechanicalUnits& units) {
+  const Profiles found = profiles(checkpoint, grains);
+  return {{"height", rounded(found.height)},
+          {"phi", rounded(found.phi)},
+          {"pressure", rounded(found.pressure, 1e-3 * units.stress_Pa)},
+          {"coordination", rounded(found.coordination)},
+          {"crystalline", rounded(found.crystalline_percent)}};
+}
+
 struct Frame {
   json value;
   double step = 0;
 };
 
-Frame make_frame(const Store& store, const CheckpointRecord& record) {
+Frame make_frame(const Store& store, const RunRecord& run, const CheckpointRecord& record,
+                 const MeasureSources& sources) {
   const Checkpoint checkpoint = store.load_checkpoint(record);
   const Analysis analysis = analyse(checkpoint);
   const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
-  const PackedFrame packed = pack_frame(checkpoint, pose, analysis.grains);
+  const MechanicalUnits units = mechanical_units(run, record);
+  const double pressure_Pa = run.resolved.value("/parameters/pressure_Pa"_json_pointer, 0.0);
+  const std::vector<GrainField> fields = make_fields(
+      checkpoint, pose, analysis.grains, sources.earlier(record, 1), units, pressure_Pa);
+  const PackedFrame packed = pack_frame(checkpoint, pose, analysis.grains, fields);
+  json described = json::array();
+  for (const GrainField& field : fields) described.push_back(to_json(field));
   return {{{"name", frame_name(record)},
            {"cycle", record.cycle},
            {"sha256", record.sha256},
@@ -173,6 +239,8 @@ Frame make_frame(const Store& store, const CheckpointRecord& record) {
              {"bottom", pose.bottom},
              {"top", pose.top},
              {"tan_theta", pose.tan_theta}}},
+           {"fields", std::move(described)},
+           {"profiles", profiles_json(checkpoint, analysis.grains, units)},
            {"origin", vector_json(packed.origin)},
            {"step", vector_json(packed.step)},
            {"data", base64(packed.bytes)}},
@@ -205,12 +273,19 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
   fit(runs, choice, packings);
 
   std::vector<CheckpointRecord> records;
+  std::vector<const RunRecord*> of_run;
+  MeasureSources sources(store);
   for (const ChosenRun& run : runs) {
-    records.insert(records.end(), run.checkpoints.begin(), run.checkpoints.end());
+    for (const CheckpointRecord& record : run.checkpoints) {
+      sources.key(record, derived_measure("motion"));
+      records.push_back(record);
+      of_run.push_back(&run.run);
+    }
   }
   std::vector<Frame> frames(records.size());  // null where a checkpoint cannot be read
   const UnreadCheckpoints unread = read_in_parallel(
-      records.size(), workers, [&](std::size_t k) { frames[k] = make_frame(store, records[k]); },
+      records.size(), workers,
+      [&](std::size_t k) { frames[k] = make_frame(store, *of_run[k], records[k], sources); },
       report);
   for (const auto* list : {&unread.damaged, &unread.pruned}) {
     packings.notes.insert(packings.notes.end(), list->begin(), list->end());

@@ -23,7 +23,7 @@ struct PackingChoice {
 
 struct Packings {
   /// [{id, label, experiment, grains, wall_grains, checkpoints, frames: [{name, sha256, facts,
-  /// cell, origin, step, data}]}]; the front end reads it (web/src/viewer.js).
+  /// cell, fields, profiles, origin, step, data}]}]; the front end reads it (web/src/viewer.js).
   nlohmann::json runs = nlohmann::json::array();
   std::size_t frames = 0;
   double largest_step = 0;         ///< to which coordinates are rounded [d]

@@ -10,6 +10,7 @@
 #include "analysis/error.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/replay.hpp"
 #include "provenance/derived.hpp"
 
@@ -76,30 +77,28 @@ std::string difference(const json& kept, const json& computed, const std::string
   return "";
 }
 
-const std::vector<const DerivedMeasure*>& kept_measures() {
-  static const std::vector<const DerivedMeasure*> all = {&scalar_measures(), &mechanics_measure(),
-                                                         &crystallite_measure()};
-  return all;
-}
-
-/// Of one checkpoint, in the order of kept_measures().
+/// Of one checkpoint, in the order of all_derived_measures().
 using Kept = std::vector<std::optional<std::vector<std::byte>>>;
 
-std::vector<DerivedKey> keys_of(const CheckpointRecord& record) {
+std::vector<DerivedKey> keys_of(const CheckpointRecord& record, MeasureSources& sources) {
   std::vector<DerivedKey> keys;
-  for (const DerivedMeasure* measure : kept_measures()) {
-    keys.push_back({record.sha256, measure->key(), analysis_version});
+  for (const DerivedMeasure& measure : all_derived_measures()) {
+    keys.push_back(sources.key(record, measure));
   }
   return keys;
 }
 
-std::string wrong_measure(const Store& store, const CheckpointRecord& record, const Kept& kept) {
+std::string wrong_measure(const Store& store, const CheckpointRecord& record, const Kept& kept,
+                          const MeasureSources& sources) {
   try {
-    const Analysis analysis = analyse(store.load_checkpoint(record));
+    const Checkpoint checkpoint = store.load_checkpoint(record);
+    const Analysis analysis = analyse(checkpoint);
     for (std::size_t m = 0; m < kept.size(); ++m) {
       if (!kept[m]) continue;
-      const DerivedMeasure& measure = *kept_measures()[m];
-      auto found = difference(decode_result(*kept[m]), measure.from(analysis), measure.name);
+      const DerivedMeasure& measure = all_derived_measures()[m];
+      const auto computed = sources.measure(record, checkpoint, analysis, measure);
+      if (!computed) continue;
+      auto found = difference(decode_result(*kept[m]), *computed, measure.name);
       if (!found.empty()) return found;
     }
   } catch (const AnalysisError& error) {
@@ -111,12 +110,13 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record, co
 }
 
 /// Checkpoints with files of which the cache keeps a measure, each once.
-std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache) {
+std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache,
+                                                   MeasureSources& sources) {
   std::vector<CheckpointRecord> found;
   std::set<std::string> seen;
   for (const RunRecord& run : store.runs()) {
     for (CheckpointRecord& record : store.checkpoints(run.id)) {
-      const Kept kept = cache.get(keys_of(record));
+      const Kept kept = cache.get(keys_of(record, sources));
       const bool any = std::ranges::any_of(kept, [](const auto& k) { return k.has_value(); });
       if (any && seen.insert(record.sha256).second) found.push_back(std::move(record));
     }
@@ -127,9 +127,10 @@ std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCa
 /// Returns the number of checkpoints.
 void copy_measures(const Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
+  MeasureSources sources(store);
   std::vector<DerivedObject> missing;
-  for (const CheckpointRecord& record : measured_checkpoints(store, from)) {
-    const std::vector<DerivedKey> keys = keys_of(record);
+  for (const CheckpointRecord& record : measured_checkpoints(store, from, sources)) {
+    const std::vector<DerivedKey> keys = keys_of(record, sources);
     Kept there = from.get(keys), here = into.get(keys);
     for (std::size_t m = 0; m < keys.size(); ++m) {
       if (there[m] && !here[m]) missing.push_back({keys[m], std::move(*there[m])});
@@ -160,11 +161,13 @@ std::vector<Finding> check_runs(const Store& store) {
 MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
                             std::size_t count, std::uint64_t seed) {
   DerivedCache cache(folder, true);
-  const std::vector<CheckpointRecord> kept = measured_checkpoints(store, cache);
+  MeasureSources sources(store);
+  const std::vector<CheckpointRecord> kept = measured_checkpoints(store, cache, sources);
   const std::vector<CheckpointRecord> chosen = sample(kept, count, seed);
   MeasureCheck check{.kept = kept.size(), .computed = chosen.size(), .findings = {}};
   for (const CheckpointRecord& record : chosen) {
-    const std::string wrong = wrong_measure(store, record, cache.get(keys_of(record)));
+    const std::string wrong =
+        wrong_measure(store, record, cache.get(keys_of(record, sources)), sources);
     if (wrong.empty()) continue;
     check.findings.push_back(
         {Finding::Severity::error, (folder / DerivedCache::kFile).string(), record.run,

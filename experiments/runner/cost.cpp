@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/drive.hpp"
+#include "core/minimizer.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 
@@ -88,6 +89,19 @@ StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle
   const auto steps = static_cast<double>(cycle_steps(drive(run.parameters)));
   const double files = std::ceil(cycles / static_cast<double>(run.checkpoint_every));
   return {grains * steps * cycles, bytes * (files + (cycle == 0 ? 1 : 0))};
+}
+
+StageBound stage_bound(const PlannedRun& run, const StageSpec& stage) {
+  const auto grains = static_cast<double>(run.grains);
+  const double memory = kRunBytesPerGrain * (grains + wall_grain_count(geometry(run.parameters)));
+  const auto cycles = static_cast<double>(run.cycles);
+  double steps = cycles * static_cast<double>(cycle_steps(drive(run.parameters)));
+  if (stage.stage == Stage::prepare) {
+    steps = std::ceil(run.parameters.settle_time_limit_s / run.parameters.settle_time_step_s);
+  } else if (stage.stage == Stage::stiffen) {
+    steps = cycles * static_cast<double>(MinimizeSettings().most_evaluations);
+  }
+  return {grains * steps, memory};
 }
 
 Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine, double grains) {

@@ -33,6 +33,13 @@ std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& 
 /// 18200; checkpoints by checkpoint_bytes.
 StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle);
 
+/// The most that a whole stage can take before it ends or fails.
+struct StageBound {
+  double particle_steps = 0;
+  double memory_bytes = 0;
+};
+StageBound stage_bound(const PlannedRun& run, const StageSpec& stage);
+
 struct Rate {
   double particle_steps_per_second;  ///< of one core
   bool measured;                     ///< in the store's own runs, or assumed

@@ -83,6 +83,16 @@ UnitCell unit_cell(Lattice kind) {
 
 }  // namespace
 
+Checkpoint checkpoint_of(const Packing& packing) {
+  Checkpoint checkpoint;
+  checkpoint.cell = packing.cell;
+  checkpoint.theta = std::atan(packing.pose.tan_theta);
+  checkpoint.state.position = packing.grains;
+  checkpoint.state.velocity = Eigen::Matrix3Xd::Zero(3, packing.grains.cols());
+  checkpoint.state.wall_height = packing.pose.bottom;
+  return checkpoint;
+}
+
 double volume_of(const Packing& p) {
   return p.cell.width * p.cell.depth * (p.pose.top - p.pose.bottom);
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/cell.hpp"
+#include "provenance/checkpoint.hpp"
 
 namespace shearcell::testing {
 
@@ -14,6 +15,9 @@ struct Packing {
   WallPose pose;
   Eigen::Matrix3Xd grains;  ///< 3 x n [d]
 };
+
+/// The packing at rest.
+Checkpoint checkpoint_of(const Packing& packing);
 
 double volume_of(const Packing& packing);
 

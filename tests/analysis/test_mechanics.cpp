@@ -18,16 +18,6 @@
 namespace shearcell::testing {
 namespace {
 
-Checkpoint checkpoint_of(const Packing& packing) {
-  Checkpoint checkpoint;
-  checkpoint.cell = packing.cell;
-  checkpoint.theta = std::atan(packing.pose.tan_theta);
-  checkpoint.state.position = packing.grains;
-  checkpoint.state.velocity = Eigen::Matrix3Xd::Zero(3, packing.grains.cols());
-  checkpoint.state.wall_height = packing.pose.bottom;
-  return checkpoint;
-}
-
 // n^3 grains of a simple cubic lattice, squeezed so that every contact overlaps by `overlap`.
 Checkpoint squeezed_lattice(int n, double overlap) {
   const double spacing = 1 - overlap;
@@ -232,15 +222,15 @@ TEST(Mechanics, EqualsSumsOverAllPairs) {
 
 TEST(Mechanics, ComesBackBitByBitAndInSIUnits) {
   const Analysis found = analyse(checkpoint_of(jammed(300, true, 0, 5)));
-  const nlohmann::json kept = mechanics_measure().from(found);
+  const nlohmann::json kept = derived_measure("mechanics").from({found});
   EXPECT_EQ(kept.size() * sizeof(double), sizeof(Mechanics)) << "a member is not kept";
   Measures back = found.measures;
-  back.mechanics = read_mechanics(decode_result(encode_result(kept)));
+  derived_measure("mechanics").read(decode_result(encode_result(kept)), back);
   for (const MechanicalQuantity& quantity : all_mechanical_quantities()) {
     EXPECT_EQ(back.mechanics.*quantity.member, found.measures.mechanics.*quantity.member)
         << quantity.name;
   }
-  EXPECT_THROW(read_mechanics(nlohmann::json::object()), AnalysisError);
+  EXPECT_THROW(derived_measure("mechanics").read(nlohmann::json::object(), back), AnalysisError);
 
   EXPECT_TRUE(std::isnan(find_measure("pressure_Pa")->of(back))) << "k and d are unknown";
   EXPECT_EQ(find_measure("coordination")->of(back), back.mechanics.coordination);

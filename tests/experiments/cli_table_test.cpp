@@ -55,6 +55,55 @@ TEST_F(CommandLineTable, HasARowForEachCheckpointAndEachRun) {
   }
 }
 
+TEST_F(CommandLineTable, HasARowForEachValueOfACurve) {
+  for (const nlohmann::json& row : table({"--curve", "pair_correlation", "--seed", "1"})) {
+    EXPECT_GE(row.at("distance_d").get<double>(), 0);
+    EXPECT_GE(row.at("pair_correlation").get<double>(), 0);
+    EXPECT_TRUE(row.contains("fluid"));
+  }
+  // The layers' means, weighted by nothing, are near the pressure of the interior.
+  double mean = 0, layers = 0;
+  for (const nlohmann::json& row : table({"--curve", "pressure_profile_Pa"})) {
+    if (row.at("cycle") != 1 || row.at("pressure_profile_Pa").is_null()) continue;
+    mean += row.at("pressure_profile_Pa").get<double>();
+    ++layers;
+  }
+  ASSERT_GT(layers, 5);
+  const double pressure = table({}).at(1).at("pressure_Pa").get<double>();
+  EXPECT_NEAR(mean / layers, pressure, 0.5 * pressure) << "in Pa, not in k/d";
+  const Outcome unknown = run({"table", "--curve", "g_of_r"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_TRUE(contains(unknown.err, "pair_correlation")) << unknown.err;
+  EXPECT_EQ(run({"table", "--curve", "structure_factor", "--per", "run"}).code, 2);
+}
+
+TEST_F(CommandLineTable, KnowsTheMotionOverTheCycleBefore) {
+  const nlohmann::json rows = table({"--variant", "fluid=cell"});
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_TRUE(rows[0].at("msd_1_cycle_d2").is_null()) << "cycle 0 has none before it";
+  EXPECT_GT(rows[1].at("msd_1_cycle_d2"), 0);
+  EXPECT_GT(rows[1].at("d2min_1_cycle_d2"), 0);
+  EXPECT_TRUE(rows[1].at("msd_10_cycles_d2").is_null());
+  EXPECT_GE(rows[1].at("cna_crystalline_percent"), 0);
+}
+
+TEST_F(CommandLineTable, LosesNothingThatWasMeasuredBeforeAPrune) {
+  fs::remove_all(path("shearcell-store"));
+  campaign(tiny_manifest("", kBothFluids), {"--cycles", "4"});
+  const nlohmann::json before = table({});
+  ASSERT_EQ(before.size(), 10U);
+  ASSERT_EQ(run({"prune", "--keep-every", "2", "--yes"}).code, 0);
+  EXPECT_EQ(table({}), before);
+  // What needs a pruned file and was not kept is empty; the rest is measured again.
+  fs::remove(path("shearcell-store/derived.sqlite"));
+  const nlohmann::json after = table({});
+  for (std::size_t r = 0; r < 5; ++r) {
+    const bool kept = r % 2 == 0;
+    EXPECT_EQ(after[r].at("phi"), kept ? before[r].at("phi") : nlohmann::json()) << r;
+    EXPECT_TRUE(after[r].at("msd_1_cycle_d2").is_null()) << r;
+  }
+}
+
 TEST_F(CommandLineTable, CallsVariantsByTheirLabels) {
   fs::remove_all(path("shearcell-store"));
   campaign(tiny_manifest("", kBothFluids + "labels: {\"fluid=still\": \"water at rest\"}\n"),

@@ -72,6 +72,25 @@ TEST_F(Measure, OnlyNewCheckpointsAreMeasured) {
   EXPECT_EQ(csv("again"), csv("long"));
 }
 
+TEST_F(Measure, CurvesAndMotionArePlotted) {
+  const std::string plots =
+      "plots: [{name: g, y: pair_correlation, at_cycle: 1}, "
+      "{name: each, y: phi_profile, show: traces}, {name: moved, y: msd_1_cycle_d2, log: y}]\n";
+  compute(store_, tiny_manifest("", kBothFluids + plots));
+  FigureOptions options;
+  options.folder = folder_.path() / "own";
+  for (const WantedFigure& wanted : wanted_figures(store_, {"g", "each", "moved"}).figures) {
+    EXPECT_EQ(draw_figure(store_, wanted, options).plot_error, "");
+  }
+  const auto text = [&](const char* name) { return read_bytes(options.folder / "tiny" / name); };
+  EXPECT_TRUE(text("g.csv").starts_with("variant,distance_d,pair_correlation_mean,"));
+  EXPECT_NE(text("g.gp").find("distance"), std::string::npos);
+  EXPECT_NE(text("each.csv").find("height_d,phi_profile_mean"), std::string::npos);
+  const std::string moved = text("moved.csv");
+  const std::string head = "variant,cycle,msd_1_cycle_mean_d2,msd_1_cycle_standard_error_d2,runs\n";
+  EXPECT_TRUE(moved.starts_with(head + "fluid=cell,0,,,0\nfluid=cell,1,0.")) << moved;
+}
+
 TEST_F(Measure, OneAnalysisGivesAllThatFiguresMadeTogetherNeed) {
   std::string text = tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\n");
   text.replace(text.find("[S2]"), 4, "[S7, walls]");
@@ -151,8 +170,8 @@ TEST_F(Measure, ResultsComeInTheOrderOfTheRecordsWhateverTheWorkers) {
   std::vector<CheckpointRecord> all = records();
   all.push_back(all.front());  // a run that two experiments share
   const std::vector<DerivedMeasure> two = {
-      scalar_measures(), {"grains", nlohmann::json::object(), [](const Analysis& a) {
-                            return nlohmann::json(a.grains.phi_local);
+      scalar_measures(), {"grains", nlohmann::json::object(), [](const MeasureInput& input) {
+                            return nlohmann::json(input.analysis.grains.phi_local);
                           }}};
   const MeasuredCheckpoints one = measure_checkpoints(store_, all, two, {1, true, {}});
   const MeasuredCheckpoints many = measure_checkpoints(store_, all, two, {4, true, {}});
@@ -166,8 +185,8 @@ TEST_F(Measure, ResultsComeInTheOrderOfTheRecordsWhateverTheWorkers) {
   EXPECT_EQ(one.results.front(), one.results.back());
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
     const Analysis analysis = analyse(store_.load_checkpoint(all[i]));
-    EXPECT_EQ(one.results[i]->at(0).at("phi"), analysis.measures.phi);
-    EXPECT_EQ(one.results[i]->at(1).get<std::vector<double>>(), analysis.grains.phi_local);
+    EXPECT_EQ(one.results[i].at(0).at("phi"), analysis.measures.phi);
+    EXPECT_EQ(one.results[i].at(1).get<std::vector<double>>(), analysis.grains.phi_local);
   }
 }
 

@@ -2,10 +2,13 @@
 // Exported frames, read back by other people's programs, and the frames themselves.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "analysis/common_neighbours.hpp"
+#include "analysis/near_grains.hpp"
 #include "experiments/bench/packing.hpp"
 #include "experiments/export/formats.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -77,6 +80,13 @@ CheckpointRecord record_of(const Checkpoint& checkpoint) {
   return record;
 }
 
+/// In place of the motion since an earlier checkpoint.
+std::vector<double> made_up(std::size_t particles, double step) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < particles; ++i) values.push_back(step * static_cast<double>(i));
+  return values;
+}
+
 /// From the checkpoint and its analysis, not through Frame.
 nlohmann::json truth(const Checkpoint& c) {
   const double d = c.units.diameter_m;
@@ -126,6 +136,25 @@ nlohmann::json truth(const Checkpoint& c) {
     inner_id.push_back(static_cast<int>(i) + 1);
     inner_volume += measured.grains.cell_volume[i] * d * d * d;
   }
+  // Pairs of them up to each distance, in steps of 0.02 d.
+  std::vector<double> inner_pairs(75, 0);
+  for_each_pair(c.cell, pose, c.state.position, 1.5,
+                [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {
+                  if (inner[static_cast<std::size_t>(i)] == 0) return;
+                  if (inner[static_cast<std::size_t>(j)] == 0) return;
+                  const auto bin = static_cast<std::size_t>(r.norm() / 0.02);
+                  for (std::size_t b = bin; b < inner_pairs.size(); ++b) ++inner_pairs[b];
+                });
+  std::vector<int> lattice, inner_contacts;
+  for (const Lattice found : common_neighbour_analysis(c.cell, pose, c.state.position)) {
+    lattice.push_back(static_cast<int>(found));
+  }
+  lattice.resize(type.size(), -1);
+  std::vector<int> contacts(measured.grains.contacts.begin(), measured.grains.contacts.end());
+  for (const int id_of : inner_id) {
+    inner_contacts.push_back(contacts[static_cast<std::size_t>(id_of) - 1]);
+  }
+  contacts.resize(type.size(), 0);
   const Mechanics m = mechanics(c, measured.grains.cell_volume, inner).packing;
   const double k_per_d = 654.0 / 3e-3;
   const double height = (pose.top - pose.bottom) * d;
@@ -146,6 +175,8 @@ nlohmann::json truth(const Checkpoint& c) {
       {"checkpoint", std::string(64, 'b')},
       {"scalars", scalars},
       {"inner_id", inner_id},
+      {"inner_pairs", inner_pairs},
+      {"inner_contacts", inner_contacts},
       {"inner_volume", inner_volume},
       {"inner_stress",
        {m.stress_xx * k_per_d, m.stress_yy * k_per_d, m.stress_zz * k_per_d, m.stress_xy * k_per_d,
@@ -166,7 +197,11 @@ nlohmann::json truth(const Checkpoint& c) {
       {"q6", q6},
       {"overlap", overlap},
       {"grain_pressure_Pa", pressure},
+      {"displacement_d", made_up(type.size(), 1e-3)},
+      {"d2min_d2", made_up(type.size(), 1e-5)},
+      {"contacts", contacts},
       {"structure", structure},
+      {"lattice", lattice},
       {"crystallite", crystallite}};
 }
 
@@ -186,8 +221,11 @@ TEST(Export, OtherProgramsReadEveryNumber) {
     nlohmann::json frames = nlohmann::json::array();
     for (const Checkpoint& checkpoint : all) {
       frames.push_back(truth(checkpoint));
-      for (const FrameWriter& write : writers)
-        write(frame_of(checkpoint, record_of(checkpoint), about()));
+      Frame frame = frame_of(checkpoint, record_of(checkpoint), about());
+      EXPECT_TRUE(std::isnan(frame.displacement.front())) << "there is no earlier checkpoint";
+      frame.displacement = made_up(frame.particles(), 1e-3);
+      frame.nonaffine = made_up(frame.particles(), 1e-5);
+      for (const FrameWriter& write : writers) write(frame);
     }
     std::ofstream(at / "truth.json") << frames;
   }

@@ -32,8 +32,8 @@ for frame in frames:
             frame[key] = np.array(value)
     # Unknown, as a mean over no grain; the formats that can leave it out do.
     frame["scalars"] = {name: value for name, value in frame["scalars"].items() if value is not None}
-REAL = ["phi_local", "q6", "overlap", "grain_pressure_Pa"]
-INTEGER = ["structure", "crystallite"]
+REAL = ["phi_local", "q6", "overlap", "grain_pressure_Pa", "displacement_d", "d2min_d2"]
+INTEGER = ["contacts", "structure", "lattice", "crystallite"]
 compared = 0
 
 
@@ -177,8 +177,8 @@ def check_lammps():
         assert np.all(inside), "a particle is beside the box"
 
 
-def check_stress():
-    """LAMMPS's own stress per atom, of the contacts of grains away from the walls."""
+def check_lammps_measures():
+    """LAMMPS's own stress per atom, contacts and pair counts, of grains away from the walls."""
     lammps = shutil.which("lmp") or shutil.which("lammps")
     if lammps is None:
         return print("without LAMMPS (Debian package lammps)")
@@ -187,22 +187,30 @@ def check_stress():
 atom_style sphere
 boundary f f p
 newton off
-comm_modify vel yes
+comm_modify vel yes cutoff {2.0 * 2 * f['radius'][0]:.17g}
 read_data lammps/frame_{f['cycle']:g}.data
 pair_style gran/hooke {f['facts']['stiffness_N_per_m']:.17g} 0 0 0 0 0
 pair_coeff * *
 neighbor 0.001 bin
 timestep 1e-5
+group inner id {" ".join(str(i) for i in f["inner_id"])}
 compute stress all stress/atom NULL pair
-dump out all custom 1 stress.dump id c_stress[1] c_stress[2] c_stress[3] c_stress[4] c_stress[5] c_stress[6]
+compute contacts all contact/atom
+compute pairs inner rdf 75 cutoff {1.5 * 2 * f['radius'][0]:.17g}
+fix pairs all ave/time 1 1 1 c_pairs[*] file pairs.txt mode vector
+dump out all custom 1 stress.dump id c_stress[1] c_stress[2] c_stress[3] c_stress[4] c_stress[5] c_stress[6] c_contacts
 dump_modify out sort id format float %.17g
 run 0
 """
     run = subprocess.run([lammps, "-log", "none", "-screen", "none"], input=deck, text=True, cwd=folder)
     assert run.returncode == 0, "LAMMPS failed"
     rows = np.loadtxt(folder / "stress.dump", skiprows=9)
-    stress = -rows[f["inner_id"] - 1, 1:].sum(axis=0) / f["inner_volume"]
+    stress = -rows[f["inner_id"] - 1, 1:7].sum(axis=0) / f["inner_volume"]
     equal("LAMMPS stress", stress, f["inner_stress"], 1e-10)
+    equal("LAMMPS contacts", rows[f["inner_id"] - 1, 7], f["inner_contacts"])
+    # Its last column is the number of pairs up to a distance, per grain.
+    pairs = np.loadtxt(folder / "pairs.txt", skiprows=4)[:, 3] * len(f["inner_id"]) / 2
+    equal("LAMMPS pairs", pairs, f["inner_pairs"], 1e-6)
 
 
 check_h5md()
@@ -211,5 +219,5 @@ check_extxyz("metres.xyz", "m")
 check_facts()
 check_vtk()
 check_lammps()
-check_stress()
+check_lammps_measures()
 print(f"{compared} numbers in {len(frames)} frames agree")

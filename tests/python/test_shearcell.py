@@ -26,6 +26,7 @@ try:
 except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
+from shearcell.checkpoint import GRAIN_MEASURES
 from shearcell import ShearcellError, Store
 
 calls = 0
@@ -72,6 +73,10 @@ class Package(unittest.TestCase):
                     same = pandas.isna(row[key]) if value in (None, "") else row[key] == value
                     self.assertTrue(same, f"{key}: {row[key]!r}, not {value!r}")
         self.assertEqual(set(self.store.table(variant="fluid=cell")["fluid"]), {"cell"})
+        g = self.store.table(curve="pair_correlation")
+        self.assertEqual(len(g), len(g.groupby(["run", "cycle", "distance_d"])))
+        self.assertEqual(g[g.distance_d < 0.9].pair_correlation.max(), 0)
+        self.assertGreater(g.pair_correlation.max(), 3)
 
     def test_checkpoint_is_what_the_program_exports(self):
         for run in self.store.runs():
@@ -89,8 +94,15 @@ class Package(unittest.TestCase):
             self.assertEqual(state.position.shape, (600, 3))
             velocity = own.arrays["velo"]
             self.assertLess(np.max(np.abs(exported.arrays["velo"] - velocity)), 1e-14 * np.max(velocity))
-            for name in ("type", "q6", "phi_local", "overlap", "structure", "crystallite"):
+            for name in ("type", *GRAIN_MEASURES):
                 self.assertTrue(np.array_equal(exported.arrays[name], own.arrays[name]), name)
+            moved = state.position - run.checkpoint(0).position  # both upright
+            self.assertLess(np.max(np.abs(state.displacement - np.linalg.norm(moved, axis=1))), 1e-12)
+            rows = self.store.table(seed=run.seed, variant=run.variant)
+            interior = rows[rows.cycle == 1].iloc[0]
+            self.assertGreater(interior["msd_1_cycle_d2"], 0)
+            self.assertTrue(np.all(np.isnan(run.checkpoint(0).d2min)))
+            self.assertTrue(np.all(state.d2min[~np.isnan(state.d2min)] >= 0))
             self.assertEqual(run.parameters["fluid"], run.variant.split("=")[1])
             self.assertEqual([c.cycle for c in run.checkpoints()], run.cycles)
 

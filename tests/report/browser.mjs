@@ -256,7 +256,18 @@ const checks = {
     await changes("colour by q6", () => choose("colour", "q6"));
     await box.screenshot({path: join(shots, "packing-q6.png")});
     await changes("colour by phi_local", () => choose("colour", "phi"));
+    for (const field of ["lattice", "pressure", "contacts", "overlap", "displacement"]) {
+      await changes(`colour by ${field}`, () => choose("colour", field));
+    }
     await changes("colour by class", () => choose("colour", "class"));
+    await choose("profile", "phi");
+    const profile = page.locator("#packings .profile");
+    const line = await profile.locator("polyline").getAttribute("points");
+    expect(line.split(" ").length > 5, `profile: ${line}`);
+    await choose("profile", "pressure");
+    expect(await profile.locator("polyline").getAttribute("points") !== line, "profile: does not change");
+    await choose("profile", "none");
+    expect(!(await profile.isVisible()), "profile: it stays");
     await changes("hiding wall grains", () => page.locator('#packings [data-part="walls"]').uncheck());
     await changes("hiding the cell", () => page.locator('#packings [data-part="box"]').uncheck());
     await changes("small disordered grains", () => choose("disordered", "small"));

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -47,6 +48,19 @@ GrainMeasures measures_of_each() {
   return grains;
 }
 
+// A quantity, one on a logarithmic scale with unknown values, and a class.
+std::vector<GrainField> fields_of_each() {
+  std::vector<GrainField> fields = {{"pressure", "kPa", 0, 3, false, {}, {}},
+                                    {"d2min", "d2", 1e-6, 1, true, {}, {}},
+                                    {"lattice", "", 0, 0, false, {"none", "FCC", "HCP"}, {}}};
+  for (int i = 0; i < kFrameGrains; ++i) {
+    fields[0].value.push_back(4.0 * i / kFrameGrains - 0.5);  // below and above the range too
+    fields[1].value.push_back(i % 7 == 0 ? std::nan("") : std::pow(10, -6.0 * i / kFrameGrains));
+    fields[2].value.push_back(i % 3);
+  }
+  return fields;
+}
+
 double word(const PackedFrame& frame, std::size_t at) {
   return std::to_integer<int>(frame.bytes[2 * at]) +
          256 * std::to_integer<int>(frame.bytes[2 * at + 1]);
@@ -58,7 +72,8 @@ class Frames : public testing::Test {
   const WallPose pose_ =
       wall_pose(checkpoint_.cell, checkpoint_.theta, checkpoint_.state.wall_height);
   const GrainMeasures grains_ = measures_of_each();
-  const PackedFrame frame_ = pack_frame(checkpoint_, pose_, grains_);
+  const std::vector<GrainField> fields_ = fields_of_each();
+  const PackedFrame frame_ = pack_frame(checkpoint_, pose_, grains_, fields_);
   static constexpr std::size_t kAll = kFrameGrains + 4;
 
   double coordinate(std::size_t sphere, Eigen::Index axis) const {
@@ -104,9 +119,26 @@ TEST_F(Frames, KeepTheMeasuresOfEachGrain) {
   }
 }
 
+TEST_F(Frames, KeepFieldsToHalfAStepOfTheirRange) {
+  const auto byte = [&](std::size_t field, std::size_t i) {
+    const std::size_t at = 6 * kAll + (7 + field) * kFrameGrains + i;
+    return std::to_integer<int>(frame_.bytes[at]);
+  };
+  for (std::size_t i = 0; i < kFrameGrains; ++i) {
+    const double pressure = std::clamp(fields_[0].value[i], 0.0, 3.0);
+    EXPECT_NEAR(byte(0, i) / 254.0 * 3, pressure, 3 * 0.501 / 254);
+    if (i % 7 == 0) {
+      EXPECT_EQ(byte(1, i), 255);
+    } else {
+      EXPECT_NEAR(6 * byte(1, i) / 254.0 - 6, std::log10(fields_[1].value[i]), 6 * 0.501 / 254);
+    }
+    EXPECT_EQ(byte(2, i), static_cast<int>(i % 3));
+  }
+}
+
 TEST_F(Frames, HaveTheSizeThatIsReckonedWith) {
-  EXPECT_EQ(frame_.bytes.size(), 6 * kAll + 7 * kFrameGrains);
-  EXPECT_EQ(frame_size_in_page(kFrameGrains, 4), (frame_.bytes.size() + 2) / 3 * 4);
+  EXPECT_EQ(frame_.bytes.size(), 6 * kAll + 10 * kFrameGrains);
+  EXPECT_EQ(frame_size_in_page(kFrameGrains, 4, 3), (frame_.bytes.size() + 2) / 3 * 4);
 }
 
 }  // namespace

@@ -90,7 +90,10 @@ TEST_F(ReportOfRuns, GivesTheFrontEndPlotsAndPackings) {
   const auto grains = run.at("grains").get<std::size_t>();
   const auto walls = run.at("wall_grains").get<std::size_t>();
   const auto bytes = run.at("frames")[0].at("data").get<std::string>();
-  EXPECT_EQ(bytes.size(), (6 * (grains + walls) + 7 * grains + 2) / 3 * 4);
+  EXPECT_EQ(bytes.size(), (6 * (grains + walls) + 13 * grains + 2) / 3 * 4);
+  const auto& frame = run.at("frames")[0];
+  EXPECT_EQ(frame.at("fields").size(), 6U);
+  EXPECT_EQ(frame.at("profiles").at("phi").size(), frame.at("profiles").at("height").size());
 }
 
 TEST_F(ReportOfRuns, HasTheTableOfRunsInBothForms) {

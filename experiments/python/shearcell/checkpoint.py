@@ -22,6 +22,16 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
+# As the program's exports call them.
+GRAIN_MEASURES = ("q6", "phi_local", "overlap", "contacts", "grain_pressure_Pa", "structure",
+                  "lattice", "crystallite", "displacement_d", "d2min_d2")
+
+
+def _of_grains(name: str, doc: str) -> Any:
+    """A property: that measure of the grains."""
+    return property(lambda checkpoint: checkpoint._measured[name], doc=doc)
+
+
 class Checkpoint:
     """A state of N grains and M wall grains. Lengths are in grain diameters d, times in seconds.
 
@@ -88,40 +98,28 @@ class Checkpoint:
                                 repr(self.cycle), "--out", str(file))
             with h5py.File(file, "r") as exported:
                 every = exported["particles/all"]
-                names = ("q6", "phi_local", "overlap", "structure", "crystallite")
-                return {name: every[name + "/value"][0, : self.grains] for name in names}
+                return {name: every[name + "/value"][0, : self.grains] for name in GRAIN_MEASURES}
 
-    @property
-    def q6(self) -> Floats:
-        """(N,) bond order of each grain, Eq. S1."""
-        return self._measured["q6"]
-
-    @property
-    def phi_local(self) -> Floats:
-        """(N,) local packing fraction."""
-        return self._measured["phi_local"]
-
-    @property
-    def overlap(self) -> Floats:
-        """(N,) largest overlap of each grain [d]."""
-        return self._measured["overlap"]
-
-    @property
-    def structure(self) -> Integers:
-        """(N,) 0 disordered, 1 FCC, 2 HCP."""
-        return self._measured["structure"]
-
-    @property
-    def crystallite(self) -> Integers:
-        """(N,) crystallite of each grain: 0 none; 1, 2, ... by their lowest grain id."""
-        return self._measured["crystallite"]
+    q6 = _of_grains("q6", "(N,) bond order of each grain, Eq. S1.")
+    phi_local = _of_grains("phi_local", "(N,) local packing fraction.")
+    overlap = _of_grains("overlap", "(N,) largest overlap of each grain [d].")
+    contacts = _of_grains("contacts", "(N,) contacts with grains and wall grains.")
+    pressure_Pa = _of_grains("grain_pressure_Pa", "(N,) of a grain's contacts, over its cell [Pa].")
+    structure = _of_grains("structure", "(N,) by q6: 0 disordered, 1 FCC, 2 HCP.")
+    lattice = _of_grains("lattice", "(N,) by common neighbours: 0 none, 1 FCC, 2 HCP, 3 BCC.")
+    crystallite = _of_grains(
+        "crystallite", "(N,) crystallite of each grain: 0 none; 1, 2, ... by their lowest grain id.")
+    displacement = _of_grains(
+        "displacement_d", "(N,) distance since the cycle before [d]; NaN where that is not stored.")
+    d2min = _of_grains(
+        "d2min_d2", "(N,) non-affine part D^2_min of that motion [d^2]; NaN likewise.")
 
     def to_ase(self) -> "ase.Atoms":
         """ase.Atoms of the N grains and M wall grains; needs ASE.
 
         Lengths are in grain diameters (`info["d_m"]` is d [m]), velocities (array "velo") in d/s.
-        H is a grain, He a wall grain. Arrays "type", "q6", "phi_local", "overlap", "structure" and
-        "crystallite" are as in the program's export to extxyz.
+        H is a grain, He a wall grain. Arrays "type" and those of GRAIN_MEASURES are as in the
+        program's export to extxyz.
         """
         import ase
 

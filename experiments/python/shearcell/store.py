@@ -68,18 +68,22 @@ class Store:
             raise KeyError(f"{len(found)} runs begin with {prefix!r}")
         return found[0]
 
-    def table(self, per: str = "checkpoint", **select: Any) -> "pandas.DataFrame":
-        """`shearcell table`: a row for each checkpoint, or for each run (per="run"); needs pandas.
+    def table(self, per: str = "checkpoint", curve: str = "",
+              **select: Any) -> "pandas.DataFrame":
+        """`shearcell table`: a row for each checkpoint, or for each run (per="run"), or for each
+        value of a curve at each checkpoint (curve="pair_correlation"); needs pandas.
 
-        Columns have their unit in the name; `shearcell table --help` lists them.
+        Columns have their unit in the name; `shearcell table --help` lists them and the curves.
 
         Args:
             per: "checkpoint" or "run".
+            curve: name of a curve, or "".
             select: experiment, scale, variant or seed, each a value or a list of values.
         """
         import pandas
 
-        text = self.call("table", "--per", per, *_filters(select))
+        rows = ("--curve", curve) if curve else ("--per", per)
+        text = self.call("table", *rows, *_filters(select))
         return pandas.read_csv(io.StringIO(text), float_precision="round_trip")
 
     def measure(self, function: Measure, *, fresh: bool = False,

@@ -2,11 +2,11 @@
 // Colours of grains: structures by the colour-blind safe palette of Okabe and Ito, quantities by
 // viridis.
 import {crystalliteSizes} from "./frames.js";
-import {italic, sub} from "./text.js";
+import {italic, plain, sub} from "./text.js";
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 
-export const classColours = ["#c9cdd3", "#0072b2", "#e69f00"];  // disordered, FCC, HCP
+export const classColours = ["#c9cdd3", "#0072b2", "#e69f00", "#009e73"];  // none, FCC, HCP, BCC
 const crystalliteColours = [
   "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#a6761d", "#7570b3"
 ];
@@ -28,6 +28,13 @@ export const quantities = {
   phi: {label: [...italic("ϕ"), ...sub("local")], low: 0.55, high: 0.74, of: (grains) => grains.phiLocal},
   q6: {label: [...italic("q"), ...sub("6")], low: 0.2, high: 0.6, of: (grains) => grains.q6}
 };
+
+const fieldLabels = {
+  pressure: plain("pressure"), contacts: plain("contacts"), overlap: plain("largest overlap"),
+  displacement: plain("displacement in a cycle"),
+  d2min: [...italic("D"), ...sub("min"), ...plain("², a cycle")]
+};
+const unknown = 255;
 
 // Three bytes a sphere, grains first.
 export function coloursOf(grains, count, mode) {
@@ -56,7 +63,20 @@ function painter(grains, mode) {
     };
   }
   const classes = classColours.map(rgb);
+  const field = grains.fields[mode];
+  if (field?.classes) return (i) => classes[field.bytes[i]];
+  if (field) {
+    const none = rgb(plainColour);
+    return (i) => field.bytes[i] === unknown ? none : viridis(field.bytes[i] / 254);
+  }
   return (i) => classes[grains.structure[i]];
+}
+
+function classKey(values, names) {
+  const counts = names.map(() => 0);
+  for (const value of values) ++counts[value];
+  const order = [...names.keys()].slice(1).concat(0);
+  return {entries: order.map((s) => ({colour: classColours[s], text: `${names[s]} ${counts[s]}`}))};
 }
 
 // What the colours mean: [{colour, text}] or {label, low, high} for a bar.
@@ -70,10 +90,15 @@ export function keyOf(grains, mode) {
     entries.push({colour: plainColour, text: entries.length > 0 ? "in none" : "no crystallite"});
     return {entries};
   }
-  const counts = [0, 0, 0];
-  for (const structure of grains.structure) ++counts[structure];
-  const names = ["disordered", "FCC", "HCP"];
-  return {
-    entries: [1, 2, 0].map((s) => ({colour: classColours[s], text: `${names[s]} ${counts[s]}`}))
-  };
+  const field = grains.fields[mode];
+  if (field?.classes) return classKey(field.bytes, field.classes);
+  if (field) {
+    if (field.bytes.every((byte) => byte === unknown)) {
+      return {entries: [{colour: plainColour, text: "no checkpoint a cycle before"}]};
+    }
+    const unit = field.unit ? ` ${field.unit}` : "";
+    const end = (value) => `${Number(value.toPrecision(3))}`;
+    return {bar: {label: fieldLabels[mode], low: end(field.low), high: end(field.high) + unit}};
+  }
+  return classKey(grains.structure, ["disordered", "FCC", "HCP"]);
 }

@@ -5,7 +5,16 @@ export const controls = `<div class="controls">
 <label>Run <select data-part="run"></select></label>
 <label>Colour <select data-part="colour"><option value="class">FCC, HCP, disordered</option>
 <option value="crystallite">crystallites</option><option value="phi">local volume fraction</option>
-<option value="q6">bond order q6</option></select></label>
+<option value="q6">bond order q6</option>
+<option value="lattice">lattice by common neighbours</option>
+<option value="pressure">pressure</option><option value="contacts">contacts</option>
+<option value="overlap">largest overlap</option>
+<option value="displacement">displacement in a cycle</option>
+<option value="d2min">non-affine motion in a cycle</option></select></label>
+<label>Profile <select data-part="profile"><option value="none">none</option>
+<option value="phi">volume fraction</option><option value="pressure">pressure</option>
+<option value="coordination">contacts per grain</option>
+<option value="crystalline">crystalline</option></select></label>
 <label>Disordered <select data-part="disordered"><option value="full">full size</option>
 <option value="small">small</option><option value="hidden">hidden</option></select></label>
 <label>Clip <select data-part="cut-axis"><option value="none">nothing</option>
@@ -32,6 +41,7 @@ export const controls = `<div class="controls">
 export const pane = `<div class="stage3d" data-part="stage">
 <canvas data-part="canvas" tabindex="0" role="img" aria-label="The packing. Arrow keys turn it, plus and minus zoom, 0 shows all."></canvas>
 <div class="key3d" data-part="key"></div>
+<svg class="profile" data-part="profile" role="img" hidden></svg>
 </div>
 <p class="facts"><span data-part="facts"></span> <span>checkpoint <code data-part="checkpoint"></code></span></p>
 <p class="facts" data-part="grain" role="status"></p>

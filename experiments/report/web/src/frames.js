@@ -12,7 +12,7 @@ function bytesOf(base64) {
 export function decodeFrame(frame, grains, wallGrains) {
   const bytes = bytesOf(frame.data);
   const all = grains + wallGrains;
-  if (bytes.length !== 6 * all + 7 * grains) {
+  if (bytes.length !== 6 * all + (7 + frame.fields.length) * grains) {
     throw new Error(`a packing of ${bytes.length} bytes is not one of ${all} spheres`);
   }
   const view = new DataView(bytes.buffer);
@@ -33,7 +33,13 @@ export function decodeFrame(frame, grains, wallGrains) {
   const q6 = words(grains, (word) => word / 65535);
   const crystallite = words(grains, (word) => word);  // 0 for none
   const flags = bytes.subarray(at, at + grains);
+  // A byte a grain: a class, or 254 times its share of the range; 255 for unknown.
+  const fields = Object.fromEntries(frame.fields.map((field, k) => {
+    const from = at + (k + 1) * grains;
+    return [field.key, {...field, bytes: bytes.subarray(from, from + grains)}];
+  }));
   return {
+    fields,
     position, phiLocal, q6, crystallite,
     structure: flags.map((flag) => flag & 3),
     interior: flags.map((flag) => flag >> 2)

@@ -3,6 +3,7 @@
 import {coloursOf, keyOf, viridis} from "./colours.js";
 import {pane as markup} from "./controls.js";
 import {crystalliteSizes, decodeFrame, structureNames} from "./frames.js";
+import {drawProfile} from "./profile.js";
 import {PackingScene} from "./scene.js";
 import {italic, plain, sub, writeHtmlText} from "./text.js";
 
@@ -56,10 +57,11 @@ export class Pane {
     this.tell(-1);
   }
 
-  // choices: {colour, disordered, walls, box, axis, at, otherSide}
+  // choices: {colour, profile, disordered, walls, box, axis, at, otherSide}
   apply(choices) {
     this.scene.spheres.setColours(coloursOf(this.frame, this.packing.grains, choices.colour));
     this.showKey(keyOf(this.frame, choices.colour));
+    drawProfile(this.part("profile"), this.packing.frames, this.stored, choices.profile);
     this.resize(choices);
     this.scene.frameLines.visible = choices.box;
     this.scene.setCut(axes[choices.axis], this.placeOfCut(choices), choices.otherSide ? -1 : 1);

@@ -5,7 +5,7 @@ import {Pane} from "./pane.js";
 import {saveBlob} from "./save.js";
 import {onThemeChange, pageColours} from "./theme.js";
 
-const looks = ["colour", "disordered", "walls", "box", "cut-axis", "cut-at", "cut-side"];
+const looks = ["colour", "profile", "disordered", "walls", "box", "cut-axis", "cut-at", "cut-side"];
 
 export class Viewer {
   constructor(host, packings, count = 1) {
@@ -103,7 +103,7 @@ export class Viewer {
 
   choices() {
     return {
-      colour: this.part("colour").value, disordered: this.part("disordered").value,
+      colour: this.part("colour").value, profile: this.part("profile").value, disordered: this.part("disordered").value,
       walls: this.part("walls").checked, box: this.part("box").checked,
       axis: this.part("cut-axis").value, at: Number(this.part("cut-at").value) / 1000,
       otherSide: this.part("cut-side").checked

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/profiles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "analysis/packing_fraction.hpp"
+#include "analysis/voronoi.hpp"
+
+namespace shearcell {
+namespace {
+
+double least_distance(const Cell& cell) {
+  return interior_distance + (cell.wall_grains.empty() ? 0.0 : rough_wall_surface);
+}
+
+// The layer of each grain, or `layers` for one near a side wall.
+std::vector<std::size_t> layers_of(const Checkpoint& checkpoint, const WallPose& pose,
+                                   std::size_t layers) {
+  const double least = least_distance(checkpoint.cell);
+  std::vector<std::size_t> found;
+  for (Eigen::Index i = 0; i < checkpoint.state.position.cols(); ++i) {
+    const Eigen::Vector3d centre = checkpoint.state.position.col(i);
+    const Eigen::Vector4d distance = wall_distances(checkpoint.cell, pose, centre);
+    const bool inside = std::min(distance[0], distance[1]) >= least;
+    const double height = std::max(0.0, centre.y() - pose.bottom);
+    found.push_back(inside ? std::min(static_cast<std::size_t>(height), layers - 1) : layers);
+  }
+  return found;
+}
+
+}  // namespace
+
+Profiles profiles(const Checkpoint& checkpoint, const GrainMeasures& grains) {
+  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  const auto layers = static_cast<std::size_t>(std::max(1.0, std::ceil(pose.top - pose.bottom)));
+  const std::vector<std::size_t> layer = layers_of(checkpoint, pose, layers);
+  Profiles found;
+  for (std::size_t l = 0; l < layers; ++l) {
+    std::vector<std::uint8_t> inside(layer.size());
+    double count = 0, volume = 0, trace = 0, contacts = 0, crystalline = 0;
+    for (std::size_t i = 0; i < layer.size(); ++i) {
+      if (layer[i] != l) continue;
+      inside[i] = 1;
+      ++count;
+      volume += grains.cell_volume[i];
+      trace += grains.pressure[i] * grains.cell_volume[i];
+      contacts += grains.contacts[i];
+      crystalline += grains.structure[i] == Structure::disordered ? 0 : 1;
+    }
+    found.height.push_back(static_cast<double>(l) + 0.5);
+    found.phi.push_back(packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi);
+    found.pressure.push_back(trace / volume);
+    found.coordination.push_back(contacts / count);
+    found.crystalline_percent.push_back(100 * crystalline / count);
+  }
+  return found;
+}
+
+}  // namespace shearcell

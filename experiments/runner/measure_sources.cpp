@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/runner/measure_sources.hpp"
+
+#include "experiments/manifest/identity.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell {
+
+DerivedKey MeasureSources::key(const CheckpointRecord& record, const DerivedMeasure& measure) {
+  if (measure.earlier.empty()) return {record.sha256, measure.key(), analysis_version};
+  const auto [run, first] = runs_.try_emplace(record.run);
+  if (first && store_.run(record.run).kind == name_of(Stage::shear)) {
+    for (CheckpointRecord& one : store_.checkpoints(record.run, true)) {
+      if (one.state == CheckpointState::rejected) continue;
+      const double cycle = one.cycle;
+      run->second.insert_or_assign(cycle, std::move(one));
+    }
+  }
+  std::string text = measure.key();
+  for (const std::uint64_t cycles : measure.earlier) {
+    const CheckpointRecord* other = find(record, cycles);
+    text += " " + (other == nullptr ? "none" : other->sha256);
+  }
+  return {record.sha256, std::move(text), analysis_version};
+}
+
+const CheckpointRecord* MeasureSources::find(const CheckpointRecord& record,
+                                             std::uint64_t cycles) const {
+  const auto run = runs_.find(record.run);
+  if (run == runs_.end()) return nullptr;
+  const auto found = run->second.find(record.cycle - static_cast<double>(cycles));
+  return found == run->second.end() ? nullptr : &found->second;
+}
+
+std::optional<nlohmann::json> MeasureSources::measure(const CheckpointRecord& record,
+                                                      const Checkpoint& checkpoint,
+                                                      const Analysis& analysis,
+                                                      const DerivedMeasure& measure) const {
+  Checkpoint other;
+  const auto load = [&](std::uint64_t cycles) -> const Checkpoint* {
+    const CheckpointRecord* found = find(record, cycles);
+    if (found == nullptr) return nullptr;
+    other = store_.load_checkpoint(*found);
+    return &other;
+  };
+  try {
+    return measure.from({analysis, &checkpoint, load});
+  } catch (const CheckpointPruned&) {
+  } catch (const StoreDamaged&) {
+  }
+  return std::nullopt;
+}
+
+std::optional<Checkpoint> MeasureSources::earlier(const CheckpointRecord& record,
+                                                  std::uint64_t cycles) const {
+  const CheckpointRecord* found = find(record, cycles);
+  if (found == nullptr) return std::nullopt;
+  try {
+    return store_.load_checkpoint(*found);
+  } catch (const CheckpointPruned&) {
+  } catch (const StoreDamaged&) {
+  }
+  return std::nullopt;
+}
+
+}  // namespace shearcell

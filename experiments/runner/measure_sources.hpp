@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The checkpoints of a store that a measure is taken from: its own, and earlier ones of its run.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "analysis/derived_measures.hpp"
+#include "provenance/derived.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+class MeasureSources {
+ public:
+  explicit MeasureSources(const Store& store) : store_(store) {}
+
+  /// Under which a result is kept: it names the earlier checkpoints too. Reads the log for those.
+  DerivedKey key(const CheckpointRecord& record, const DerivedMeasure& measure);
+
+  /// The measure of a checkpoint that was read; nothing if an earlier one cannot be read. For a
+  /// measure with earlier checkpoints, key() must have been called. Any number of threads may call
+  /// it then.
+  std::optional<nlohmann::json> measure(const CheckpointRecord& record,
+                                        const Checkpoint& checkpoint, const Analysis& analysis,
+                                        const DerivedMeasure& measure) const;
+
+  /// The checkpoint of the same run so many cycles earlier; nothing where there is none or it
+  /// cannot be read. As measure(), after key().
+  std::optional<Checkpoint> earlier(const CheckpointRecord& record, std::uint64_t cycles) const;
+
+ private:
+  using Cycles = std::map<double, CheckpointRecord>;
+
+  const CheckpointRecord* find(const CheckpointRecord& record, std::uint64_t cycles) const;
+
+  const Store& store_;
+  std::map<std::string, Cycles> runs_;  // of shears, by id
+};
+
+}  // namespace shearcell
