@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/derived_measures.hpp"
 
-#include <type_traits>
-
 #include "analysis/crystal.hpp"
 #include "analysis/error.hpp"
 #include "analysis/packing_fraction.hpp"
@@ -19,9 +17,7 @@ void for_each_kept(Visit&& visit) {
   for (const ScalarMeasure& scalar : all_scalar_measures()) {
     std::visit(
         [&](auto member) {
-          if constexpr (!std::is_same_v<decltype(member), MechanicalMember>) {
-            visit(scalar.name, member);
-          }
+          if constexpr (requires(Measures & m) { m.*member; }) visit(scalar.name, member);
         },
         scalar.member);
   }

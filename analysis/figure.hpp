@@ -2,6 +2,7 @@
 // A figure turns measured runs into tables and verdicts. The same runs give the same bytes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -67,6 +68,10 @@ struct Figure {
   std::vector<std::string> keys = {};  ///< parameters that its curves compare
   bool at_rest = false;                ///< needs phi_at_rest of cycles 1 to early_cycles
   bool mechanics = false;              ///< needs Measures::mechanics
+  bool energy = false;                 ///< needs Measures::energy
+  /// Needs the checkpoints of these cycles, first to last, those at phases of a cycle included;
+  /// other figures are of whole cycles.
+  std::optional<std::array<std::uint64_t, 2>> within = {};
 };
 
 /// The value of a parameter, swept or not; null if the run has no such key.

@@ -125,7 +125,18 @@ std::span<const ScalarMeasure> all_scalar_measures() {
        "kinetic energy over the number of grains, half a time step later",
        MechanicalMember{&Mechanics::kinetic_energy, &MechanicalUnits::kinetic_J}},
       {"gravitational_energy_per_grain_J", "J", "weight times mean height above the bottom wall",
-       MechanicalMember{&Mechanics::height, &MechanicalUnits::weight_J}}};
+       MechanicalMember{&Mechanics::height, &MechanicalUnits::weight_J}},
+      {"shear_strain", "1", "tan(theta), theta the tilt of the side walls", &Motion::shear_strain},
+      {"shear_rate_per_s", "1/s", "rate of change of shear_strain", &Motion::shear_rate},
+      {"work_of_walls_per_cycle_J", "J",
+       "work of the tilting walls on all grains in the cycle that ends here",
+       &CycleEnergy::work_of_walls},
+      {"dissipation_per_cycle_J", "J",
+       "energy that all grains and the moving wall lost by drag in that cycle",
+       &CycleEnergy::dissipation},
+      {"energy_stored_per_cycle_J", "J",
+       "change of all elastic, kinetic and gravitational energy and of the load's in that cycle",
+       &CycleEnergy::stored}};
   return measures;
 }
 
@@ -133,6 +144,10 @@ double ScalarMeasure::of(const Measures& measures) const {
   if (const auto* mechanical = std::get_if<MechanicalMember>(&member)) {
     const double value = measures.mechanics.*mechanical->value;
     return mechanical->unit == nullptr ? value : value * (measures.units.*mechanical->unit);
+  }
+  if (const auto* motion = std::get_if<double Motion::*>(&member)) return measures.motion.**motion;
+  if (const auto* energy = std::get_if<double CycleEnergy::*>(&member)) {
+    return measures.energy.**energy * measures.units.kinetic_J;
   }
   if (const auto* count = std::get_if<std::size_t Measures::*>(&member)) {
     return static_cast<double>(measures.**count);

@@ -17,6 +17,20 @@
 
 namespace shearcell {
 
+/// Of the cell at one checkpoint, from the drive alone.
+struct Motion {
+  double shear_strain = std::numeric_limits<double>::quiet_NaN();  ///< tan(theta)
+  double shear_rate = std::numeric_limits<double>::quiet_NaN();    ///< its rate of change [1/s]
+};
+
+/// Of all grains, in the cycle that ends at a checkpoint (protocols/ledger.hpp) [m d^2/s^2]; not a
+/// number unless something asked for it.
+struct CycleEnergy {
+  double work_of_walls = std::numeric_limits<double>::quiet_NaN();
+  double dissipation = std::numeric_limits<double>::quiet_NaN();
+  double stored = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// Of one packing. Means over no grain at all are not a number.
 struct Measures {
   std::size_t grains = 0;               ///< N
@@ -34,6 +48,8 @@ struct Measures {
   double phi_at_rest = std::numeric_limits<double>::quiet_NaN();
   Mechanics mechanics;  ///< zeros where nothing asked for it
   MechanicalUnits units;
+  Motion motion;
+  CycleEnergy energy;
 };
 
 /// A member of Mechanics and the unit that turns it into SI; null for a number that has none.
@@ -47,9 +63,13 @@ struct ScalarMeasure {
   std::string_view name;  ///< with its unit, unless it is a count or a pure number
   std::string_view unit;  ///< "1" for none
   std::string_view meaning;
-  std::variant<double Measures::*, std::size_t Measures::*, MechanicalMember> member;
+  std::variant<double Measures::*, std::size_t Measures::*, MechanicalMember, double Motion::*,
+               double CycleEnergy::*>
+      member;
 
   bool mechanical() const { return std::holds_alternative<MechanicalMember>(member); }
+  /// Of a whole cycle, which must be simulated again.
+  bool of_cycle() const { return std::holds_alternative<double CycleEnergy::*>(member); }
   /// In `unit`; not a number where it is unknown.
   double of(const Measures& measures) const;
 };

@@ -26,6 +26,11 @@ bool is_mechanical(std::string_view name) {
   return measure != nullptr && measure->mechanical();
 }
 
+bool is_of_cycle(std::string_view name) {
+  const ScalarMeasure* measure = find_measure(name);
+  return measure != nullptr && measure->of_cycle();
+}
+
 MeasureColumn column_of(const ScalarMeasure& measure) {
   std::string name(measure.name);
   std::string unit(measure.unit == "%" ? "percent" : measure.unit == "1" ? "" : measure.unit);
@@ -268,6 +273,8 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
                   return FigureResult{{std::move(table)}, {}};
                 }};
   figure.mechanics = is_mechanical(plot.x) || is_mechanical(plot.y);
+  figure.energy = is_of_cycle(plot.x) || is_of_cycle(plot.y);
+  figure.within = plot.cycles;
   if (!plot.by.empty()) {
     figure.form = FigureForm::groups;
     figure.keys = {plot.by, plot.x};
@@ -279,6 +286,7 @@ Figure claim_figure(const ClaimSpec& claim) {
   Figure figure{claim.name, "", FigureNeeds::scalars,
                 [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
   figure.mechanics = is_mechanical(claim.compare);
+  figure.energy = is_of_cycle(claim.compare);
   return figure;
 }
 

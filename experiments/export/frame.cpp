@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/figures/within_cycle.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -89,6 +91,7 @@ Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record,
                const SelectedRun& run) {
   Analysis analysis = analyse(checkpoint);
   analysis.measures.units = mechanical_units(run.run, record);
+  analysis.measures.motion = motion_of(run.run, record);
   for (double& pressure : analysis.grains.pressure) pressure *= analysis.measures.units.stress_Pa;
   const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
   Frame frame;

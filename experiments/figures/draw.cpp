@@ -14,6 +14,7 @@
 #include "experiments/figures/at_rest.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/measure.hpp"
+#include "experiments/figures/within_cycle.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/derived.hpp"
@@ -71,6 +72,13 @@ std::vector<std::optional<FigureMeasures>> measures_of(const Store& store, const
       if (measured[i]) measured[i]->measures.phi_at_rest = phi[i];
     }
   }
+  if (figure.energy) {
+    const auto energies =
+        cycle_energies(store, records, {options.workers, options.fresh, options.report});
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      if (measured[i]) measured[i]->measures.energy = energies[i];
+    }
+  }
   result.measured = found.computed;
   result.damage = std::move(found.damage);
   result.pruned = std::move(found.pruned);
@@ -102,6 +110,7 @@ std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
       checkpoint.sha256 = record.sha256;
       checkpoint.measures = one->measures;
       checkpoint.measures.units = mechanical_units(input.run, record);
+      checkpoint.measures.motion = motion_of(input.run, record);
       checkpoint.crystallites = std::move(one->crystallites);
       const auto stiffness = record.observables.find("stiffness_N_per_m");
       if (stiffness != record.observables.end()) checkpoint.stiffness_N_per_m = stiffness->second;

@@ -96,13 +96,14 @@ class Measuring {
     const Results before = std::exchange(results_[i], std::nullopt);
     Checkpoint checkpoint = store_.load_checkpoint(*distinct_[i]);
     if (options_.prepare) options_.prepare(*distinct_[i], checkpoint);
-    const Analysis analysis = analyse(checkpoint);
+    const Analysis analysis = options_.instead ? Analysis() : analyse(checkpoint);
     std::vector<json> results;
     std::vector<DerivedObject> objects;
     std::vector<DerivedKey> names = keys(i);
     bool changed = false;
     for (std::size_t m = 0; m < measures_.size(); ++m) {
-      results.push_back(measures_[m].from(analysis));
+      results.push_back(options_.instead ? options_.instead(*distinct_[i], checkpoint)
+                                         : measures_[m].from(analysis));
       objects.push_back({std::move(names[m]), encode_result(results[m])});
       changed = changed || (before && encode_result((*before)[m]) != objects[m].content);
     }

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <set>
 
 #include "analysis/onset.hpp"
+#include "experiments/figures/within_cycle.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/registered.hpp"
@@ -70,7 +72,7 @@ std::vector<Column> names(const VariantNames& variants) {
   };
 }
 
-std::vector<Column> measures() {
+std::vector<Column> measures(bool ledger) {
   std::vector<Column> columns = {
       of_checkpoint("cycle", "cycles since the shear began, or steps of a stiffening",
                     [](const CheckpointRecord& c) { return c.cycle; }),
@@ -78,6 +80,7 @@ std::vector<Column> measures() {
                     [](const CheckpointRecord& c) { return c.sha256; }),
   };
   for (const ScalarMeasure& scalar : all_scalar_measures()) {
+    if (scalar.of_cycle() && !ledger) continue;
     columns.push_back({{std::string(scalar.name), std::string(scalar.meaning)},
                        [&scalar](const Row& row) -> json {
                          if (!row.measures) return nullptr;
@@ -169,7 +172,7 @@ json swept_value(const Field& field, const SelectedRun& selected) {
 }
 
 std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per,
-                                const VariantNames& variants) {
+                                const VariantNames& variants, bool ledger) {
   std::set<std::string> swept;
   for (const SelectedRun& run : runs) {
     for (const auto& [key, value] : run.membership.labels.items()) swept.insert(key);
@@ -180,7 +183,7 @@ std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per
     columns.push_back({{std::string(field.name), std::string(field.doc)},
                        [&field](const Row& row) { return swept_value(field, *row.selected); }});
   }
-  for (Column& column : measures()) columns.push_back(std::move(column));
+  for (Column& column : measures(ledger)) columns.push_back(std::move(column));
   if (per == RowPer::run) {
     for (Column& column : ends()) columns.push_back(std::move(column));
   }
@@ -194,6 +197,23 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const SelectedR
     return c.state == CheckpointState::rejected || c.cycle > end;
   });
   return found;
+}
+
+/// Of the records that have a row: all, or the last one of each run, whose records end at `ends`.
+std::vector<CycleEnergy> energies_of(const Store& store, std::span<const CheckpointRecord> records,
+                                     std::span<const std::size_t> ends, RowPer per,
+                                     const MeasureOptions& options) {
+  if (per == RowPer::checkpoint || records.empty()) {
+    return cycle_energies(store, records, options);
+  }
+  std::vector<CheckpointRecord> last;
+  for (const std::size_t end : ends) last.push_back(records[std::max<std::size_t>(end, 1) - 1]);
+  const std::vector<CycleEnergy> found = cycle_energies(store, last, options);
+  std::vector<CycleEnergy> energies(records.size());
+  for (std::size_t r = 0; r < ends.size(); ++r) {
+    energies[std::max<std::size_t>(ends[r], 1) - 1] = found[r];
+  }
+  return energies;
 }
 
 FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
@@ -231,11 +251,12 @@ Measures read_table_measures(std::span<const json> results, const RunRecord& run
   Measures measures = read_measures(results[0]);
   measures.mechanics = read_mechanics(results[1]);
   measures.units = mechanical_units(run, checkpoint);
+  measures.motion = motion_of(run, checkpoint);
   return measures;
 }
 
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
-                   const MeasureOptions& options) {
+                   const MeasureOptions& options, bool ledger) {
   std::vector<SelectedRun> runs = select_runs(store, selection);
   std::erase_if(runs, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
   std::vector<CheckpointRecord> records;
@@ -247,7 +268,10 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
   }
   MeasuredCheckpoints measured = measure_checkpoints(store, records, table_measures(), options);
 
-  const std::vector<Column> columns = columns_for(runs, per, VariantNames(store));
+  const std::vector<CycleEnergy> energies = ledger ? energies_of(store, records, ends, per, options)
+                                                   : std::vector<CycleEnergy>(records.size());
+
+  const std::vector<Column> columns = columns_for(runs, per, VariantNames(store), ledger);
   RunTable table;
   for (const Column& column : columns) table.columns.push_back(column);
   const auto add = [&](const Row& row) {
@@ -261,6 +285,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
       Row& row = rows.emplace_back(Row{&runs[r], &records[next]});
       if (measured.results[next]) {
         row.measures = read_table_measures(*measured.results[next], runs[r].run, records[next]);
+        row.measures->energy = energies[next];
       }
     }
     if (per == RowPer::checkpoint) {
@@ -279,14 +304,14 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
 }
 
 std::vector<TableColumn> table_columns(RowPer per) {
-  const std::vector<Column> columns = columns_for({}, per, VariantNames({}, {}));
+  const std::vector<Column> columns = columns_for({}, per, VariantNames({}, {}), true);
   return {columns.begin(), columns.end()};
 }
 
 std::vector<std::pair<TableColumn, json>> facts_of(const CheckpointRecord& record,
                                                    const std::optional<Measures>& found) {
   std::vector<std::pair<TableColumn, json>> facts;
-  for (const Column& column : measures()) {
+  for (const Column& column : measures(false)) {
     facts.emplace_back(column, column.cell({nullptr, &record, found}));
   }
   return facts;

@@ -35,8 +35,9 @@ struct RunTable {
 /// Rows in the order of declaration, then by cycle. Settled packings are not among the runs.
 /// Checkpoints count up to the length that the experiment asks for; rejected ones do not. Onsets
 /// come from the checkpoints at whole cycles, as in the figures. Throws NotFound as select_runs().
+/// With `ledger` it also has the energy of each cycle, which is simulated again for that.
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
-                   const MeasureOptions& options);
+                   const MeasureOptions& options, bool ledger = false);
 
 /// What the columns need to know of a checkpoint, and the results of measure_checkpoints() for it
 /// as Measures. Throws AnalysisError when they are something else.
@@ -44,7 +45,8 @@ std::span<const DerivedMeasure> table_measures();
 Measures read_table_measures(std::span<const nlohmann::json> results, const RunRecord& run,
                              const CheckpointRecord& checkpoint);
 
-/// Every column except those of swept parameters, which are named as in a manifest.
+/// Every column, those of a ledger included, except those of swept parameters, which are named as
+/// in a manifest.
 std::vector<TableColumn> table_columns(RowPer per);
 
 /// Names and values of what is known of one checkpoint, in the order of the columns.

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures of checkpoints that need no positions: the shear at one instant, and the energy of the
+// cycle before.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "experiments/figures/measure.hpp"
+
+namespace shearcell {
+
+/// Steps between two samples of an energy ledger.
+inline constexpr std::uint64_t kLedgerStride = 16;
+
+/// Shear strain and its rate at a checkpoint of a shear; else not a number.
+Motion motion_of(const RunRecord& run, const CheckpointRecord& checkpoint);
+
+/// The energy of the cycle that ends at each checkpoint, in the order of the records: simulated
+/// again from the checkpoint one cycle earlier, which takes half as long again as the cycle did,
+/// and kept like other measures. Not a number within a cycle, and where that earlier checkpoint was
+/// never made or cannot be read.
+std::vector<CycleEnergy> cycle_energies(const Store& store,
+                                        std::span<const CheckpointRecord> records,
+                                        const MeasureOptions& options);
+
+}  // namespace shearcell
