@@ -28,14 +28,23 @@ Eigen::Matrix3Xd near_walls(const Cell& cell, const State& state, const WallPose
   return state.position(Eigen::all, near);
 }
 
-// What the walls feel, as generalized forces. A wall point at height y is displaced in x by
-// (y - top) tan(theta): by (y - top) for each unit of tan(theta), and with the moving wall's height
-// by tan(theta), for points of a moving bottom wall, or -tan(theta), for all points below a moving
-// top wall.
+// What the walls feel, as generalized forces. A point of a side wall at height y is displaced in x
+// by (y - top) tan(theta), the horizontal walls as a whole by that of their planes' height: by
+// (y - top) for each unit of tan(theta), and with the moving wall's height by tan(theta), for a
+// moving bottom wall, or -tan(theta), for all but a moving top wall.
 struct WallForces {
   double on_tilt = 0;    // sum of f_x (y - top) [m d^2/s^2]
   double on_height = 0;  // sum of f_x times that sign [m d/s^2]
 };
+
+// That of a contact of the grain at `centre` with a wall, as it counts for its displacement.
+double height_of(const Cell& cell, const WallPose& pose, const Contact& c,
+                 const Eigen::Vector3d& centre) {
+  if (c.side == WallSide::bottom) return pose.bottom;
+  if (c.side == WallSide::top) return pose.top;
+  if (c.kind == Contact::Kind::wall_plane) return centre.y() - (0.5 - c.overlap) * c.normal.y();
+  return cell.wall_grains[static_cast<std::size_t>(c.other)].position.y();
+}
 
 WallForces wall_forces(const Cell& cell, const Scene& scene, const State& state,
                        const WallPose& pose) {
@@ -45,12 +54,7 @@ WallForces wall_forces(const Cell& cell, const Scene& scene, const State& state,
   for_each_contact(cell, grains, pose, [&](const Contact& c) {
     if (c.kind == Contact::Kind::grain) return;
     const double force = -scene.stiffness * c.overlap * c.normal.x();
-    const double y =
-        c.kind == Contact::Kind::wall_grain
-            ? wall_grain_position(cell, pose, cell.wall_grains[static_cast<std::size_t>(c.other)])
-                  .y()
-            : grains(1, c.grain) - (0.5 - c.overlap) * c.normal.y();
-    sum.on_tilt += force * (y - pose.top);
+    sum.on_tilt += force * (height_of(cell, pose, c, grains.col(c.grain)) - pose.top);
     if (bottom_moves && c.side == WallSide::bottom) sum.on_height += force;
     if (!bottom_moves && c.side != WallSide::top) sum.on_height -= force;
   });

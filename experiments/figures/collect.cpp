@@ -33,7 +33,8 @@ std::vector<std::uint64_t> asked_steps(const Store& store, const CollectedRun& r
   return checkpoint_steps(ask_of(store, run.run.id, run.membership), motion, first, last);
 }
 
-/// Of cycles first to last, those that the experiment asks for: an interruption leaves others.
+/// Of cycles first to last, with the phases that the experiment asks for: an interruption, or
+/// another experiment, leaves others.
 std::vector<CheckpointRecord> checkpoints_within(const Store& store,
                                                  const std::array<std::uint64_t, 2>& cycles,
                                                  const CollectedRun& run) {
@@ -41,8 +42,10 @@ std::vector<CheckpointRecord> checkpoints_within(const Store& store,
   const auto steps = asked_steps(store, run, static_cast<double>(cycles[0]), last);
   std::vector<CheckpointRecord> found = store.checkpoints(run.run.id, true);
   std::erase_if(found, [&](const CheckpointRecord& record) {
-    return record.state == CheckpointState::rejected ||
-           !std::ranges::binary_search(steps, record.step);
+    const bool within = record.cycle >= static_cast<double>(cycles[0]) && record.cycle <= last;
+    const bool whole = record.cycle == std::floor(record.cycle);
+    return record.state == CheckpointState::rejected || !within ||
+           !(whole || std::ranges::binary_search(steps, record.step));
   });
   return found;
 }

@@ -10,8 +10,9 @@
 
 namespace shearcell {
 
-/// Steps between two samples of an energy ledger.
-inline constexpr std::uint64_t kLedgerStride = 16;
+/// Steps between two samples of an energy ledger: half the period of the fastest vibration at Table
+/// I's time step.
+inline constexpr std::uint64_t kLedgerStride = 4;
 
 /// Shear strain and its rate at a checkpoint of a shear; else not a number.
 Motion motion_of(const RunRecord& run, const CheckpointRecord& checkpoint);

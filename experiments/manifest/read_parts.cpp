@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -36,15 +37,16 @@ std::span<const Field> until_fields() {
 
 std::vector<double> read_phases(const Node& node, const string& path, ProblemList& problems) {
   constexpr double Parameters::*none = nullptr;
-  static const Field field{"phases", "", "1", none, 0, 1, true, {}, ""};
+  constexpr double largest = std::numeric_limits<double>::max();
+  static const Field field{"phases", "", "1", none, -largest, largest, false, {}, ""};
   std::vector<double> phases;
   for (const Node& item : read_list(node, path, "[0.25, 0.5, 0.75]", problems)) {
     const auto read = read_parameter(field, item, path, problems);
     if (!read) continue;
     const auto phase = read->get<double>();
-    if (phase == 1) {
-      problems.add(item.at, path, "is the end of the cycle", shown(item),
-                   "Leave it out; every_cycles has it.");
+    if (!(phase > 0 && phase < 1)) {
+      problems.add(item.at, path, "is not within a cycle", shown(item),
+                   "It takes fractions p of a cycle, 0 < p < 1.");
     } else if (!phases.empty() && phase <= phases.back()) {
       problems.add(item.at, path, "is not greater than the phase before it", shown(item),
                    "List them in ascending order, each once.");

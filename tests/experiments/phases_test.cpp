@@ -7,12 +7,10 @@
 #include <cmath>
 #include <thread>
 
-#include "analysis/mechanics.hpp"
 #include "experiments/figures/collect.hpp"
 #include "experiments/figures/draw.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/figures/within_cycle.hpp"
-#include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/asks.hpp"
 #include "experiments/runner/replay.hpp"
 #include "provenance/errors.hpp"
@@ -189,62 +187,54 @@ TEST_F(Phases, AreRefusedWhereTheirRecordIsNotOurs) {
   EXPECT_THROW(missing_checkpoints(plain_, run), StoreDamaged);
 }
 
-// The work of the walls is the area of the loop of their stress against the strain, times the
-// volume. What the measures hold of it: the forces in x on the horizontal walls, whose stress is
-// that of the side walls only where it is homogeneous; and the stress of the interior grains.
-TEST_F(Phases, DrawALoopWhoseAreaIsTheWorkOfTheWalls) {
+// The area of the loop of the interior stress is not the work of the walls, as the layers at the
+// walls deform in their own way; it was 4 % from it here, which says that signs, units and volume
+// fit. Stress is positive in compression, so the loop turns the other way. The walls' own loop is
+// tested with the ledger.
+TEST_F(Phases, DrawALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
+  constexpr int parts = 16;
   std::string phases;
-  for (int k = 1; k < 64; ++k) phases += fmt::format("{}{}", k > 1 ? ", " : "", k / 64.0);
-  compute(store_, manifest("checkpoints: {phases: [" + phases + "]}\n"));
-  const RunTable table = run_table(store_, {}, RowPer::checkpoint, {.workers = 2}, true);
-  const auto column = [&](std::string_view name) {
-    const auto at = std::ranges::find(table.columns, name, &TableColumn::name);
-    return static_cast<std::size_t>(at - table.columns.begin());
-  };
-  const double d = 3e-3;
-  const RunRecord run = sheared(store_);
-  const Checkpoint last = store_.load_checkpoint(store_.checkpoints(run.id).back());
-  double walls = 0, interior = 0, work = 0, dissipation = 0;
+  for (int k = 1; k < parts; ++k) phases += fmt::format("{}{}", k > 1 ? ", " : "", k / 16.0);
+  compute(store_, manifest("checkpoints: {every_cycles: 2, phases: [" + phases + "]}\n"));
+  const RunTable table = run_table(store_, {}, RowPer::checkpoint, {2, false, {}}, true);
   const auto value = [&](std::size_t row, std::string_view name) {
-    return table.rows[row][column(name)].get<double>();
+    const auto at = std::ranges::find(table.columns, name, &TableColumn::name);
+    const nlohmann::json& cell =
+        table.rows.at(row).at(static_cast<std::size_t>(at - table.columns.begin()));
+    return cell.is_null() ? std::nan("") : cell.get<double>();
   };
-  std::size_t steps = 0;
+  const RunRecord run = sheared(store_);
+  const auto records = store_.checkpoints(run.id);
+  ASSERT_EQ(records.size(), table.rows.size());
+  const Checkpoint last = store_.load_checkpoint(records.back());
+  const double d = last.units.diameter_m;
+  double area = 0;
+  int steps = 0;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    if (value(row, "cycle") == 3) {
-      work = value(row, "work_of_walls_per_cycle_J");
-      dissipation = value(row, "dissipation_per_cycle_J");
-      EXPECT_EQ(value(row, "shear_strain"), 0);
-    }
-    if (value(row, "cycle") <= 2) continue;
+    const double cycle = value(row, "cycle");
+    EXPECT_NEAR(value(row, "shear_strain"), std::tan(0.0833 * std::sin(2 * M_PI * cycle)), 1e-12);
+    EXPECT_EQ(std::isnan(value(row, "work_of_walls_per_cycle_J")), cycle != 3) << cycle;
+    if (cycle <= 2) continue;
     const double strain = value(row, "shear_strain") - value(row - 1, "shear_strain");
     for (const std::size_t end : {row - 1, row}) {
-      const double height = value(end, "cell_height_d") * d;
-      const double volume = height * last.cell.width * last.cell.depth * d * d;
-      walls +=
-          0.25 * strain * height * (value(end, "force_bottom_x_N") - value(end, "force_top_x_N"));
-      interior += 0.5 * strain * volume * value(end, "stress_xy_Pa");
+      area += 0.5 * strain * value(end, "stress_xy_Pa") * value(end, "cell_height_d") *
+              last.cell.width * last.cell.depth * d * d * d;
     }
     ++steps;
   }
-  EXPECT_EQ(steps, 64U);
-  std::printf(
-      "work %.4g J, dissipated %.4g J; loop of the wall forces %.4g J, of interior stress "
-      "%.4g J\n",
-      work, dissipation, walls, interior);
-  EXPECT_GT(work, 0);
-  EXPECT_GT(dissipation, 0);
+  EXPECT_EQ(steps, parts);
+  const std::size_t end = table.rows.size() - 1;
+  const double work = value(end, "work_of_walls_per_cycle_J");
+  const double lost = value(end, "dissipation_per_cycle_J");
+  const double stored = value(end, "energy_stored_per_cycle_J");
+  std::printf("work %.4g J, dissipated %.4g J, stored %.4g J; interior stress %.4g J\n", work, lost,
+              stored, area);
+  EXPECT_NEAR(lost + stored, work, 0.03 * lost);
+  EXPECT_NEAR(-area, work, 0.2 * work);
 
-  // As computed step by step.
-  const Parameters p = read_stage(run.resolved).parameters;
-  const auto records = store_.checkpoints(run.id);
-  const auto energies = cycle_energies(store_, records, {.workers = 2});
-  const double unit = mechanical_units(run, records.back()).kinetic_J;
-  EXPECT_EQ(energies.back().work_of_walls * unit, work);
-  EXPECT_TRUE(std::isnan(energies.front().work_of_walls));
-  EXPECT_TRUE(std::isnan(energies.at(1).work_of_walls));
-  EXPECT_NEAR(energies.back().dissipation + energies.back().stored, energies.back().work_of_walls,
-              0.05 * energies.back().dissipation);
-  EXPECT_EQ(p.amplitude_rad, 0.0833);
+  // As kept, and as a plot or a claim has it.
+  const auto energies = cycle_energies(store_, records, {1, false, {}});
+  EXPECT_EQ(energies.back().work_of_walls * mechanical_units(run, records.back()).kinetic_J, work);
 }
 
 }  // namespace
