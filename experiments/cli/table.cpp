@@ -65,8 +65,9 @@ void add_table(CLI::App& app, Context& context) {
   CLI::Option* format = command->add_option("--format", options->format, "csv or json")
                             ->check(CLI::IsMember({"csv", "json"}))
                             ->capture_default_str();
-  command->add_flag("--ledger", options->ledger,
-                    "Add work and dissipation of each cycle; simulates every one of them again");
+  command->add_flag(
+      "--ledger", options->ledger,
+      "Add work and dissipation of each cycle; simulates each again, at 3 to 4 times its cost");
   command->add_option("--out", options->out, "File to write (default: standard output)")
       ->type_name("FILE");
   add_common_options(*command, context, true);

@@ -10,17 +10,17 @@
 
 namespace shearcell {
 
-/// Steps between two samples of an energy ledger: half the period of the fastest vibration at Table
-/// I's time step.
-inline constexpr std::uint64_t kLedgerStride = 4;
+/// Steps between two samples of an energy ledger: a period of the fastest vibration at Table I's
+/// time step.
+inline constexpr std::uint64_t kLedgerStride = 8;
 
 /// Shear strain and its rate at a checkpoint of a shear; else not a number.
 Motion motion_of(const RunRecord& run, const CheckpointRecord& checkpoint);
 
 /// The energy of the cycle that ends at each checkpoint, in the order of the records: simulated
-/// again from the checkpoint one cycle earlier, which takes half as long again as the cycle did,
-/// and kept like other measures. Not a number within a cycle, and where that earlier checkpoint was
-/// never made or cannot be read.
+/// again from the checkpoint one cycle earlier, which takes three to four times as long as the
+/// cycle did (protocols/ledger.hpp), and kept like other measures. Not a number within a cycle, and
+/// where that earlier checkpoint was never made or cannot be read.
 std::vector<CycleEnergy> cycle_energies(const Store& store,
                                         std::span<const CheckpointRecord> records,
                                         const MeasureOptions& options);
