@@ -55,7 +55,9 @@ Motion motion_of(const RunRecord& run, const CheckpointRecord& checkpoint) {
     const Drive motion = drive(parameters);
     const auto [theta, rate] = tilt(motion, checkpoint.step);
     const SineCosine sc = sine_cosine(theta);
-    return {sc.sine / sc.cosine, kTurn / parameters.period_s * rate / (sc.cosine * sc.cosine)};
+    // Adding 0 makes -0 a 0.
+    return {sc.sine / sc.cosine + 0.0,
+            kTurn / parameters.period_s * rate / (sc.cosine * sc.cosine) + 0.0};
   } catch (const std::runtime_error&) {
     return {};  // not a run of this program
   }

@@ -229,7 +229,8 @@ TEST_F(Phases, DrawALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
   const double stored = value(end, "energy_stored_per_cycle_J");
   std::printf("work %.4g J, dissipated %.4g J, stored %.4g J; interior stress %.4g J\n", work, lost,
               stored, area);
-  EXPECT_NEAR(lost + stored, work, 0.03 * lost);
+  // The time step is 2.3 times that of Table I, and the error of second order.
+  EXPECT_NEAR(lost + stored, work, 0.06 * lost);
   EXPECT_NEAR(-area, work, 0.2 * work);
 
   // As kept, and as a plot or a claim has it.
