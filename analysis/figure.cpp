@@ -86,6 +86,10 @@ const std::vector<Figure>& figures() {
 
 }  // namespace
 
+bool Figure::needs_derived(std::string_view measure) const {
+  return std::ranges::find(derived, measure) != derived.end();
+}
+
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
   for (const nlohmann::json* values : {&run.labels, &run.parameters}) {
     if (values->is_object() && values->contains(key)) return values->at(key);

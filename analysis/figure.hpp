@@ -2,6 +2,7 @@
 // A figure turns measured runs into tables and verdicts. The same runs give the same bytes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -68,6 +69,11 @@ struct Figure {
   bool at_rest = false;                ///< needs phi_at_rest of cycles 1 to early_cycles
   /// Names of the derived measures that it needs besides the scalars (derived_measures.hpp).
   std::vector<std::string> derived = {};
+  /// Needs the checkpoints of these cycles, first to last, those at phases of a cycle included;
+  /// other figures are of whole cycles.
+  std::optional<std::array<std::uint64_t, 2>> within = {};
+
+  bool needs_derived(std::string_view measure) const;
 };
 
 /// The value of a parameter, swept or not; null if the run has no such key.

@@ -151,7 +151,16 @@ std::span<const ScalarMeasure> all_scalar_measures() {
       {"msd_crystal_boundary_d2", "d^2", "the same of crystalline grains with other neighbours",
        NumberOf{"motion"}},
       {"msd_disordered_d2", "d^2", "the same of grains that are not crystalline",
-       NumberOf{"motion"}}};
+       NumberOf{"motion"}},
+      {"shear_strain", "1", "tan(theta), theta the tilt of the side walls", NumberOf{"drive"}},
+      {"shear_rate_per_s", "1/s", "rate of change of shear_strain", NumberOf{"drive"}},
+      {"work_of_walls_per_cycle_J", "J",
+       "work of the tilting walls on all grains in the cycle that ends here", NumberOf{"ledger"}},
+      {"dissipation_per_cycle_J", "J",
+       "energy that all grains and the moving wall lost by drag in that cycle", NumberOf{"ledger"}},
+      {"energy_stored_per_cycle_J", "J",
+       "change of all elastic, kinetic and gravitational energy and of the load's in that cycle",
+       NumberOf{"ledger"}}};
   return measures;
 }
 

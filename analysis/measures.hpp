@@ -54,7 +54,9 @@ struct MechanicalMember {
 
 /// One of Measures::numbers.
 struct NumberOf {
-  std::string_view derived;  ///< the DerivedMeasure that has it
+  /// The DerivedMeasure that has it; "drive" and "ledger" are not taken from an Analysis
+  /// (experiments/figures/within_cycle.hpp).
+  std::string_view derived;
 };
 
 /// A scalar of Measures, by the name that tables, plots and exports give it.

@@ -328,6 +328,7 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   for (const std::string& name : {plot.x, plot.y}) {
     if (const ScalarMeasure* one = find_measure(name)) figure.derived.emplace_back(one->derived());
   }
+  figure.within = plot.cycles;
   if (!plot.by.empty()) {
     figure.form = FigureForm::groups;
     figure.keys = {plot.by, x};

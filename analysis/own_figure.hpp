@@ -24,6 +24,8 @@ struct PlotSpec {
   bool log_x = false, log_y = false;
   std::optional<std::uint64_t> cycle =
       {};  ///< of curves, or with a parameter as x; default: the last one
+  /// Cycles first to last, with the checkpoints at their phases; with traces only.
+  std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string x_symbol = {}, x_unit = {};  ///< of that parameter; "" for none
 
   bool operator==(const PlotSpec&) const = default;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "core/scene.hpp"
 
@@ -20,6 +22,10 @@ Tilt tilt(const Drive& drive, std::uint64_t step);
 inline std::uint64_t cycle_steps(const Drive& drive) {
   return drive.steps_per_cycle + drive.pause_steps;
 }
+
+/// The steps nearest to these fractions of a cycle, without its beginning and end, ascending and
+/// each once. Fractions that are not between 0 and 1 are left out.
+std::vector<std::uint64_t> steps_at(std::span<const double> phases, const Drive& drive);
 
 /// Whether the moving wall keeps its height from this step to the next.
 inline bool holds_wall(const Drive& drive, std::uint64_t step) {

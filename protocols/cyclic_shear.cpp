@@ -2,27 +2,42 @@
 #include "protocols/cyclic_shear.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 namespace shearcell {
 
-CyclicShear::CyclicShear(const Drive& drive, std::uint64_t cycles, std::uint64_t checkpoint_cycles)
-    : drive_(drive),
-      cycles_(cycles),
-      checkpoint_cycles_(std::max<std::uint64_t>(1, checkpoint_cycles)) {}
+std::uint64_t next_checkpoint(std::span<const CheckpointCadence> cadences, const Drive& drive,
+                              std::uint64_t step) {
+  std::uint64_t next = std::numeric_limits<std::uint64_t>::max();
+  for (const CheckpointCadence& cadence : cadences) {
+    const std::uint64_t stride =
+        std::max<std::uint64_t>(1, cadence.every_cycles) * cycle_steps(drive);
+    const std::uint64_t begin = step - step % stride;
+    const auto later = std::ranges::upper_bound(cadence.steps, step - begin);
+    next = std::min(next, begin + (later == cadence.steps.end() ? stride : *later));
+  }
+  return next;
+}
+
+CyclicShear::CyclicShear(const Drive& drive, std::uint64_t cycles, std::uint64_t checkpoint_cycles,
+                         std::vector<CheckpointCadence> more)
+    : drive_(drive), cycles_(cycles), cadences_(std::move(more)) {
+  cadences_.push_back({checkpoint_cycles});
+}
 
 StageProgress CyclicShear::advance(Simulation& simulation, std::uint64_t most_steps) const {
   const std::uint64_t end = expected_steps();
-  const std::uint64_t stride = checkpoint_cycles_ * cycle_steps(drive_);
   const std::uint64_t step = simulation.step();
+  const std::uint64_t due = next_checkpoint(cadences_, drive_, step);
   if (step < end) {
-    const std::uint64_t to_checkpoint = stride - step % stride;
-    simulation.advance(drive_, std::min({most_steps, to_checkpoint, end - step}));
+    simulation.advance(drive_, std::min({most_steps, due - step, end - step}));
   }
   StageProgress progress;
   progress.cycle =
       static_cast<double>(simulation.step()) / static_cast<double>(cycle_steps(drive_));
   progress.finished = simulation.step() >= end;
-  progress.checkpoint_due = progress.finished || simulation.step() % stride == 0;
+  progress.checkpoint_due = progress.finished || simulation.step() == due;
   return progress;
 }
 

@@ -2,14 +2,29 @@
 // Tilts the side walls periodically (supplement B.5), without a pause or with one after each cycle.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "protocols/protocol.hpp"
 
 namespace shearcell {
 
+/// Checkpoints after every so many cycles, and at these steps of each cycle that follows one.
+struct CheckpointCadence {
+  std::uint64_t every_cycles = 1;
+  std::vector<std::uint64_t> steps = {};  ///< since the cycle began, ascending; see steps_at()
+};
+
+/// The first step after `step` at which one of the cadences has a checkpoint. There must be one.
+std::uint64_t next_checkpoint(std::span<const CheckpointCadence> cadences, const Drive& drive,
+                              std::uint64_t step);
+
 class CyclicShear final : public Protocol {
  public:
-  /// Shears for `cycles` cycles; a checkpoint is due after every `checkpoint_cycles` of them.
-  CyclicShear(const Drive& drive, std::uint64_t cycles, std::uint64_t checkpoint_cycles);
+  /// Shears for `cycles` cycles; a checkpoint is due after every `checkpoint_cycles` of them, and
+  /// where `more` has one.
+  CyclicShear(const Drive& drive, std::uint64_t cycles, std::uint64_t checkpoint_cycles,
+              std::vector<CheckpointCadence> more = {});
   Drive drive() const override { return drive_; }
   StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const override;
   std::uint64_t expected_steps() const override { return cycles_ * cycle_steps(drive_); }
@@ -17,7 +32,7 @@ class CyclicShear final : public Protocol {
  private:
   Drive drive_;
   std::uint64_t cycles_;
-  std::uint64_t checkpoint_cycles_;
+  std::vector<CheckpointCadence> cadences_;
 };
 
 }  // namespace shearcell

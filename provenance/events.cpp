@@ -129,7 +129,10 @@ NewEvent encode(const Any& event) {
     } else if constexpr (has_fields<E>) {
       json payload = written(e);
       if constexpr (std::is_same_v<E, RunDeclared>) {
-        if (!e.membership.until.is_null()) payload["membership"]["until"] = e.membership.until;
+        const Membership& m = e.membership;
+        json& place = payload["membership"];
+        if (!m.until.is_null()) place["until"] = m.until;
+        if (!m.checkpoint_phases.empty()) place["checkpoint_phases"] = m.checkpoint_phases;
       }
       return {std::string(E::kType), std::move(payload)};
     } else {

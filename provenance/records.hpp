@@ -24,10 +24,11 @@ struct Membership {
   std::uint64_t checkpoint_every = 1;  ///< requested cycles between checkpoints
   std::uint64_t target_cycles = 0;     ///< requested length of the run; set by the store
 
-  /// Measure that may end the run before that; null for none. Recorded, but not read back.
-  nlohmann::json until = nullptr;
+  // Recorded where there is one, but not read back: experiments/runner/asks.hpp reads the events.
+  nlohmann::json until = nullptr;              ///< measure that may end the run before that
+  std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle, for more checkpoints
 
-  /// What an event records of it, without `until`.
+  /// What an event records of it, without the last two.
   static void fields(auto& m, auto field) {
     field("experiment", m.experiment), field("scale", m.scale), field("variant", m.variant);
     field("labels", m.labels), field("seed", m.seed), field("manifest", m.manifest);

@@ -14,8 +14,11 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "core/drive.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "experiments/runner/terminal.hpp"
 #include "provenance/io/temporary_folder.hpp"
 #include "provenance/ro_crate.hpp"
@@ -55,8 +58,10 @@ struct CycleRange {
   double last = std::numeric_limits<double>::infinity();
   double every = 0;  ///< 0 takes all
 
-  bool holds(double cycle) const {
-    return cycle >= first && cycle <= last && (every == 0 || std::fmod(cycle - first, every) == 0);
+  /// `near` [cycles] is half a time step: 3.3 is the step nearest to it.
+  bool holds(double cycle, double near) const {
+    return cycle >= first - near && cycle <= last + near &&
+           (every == 0 || std::abs(std::remainder(cycle - first, every)) <= near);
   }
 };
 
@@ -84,9 +89,13 @@ CycleRange parse_cycles(const std::string& text) {
 std::vector<CheckpointRecord> chosen(const Store& store, const RunRecord& run,
                                      const std::string& cycles) {
   const CycleRange range = parse_cycles(cycles);
+  const bool shears = run.kind == name_of(Stage::shear);
+  const double near =
+      shears ? 0.5 / static_cast<double>(cycle_steps(drive(read_stage(run.resolved).parameters)))
+             : 0;
   std::vector<CheckpointRecord> records;
   for (CheckpointRecord& record : store.checkpoints(run.id)) {
-    if (range.holds(record.cycle)) records.push_back(std::move(record));
+    if (range.holds(record.cycle, near)) records.push_back(std::move(record));
   }
   if (records.empty()) {
     throw std::invalid_argument(fmt::format(

@@ -19,16 +19,17 @@ struct TableOptions {
   std::string format = "csv";
   std::string curve;
   std::string out;
+  bool ledger = false;
 };
 
 void table(const TableOptions& options, Context& context) {
   const Store store(context.store, Access::read);
   if (!options.out.empty()) require_ours(options.out, is_table);
   const CurveMeasure* curve = find_curve_measure(options.curve);
-  const RunTable made = curve != nullptr
-                            ? curve_table(store, options.selection, *curve, measure_options())
-                            : run_table(store, options.selection,
-                                        value_of<RowPer>(options.per).value(), measure_options());
+  const RunTable made =
+      curve != nullptr ? curve_table(store, options.selection, *curve, measure_options())
+                       : run_table(store, options.selection, value_of<RowPer>(options.per).value(),
+                                   measure_options(), options.ledger);
   const bool json = context.json || options.format == "json";
   const std::string text = json ? to_json(made) : to_csv(made);
   if (options.out.empty()) {
@@ -88,6 +89,11 @@ void add_table(CLI::App& app, Context& context) {
   CLI::Option* format = command->add_option("--format", options->format, "csv or json")
                             ->check(CLI::IsMember({"csv", "json"}))
                             ->capture_default_str();
+  command
+      ->add_flag(
+          "--ledger", options->ledger,
+          "Add work and dissipation of each cycle; simulates each again, at 3 to 4 times its cost")
+      ->excludes(command->get_option("--curve"));
   command->add_option("--out", options->out, "File to write (default: standard output)")
       ->type_name("FILE");
   add_common_options(*command, context, true);
@@ -96,7 +102,8 @@ void add_table(CLI::App& app, Context& context) {
       "Columns (one more for each swept parameter after the seed, named as in a manifest; an empty "
       "field\nis unknown or does not apply):\n" +
       columns_text(RowPer::run) +
-      "The last ones, from critical_size on, are those of --per run, whose measures are of the "
+      "Columns named per_cycle come with --ledger alone. The last ones, from critical_size on, are "
+      "those of --per run, whose measures are of the "
       "newest\ncheckpoint. A row for each experiment that shares a run, up to the cycles that it "
       "asks for.\n\nCurves:\n" +
       curves_text() +

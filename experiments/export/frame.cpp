@@ -6,6 +6,7 @@
 
 #include "analysis/common_neighbours.hpp"
 #include "analysis/motion.hpp"
+#include "experiments/figures/within_cycle.hpp"
 
 namespace shearcell {
 namespace {
@@ -125,6 +126,7 @@ Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, con
   Analysis analysis = analyse(checkpoint);
   if (sources != nullptr) add_numbers(checkpoint, record, *sources, analysis);
   analysis.measures.units = mechanical_units(run.run, record);
+  add_drive(run.run, record, analysis.measures);
   for (double& pressure : analysis.grains.pressure) pressure *= analysis.measures.units.stress_Pa;
   const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
   Frame frame;

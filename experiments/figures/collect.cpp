@@ -13,18 +13,48 @@
 #include <utility>
 
 #include "analysis/own_figure.hpp"
+#include "core/drive.hpp"
+#include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/names.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "experiments/runner/asks.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
 namespace {
 
+/// Steps at which the experiment asks for a checkpoint in cycles first to last; empty for a run
+/// that is no shear.
+std::vector<std::uint64_t> asked_steps(const Store& store, const CollectedRun& run, double first,
+                                       double last) {
+  if (run.run.kind != name_of(Stage::shear)) return {};
+  const Drive motion = drive(read_stage(run.run.resolved).parameters);
+  return checkpoint_steps(ask_of(store, run.run.id, run.membership), motion, first, last);
+}
+
+/// Of cycles first to last, with the phases that the experiment asks for: an interruption, or
+/// another experiment, leaves others.
+std::vector<CheckpointRecord> checkpoints_within(const Store& store,
+                                                 const std::array<std::uint64_t, 2>& cycles,
+                                                 const CollectedRun& run) {
+  const auto last = static_cast<double>(std::min(cycles[1], run.membership.target_cycles));
+  const auto steps = asked_steps(store, run, static_cast<double>(cycles[0]), last);
+  std::vector<CheckpointRecord> found = store.checkpoints(run.run.id, true);
+  std::erase_if(found, [&](const CheckpointRecord& record) {
+    const bool within = record.cycle >= static_cast<double>(cycles[0]) && record.cycle <= last;
+    const bool whole = record.cycle == std::floor(record.cycle);
+    return record.state == CheckpointState::rejected || !within ||
+           !(whole || std::ranges::binary_search(steps, record.step));
+  });
+  return found;
+}
+
 /// At whole cycles, up to the end that the experiment asks for: another experiment may have
 /// extended the run. A figure that measures nothing gets the last one only.
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
                                              const CollectedRun& run) {
+  if (figure.within) return checkpoints_within(store, *figure.within, run);
   std::vector<CheckpointRecord> found;
   const auto end = static_cast<double>(run.membership.target_cycles);
   for (const CheckpointRecord& record : store.checkpoints(run.run.id, true)) {
@@ -107,23 +137,39 @@ class Chosen {
   std::vector<std::string> notes_;
 };
 
+std::size_t missing_of(const CollectedRun& run) {
+  if (run.run.kind != "shear" || run.checkpoints.empty()) return 0;
+  std::set<double> cycles;
+  for (const CheckpointRecord& record : run.checkpoints) cycles.insert(record.cycle);
+  const std::uint64_t every = std::max<std::uint64_t>(run.membership.checkpoint_every, 1);
+  std::size_t missing = 0;
+  for (double cycle = 0; cycle < *cycles.rbegin(); cycle += static_cast<double>(every)) {
+    missing += cycles.contains(cycle) ? 0 : 1;
+  }
+  return missing;
+}
+
+std::size_t missing_within(const Store& store, const std::array<std::uint64_t, 2>& cycles,
+                           const CollectedRun& run) {
+  const double end = std::min(run.run.cycle, static_cast<double>(run.membership.target_cycles));
+  auto asked = asked_steps(store, run, static_cast<double>(cycles[0]),
+                           std::min(end, static_cast<double>(cycles[1])));
+  for (const CheckpointRecord& record : run.checkpoints) std::erase(asked, record.step);
+  return asked.size();
+}
+
 /// What was asked for up to the end of the runs, and is not there: a manifest may state a denser
 /// cadence than the runs were made with.
-std::vector<std::string> never_made(const std::vector<CollectedRun>& runs) {
+std::vector<std::string> never_made(const Store& store, const Figure& figure,
+                                    const std::vector<CollectedRun>& runs) {
   struct Lack {
     std::size_t checkpoints = 0;
     std::set<std::string> runs;
   };
   Lack ours, lammps;
   for (const CollectedRun& run : runs) {
-    if (run.run.kind != "shear" || run.checkpoints.empty()) continue;
-    std::set<double> cycles;
-    for (const CheckpointRecord& record : run.checkpoints) cycles.insert(record.cycle);
-    const std::uint64_t every = std::max<std::uint64_t>(run.membership.checkpoint_every, 1);
-    std::size_t missing = 0;
-    for (double cycle = 0; cycle < *cycles.rbegin(); cycle += static_cast<double>(every)) {
-      missing += cycles.contains(cycle) ? 0 : 1;
-    }
+    const std::size_t missing =
+        figure.within ? missing_within(store, *figure.within, run) : missing_of(run);
     if (missing == 0) continue;
     Lack& lack = engine_of(run.run.resolved) == EngineKind::lammps ? lammps : ours;
     lack.checkpoints += missing;
@@ -293,7 +339,8 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }
   if (wanted.figure.needs != FigureNeeds::none) {
-    for (std::string& note : never_made(collected.runs)) collected.notes.push_back(std::move(note));
+    for (std::string& note : never_made(store, wanted.figure, collected.runs))
+      collected.notes.push_back(std::move(note));
   }
   return collected;
 }

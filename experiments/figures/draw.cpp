@@ -14,6 +14,7 @@
 #include "experiments/figures/at_rest.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/measure.hpp"
+#include "experiments/figures/within_cycle.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/derived.hpp"
@@ -32,6 +33,7 @@ std::vector<DerivedMeasure> needed(const Figure& figure) {
   if (figure.needs == FigureNeeds::none) return {};
   std::vector<DerivedMeasure> measures = {scalar_measures()};
   for (const std::string& name : figure.derived) {
+    if (name == "drive" || name == "ledger") continue;  // within_cycle.hpp
     if (std::ranges::find(measures, name, &DerivedMeasure::name) == measures.end()) {
       measures.push_back(derived_measure(name));
     }
@@ -75,6 +77,13 @@ std::vector<std::optional<FigureMeasures>> measures_of(const Store& store, const
       if (measured[i]) measured[i]->measures.phi_at_rest = phi[i];
     }
   }
+  if (figure.needs_derived("ledger")) {
+    const auto energies =
+        cycle_energies(store, records, {options.workers, options.fresh, options.report});
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      if (measured[i]) add_energy(energies[i], measured[i]->measures);
+    }
+  }
   result.measured = found.computed;
   result.damage = std::move(found.damage);
   result.pruned = std::move(found.pruned);
@@ -106,6 +115,8 @@ std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
       checkpoint.sha256 = record.sha256;
       checkpoint.measures = one->measures;
       checkpoint.measures.units = mechanical_units(input.run, record);
+      add_drive(input.run, record, checkpoint.measures);
+      add_drive(input.run, record, checkpoint.measures);
       checkpoint.crystallites = std::move(one->crystallites);
       const auto stiffness = record.observables.find("stiffness_N_per_m");
       if (stiffness != record.observables.end()) checkpoint.stiffness_N_per_m = stiffness->second;

@@ -92,12 +92,13 @@ class Measuring {
         options_.fresh ? std::exchange(results_[i], Results(measures_.size())) : results_[i];
     Checkpoint checkpoint = store_.load_checkpoint(record);
     if (options_.prepare) options_.prepare(record, checkpoint);
-    const Analysis analysis = analyse(checkpoint);
+    const Analysis analysis = options_.instead ? Analysis() : analyse(checkpoint);
     std::vector<DerivedObject> objects;
     bool changed = false;
     for (std::size_t m = 0; m < measures_.size(); ++m) {
       if (!results_[i][m].is_null()) continue;
-      auto result = sources_.measure(record, checkpoint, analysis, measures_[m]);
+      auto result = options_.instead ? std::optional(options_.instead(record, checkpoint))
+                                     : sources_.measure(record, checkpoint, analysis, measures_[m]);
       if (!result) continue;
       objects.push_back({keys_[i * measures_.size() + m], encode_result(*result)});
       const bool known = !before[m].is_null();

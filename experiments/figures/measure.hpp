@@ -23,6 +23,9 @@ struct MeasureOptions {
   /// Changes a checkpoint before it is measured; the names of the measures must say so. May be
   /// empty.
   std::function<void(const CheckpointRecord& record, Checkpoint& checkpoint)> prepare = {};
+  /// Computes the one measure in place of an analysis. May be empty.
+  std::function<nlohmann::json(const CheckpointRecord& record, const Checkpoint& checkpoint)>
+      instead = {};
 };
 
 struct MeasuredCheckpoints {

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <set>
 
 #include "analysis/onset.hpp"
+#include "experiments/figures/within_cycle.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/registered.hpp"
@@ -77,9 +79,10 @@ std::vector<Column> which_checkpoint() {
                         [](const CheckpointRecord& c) { return c.sha256; })};
 }
 
-std::vector<Column> measures() {
+std::vector<Column> measures(bool ledger) {
   std::vector<Column> columns = which_checkpoint();
   for (const ScalarMeasure& scalar : all_scalar_measures()) {
+    if (scalar.derived() == "ledger" && !ledger) continue;
     columns.push_back({{std::string(scalar.name), std::string(scalar.meaning)},
                        [&scalar](const Row& row) -> json {
                          if (!row.measures) return nullptr;
@@ -187,9 +190,9 @@ std::vector<Column> columns_of_runs(const std::vector<SelectedRun>& runs,
 }
 
 std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per,
-                                const VariantNames& variants) {
+                                const VariantNames& variants, bool ledger) {
   std::vector<Column> columns = columns_of_runs(runs, variants);
-  for (Column& column : measures()) columns.push_back(std::move(column));
+  for (Column& column : measures(ledger)) columns.push_back(std::move(column));
   if (per == RowPer::run) {
     for (Column& column : ends()) columns.push_back(std::move(column));
   }
@@ -233,6 +236,24 @@ Selected select_and_measure(const Store& store, const RunSelection& selection,
   return all;
 }
 
+/// Of the records that have a row: all, or the last one of each run.
+std::vector<CycleEnergy> energies_of(const Store& store, const Selected& all, RowPer per,
+                                     const MeasureOptions& options) {
+  if (per == RowPer::checkpoint || all.records.empty()) {
+    return cycle_energies(store, all.records, options);
+  }
+  std::vector<CheckpointRecord> last;
+  for (const std::size_t end : all.ends) {
+    last.push_back(all.records[std::max<std::size_t>(end, 1) - 1]);
+  }
+  const std::vector<CycleEnergy> found = cycle_energies(store, last, options);
+  std::vector<CycleEnergy> energies(all.records.size());
+  for (std::size_t r = 0; r < last.size(); ++r) {
+    energies[std::max<std::size_t>(all.ends[r], 1) - 1] = found[r];
+  }
+  return energies;
+}
+
 FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
   FigureRun history;
   history.labels = selected.membership.labels;
@@ -269,14 +290,17 @@ std::optional<Measures> read_table_measures(std::span<const json> results, const
   if (results.front().is_null()) return std::nullopt;
   Measures measures = read_results(table_measures(), results);
   measures.units = mechanical_units(run, checkpoint);
+  add_drive(run, checkpoint, measures);
   return measures;
 }
 
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
-                   const MeasureOptions& options) {
+                   const MeasureOptions& options, bool ledger) {
   RunTable table;
   const Selected all = select_and_measure(store, selection, table_measures(), options, table);
-  const std::vector<Column> columns = columns_for(all.runs, per, VariantNames(store));
+  const std::vector<Column> columns = columns_for(all.runs, per, VariantNames(store), ledger);
+  const std::vector<CycleEnergy> energies =
+      ledger ? energies_of(store, all, per, options) : std::vector<CycleEnergy>();
   for (const Column& column : columns) table.columns.push_back(column);
   const auto add = [&](const Row& row) {
     std::vector<json>& cells = table.rows.emplace_back();
@@ -288,6 +312,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     for (; next < all.ends[r]; ++next) {
       Row& row = rows.emplace_back(Row{&all.runs[r], &all.records[next]});
       row.measures = read_table_measures(all.results[next], all.runs[r].run, all.records[next]);
+      if (ledger && row.measures) add_energy(energies[next], *row.measures);
     }
     if (per == RowPer::checkpoint) {
       for (const Row& row : rows) add(row);
@@ -331,14 +356,14 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
 }
 
 std::vector<TableColumn> table_columns(RowPer per) {
-  const std::vector<Column> columns = columns_for({}, per, VariantNames({}, {}));
+  const std::vector<Column> columns = columns_for({}, per, VariantNames({}, {}), true);
   return {columns.begin(), columns.end()};
 }
 
 std::vector<std::pair<TableColumn, json>> facts_of(const CheckpointRecord& record,
                                                    const std::optional<Measures>& found) {
   std::vector<std::pair<TableColumn, json>> facts;
-  for (const Column& column : measures()) {
+  for (const Column& column : measures(false)) {
     facts.emplace_back(column, column.cell({nullptr, &record, found}));
   }
   return facts;

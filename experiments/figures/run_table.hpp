@@ -35,8 +35,9 @@ struct RunTable {
 /// Rows in the order of declaration, then by cycle. Settled packings are not among the runs.
 /// Checkpoints count up to the length that the experiment asks for; rejected ones do not. Onsets
 /// come from the checkpoints at whole cycles, as in the figures. Throws NotFound as select_runs().
+/// With `ledger` it also has the energy of each cycle, which is simulated again for that.
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
-                   const MeasureOptions& options);
+                   const MeasureOptions& options, bool ledger = false);
 
 /// A row for each value of a measured curve at each checkpoint: the run's columns, the cycle, the
 /// checkpoint, x and y. Otherwise as run_table().
@@ -50,7 +51,8 @@ std::optional<Measures> read_table_measures(std::span<const nlohmann::json> resu
                                             const RunRecord& run,
                                             const CheckpointRecord& checkpoint);
 
-/// Every column except those of swept parameters, which are named as in a manifest.
+/// Every column, those of a ledger included, except those of swept parameters, which are named as
+/// in a manifest.
 std::vector<TableColumn> table_columns(RowPer per);
 
 /// Names and values of what is known of one checkpoint, in the order of the columns.

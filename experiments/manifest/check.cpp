@@ -10,6 +10,7 @@
 #include <set>
 #include <span>
 
+#include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/names.hpp"
 #include "experiments/manifest/schema.hpp"
@@ -40,6 +41,7 @@ class VariantChecker {
                "Leave the engine out, or shear.");
       }
       check_density(p, where);
+      check_phases(scale.checkpoints, p);
     });
   }
 
@@ -177,6 +179,24 @@ class VariantChecker {
     } else {
       report("nominal_packing_fraction", where("nominal_packing_fraction"), problem,
              fmt::format("Choose it above fill_packing_fraction ({}).", p.fill_packing_fraction));
+    }
+  }
+
+  void check_phases(const Checkpoints& checkpoints, const Parameters& p) {
+    if (checkpoints.phases.empty()) return;
+    const auto refuse = [&](std::string problem, std::string remedy) {
+      report("checkpoints.phases", {checkpoints.at, ""}, std::move(problem), std::move(remedy));
+    };
+    const Drive motion = drive(p);
+    if (p.protocol == ProtocolKind::stiffen) {
+      refuse("protocol stiffen has no phases of a cycle", "Leave them out.");
+    } else if (p.engine == EngineKind::lammps) {
+      refuse("LAMMPS makes no checkpoints within a cycle", "Leave them out, or the engine.");
+    } else if (steps_at(checkpoints.phases, motion).size() != checkpoints.phases.size()) {
+      refuse(fmt::format("two of them are one step, or the end of the cycle, with {} steps in a "
+                         "cycle",
+                         cycle_steps(motion)),
+             "Use fewer of them, or more steps_per_cycle.");
     }
   }
 

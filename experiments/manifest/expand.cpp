@@ -206,6 +206,11 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", *options.engine,
              "Leave the option out.");
     }
+    if (options.engine && variant.parameters.engine == EngineKind::lammps &&
+        !resolved.checkpoints.phases.empty()) {
+      refuse(manifest, "engine", "LAMMPS makes no checkpoints within a cycle", *options.engine,
+             "Leave the option out, or checkpoints.phases.");
+    }
     if (options.cycles && variant.parameters.protocol == ProtocolKind::stiffen) {
       plan.warnings.push_back(fmt::format(
           "{}: variant {}: a number of cycles has no effect on stiffening, whose length is "
@@ -223,7 +228,8 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       run.last = last_stage(variant.parameters, seed, run.prepare);
       run.cycles = target_cycles(variant.parameters);
       run.manifest = manifest_sha;
-      run.checkpoint_every = resolved.checkpoint_every;
+      run.checkpoint_every = resolved.checkpoints.every_cycles;
+      run.checkpoint_phases = resolved.checkpoints.phases;
       if (run.last.stage == Stage::shear) run.until = resolved.until.until;
       run.grains = static_cast<std::size_t>(variant.parameters.grains);
       run.parameters = variant.parameters;

@@ -33,8 +33,9 @@ struct PlannedRun {
   StageSpec last;                      ///< what is done to the packing: shear, or stiffening
   std::uint64_t cycles = 0;            ///< target length of the last stage
   std::uint64_t checkpoint_every = 1;  ///< cycles
-  std::string manifest = {};           ///< SHA-256 of its text
-  std::optional<Until> until = {};     ///< ends it before `cycles`
+  std::vector<double> checkpoint_phases = {};  ///< of each cycle after one of these
+  std::string manifest = {};                   ///< SHA-256 of its text
+  std::optional<Until> until = {};             ///< ends it before `cycles`
   std::size_t grains = 0;
   Parameters parameters;
 };

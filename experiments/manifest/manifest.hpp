@@ -81,6 +81,13 @@ struct StatedUntil {
   Position at;
 };
 
+/// `checkpoints`, and where it was written.
+struct Checkpoints {
+  std::uint64_t every_cycles = 1;
+  std::vector<double> phases = {};  ///< of each cycle after one of these; ascending, 0 < p < 1
+  Position at = {};
+};
+
 /// A name of `labels` for the variants that have these values.
 struct VariantLabel {
   nlohmann::json where;  ///< parameters and their values, an object
@@ -95,7 +102,7 @@ struct Scale {
   Settings settings;
   std::optional<Sweep> sweep;
   std::optional<Seeds> seeds;
-  std::optional<std::uint64_t> checkpoint_every;
+  std::optional<Checkpoints> checkpoints;
   std::optional<StatedUntil> until;
 };
 
@@ -112,7 +119,7 @@ struct Manifest {
   Settings base;
   Sweep sweep;
   Seeds seeds;
-  std::uint64_t checkpoint_every = 1;  ///< cycles
+  Checkpoints checkpoints;
   StatedUntil until;
   std::vector<Scale> scales;  ///< in the order of the text
 };

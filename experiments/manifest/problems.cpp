@@ -30,7 +30,9 @@ std::span<const ManifestKey> manifest_keys() {
       {"sweep", "{grid: {fluid: [still, cell]}}",
        "parameters that vary: `grid` takes every combination, keys of `zip` advance together"},
       {"seeds", "6", "seeds 1 to 6, or a list; default 1"},
-      {"checkpoints", "{every_cycles: 1}", "cycles between checkpoints; default 1"},
+      {"checkpoints", "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
+       "cycles between checkpoints, default 1; `phases` adds fractions of each cycle that follows "
+       "one, pause included, default none"},
       {"until", "{crystalline_percent: 10, extra_cycles: 15}",
        "ends a run so many cycles after the measure reaches the value; default: at `cycles`"},
       {"scales", "{smoke: {grains: 600, seeds: 2, cycles: 5}}",

@@ -133,12 +133,29 @@ string read_own_name(const Node& node, const string& path, std::set<string>& tak
   return node.text;
 }
 
+/// A first and a last cycle.
+std::array<std::uint64_t, 2> read_interval(const Node& node, const string& path,
+                                           const string& example, ProblemList& problems) {
+  const auto ends = read_list(node, path, example, problems);
+  std::array<std::uint64_t, 2> interval = {1, 1};
+  if (ends.size() == 2) {
+    interval[0] = read_count(ends[0], path, kLastCycle, problems).value_or(1);
+    interval[1] = read_count(ends[1], path, kLastCycle, problems).value_or(interval[0]);
+  }
+  if (ends.size() != 2 || interval[1] < interval[0]) {
+    problems.add(node.at, path, "is not a first and a last cycle", "",
+                 fmt::format("It takes `{}`.", example));
+  }
+  return interval;
+}
+
 PlotSpec read_plot(const Node& node, std::set<string>& taken, ProblemList& problems) {
-  static constexpr std::array<string_view, 7> known = {"name", "y",   "x",       "by",
-                                                       "show", "log", "at_cycle"};
+  static constexpr std::array<string_view, 8> known = {"name", "y",   "x",        "by",
+                                                       "show", "log", "at_cycle", "cycles"};
   const string example = "{name: compaction, y: phi, x: cycle}";
   PlotSpec plot;
   std::optional<Position> x_at;
+  Position cycles_at;
   read_entries(node, "plots", known, 2, example, problems, [&](const Node& key, const Node& value) {
     const string path = join_path("plots", key.text);
     if (key.text == "name") {
@@ -160,6 +177,9 @@ PlotSpec read_plot(const Node& node, std::set<string>& taken, ProblemList& probl
       const string axes = read_one_of(value, path, {"none", "x", "y", "xy"}, problems);
       plot.log_x = axes.starts_with('x');
       plot.log_y = axes.ends_with('y');
+    } else if (key.text == "cycles") {
+      cycles_at = value.at;
+      plot.cycles = read_interval(value, path, "[20, 21]", problems);
     } else {
       plot.cycle = read_count(value, path, kLastCycle, problems);
     }
@@ -168,6 +188,11 @@ PlotSpec read_plot(const Node& node, std::set<string>& taken, ProblemList& probl
   if (curve != nullptr && x_at) {
     problems.add(*x_at, "plots.x", fmt::format("does not go with {}", curve->name), plot.x,
                  fmt::format("Leave it out: {} is drawn against {}.", curve->name, curve->x));
+  }
+  const bool against_parameter = plot.x != "cycle" && !plot.x.empty() && !is_measure(plot.x);
+  if (plot.cycles && (!plot.traces || against_parameter)) {
+    problems.add(cycles_at, "plots.cycles", "draws each run along its cycles", "",
+                 "It takes `show: traces`, and `cycle` or a measure as x.");
   }
   if (const Field* field = is_measure(plot.x) ? nullptr : find_field(plot.x)) {
     plot.x_symbol = field->symbol;
@@ -204,15 +229,8 @@ ClaimSpec read_claim(const Node& node, std::set<string>& taken, ProblemList& pro
         } else if (key.text == "at_cycle") {
           claim.first = claim.last = read_count(value, path, kLastCycle, problems).value_or(1);
         } else if (key.text == "cycles") {
-          const auto ends = read_list(value, path, "[1, 15]", problems);
-          if (ends.size() == 2) {
-            claim.first = read_count(ends[0], path, kLastCycle, problems).value_or(1);
-            claim.last = read_count(ends[1], path, kLastCycle, problems).value_or(claim.first);
-          }
-          if (ends.size() != 2 || claim.last < claim.first) {
-            problems.add(value.at, path, "is not a first and a last cycle", "",
-                         "It takes `[1, 15]`.");
-          }
+          const auto [first, last] = read_interval(value, path, "[1, 15]", problems);
+          claim.first = first, claim.last = last;
         } else {
           const std::size_t problems_before = problems.size();
           const auto sides = read_list(value, path, "[{fluid: still}, {fluid: cell}]", problems);

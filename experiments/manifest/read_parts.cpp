@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -18,6 +19,7 @@ using nlohmann::json;
 using std::string;
 using std::string_view;
 
+constexpr std::uint64_t kLargestCadence = 1'000'000;  // cycles
 // Counts that a reader of the store in any language holds exactly.
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
@@ -31,6 +33,28 @@ std::span<const Field> until_fields() {
       Field{"phi", "", "1", real, 0, 1, true, {}, ""},
       Field{"extra_cycles", "", "1", whole, 0, 1e6, false, {}, ""}};
   return fields;
+}
+
+std::vector<double> read_phases(const Node& node, const string& path, ProblemList& problems) {
+  constexpr double Parameters::*none = nullptr;
+  constexpr double largest = std::numeric_limits<double>::max();
+  static const Field field{"phases", "", "1", none, -largest, largest, false, {}, ""};
+  std::vector<double> phases;
+  for (const Node& item : read_list(node, path, "[0.25, 0.5, 0.75]", problems)) {
+    const auto read = read_parameter(field, item, path, problems);
+    if (!read) continue;
+    const auto phase = read->get<double>();
+    if (!(phase > 0 && phase < 1)) {
+      problems.add(item.at, path, "is not within a cycle", shown(item),
+                   "It takes fractions p of a cycle, 0 < p < 1.");
+    } else if (!phases.empty() && phase <= phases.back()) {
+      problems.add(item.at, path, "is not greater than the phase before it", shown(item),
+                   "List them in ascending order, each once.");
+    } else {
+      phases.push_back(phase);
+    }
+  }
+  return phases;
 }
 
 std::optional<SweepAxis> read_axis(const Node& key, const Node& values, const string& path,
@@ -184,6 +208,27 @@ Sweep read_sweep(const Node& node, const string& path, ProblemList& problems) {
   check_grid(sweep, path, problems);
   check_zip(sweep.zip, path, problems);
   return sweep;
+}
+
+Checkpoints read_checkpoints(const Node& node, const string& path, ProblemList& problems) {
+  static constexpr std::array<string_view, 2> known = {"every_cycles", "phases"};
+  Checkpoints checkpoints{.at = node.at};
+  if (node.kind != Node::Kind::map || node.entries.empty()) {
+    problems.add_type(node, path, "a map of settings", "It takes `{every_cycles: 1}`.");
+    return checkpoints;
+  }
+  for (const auto& [key, value] : node.entries) {
+    const string full = join_path(path, key.text);
+    if (key.text == known[0]) {
+      checkpoints.every_cycles = read_count(value, full, kLargestCadence, problems).value_or(1);
+    } else if (key.text == known[1]) {
+      checkpoints.at = value.at;
+      checkpoints.phases = read_phases(value, full, problems);
+    } else {
+      problems.add_unknown(key, path, known);
+    }
+  }
+  return checkpoints;
 }
 
 StatedUntil read_until(const Node& node, const string& key, ProblemList& problems) {

@@ -34,6 +34,8 @@ std::span<const Node> read_list(const Node& node, const std::string& key, std::s
 
 Sweep read_sweep(const Node& node, const std::string& path, ProblemList& problems);
 
+Checkpoints read_checkpoints(const Node& node, const std::string& path, ProblemList& problems);
+
 StatedUntil read_until(const Node& node, const std::string& key, ProblemList& problems);
 
 std::vector<VariantLabel> read_labels(const Node& node, ProblemList& problems);

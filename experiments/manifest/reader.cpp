@@ -23,7 +23,6 @@ using std::string_view;
 constexpr std::array<string_view, 4> kScaleSections = {"sweep", "seeds", "checkpoints", "until"};
 constexpr std::size_t kLongestName = 64;
 constexpr std::size_t kLongestQuestion = 2'000;
-constexpr std::uint64_t kLargestCadence = 1'000'000;
 
 bool contains(const auto& names, string_view name) {
   return std::ranges::find(names, name) != names.end();
@@ -81,7 +80,7 @@ class Reader {
     } else if (key.text == "seeds") {
       manifest_.seeds = read_seeds(value, key.text, problems_);
     } else if (key.text == "checkpoints") {
-      manifest_.checkpoint_every = read_checkpoints(value, key.text);
+      manifest_.checkpoints = read_checkpoints(value, key.text, problems_);
     } else if (key.text == "until") {
       manifest_.until = read_until(value, key.text, problems_);
     } else {
@@ -165,26 +164,8 @@ class Reader {
     } else if (name == "until") {
       scale.until = read_until(value, path, problems_);
     } else {
-      scale.checkpoint_every = read_checkpoints(value, path);
+      scale.checkpoints = read_checkpoints(value, path, problems_);
     }
-  }
-
-  std::uint64_t read_checkpoints(const Node& node, const string& path) {
-    constexpr std::array<string_view, 1> known = {"every_cycles"};
-    if (node.kind != Node::Kind::map || node.entries.empty()) {
-      problems_.add_type(node, path, "a map of settings", "It takes `{every_cycles: 1}`.");
-      return 1;
-    }
-    std::uint64_t every = 1;
-    for (const auto& [key, value] : node.entries) {
-      if (contains(known, key.text)) {
-        every =
-            read_count(value, join_path(path, key.text), kLargestCadence, problems_).value_or(1);
-      } else {
-        problems_.add_unknown(key, path, known);
-      }
-    }
-    return every;
   }
 
   void read_scales(const Node& node) {

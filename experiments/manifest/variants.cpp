@@ -23,14 +23,14 @@ bool is_auto(const Setting& setting) {
 }
 
 AtScale at_scale(const Manifest& manifest, const Scale* scale) {
-  AtScale result{manifest.base, &manifest.sweep, &manifest.seeds, manifest.checkpoint_every,
+  AtScale result{manifest.base, &manifest.sweep, &manifest.seeds, manifest.checkpoints,
                  manifest.until};
   if (scale == nullptr) return result;
   for (const auto& [key, setting] : scale->settings) result.settings[key] = setting;
   if (scale->sweep) result.sweep = &*scale->sweep;
   if (scale->seeds) result.seeds = &*scale->seeds;
   if (scale->until) result.until = *scale->until;
-  if (scale->checkpoint_every) result.checkpoint_every = *scale->checkpoint_every;
+  if (scale->checkpoints) result.checkpoints = *scale->checkpoints;
   return result;
 }
 

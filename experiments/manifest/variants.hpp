@@ -19,7 +19,7 @@ struct AtScale {
   Settings settings;  ///< base, overridden by the scale
   const Sweep* sweep = nullptr;
   const Seeds* seeds = nullptr;
-  std::uint64_t checkpoint_every = 1;
+  Checkpoints checkpoints;
   StatedUntil until;
 };
 

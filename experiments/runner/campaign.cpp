@@ -334,6 +334,7 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
       declaration.membership.seed = run.seed;
       declaration.membership.manifest = sha;
       declaration.membership.checkpoint_every = run.checkpoint_every;
+      if (!prepare) declaration.membership.checkpoint_phases = run.checkpoint_phases;
       if (!prepare && run.until) declaration.membership.until = to_json(*run.until);
       if (!known.insert(stage->key).second) continue;
       store.declare_run(declaration);

@@ -87,7 +87,11 @@ StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle
   }
   const double cycles = std::max(0.0, static_cast<double>(run.cycles) - cycle);
   const auto steps = static_cast<double>(cycle_steps(drive(run.parameters)));
-  const double files = std::ceil(cycles / static_cast<double>(run.checkpoint_every));
+  const auto every = static_cast<double>(run.checkpoint_every);
+  const double begun =
+      std::ceil(static_cast<double>(run.cycles) / every) - std::ceil(cycle / every);
+  const double files = std::ceil(cycles / every) +
+                       std::max(0.0, begun) * static_cast<double>(run.checkpoint_phases.size());
   return {grains * steps * cycles, bytes * (files + (cycle == 0 ? 1 : 0))};
 }
 

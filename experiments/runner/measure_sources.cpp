@@ -1,21 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/measure_sources.hpp"
 
+#include <stdexcept>
+#include <utility>
+
+#include "core/drive.hpp"
+#include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
 
+MeasureSources::Shear MeasureSources::read_shear(const std::string& id) const {
+  Shear shear;
+  const RunRecord run = store_.run(id);
+  if (run.kind != name_of(Stage::shear)) return shear;
+  try {
+    shear.cycle_steps = cycle_steps(drive(read_stage(run.resolved).parameters));
+  } catch (const std::runtime_error&) {
+    return shear;  // not a run of this program
+  }
+  for (CheckpointRecord& one : store_.checkpoints(id, true)) {
+    if (one.state == CheckpointState::rejected) continue;
+    const std::uint64_t step = one.step;
+    shear.checkpoints.insert_or_assign(step, std::move(one));
+  }
+  return shear;
+}
+
 DerivedKey MeasureSources::key(const CheckpointRecord& record, const DerivedMeasure& measure) {
   if (measure.earlier.empty()) return {record.sha256, measure.key(), analysis_version};
   const auto [run, first] = runs_.try_emplace(record.run);
-  if (first && store_.run(record.run).kind == name_of(Stage::shear)) {
-    for (CheckpointRecord& one : store_.checkpoints(record.run, true)) {
-      if (one.state == CheckpointState::rejected) continue;
-      const double cycle = one.cycle;
-      run->second.insert_or_assign(cycle, std::move(one));
-    }
-  }
+  if (first) run->second = read_shear(record.run);
   std::string text = measure.key();
   for (const std::uint64_t cycles : measure.earlier) {
     const CheckpointRecord* other = find(record, cycles);
@@ -28,8 +44,11 @@ const CheckpointRecord* MeasureSources::find(const CheckpointRecord& record,
                                              std::uint64_t cycles) const {
   const auto run = runs_.find(record.run);
   if (run == runs_.end()) return nullptr;
-  const auto found = run->second.find(record.cycle - static_cast<double>(cycles));
-  return found == run->second.end() ? nullptr : &found->second;
+  const Shear& shear = run->second;
+  const std::uint64_t back = cycles * shear.cycle_steps;
+  if (shear.cycle_steps == 0 || record.step < back) return nullptr;
+  const auto found = shear.checkpoints.find(record.step - back);
+  return found == shear.checkpoints.end() ? nullptr : &found->second;
 }
 
 std::optional<nlohmann::json> MeasureSources::measure(const CheckpointRecord& record,

@@ -33,12 +33,16 @@ class MeasureSources {
   std::optional<Checkpoint> earlier(const CheckpointRecord& record, std::uint64_t cycles) const;
 
  private:
-  using Cycles = std::map<double, CheckpointRecord>;
+  struct Shear {
+    std::uint64_t cycle_steps = 0;
+    std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // by step
+  };
 
+  Shear read_shear(const std::string& id) const;
   const CheckpointRecord* find(const CheckpointRecord& record, std::uint64_t cycles) const;
 
   const Store& store_;
-  std::map<std::string, Cycles> runs_;  // of shears, by id
+  std::map<std::string, Shear> runs_;  // by id; empty for a run that does not shear
 };
 
 }  // namespace shearcell

@@ -4,16 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
-#include <set>
 
 #include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"
-#include "experiments/manifest/identity.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
@@ -53,66 +48,14 @@ DerivedKey key_of(const CheckpointRecord& record, const DerivedMeasure& measure)
 
 }  // namespace
 
-std::vector<RunAsk> asks_of(const Store& store, const std::string& run) {
-  std::map<json, RunAsk> asks;
-  for (const Event& event : store.events("run/" + run)) {
-    if (event.type != "RunDeclared") continue;
-    const json body = event.body();
-    try {
-      const json& m = body.at("membership");
-      json key;
-      for (const char* part : {"experiment", "scale", "variant", "seed", "manifest"}) {
-        key.push_back(m.at(part));
-      }
-      RunAsk& ask = asks[std::move(key)];
-      ask.target_cycles =
-          std::max(ask.target_cycles, body.at("target_cycles").get<std::uint64_t>());
-      const json until = m.value("until", json());
-      ask.until = until.is_null() ? std::nullopt : std::optional(until_from_json(until));
-    } catch (const std::exception& problem) {
-      throw StoreDamaged(fmt::format("event {} ({}): {}", event.seq, event.type, problem.what()));
-    }
-  }
-  std::vector<RunAsk> list;
-  for (auto& [key, ask] : asks) list.push_back(std::move(ask));
-  return list;
-}
-
-std::uint64_t checkpoint_cadence(const RunRecord& run) {
-  std::uint64_t cadence = 0;
-  for (const Membership& m : run.memberships) cadence = std::gcd(cadence, m.checkpoint_every);
-  return std::max<std::uint64_t>(cadence, 1);
-}
-
-std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run) {
-  if (run.kind != name_of(Stage::shear) || engine_of(run.resolved) != EngineKind::shearcell) {
-    return {};
-  }
-  std::set<std::uint64_t> cycles;
-  for (const Membership& m : run.memberships) {
-    constexpr double longest = 1e6;  // that a manifest may ask for; the store is not trusted
-    const double end = std::min({run.cycle, static_cast<double>(m.target_cycles), longest});
-    const std::uint64_t every = std::max<std::uint64_t>(m.checkpoint_every, 1);
-    for (std::uint64_t cycle = 0; static_cast<double>(cycle) < end; cycle += every) {
-      cycles.insert(cycle);
-    }
-  }
-  if (cycles.empty()) return {};
-  for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
-    if (record.state == CheckpointState::rejected || std::floor(record.cycle) != record.cycle)
-      continue;
-    cycles.erase(static_cast<std::uint64_t>(record.cycle));
-  }
-  return {cycles.begin(), cycles.end()};
-}
-
 std::optional<json> ended_early(std::span<const RunAsk> asks,
                                 std::span<const MeasuredCycle> measured, double now) {
   double end = -1;
   json why;
-  for (const auto& [target_cycles, until] : asks) {
+  for (const RunAsk& ask : asks) {
+    const auto& until = ask.until;
     const auto reached = first_reached(measured, until);
-    auto own = static_cast<double>(target_cycles);
+    auto own = static_cast<double>(ask.target_cycles);
     if (reached != measured.end()) {
       own = std::min(own, reached->cycle + static_cast<double>(until->extra_cycles));
     }

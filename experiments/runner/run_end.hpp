@@ -2,8 +2,8 @@
 // When a run ends before its last cycle (`until` of a manifest).
 //
 // The decision depends on the recorded checkpoints alone, so every process that continues a run
-// ends it at the same checkpoint. Checkpoints off the cadence, which an interruption leaves, have
-// no part in it.
+// ends it at the same checkpoint. Checkpoints off the cadence of whole cycles, which
+// an interruption or `phases` leaves, have no part in it.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "analysis/measures.hpp"
-#include "experiments/manifest/until.hpp"
+#include "experiments/runner/asks.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/store.hpp"
 
@@ -24,24 +24,6 @@ struct MeasuredCycle {
   double cycle = 0;
   Measures measures;
 };
-
-/// The length and end that one experiment asks of a run.
-struct RunAsk {
-  std::uint64_t target_cycles = 0;
-  std::optional<Until> until;
-};
-
-/// One for each membership of the run, from its declarations. Throws StoreDamaged when an `until`
-/// is not as this program writes it.
-std::vector<RunAsk> asks_of(const Store& store, const std::string& run);
-
-/// The cadence [cycles] that has the checkpoints of every experiment.
-std::uint64_t checkpoint_cadence(const RunRecord& run);
-
-/// Cycles up to the run's last one at which an experiment asks for a checkpoint that was never
-/// recorded, ascending: it asked for a denser cadence later. None for a run of LAMMPS, which cannot
-/// be repeated.
-std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run);
 
 /// Why the run ends at cycle `now`, that of its last checkpoint: every experiment that shares it
 /// has reached the end that it asks for, by `measured`, its checkpoints on the cadence in order.

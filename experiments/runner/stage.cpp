@@ -11,8 +11,8 @@
 #include "core/filling.hpp"
 #include "core/memory.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "experiments/runner/asks.hpp"
 #include "experiments/runner/cost.hpp"
-#include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
 #include "protocols/cyclic_shear.hpp"
 #include "protocols/settle.hpp"
@@ -45,7 +45,8 @@ void require_memory(const StageRecord& stage) {
 }
 
 std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t cycles,
-                                        std::uint64_t checkpoint_every) {
+                                        std::uint64_t checkpoint_every,
+                                        std::span<const RunAsk> asks) {
   const Parameters& p = stage.parameters;
   if (stage.stage == Stage::prepare) {
     return std::make_unique<Settle>(
@@ -58,7 +59,8 @@ std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t 
     stiffen.minimize.force_tolerance = p.minimize_force_tolerance;
     return std::make_unique<Stiffen>(stiffen, stiffen_scene(p));
   }
-  return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every);
+  return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every,
+                                       phase_cadences(asks, drive(p)));
 }
 
 // The limit is not part of a run's identity. Manifests that state one other than the default have
@@ -94,7 +96,7 @@ StagePlan plan_stage(const Store& store, RunRecord run) {
   require_memory(stage);
   const Scene scene = make_scene(stage);
   const std::uint64_t every = checkpoint_cadence(run);
-  auto protocol = make_protocol(stage, run.target_cycles, every);
+  auto protocol = make_protocol(stage, run.target_cycles, every, asks_of(store, run.id));
   return {std::move(run), std::move(stage), scene, std::move(protocol), every};
 }
 

@@ -2,6 +2,7 @@
 #include "experiments/runner/stage_runner.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -53,11 +54,10 @@ class Attempt {
     });
   }
 
-  // Records the checkpoints at these cycles of a completed run, which lacks them.
-  StageOutcome fill(const std::vector<std::uint64_t>& cycles) {
-    Beginning beginning = beginning_before(store_, plan_, [&](const CheckpointRecord& kept) {
-      return kept.cycle < static_cast<double>(cycles.front());
-    });
+  // Records the checkpoints at these steps of a completed run, which lacks them.
+  StageOutcome fill(const std::vector<std::uint64_t>& steps) {
+    Beginning beginning = beginning_before(
+        store_, plan_, [&](const CheckpointRecord& kept) { return kept.step < steps.front(); });
     const bool fresh = !beginning.from;
     const nlohmann::json ended = last_end();
     store_.start_run(id(), host_facts(),
@@ -66,14 +66,14 @@ class Attempt {
     return guarded([&] {
       const auto engine = make_engine(plan_, std::move(beginning), {options_.threads, 1});
       first_step_ = engine->step();
-      auto next = cycles.begin();
+      auto next = steps.begin();
       if (fresh && *next == 0) {
         record(*engine, 0);
         ++next;
       }
-      while (next != cycles.end()) {
+      while (next != steps.end()) {
         const StageProgress progress = engine->advance();
-        if (progress.checkpoint_due && progress.cycle == static_cast<double>(*next)) {
+        if (progress.checkpoint_due && engine->step() == *next) {
           record(*engine, progress.cycle);
           ++next;
         }
@@ -126,7 +126,9 @@ class Attempt {
         complete({{"by", plan_.stage.stage == Stage::prepare ? "settled" : "cycles"}});
         return StageOutcome::completed;
       }
-      if (progress.checkpoint_due && ends_early()) return StageOutcome::completed;
+      // Whole cycles alone decide.
+      const bool whole = progress.cycle == std::floor(progress.cycle);
+      if (progress.checkpoint_due && whole && ends_early()) return StageOutcome::completed;
       if (stop) return interrupted();
       if (!store_.holds(id())) return StageOutcome::lost;
       report(engine, progress.cycle);

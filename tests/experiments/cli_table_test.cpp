@@ -104,6 +104,21 @@ TEST_F(CommandLineTable, LosesNothingThatWasMeasuredBeforeAPrune) {
   }
 }
 
+TEST_F(CommandLineTable, HasRowsAtPhasesWhichExportFinds) {
+  fs::remove_all(path("shearcell-store"));
+  campaign(tiny_manifest("", "checkpoints: {phases: [0.333333]}\n"), {"--cycles", "1"});
+  const nlohmann::json rows = table({});
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[1].at("cycle"), 0.3333) << "the nearest step of 10000";
+  EXPECT_GT(rows[1].at("shear_strain"), 0.07);
+  EXPECT_FALSE(rows[2].contains("dissipation_per_cycle_J"));
+  EXPECT_GT(table({"--ledger", "--per", "run"})[0].at("dissipation_per_cycle_J"), 0);
+  const std::string id = rows[0].at("run");
+  EXPECT_EQ(run({"export", id, "--cycles", "0.333333", "--to", "extxyz", "--out", "third"}).code,
+            0);
+  EXPECT_EQ(run({"export", id, "--cycles", "0.3", "--to", "extxyz", "--out", "other"}).code, 2);
+}
+
 TEST_F(CommandLineTable, CallsVariantsByTheirLabels) {
   fs::remove_all(path("shearcell-store"));
   campaign(tiny_manifest("", kBothFluids + "labels: {\"fluid=still\": \"water at rest\"}\n"),

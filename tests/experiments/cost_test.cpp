@@ -50,8 +50,11 @@ TEST(Cost, CountsCheckpoints) {
   const double file = both - stage_cost(run, run.last, 1).bytes * 2;
   EXPECT_GT(file, 0);
   EXPECT_NEAR(stage_cost(run, run.last, 1).bytes, file, 1e-6 * file);
+  const PlannedRun loops = only_run(tiny_manifest("", "checkpoints: {phases: [0.25, 0.5]}\n"));
   const PlannedRun rare = only_run(tiny_manifest("", "checkpoints: {every_cycles: 2}\n"));
   EXPECT_NEAR(stage_cost(rare, rare.last, 0).bytes, 2 * file, 1e-6 * file);
+  EXPECT_NEAR(stage_cost(loops, loops.last, 0).bytes, 7 * file, 1e-6 * file);
+  EXPECT_NEAR(stage_cost(loops, loops.last, 1).bytes, 3 * file, 1e-6 * file);
 }
 
 TEST(Cost, OfStiffeningIsThatOfTheSpringConstantsLeft) {

@@ -87,6 +87,22 @@ TEST(CyclicShear, KeepsItsCadenceAndRecordsTheEnd) {
   EXPECT_EQ(cycles, (std::vector<double>{2, 4, 5}));
 }
 
+TEST(CyclicShear, StopsAtPhasesOfTheCyclesAfterItsCheckpoints) {
+  Simulation simulation(dense().cell, table_1(), dense().state);
+  const std::vector<double> phases = {0.1, 0.5};
+  EXPECT_EQ(steps_at(phases, kDrive), (std::vector<std::uint64_t>{300, 1500}));
+  EXPECT_EQ(steps_at(std::vector<double>{0, 1e-9, 0.5, 0.5, 1 - 1e-9, 1, 2}, kDrive),
+            std::vector<std::uint64_t>{1500});
+  std::vector<std::uint64_t> due;
+  const CyclicShear protocol(kDrive, 4, 1, {{2, {300, 1500}}, {3, {1500, 1600}}});
+  for (const Stop& stop : shear(simulation, protocol, 700)) {
+    if (stop.progress.checkpoint_due) due.push_back(stop.step);
+  }
+  EXPECT_EQ(due, (std::vector<std::uint64_t>{300, 1500, 1600, 3000, 6000, 6300, 7500, 9000, 10500,
+                                             10600, 12000}));
+  EXPECT_TRUE(same_bits(simulation.state(), after(CyclicShear(kDrive, 4, 1))));
+}
+
 TEST(CyclicShear, DoesNothingBeyondItsTarget) {
   Simulation simulation(dense().cell, table_1(), dense().state);
   shear(simulation, CyclicShear(kDrive, 2, 1));

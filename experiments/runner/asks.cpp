@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/runner/asks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <span>
+#include <stdexcept>
+
+#include "core/drive.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/identity.hpp"
+#include "experiments/manifest/limits.hpp"
+#include "provenance/errors.hpp"
+#include "provenance/limits.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostListed = 1'000'000;  // of one list; the store is not trusted
+
+using Place = std::array<json, 5>;  // of an experiment, as the store tells memberships apart
+
+std::vector<double> phases_in(const json& membership) {
+  const json list = membership.value("checkpoint_phases", json::array());
+  auto phases = list.get<std::vector<double>>();
+  if (phases.size() > ManifestLimits::values_per_list) {
+    throw std::runtime_error("checkpoint_phases: there are too many");
+  }
+  return phases;
+}
+
+std::uint64_t cadence_in(const json& membership) {
+  const auto every = membership.at("checkpoint_every").get<std::uint64_t>();
+  if (every < 1 || every > StoreLimits::cycles) {
+    throw std::runtime_error("checkpoint_every: is out of range");
+  }
+  return every;
+}
+
+std::map<Place, RunAsk> asks_by_place(const Store& store, const std::string& run) {
+  std::map<Place, RunAsk> asks;
+  for (const Event& event : store.events("run/" + run)) {
+    if (event.type != "RunDeclared") continue;
+    const json body = event.body();
+    try {
+      const json& m = body.at("membership");
+      const Place place = {m.at("experiment"), m.at("scale"), m.at("variant"), m.at("seed"),
+                           m.at("manifest")};
+      RunAsk& ask = asks[place];
+      ask.target_cycles =
+          std::max(ask.target_cycles, body.at("target_cycles").get<std::uint64_t>());
+      const json until = m.value("until", json());
+      ask.until = until.is_null() ? std::nullopt : std::optional(until_from_json(until));
+      ask.checkpoint_every = cadence_in(m);
+      ask.phases = phases_in(m);
+    } catch (const std::exception& problem) {
+      throw StoreDamaged(fmt::format("event {} ({}): {}", event.seq, event.type, problem.what()));
+    }
+  }
+  return asks;
+}
+
+}  // namespace
+
+std::vector<RunAsk> asks_of(const Store& store, const std::string& run) {
+  std::vector<RunAsk> list;
+  for (auto& [place, ask] : asks_by_place(store, run)) list.push_back(std::move(ask));
+  return list;
+}
+
+RunAsk ask_of(const Store& store, const std::string& run, const Membership& m) {
+  const auto asks = asks_by_place(store, run);
+  const auto found = asks.find(Place{m.experiment, m.scale, m.variant, m.seed, m.manifest});
+  return found == asks.end() ? RunAsk{m.target_cycles} : found->second;
+}
+
+std::vector<std::uint64_t> checkpoint_steps(const RunAsk& ask, const Drive& drive, double first,
+                                            double last) {
+  const CheckpointCadence cadence{ask.checkpoint_every, steps_at(ask.phases, drive)};
+  const auto whole = static_cast<double>(cycle_steps(drive));
+  std::vector<std::uint64_t> steps;
+  if (!(first >= 0 && last <= static_cast<double>(StoreLimits::cycles))) return steps;
+  const auto begin = static_cast<std::uint64_t>(std::ceil(first * whole));
+  auto step = begin == 0 ? 0 : next_checkpoint(std::span(&cadence, 1), drive, begin - 1);
+  while (static_cast<double>(step) <= last * whole && steps.size() < kMostListed) {
+    steps.push_back(step);
+    step = next_checkpoint(std::span(&cadence, 1), drive, step);
+  }
+  return steps;
+}
+
+std::uint64_t checkpoint_cadence(const RunRecord& run) {
+  std::uint64_t cadence = 0;
+  for (const Membership& m : run.memberships) cadence = std::gcd(cadence, m.checkpoint_every);
+  return std::max<std::uint64_t>(cadence, 1);
+}
+
+std::vector<CheckpointCadence> phase_cadences(std::span<const RunAsk> asks, const Drive& drive) {
+  std::vector<CheckpointCadence> cadences;
+  for (const RunAsk& ask : asks) {
+    if (ask.phases.empty()) continue;
+    cadences.push_back({ask.checkpoint_every, steps_at(ask.phases, drive)});
+  }
+  return cadences;
+}
+
+std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run) {
+  if (run.kind != name_of(Stage::shear) || engine_of(run.resolved) != EngineKind::shearcell) {
+    return {};
+  }
+  if (stage_key(run.resolved) != run.id) return {};  // plan_stage() reports it
+  const Drive motion = drive(read_stage(run.resolved).parameters);
+  std::set<std::uint64_t> steps;
+  for (const RunAsk& ask : asks_of(store, run.id)) {
+    const double end = std::min(run.cycle, static_cast<double>(ask.target_cycles));
+    for (const std::uint64_t step : checkpoint_steps(ask, motion, 0, end)) {
+      if (static_cast<double>(step) < end * static_cast<double>(cycle_steps(motion))) {
+        steps.insert(step);
+      }
+    }
+  }
+  for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
+    if (record.state != CheckpointState::rejected) steps.erase(record.step);
+  }
+  return {steps.begin(), steps.end()};
+}
+
+}  // namespace shearcell

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "protocols/ledger.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/diagnostics.hpp"
+#include "core/drive.hpp"
+
+namespace shearcell {
+namespace {
+
+// Wall grains may stand that far behind their plane, and a grain touches within one diameter [d].
+constexpr double kWallReach = 2;
+
+// Positions of the grains that may touch a wall.
+Eigen::Matrix3Xd near_walls(const Cell& cell, const State& state, const WallPose& pose) {
+  const std::array<WallPlane, 4> planes = wall_planes(cell, pose);
+  std::vector<Eigen::Index> near;
+  for (Eigen::Index i = 0; i < state.position.cols(); ++i) {
+    const double x = state.position(0, i), y = state.position(1, i);
+    const bool touches = std::ranges::any_of(planes, [&](const WallPlane& plane) {
+      return (x - plane.point[0]) * plane.normal[0] + (y - plane.point[1]) * plane.normal[1] <
+             kWallReach;
+    });
+    if (touches) near.push_back(i);
+  }
+  return state.position(Eigen::all, near);
+}
+
+// What the walls feel, as generalized forces. A point of a side wall at height y is displaced in x
+// by (y - top) tan(theta), the horizontal walls as a whole by that of their planes' height: by
+// (y - top) for each unit of tan(theta), and with the moving wall's height by tan(theta), for a
+// moving bottom wall, or -tan(theta), for all but a moving top wall.
+struct WallForces {
+  double on_tilt = 0;    // sum of f_x (y - top) [m d^2/s^2]
+  double on_height = 0;  // sum of f_x times that sign [m d/s^2]
+};
+
+// That of a contact of the grain at `centre` with a wall, as it counts for its displacement.
+double height_of(const Cell& cell, const WallPose& pose, const Contact& c,
+                 const Eigen::Vector3d& centre) {
+  if (c.side == WallSide::bottom) return pose.bottom;
+  if (c.side == WallSide::top) return pose.top;
+  if (c.kind == Contact::Kind::wall_plane) return centre.y() - (0.5 - c.overlap) * c.normal.y();
+  return cell.wall_grains[static_cast<std::size_t>(c.other)].position.y();
+}
+
+WallForces wall_forces(const Cell& cell, const Scene& scene, const State& state,
+                       const WallPose& pose) {
+  const Eigen::Matrix3Xd grains = near_walls(cell, state, pose);
+  const bool bottom_moves = cell.moving == MovingWall::bottom;
+  WallForces sum;
+  for_each_contact(cell, grains, pose, [&](const Contact& c) {
+    if (c.kind == Contact::Kind::grain) return;
+    const double force = -scene.stiffness * c.overlap * c.normal.x();
+    sum.on_tilt += force * (height_of(cell, pose, c, grains.col(c.grain)) - pose.top);
+    if (bottom_moves && c.side == WallSide::bottom) sum.on_height += force;
+    if (!bottom_moves && c.side != WallSide::top) sum.on_height -= force;
+  });
+  return sum;
+}
+
+// A whole step: positions of one state, and velocities half a step later in the next.
+struct Energies {
+  double elastic = 0, kinetic = 0, gravitational = 0, load = 0;
+};
+
+Energies energies(const Cell& cell, const Scene& scene, const State& here, const State& after,
+                  const WallPose& pose) {
+  Energies e;
+  for_each_contact(cell, here.position, pose, [&](const Contact& c) {
+    e.elastic += 0.5 * scene.stiffness * c.overlap * c.overlap;
+  });
+  const double area = cell.width * cell.depth;
+  const double wall = 0.5 * (here.wall_velocity + after.wall_velocity);
+  const auto grains = static_cast<std::size_t>(here.position.cols());
+  e.kinetic = 0.5 * (0.5 * (here.velocity + after.velocity)).squaredNorm() +
+              0.5 * scene.wall_mass * area * wall * wall;
+  e.gravitational = scene.gravity * here.position.row(1).sum();
+  e.load = -inwards(cell) * (scene.pressure * area + carried_weight(scene, cell, grains)) *
+           here.wall_height;
+  return e;
+}
+
+// Power that drag takes from the grains in the half step before `state`.
+double drag_power(const Cell& cell, const Scene& scene, const Drive& drive, const State& state,
+                  const WallPose& pose) {
+  Eigen::Matrix3Xd relative = state.velocity;
+  if (const double share = fluid_share(scene.fluid); share > 0) {
+    const double h = scene.time_step;
+    const double before =
+        wall_pose(cell, tilt(drive, state.step - 1).theta, state.wall_height).tan_theta;
+    const double rate = share * (pose.tan_theta - before) / h;
+    const double rising = cell.moving == MovingWall::top ? state.wall_velocity : 0;
+    relative.row(0).array() -= rate * (state.position.row(1).array() - pose.top -
+                                       0.5 * h * (state.velocity.row(1).array() - rising));
+  }
+  return scene.drag_rate * state.velocity.cwiseProduct(relative).sum();
+}
+
+}  // namespace
+
+Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const State& start,
+              std::uint64_t steps, std::uint64_t stride, const EngineSettings& settings) {
+  const auto pose_of = [&](const State& state) {
+    return wall_pose(cell, tilt(drive, state.step).theta, state.wall_height);
+  };
+  Simulation simulation(cell, scene, start, settings);
+  simulation.advance(drive, 1);
+  const Energies before = energies(cell, scene, start, simulation.state(), pose_of(start));
+
+  const std::uint64_t end = start.step + steps;
+  const double area = cell.width * cell.depth;
+  Ledger sum;
+  State here = start;
+  WallPose pose = pose_of(here);
+  WallForces forces = wall_forces(cell, scene, here, pose);
+  while (here.step < end) {
+    const std::uint64_t to = std::min(end, here.step + std::max<std::uint64_t>(1, stride));
+    simulation.advance(drive, to - simulation.step());
+    State next = simulation.state();
+    const WallPose next_pose = pose_of(next);
+    const WallForces next_forces = wall_forces(cell, scene, next, next_pose);
+    sum.work_of_walls -=
+        0.5 * (forces.on_tilt + next_forces.on_tilt) * (next_pose.tan_theta - pose.tan_theta) +
+        0.5 * (forces.on_height * pose.tan_theta + next_forces.on_height * next_pose.tan_theta) *
+            (next.wall_height - here.wall_height);
+    const double seconds = static_cast<double>(to - here.step) * scene.time_step;
+    sum.lost_by_grains += seconds * drag_power(cell, scene, drive, next, next_pose);
+    sum.lost_by_wall += seconds * scene.wall_drag * area * next.wall_velocity * next.wall_velocity;
+    here = std::move(next);
+    pose = next_pose;
+    forces = next_forces;
+  }
+  simulation.advance(drive, 1);
+  const Energies after = energies(cell, scene, here, simulation.state(), pose);
+  sum.elastic = after.elastic - before.elastic;
+  sum.kinetic = after.kinetic - before.kinetic;
+  sum.gravitational = after.gravitational - before.gravitational;
+  sum.load = after.load - before.load;
+  return sum;
+}
+
+}  // namespace shearcell
