@@ -28,26 +28,43 @@ void CellOrder::choose_grid(const Cell& cell, const WallPose& pose, double reach
   per_cell_ = {grid_.columns / cell.width, grid_.rows / height, grid_.layers / cell.depth};
 }
 
+// A kernel that passes through the sites in order finds most neighbours in the row of cells below,
+// its own and the one above. Strips make a row short enough that all three stay in the cache.
+void CellOrder::choose_strip(std::size_t sites) {
+  constexpr double kSitesPerRow = 1200;
+  const double line = static_cast<double>(sites) / (1.0 * grid_.rows * grid_.layers);
+  const double strip = std::min(std::max(kSitesPerRow / line, 3.0), 1.0 * grid_.layers);
+  grid_.strip = static_cast<std::int32_t>(strip);
+  // The row above, one line more on either side, and a fifth for rows fuller than the mean. A small
+  // cell is in the cache as a whole.
+  constexpr std::size_t kSmall = 4000;
+  const double ahead = sites < kSmall ? 0 : 1.2 * line * (grid_.strip + 2);
+  ahead_ = padded(static_cast<std::size_t>(ahead));
+}
+
 std::uint32_t CellOrder::cell_of(const double* row, const Cell& cell, const WallPose& pose) const {
   const double x = row[0] - pose.tan_theta * (row[1] - pose.top);
   const double z = row[2] - cell.depth * std::floor(row[2] / cell.depth);
   const std::int32_t column = clamp_to_cell(x * per_cell_[0], grid_.columns);
   const std::int32_t line = clamp_to_cell((row[1] - pose.bottom) * per_cell_[1], grid_.rows);
   const std::int32_t layer = clamp_to_cell(z * per_cell_[2], grid_.layers);
-  return static_cast<std::uint32_t>((line * grid_.layers + layer) * grid_.columns + column);
+  return static_cast<std::uint32_t>(line_of(grid_, line, layer) * grid_.columns + column);
 }
 
 void CellOrder::build(const Cell& cell, const WallPose& pose, double reach, const double* rows,
-                      const std::vector<Site>& sites) {
+                      const std::vector<Site>& sites, Team& team) {
   choose_grid(cell, pose, reach, sites.size());
+  choose_strip(sites.size());
   const auto cells = static_cast<std::size_t>(grid_.columns) *
                      static_cast<std::size_t>(grid_.rows) * static_cast<std::size_t>(grid_.layers);
   begin_.assign(cells + 1, 0);
   cell_of_site_.resize(sites.size());
-  for (std::size_t s = 0; s < sites.size(); ++s) {
-    cell_of_site_[s] = cell_of(rows + sites[s].offset, cell, pose);
-    ++begin_[cell_of_site_[s] + 1];
-  }
+  team.run(sites.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t s = first; s < last; ++s) {
+      cell_of_site_[s] = cell_of(rows + sites[s].offset, cell, pose);
+    }
+  });
+  for (const std::uint32_t c : cell_of_site_) ++begin_[c + 1];
   for (std::size_t c = 0; c < cells; ++c) begin_[c + 1] += begin_[c];
 
   site_.resize(sites.size());
@@ -56,17 +73,19 @@ void CellOrder::build(const Cell& cell, const WallPose& pose, double reach, cons
   std::vector<std::uint32_t>& next = cell_;  // free until the end
   next.assign(begin_.begin(), begin_.end());
   for (std::size_t s = 0; s < sites.size(); ++s) {
-    const std::size_t place = next[cell_of_site_[s]]++;
-    site_[place] = static_cast<std::int32_t>(s);
-    id_[place] = sites[s].id;
-    for (std::size_t k = 0; k < 4; ++k) {
-      row_[k][place] = rows[static_cast<std::size_t>(sites[s].offset) + k];
-    }
+    site_[next[cell_of_site_[s]]++] = static_cast<std::int32_t>(s);
   }
   cell_.resize(sites.size());
-  for (std::size_t place = 0; place < sites.size(); ++place) {
-    cell_[place] = cell_of_site_[static_cast<std::size_t>(site_[place])];
-  }
+  team.run(sites.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t place = first; place < last; ++place) {
+      const auto s = static_cast<std::size_t>(site_[place]);
+      cell_[place] = cell_of_site_[s];
+      id_[place] = sites[s].id;
+      for (std::size_t k = 0; k < 4; ++k) {
+        row_[k][place] = rows[static_cast<std::size_t>(sites[s].offset) + k];
+      }
+    }
+  });
   grid_.begin = begin_.data();
   grid_.cell = cell_.data();
   grid_.id = id_.data();

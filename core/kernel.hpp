@@ -71,6 +71,9 @@ struct ContactTask {
   double frame_height = 0;  ///< height at which that frame does not move [d]
   double tan_theta = 0;     ///< of the tilt when the margins are checked
   double margin_loss = 0;   ///< part of every margin used up by the shear and by rounding [d]
+  /// From a block to the rows that are fetched into the cache before they are needed
+  /// (CellOrder::ahead()); 0 fetches none.
+  std::size_t ahead = 0;
 };
 
 /// The contact sums of every grain of a range of blocks; margins are checked at `rows`.
@@ -92,9 +95,11 @@ struct StepTask : ContactTask {
   double time_step = 0;          ///< dt [s]
 };
 
-/// Sites (grains and wall grains) ordered by the cells of a grid, x fastest, then z, then y.
+/// Sites (grains and wall grains) ordered by the cells of a grid. The grid is cut along z into
+/// strips; within a strip x is fastest, then z, then y.
 struct CellGrid {
   std::int32_t columns = 1, layers = 1, rows = 1;  ///< in x, z and y
+  std::int32_t strip = 1;                          ///< layers of a strip; the last may have fewer
   const std::uint32_t* begin = nullptr;  ///< first place of each cell, and the number of sites
   const std::uint32_t* cell = nullptr;   ///< cell of the site at each place
   const double* position[3] = {};        ///< of the site at each place [d]

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace shearcell {
 namespace {
@@ -58,16 +59,18 @@ void NeighbourLists::set_outer_margins(const Snapshot& now) {
   const double least = settings_.outer_margin();
   const double horizon = settings_.outer_horizon * now.time_step;
   outer_margin_.resize(now.grains);
-  for (std::size_t g = 0; g < now.grains; ++g) {
-    now.rows[4 * g + 3] = std::min(least + horizon * speed(now, g), widest_margin_);
-  }
+  team_.run(now.grains, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; ++g) {
+      now.rows[4 * g + 3] = std::min(least + horizon * speed(now, g), widest_margin_);
+    }
+  });
   outer_wall_margin_ = std::min(least + horizon * now.wall_speed, widest_margin_);
   walls_.place_all(now.pose, outer_wall_margin_, now.rows + wall_offset(now.grains));
 }
 
 void NeighbourLists::build(const Snapshot& now, const std::vector<std::int32_t>& id,
                            const CellOrder& order) {
-  outer_reference_.set(now.rows, now.grains, now.pose, widest_margin_);
+  outer_reference_.set(now.rows, now.grains, now.pose, widest_margin_, team_);
   for (std::size_t g = 0; g < now.grains; ++g) outer_margin_[g] = round_down(now.rows[4 * g + 3]);
   const std::size_t walls = walls_.size();
   offset_of_id_.resize(walls + now.grains);
@@ -120,19 +123,24 @@ bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double loss = outer_reference_.margin_loss(now.pose.tan_theta);
   double smallest_room = outer_wall_margin_ - outer_reference_.wall_moved(now.pose) - loss;
   inner_wall_margin_ = std::min(least + horizon * now.wall_speed, smallest_room);
-  for (std::size_t g = 0; g < now.grains; ++g) {
-    const double room =
-        double{outer_margin_[g]} - outer_reference_.moved(now.rows, g, now.pose) - loss;
-    smallest_room = std::min(smallest_room, room);
-    now.rows[4 * g + 3] = std::min(least + horizon * speed(now, g), room);
-  }
+  const auto set = [&](std::size_t first, std::size_t last) {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (std::size_t g = first; g < last; ++g) {
+      const double room =
+          double{outer_margin_[g]} - outer_reference_.moved(now.rows, g, now.pose) - loss;
+      smallest = std::min(smallest, room);
+      now.rows[4 * g + 3] = std::min(least + horizon * speed(now, g), room);
+    }
+    return -smallest;
+  };
+  smallest_room = std::min(smallest_room, -team_.largest(now.grains, set));
   double* wall_row = now.rows + wall_offset(now.grains);
   for (std::size_t w = 0; w < walls_.size(); ++w) wall_row[4 * w + 3] = inner_wall_margin_;
   return smallest_room >= least;
 }
 
 void NeighbourLists::prune_inner(const Snapshot& now) {
-  inner_reference_.set(now.rows, now.grains, now.pose, widest_margin_);
+  inner_reference_.set(now.rows, now.grains, now.pose, widest_margin_, team_);
   const std::size_t blocks = (now.grains + kernels_.lanes - 1) / kernels_.lanes;
   other_slots_.resize(blocks);
   moving_wall_slots_.resize(blocks);

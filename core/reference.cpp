@@ -8,18 +8,22 @@
 
 namespace shearcell {
 
-void Reference::set(const double* rows, std::size_t grains, const WallPose& pose, double widest) {
+void Reference::set(const double* rows, std::size_t grains, const WallPose& pose, double widest,
+                    Team& team) {
   pose_ = pose;
   widest_ = widest;
   for (auto& axis : at_) axis.resize(padded(grains));
-  double largest = 0;
-  for (std::size_t g = 0; g < grains; ++g) {
-    const double* p = rows + 4 * g;
-    largest = std::max({largest, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
-    at_[0][g] = static_cast<float>(p[0] - pose.tan_theta * (p[1] - pose.top));
-    at_[1][g] = static_cast<float>(p[1]);
-    at_[2][g] = static_cast<float>(p[2]);
-  }
+  const double largest = team.largest(grains, [&](std::size_t first, std::size_t last) {
+    double coordinate = 0;
+    for (std::size_t g = first; g < last; ++g) {
+      const double* p = rows + 4 * g;
+      coordinate = std::max({coordinate, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+      at_[0][g] = static_cast<float>(p[0] - pose.tan_theta * (p[1] - pose.top));
+      at_[1][g] = static_cast<float>(p[1]);
+      at_[2][g] = static_cast<float>(p[2]);
+    }
+    return coordinate;
+  });
   rounding_ = 0x1p-22 * largest;  // half a unit in the last place is 2^-25 of a coordinate at most
 }
 

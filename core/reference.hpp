@@ -12,13 +12,14 @@
 
 #include "core/aligned.hpp"
 #include "core/cell.hpp"
+#include "core/team.hpp"
 
 namespace shearcell {
 
 class Reference {
  public:
   /// Positions of the grains and the pose of the walls now. `widest` is the largest margin [d].
-  void set(const double* rows, std::size_t grains, const WallPose& pose, double widest);
+  void set(const double* rows, std::size_t grains, const WallPose& pose, double widest, Team& team);
 
   /// Distance [d] of the grain from where it would be if it had only followed the shear.
   double moved(const double* rows, std::size_t grain, const WallPose& pose) const;

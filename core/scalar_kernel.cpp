@@ -25,21 +25,20 @@ struct Sum {
   double x, y, z;
 };
 
-// Adds (1/r - 1) dr over the touching neighbours of the grain at `own`.
-void add_contacts(Sum& sum, const double* own, const double* rows, const std::int32_t* list,
-                  std::size_t slots, double depth, double per_depth) {
+// The sum and (1/r - 1) dr of the touching neighbours of the grain at `own`.
+Sum add_contacts(Sum sum, const double* own, const double* rows, const std::int32_t* list,
+                 std::size_t slots, double depth, double per_depth) {
   for (std::size_t k = 0; k < slots; ++k) {
     const double* other = rows + list[k];
     const double dx = own[0] - other[0];
     const double dy = own[1] - other[1];
     const double dz = nearest_image(own[2] - other[2], depth, per_depth);
-    const double s = one_minus_square(dx, dy, dz);
-    if (!(s > 0)) continue;
-    const double factor = contact_factor(s);
+    const double factor = contact_factor(one_minus_square(dx, dy, dz));  // 0 if not touching
     sum.x = std::fma(factor, dx, sum.x);
     sum.y = std::fma(factor, dy, sum.y);
     sum.z = std::fma(factor, dz, sum.z);
   }
+  return sum;
 }
 
 double distance_to(const WallPlane& plane, const double* row) {
@@ -62,15 +61,14 @@ Sum contact_sum(const ContactTask& t, std::size_t g) {
   if ((near & kNearMovingWall) != 0) {
     const std::size_t slots = t.neighbours.moving_wall_slots[g];
     touch_plane(sum, own, t.planes[0]);
-    add_contacts(sum, own, t.rows, list, slots, t.depth, t.per_depth);
+    sum = add_contacts(sum, own, t.rows, list, slots, t.depth, t.per_depth);
     t.moving_wall_force_y[g] = sum.y;
     list += slots;
   }
   if ((near & kNearOtherWall) != 0) {
     for (std::size_t w = 1; w < 4; ++w) touch_plane(sum, own, t.planes[w]);
   }
-  add_contacts(sum, own, t.rows, list, t.neighbours.other_slots[g], t.depth, t.per_depth);
-  return sum;
+  return add_contacts(sum, own, t.rows, list, t.neighbours.other_slots[g], t.depth, t.per_depth);
 }
 
 // The square of the distance that a grain has moved since its list was built, less that of what is

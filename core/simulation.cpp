@@ -132,6 +132,7 @@ void Simulation::set_contacts(ContactTask& task, double tan_theta) const {
   task.rows = rows_[0].data();
   task.tan_theta = tan_theta;
   task.margin_loss = lists_.reference().margin_loss(tan_theta);
+  task.ahead = order_.ahead();
   const auto planes = walls_.planes(pose_);
   std::copy(planes.begin(), planes.end(), task.planes);
 }
@@ -302,7 +303,7 @@ void Simulation::rebuild_lists(const Drive& drive) {
   for (std::size_t g = 0; g < id_.size(); ++g) {
     sites.push_back({static_cast<std::int32_t>(4 * g), walls + id_[g]});
   }
-  order_.build(cell_, pose_, reach, rows_[0].data(), sites);
+  order_.build(cell_, pose_, reach, rows_[0].data(), sites, *team_);
   // The order in memory stays good for longer than the lists of a loose, fast packing are valid.
   const bool stale = counts_.builds < 2 || step_ - sorted_at_ >= 200;
   if (settings_.lists.sort_memory && stale) sort_memory();
@@ -330,21 +331,26 @@ void Simulation::sort_memory() {
       const auto at = static_cast<std::size_t>(g);
       return (lists_.near()[at] << 16) + neighbours[at];
     };
-    for (std::size_t first = 0; first < from.size(); first += kStretch) {
-      const std::size_t last = std::min(first + kStretch, from.size());
-      std::stable_sort(from.begin() + static_cast<std::ptrdiff_t>(first),
-                       from.begin() + static_cast<std::ptrdiff_t>(last),
-                       [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
-    }
+    const std::size_t stretches = (from.size() + kStretch - 1) / kStretch;
+    team_->run(stretches, [&](std::size_t, std::size_t first, std::size_t last) {
+      for (std::size_t stretch = first; stretch < last; ++stretch) {
+        const std::size_t end = std::min((stretch + 1) * kStretch, from.size());
+        std::stable_sort(from.begin() + static_cast<std::ptrdiff_t>(stretch * kStretch),
+                         from.begin() + static_cast<std::ptrdiff_t>(end),
+                         [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
+      }
+    });
   }
   const auto old_id = id_;
   const auto old_velocity = velocity_;
-  for (std::size_t g = 0; g < id_.size(); ++g) {
-    const auto old = static_cast<std::size_t>(from[g]);
-    id_[g] = old_id[old];
-    std::copy_n(rows_[0].data() + 4 * old, 4, rows_[1].data() + 4 * g);
-    for (std::size_t axis = 0; axis < 3; ++axis) velocity_[axis][g] = old_velocity[axis][old];
-  }
+  team_->run(id_.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; ++g) {
+      const auto old = static_cast<std::size_t>(from[g]);
+      id_[g] = old_id[old];
+      std::copy_n(rows_[0].data() + 4 * old, 4, rows_[1].data() + 4 * g);
+      for (std::size_t axis = 0; axis < 3; ++axis) velocity_[axis][g] = old_velocity[axis][old];
+    }
+  });
   std::copy(rows_[0].begin() + padding_offset(id_.size()), rows_[0].end(),
             rows_[1].begin() + padding_offset(id_.size()));
   std::swap(rows_[0], rows_[1]);

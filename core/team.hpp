@@ -6,6 +6,7 @@
 // all ranges are done, and everything written in them is visible to the caller.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -42,6 +43,16 @@ class Team {
     start_workers();
     run_part(0);
     wait_for_workers();
+  }
+
+  /// The largest of what work(first, last) returns for the parts of [0, count).
+  template <class Work>
+  double largest(std::size_t count, Work&& work) {
+    std::vector<double> most(size());
+    run(count, [&](std::size_t thread, std::size_t first, std::size_t last) {
+      most[thread] = work(first, last);
+    });
+    return *std::max_element(most.begin(), most.end());
   }
 
  private:

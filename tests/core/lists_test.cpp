@@ -4,8 +4,12 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <map>
+#include <numeric>
 #include <set>
 
+#include "core/cell_grid.hpp"
 #include "core/contact.hpp"
 #include "core/linked_cells.hpp"
 #include "core/neighbour_lists.hpp"
@@ -136,7 +140,7 @@ PROPERTY(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId, 300
                        static_cast<std::int32_t>(walls.size()) + points.id[g]});
     }
     CellOrder order;
-    order.build(cell, pose, 1 + 2 * settings.widest_margin(), points.rows.data(), sites);
+    order.build(cell, pose, 1 + 2 * settings.widest_margin(), points.rows.data(), sites, team);
     lists.build(now, points.id, order);
     for (std::size_t g = 0; g < grains; ++g) {
       RC_ASSERT(found_row(lists, walls, grains, kernels->lanes, g) ==
@@ -150,7 +154,8 @@ TEST(Reference, AnAffineShearAloneMovesNothing) {
   cell.width = cell.depth = cell.top = 10;
   const Points points = random_points(64, cell, wall_pose(cell, 0, 0), 3);
   Reference reference;
-  reference.set(points.rows.data(), 64, wall_pose(cell, 0, 0), 0.2);
+  Team team(2);
+  reference.set(points.rows.data(), 64, wall_pose(cell, 0, 0), 0.2, team);
   const double rounding = reference.margin_loss(0);
   EXPECT_LT(rounding, 1e-4);
   Points sheared = points;
@@ -166,6 +171,45 @@ TEST(Reference, AnAffineShearAloneMovesNothing) {
   EXPECT_GT(reference.margin_loss(pose.tan_theta), 1.4 * 0.5 * pose.tan_theta / 2);
   sheared.rows[4 * 17 + 2] += 0.25;
   EXPECT_NEAR(reference.moved(sheared.rows.data(), 17, pose), 0.25, rounding);
+}
+
+// One site in each cell, whose coordinates are known from its place.
+TEST(CellOrder, NeighboursOfEveryCellInStripsOfAnyWidth) {
+  for (const std::int32_t layers : {1, 2, 3, 4, 7, 10}) {
+    for (std::int32_t strip = 1; strip <= layers; ++strip) {
+      CellGrid grid{.columns = 4, .layers = layers, .rows = 5, .strip = strip};
+      const std::int32_t cells = grid.columns * grid.layers * grid.rows;
+      std::vector<std::uint32_t> place(static_cast<std::size_t>(cells) + 1);
+      std::iota(place.begin(), place.end(), 0);
+      grid.begin = grid.cell = place.data();
+      std::map<std::size_t, std::array<std::int32_t, 3>> cell_at;  // column, row, layer
+      for (std::int32_t row = 0; row < grid.rows; ++row) {
+        for (std::int32_t layer = 0; layer < layers; ++layer) {
+          for (std::int32_t column = 0; column < grid.columns; ++column) {
+            const std::int32_t at = line_of(grid, row, layer) * grid.columns + column;
+            ASSERT_TRUE(at >= 0 && at < cells);
+            cell_at[static_cast<std::size_t>(at)] = {column, row, layer};
+          }
+        }
+      }
+      ASSERT_EQ(cell_at.size(), static_cast<std::size_t>(cells));  // each place once
+      for (const auto& [at, own] : cell_at) {
+        std::multiset<std::size_t> expected, found;
+        for (const auto& [other_at, other] : cell_at) {
+          const std::int32_t dz = std::abs(own[2] - other[2]);
+          const bool near = std::abs(own[0] - other[0]) <= 1 && std::abs(own[1] - other[1]) <= 1 &&
+                            std::min(dz, layers - dz) <= 1;
+          if (near) expected.insert(other_at);
+        }
+        std::array<PlaceRun, 9> runs;
+        const std::size_t count = surrounding_runs(grid, at, runs);
+        for (std::size_t r = 0; r < count; ++r) {
+          for (std::size_t p = runs[r].begin; p < runs[r].end; ++p) found.insert(p);
+        }
+        ASSERT_EQ(found, expected) << layers << " layers in strips of " << strip << ", " << at;
+      }
+    }
+  }
 }
 
 TEST(LinkedCells, VisitEveryPointNearbyOnceInShallowCellsToo) {

@@ -98,6 +98,7 @@ TEST(ContactLaw, SeriesMeetsTheClosedForm) {
   EXPECT_NEAR(below, above, 1e-14 * below);
   EXPECT_GT(contact_factor(1e-300), 0);
   EXPECT_EQ(contact_factor(0), 0);
+  EXPECT_EQ(contact_factor(-1e30), 0);
   EXPECT_TRUE(std::isinf(contact_factor(1)));
 }
 
