@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/bench/machine_limit.hpp"
 #include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "provenance/checkpoint.hpp"
@@ -27,6 +28,7 @@ struct KernelTimes {
   // Every 16th step is repeated with its results written elsewhere: whole, without the walls, and
   // without any neighbours.
   double sampled = 0, whole = 0, without_walls = 0, without_neighbours = 0;
+  double blocks = 0, slots = 0;  // of the same steps
   std::vector<double> elsewhere;
 };
 KernelTimes times;
@@ -46,6 +48,10 @@ void sample_parts(StepTask task, std::size_t first, std::size_t last) {
   const Stopwatch watch;
   const std::size_t room = padded(task.grains);
   times.elsewhere.resize(8 * room);
+  times.blocks += static_cast<double>(last - first);
+  for (std::size_t block = first; block < last; ++block) {
+    times.slots += task.neighbours.other_slots[block] + task.neighbours.moving_wall_slots[block];
+  }
   task.next_rows = times.elsewhere.data();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double* velocity = times.elsewhere.data() + (4 + axis) * room;
@@ -156,6 +162,21 @@ void measure_shares(const Packing& made, const Kernels& kernels, std::uint64_t s
       static_cast<double>(simulation.bytes()) / static_cast<double>(simulation.grains());
 }
 
+// After measure_shares.
+void measure_limits(std::size_t lanes, SpeedResult& result) {
+  const double slots = times.slots / times.blocks;
+  const bench::StepWork work = bench::step_work(lanes, slots);
+  const auto threads = static_cast<double>(result.threads);
+  result.operations_per_step = work.vector_operations;
+  result.bytes_per_step = work.bytes;
+  result.arithmetic_limit = 1e-6 * threads * bench::peak_operations(lanes) / work.vector_operations;
+  // More than any cache holds is read no slower.
+  constexpr double kMostRead = 1 << 28;
+  const double arrays = bench::step_footprint(lanes, slots) * static_cast<double>(result.grains);
+  const auto read = static_cast<std::size_t>(std::min(arrays, kMostRead));
+  result.memory_limit = 1e-6 * threads * bench::read_bandwidth(read) / work.bytes;
+}
+
 void measure_rate(const Packing& made, const EngineSettings& settings, const SpeedOptions& options,
                   SpeedResult& result) {
   Simulation simulation(made.cell, made.scene, made.state, settings);
@@ -206,6 +227,7 @@ std::vector<SpeedResult> measure_size(std::size_t grains, const SpeedOptions& op
                            static_cast<double>(grains * threads);
       measure_shares(made, *kernels,
                      std::max<std::uint64_t>(400, static_cast<std::uint64_t>(steps)), result);
+      measure_limits(kernels->lanes, result);
       results.push_back(result);
     }
   }

@@ -31,6 +31,11 @@ struct SpeedResult {
   double search_share = 0, prune_share = 0;  ///< of the outer list, of the inner list
   double steps_per_search = 0, steps_per_prune = 0;
   double bytes_per_grain = 0;
+  /// What a particle-step does at least, and the rates that this machine's vector units and its
+  /// caches or memory would allow (machine_limit.hpp), as measured on one core and multiplied by
+  /// the threads.
+  double operations_per_step = 0, bytes_per_step = 0;
+  double arithmetic_limit = 0, memory_limit = 0;
   std::string state_hash;  ///< after 200 steps; the same for all results of one size
 };
 

@@ -26,6 +26,10 @@ nlohmann::json facts(const SpeedResult& r) {
           {"steps_per_search", r.steps_per_search},
           {"steps_per_prune", r.steps_per_prune},
           {"bytes_per_grain", r.bytes_per_grain},
+          {"vector_operations_per_particle_step", r.operations_per_step},
+          {"bytes_per_particle_step", r.bytes_per_step},
+          {"arithmetic_limit", r.arithmetic_limit},
+          {"memory_limit", r.memory_limit},
           {"state_hash", r.state_hash}};
 }
 
@@ -43,16 +47,19 @@ void speed(const SpeedOptions& options, Context& context) {
     rows.push_back({std::to_string(r.grains), r.simd, std::to_string(r.threads),
                     fmt::format("{:.1f}", r.median_rate),
                     fmt::format("{:.0f}-{:.0f}", r.slowest_rate, r.fastest_rate),
-                    percent(r.force_share), percent(r.integration_share), percent(r.wall_share),
-                    percent(r.search_share), percent(r.prune_share),
-                    fmt::format("{:.0f}", r.bytes_per_grain)});
+                    fmt::format("{:.0f}", r.arithmetic_limit),
+                    fmt::format("{:.0f}", r.memory_limit), percent(r.force_share),
+                    percent(r.integration_share), percent(r.wall_share), percent(r.search_share),
+                    percent(r.prune_share), fmt::format("{:.0f}", r.bytes_per_grain)});
   }
-  print_table({"N", "SIMD", "thr", "M/s", "range", "force%", "integ%", "wall%", "search%", "prune%",
-               "B/grain"},
+  print_table({"N", "SIMD", "thr", "M/s", "range", "arith", "mem", "force%", "integ%", "wall%",
+               "search%", "prune%", "B/grain"},
               rows);
   fmt::print(
-      "M/s: million particle-steps/s, median of {}. Shares of one thread's time; search: building\n"
-      "the outer neighbour list, prune: the inner one.\n",
+      "M/s: million particle-steps/s, median of {}. arith, mem: what this machine's vector units "
+      "and\n"
+      "its caches or memory would allow. Shares of one thread's time; search: building the outer\n"
+      "neighbour list, prune: the inner one.\n",
       options.repeats);
 }
 
