@@ -56,7 +56,8 @@ Facts measures_of(const Store& store, const CheckpointRecord& record) {
   for (const auto* messages : {&found.damage, &found.pruned}) {
     for (const std::string& line : *messages) tell_stderr("not measured: {}\n", line);
   }
-  return facts_of(record, read_table_measures(found.results.front(), store.run(record.run), record));
+  return facts_of(record,
+                  read_table_measures(found.results.front(), store.run(record.run), record));
 }
 
 Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& checkpoints) {

@@ -162,7 +162,8 @@ Measures RunEnd::measure(const CheckpointRecord& record, const Checkpoint& check
   const Analysis analysis = analyse(checkpoint);
   std::vector<DerivedObject> objects;
   for (const DerivedMeasure* measure : {&scalar_measures(), &crystallite_measure()}) {
-    objects.push_back({key_of(record, *measure), encode_result(measure->from({analysis, &checkpoint}))});
+    objects.push_back(
+        {key_of(record, *measure), encode_result(measure->from({analysis, &checkpoint}))});
   }
   cache_.put(objects);
   return analysis.measures;
