@@ -264,6 +264,7 @@ const checks = {
     const profile = page.locator("#packings .profile");
     const line = await profile.locator("polyline").getAttribute("points");
     expect(line.split(" ").length > 5, `profile: ${line}`);
+    await box.screenshot({path: join(shots, "packing-profile.png")});
     await choose("profile", "pressure");
     expect(await profile.locator("polyline").getAttribute("points") !== line, "profile: does not change");
     await choose("profile", "none");

@@ -138,7 +138,7 @@ class Checkpoint:
         atoms.set_array("type", np.concatenate([np.zeros(self.grains, int), self.wall_side]))
         atoms.set_array("velo", np.concatenate([self.velocity, self.wall_velocity]))
         for name, values in self._measured.items():
-            missing = -1 if values.dtype.kind == "i" else 0
+            missing = -1 if name in ("structure", "lattice", "crystallite") else 0
             atoms.set_array(name, np.concatenate([values, np.full(walls, missing)]))
         return atoms
 

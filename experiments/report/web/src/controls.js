@@ -41,7 +41,7 @@ export const controls = `<div class="controls">
 export const pane = `<div class="stage3d" data-part="stage">
 <canvas data-part="canvas" tabindex="0" role="img" aria-label="The packing. Arrow keys turn it, plus and minus zoom, 0 shows all."></canvas>
 <div class="key3d" data-part="key"></div>
-<svg class="profile" data-part="profile" role="img" hidden></svg>
+<svg class="profile" data-part="profile-line" role="img" hidden></svg>
 </div>
 <p class="facts"><span data-part="facts"></span> <span>checkpoint <code data-part="checkpoint"></code></span></p>
 <p class="facts" data-part="grain" role="status"></p>

@@ -61,7 +61,7 @@ export class Pane {
   apply(choices) {
     this.scene.spheres.setColours(coloursOf(this.frame, this.packing.grains, choices.colour));
     this.showKey(keyOf(this.frame, choices.colour));
-    drawProfile(this.part("profile"), this.packing.frames, this.stored, choices.profile);
+    drawProfile(this.part("profile-line"), this.packing.frames, this.stored, choices.profile);
     this.resize(choices);
     this.scene.frameLines.visible = choices.box;
     this.scene.setCut(axes[choices.axis], this.placeOfCut(choices), choices.otherSide ? -1 : 1);
