@@ -14,7 +14,7 @@
 namespace shearcell {
 namespace {
 
-constexpr double kReach = 1.7;  // [d]; the 14 nearest neighbours in BCC are within 1.2
+constexpr double kReach = 1.5;  // [d]; the 14 nearest neighbours in BCC are within 1.2
 constexpr std::size_t kMost = 14;
 using Bonds = std::array<std::uint32_t, kMost>;  // a bit for each neighbour it is bonded to
 
@@ -88,6 +88,8 @@ Lattice body_centred(std::span<const NearGrain> near) {
   const Bonds bonds = find_bonds(near, kCut * side);
   int first_shell = 0, second_shell = 0;
   for (std::size_t a = 0; a < near.size(); ++a) {
+    const int common = std::popcount(bonds[a]);
+    if (common != 6 && common != 4) return Lattice::none;
     const int found = signature(bonds, a);
     first_shell += found == 666 ? 1 : 0;
     second_shell += found == 444 ? 1 : 0;
