@@ -30,5 +30,7 @@ FigureResult figure_s5a(std::span<const FigureRun> runs);
 FigureResult figure_s5b(std::span<const FigureRun> runs);
 FigureResult figure_s6(std::span<const FigureRun> runs);
 FigureResult figure_s7(std::span<const FigureRun> runs);
+// Onsets as survival data: share of runs without one, and rate of nucleation against phi.
+FigureResult figure_nucleation(std::span<const FigureRun> runs);
 
 }  // namespace shearcell

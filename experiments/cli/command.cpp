@@ -18,23 +18,35 @@ void add_common_options(CLI::App& command, Context& context, bool with_json) {
   if (with_json) command.add_flag("--json", context.json, "Print JSON for programs");
 }
 
+namespace {
+
+CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const char* help,
+                      const char* type) {
+  return command.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
+}
+
+void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
+  add_each(command, "--variant", variants, "Only runs with these swept values, as fluid=cell",
+           "KEY=V");
+}
+
+}  // namespace
+
 void add_expand_options(CLI::App& command, ExpandOptions& options) {
   command.add_option("--scale", options.scale, "Named size (default: desk)");
   add_count(command, "--cycles", options.cycles, "Cycles instead of the manifest's");
   add_count(command, "--seeds", options.seeds, "Number of seeds instead of the manifest's");
+  add_variant_option(command, options.variants);
 }
 
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states) {
-  const auto add = [&](const char* name, auto& values, const char* help, const char* type) {
-    return command.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
-  };
-  add("--experiment", selection.experiments, "Only runs of this experiment", "NAME");
-  add("--scale", selection.scales, "Only runs of this scale", "NAME");
-  add("--variant", selection.variants, "Only runs with these swept values, as fluid=cell", "KEY=V");
-  add("--seed", selection.seeds, "Only runs with this seed", "N")
+  add_each(command, "--experiment", selection.experiments, "Only runs of this experiment", "NAME");
+  add_each(command, "--scale", selection.scales, "Only runs of this scale", "NAME");
+  add_variant_option(command, selection.variants);
+  add_each(command, "--seed", selection.seeds, "Only runs with this seed", "N")
       ->check([](const std::string& text) { return unfit_count(text, 1, UINT64_MAX); });
   if (!states) return;
-  add("--state", selection.states, "Only runs in this state", "STATE")
+  add_each(command, "--state", selection.states, "Only runs in this state", "STATE")
       ->check(CLI::IsMember(
           std::vector<std::string>(kNameList<RunState>.begin(), kNameList<RunState>.end())));
 }

@@ -117,6 +117,7 @@ void add_run(CLI::App& app, Context& context) {
       "Examples:\n"
       "  shearcell run experiments/drag.yaml --scale smoke\n"
       "  shearcell run experiments/drag.yaml --scale desk --cycles 100   # extend\n"
+      "  shearcell run experiments/critical_size.yaml --scale paper --variant amplitude_rad=0.1\n"
       "  shearcell run experiments/drag.yaml --scale smoke --engine lammps --mpi 2\n"
       "\n"
       "Computes only what the store does not hold. Press Ctrl-C to write checkpoints and end with\n"

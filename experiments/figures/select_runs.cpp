@@ -6,23 +6,12 @@
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 
 #include "experiments/manifest/suggest.hpp"
+#include "experiments/manifest/variants.hpp"
 
 namespace shearcell {
 namespace {
-
-std::set<std::string> parts_of(const std::string& variant) {
-  std::set<std::string> parts;
-  std::istringstream text(variant);
-  for (std::string part; std::getline(text, part, ',');) parts.insert(part);
-  return parts;
-}
-
-bool is_variant(const std::string& wanted, const std::string& variant) {
-  return std::ranges::includes(parts_of(variant), parts_of(wanted));
-}
 
 /// One filter: what is wanted, what the store has, and what of the wanted was found.
 class Filter {
@@ -71,7 +60,7 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
   const auto same = [](const std::string& a, const std::string& b) { return a == b; };
   Filter experiment("experiment", selection.experiments, same);
   Filter scale("scale", selection.scales, same);
-  Filter variant("variant", selection.variants, is_variant);
+  Filter variant("variant", selection.variants, has_values);
   std::vector<std::string> seeds;
   for (const std::uint64_t seed : selection.seeds) seeds.push_back(std::to_string(seed));
   Filter seed("seed", seeds, same);

@@ -93,6 +93,35 @@ void set_engine(const Manifest& manifest, const AtScale& scale, const std::strin
   sweep.grid.insert(sweep.grid.begin(), SweepAxis{std::string(field.name), {}, {value}});
 }
 
+// Whether the variants are wanted; remembers what was found.
+class WantedVariants {
+ public:
+  explicit WantedVariants(const std::vector<std::string>& wanted)
+      : wanted_(wanted), found_(wanted.size()) {}
+
+  bool wants(const std::string& variant) {
+    known_.push_back(variant);
+    bool wanted = wanted_.empty();
+    for (std::size_t k = 0; k < wanted_.size(); ++k) {
+      if (!has_values(wanted_[k], variant)) continue;
+      found_[k] = wanted = true;
+    }
+    return wanted;
+  }
+  void require_found(const Manifest& manifest) const {
+    const auto missing = std::ranges::find(found_, false);
+    if (missing == found_.end()) return;
+    const std::size_t k = static_cast<std::size_t>(missing - found_.begin());
+    refuse(manifest, "variant", "no variant has these values", printable(wanted_[k]),
+           fmt::format("It has {}.", fmt::join(known_, "; ")));
+  }
+
+ private:
+  const std::vector<std::string>& wanted_;
+  std::vector<bool> found_;
+  std::vector<std::string> known_;
+};
+
 void warn_of_time_steps(const Variant& variant, Plan& plan) {
   const Parameters& p = variant.parameters;
   std::optional<std::string> of_shear;
@@ -182,11 +211,12 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     }
     resolved.settings["cycles"] = cycles;
   }
-  Sweep with_engine = *resolved.sweep;
-  if (options.engine) {
-    set_engine(manifest, resolved, *options.engine, with_engine);
-    resolved.sweep = &with_engine;
+  Sweep sweep = *resolved.sweep;
+  if (options.cycles) {
+    std::erase_if(sweep.zip, [](const SweepAxis& axis) { return is_length(axis.key); });
   }
+  if (options.engine) set_engine(manifest, resolved, *options.engine, sweep);
+  resolved.sweep = &sweep;
   const std::vector<std::uint64_t> seeds = choose_seeds(manifest, *resolved.seeds, options.seeds);
   if (variant_count(*resolved.sweep) > ManifestLimits::runs / seeds.size()) {
     refuse(manifest, "seeds",
@@ -197,9 +227,11 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   Plan plan{manifest.experiment, scale == nullptr ? "" : scale->name, {}, {}};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
   WithoutEffect without_effect(resolved);
+  WantedVariants wanted(options.variants);
   const std::string manifest_sha = sha256_hex(manifest.text);
   for_each_variant(resolved, [&](const Variant& variant) {
     without_effect.visit(variant.parameters);
+    if (!wanted.wants(variant.name())) return;
     warn_of_pressure(variant, plan);
     warn_of_time_steps(variant, plan);
     if (options.engine && asks_lammps_to_stiffen(variant.parameters)) {
@@ -242,6 +274,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       plan.runs.push_back(std::move(run));
     }
   });
+  wanted.require_found(manifest);
   name_variants(manifest, plan);
   without_effect.warn(manifest.file, plan);
   warn_of_until(manifest, resolved, plan);

@@ -16,9 +16,10 @@
 namespace shearcell {
 
 struct ExpandOptions {
-  std::optional<std::string> scale;     ///< default: `desk`, or the manifest's base without scales
-  std::optional<std::uint64_t> cycles;  ///< instead of the manifest's
-  std::optional<std::uint64_t> seeds;   ///< how many; of a listed set the first ones
+  std::optional<std::string> scale = {};     ///< default: `desk`, or the base without scales
+  std::optional<std::uint64_t> cycles = {};  ///< instead of the manifest's
+  std::optional<std::uint64_t> seeds = {};   ///< how many; of a listed set the first ones
+  std::vector<std::string> variants = {};  ///< only those with these swept values, as "fluid=cell"
   std::optional<std::string> engine = {};  ///< instead of the manifest's; named in the variant
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
@@ -118,9 +119,17 @@ std::vector<Override> overrides(std::string_view text, const Membership& members
       return setting == stated.settings.end() ? get_value(*find_field(key), Parameters{})
                                               : setting->second.value;
     };
-    if (const auto cycles = value("cycles"); cycles != membership.target_cycles) {
-      found.push_back({"cycles", membership.target_cycles, cycles});
-    }
+    const auto labelled = [&](const auto& swept) {
+      const auto label = membership.labels.find(swept.first);
+      return label != membership.labels.end() && *label == swept.second->value;
+    };
+    for_each_variant(stated, [&](const Variant& variant) {
+      const std::uint64_t cycles = target_cycles(variant.parameters);
+      if (found.empty() && cycles != membership.target_cycles &&
+          std::ranges::all_of(variant.swept, labelled)) {
+        found.push_back({"cycles", membership.target_cycles, cycles});
+      }
+    });
     const std::vector<std::uint64_t>& seeds = stated.seeds->values;
     if (std::ranges::find(seeds, membership.seed) == seeds.end()) {
       found.push_back({"seed", membership.seed, seeds});

@@ -58,16 +58,18 @@ std::vector<double> read_phases(const Node& node, const string& path, ProblemLis
 }
 
 std::optional<SweepAxis> read_axis(const Node& key, const Node& values, const string& path,
-                                   ProblemList& problems) {
+                                   bool in_zip, ProblemList& problems) {
   const string full = join_path(path, key.text);
   const Field* field = find_field(key.text);
   if (field == nullptr) {
     problems.add_unknown(key, path, field_names());
     return std::nullopt;
   }
-  if (!field->identity.distinguishes_runs()) {
+  if (!field->identity.distinguishes_runs() && !(in_zip && is_length(key.text))) {
     problems.add(key.at, full, "cannot be swept, since another value does not make another run", "",
-                 "Set it in `base` or in a scale.");
+                 is_length(key.text)
+                     ? "Set it in `base` or in a scale, or zip it with a key that does."
+                     : "Set it in `base` or in a scale.");
     return std::nullopt;
   }
   SweepAxis axis{key.text, key.at, {}};
@@ -82,14 +84,16 @@ std::optional<SweepAxis> read_axis(const Node& key, const Node& values, const st
   return axis;
 }
 
-std::vector<SweepAxis> read_axes(const Node& node, const string& path, ProblemList& problems) {
+std::vector<SweepAxis> read_axes(const Node& node, const string& path, bool in_zip,
+                                 ProblemList& problems) {
   std::vector<SweepAxis> axes;
   if (node.kind != Node::Kind::map || node.entries.empty()) {
     problems.add(node.at, path, "sweeps nothing", shown(node), "It takes `{key: [values]}`.");
     return axes;
   }
   for (const auto& [key, values] : node.entries) {
-    if (auto axis = read_axis(key, values, path, problems)) axes.push_back(std::move(*axis));
+    if (auto axis = read_axis(key, values, path, in_zip, problems))
+      axes.push_back(std::move(*axis));
   }
   return axes;
 }
@@ -110,6 +114,11 @@ void check_grid(const Sweep& sweep, const string& path, ProblemList& problems) {
 
 void check_zip(const std::vector<SweepAxis>& zip, const string& path, ProblemList& problems) {
   if (zip.empty()) return;
+  if (zip.size() == 1 && is_length(zip.front().key)) {
+    problems.add(zip.front().at, fmt::format("{}.zip.{}", path, zip.front().key),
+                 "advances with no other key", "", "Set it in `base` or in a scale.");
+    return;
+  }
   const std::size_t rows = zip.front().values.size();
   for (const SweepAxis& axis : zip) {
     if (axis.values.size() == rows) continue;
@@ -122,7 +131,9 @@ void check_zip(const std::vector<SweepAxis>& zip, const string& path, ProblemLis
   std::set<json> seen;
   for (std::size_t row = 0; row < rows; ++row) {
     json values = json::array();
-    for (const SweepAxis& axis : zip) values.push_back(axis.values[row].value);
+    for (const SweepAxis& axis : zip) {
+      if (!is_length(axis.key)) values.push_back(axis.values[row].value);
+    }
     if (seen.insert(values).second) continue;
     problems.add(zip.front().values[row].at, fmt::format("{}.zip", path), "repeats a row of values",
                  printable(values.dump()), "Keep one of them.");
@@ -195,9 +206,9 @@ Sweep read_sweep(const Node& node, const string& path, ProblemList& problems) {
   }
   for (const auto& [key, value] : node.entries) {
     if (key.text == "grid") {
-      sweep.grid = read_axes(value, join_path(path, "grid"), problems);
+      sweep.grid = read_axes(value, join_path(path, "grid"), false, problems);
     } else if (key.text == "zip") {
-      sweep.zip = read_axes(value, join_path(path, "zip"), problems);
+      sweep.zip = read_axes(value, join_path(path, "zip"), true, problems);
     } else if (find_field(key.text) != nullptr) {
       problems.add(key.at, join_path(path, key.text), "must stand under `grid` or `zip`", "",
                    remedy);

@@ -58,6 +58,12 @@ std::span<const Field> schema();
 /// The parameter of that name, or nullptr.
 const Field* find_field(std::string_view name);
 
+/// Whether the parameter is the length of a run: it makes no other run, but a zip may give each
+/// variant its own.
+inline bool is_length(std::string_view key) {
+  return key == "cycles";
+}
+
 /// What is wrong with a value, and what to write instead.
 struct ValueProblem {
   std::string problem;

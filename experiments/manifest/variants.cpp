@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
+#include <sstream>
 
 #include "experiments/manifest/numerics.hpp"
 #include "experiments/manifest/schema.hpp"
@@ -49,6 +51,16 @@ nlohmann::json Variant::labels() const {
   return labels;
 }
 
+bool has_values(const std::string& wanted, const std::string& variant) {
+  const auto parts_of = [](const std::string& list) {
+    std::set<std::string> parts;
+    std::istringstream text(list);
+    for (std::string part; std::getline(text, part, ',');) parts.insert(part);
+    return parts;
+  };
+  return std::ranges::includes(parts_of(variant), parts_of(wanted));
+}
+
 std::uint64_t variant_count(const Sweep& sweep) {
   std::uint64_t count = sweep.zip.empty() ? 1 : sweep.zip.front().values.size();
   for (const SweepAxis& axis : sweep.grid) {
@@ -89,7 +101,12 @@ void for_each_variant(const AtScale& scale, const std::function<void(const Varia
       variant.swept.emplace_back(grid[axis].key, &grid[axis].values[digit[axis]]);
     }
     for (const SweepAxis& axis : zip) {
-      variant.swept.emplace_back(axis.key, &axis.values[index % rows]);
+      const Setting& setting = axis.values[index % rows];
+      if (is_length(axis.key)) {
+        apply(axis.key, setting, variant.parameters);
+      } else {
+        variant.swept.emplace_back(axis.key, &setting);
+      }
     }
     for (const auto& [key, setting] : variant.swept) apply(key, *setting, variant.parameters);
     for (const std::string& key : autos) {

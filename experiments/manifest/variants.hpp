@@ -30,12 +30,17 @@ bool is_auto(const Setting& setting);
 AtScale at_scale(const Manifest& manifest, const Scale* scale);
 
 struct Variant {
-  std::vector<std::pair<std::string, const Setting*>> swept;  ///< in the order of the manifest
+  /// In the order of the manifest; without the length of the run.
+  std::vector<std::pair<std::string, const Setting*>> swept;
   Parameters parameters;
 
   std::string name() const;       ///< "fluid=cell", "base" when nothing is swept
   nlohmann::json labels() const;  ///< swept keys and values
 };
+
+/// Whether the variant of that name has the values that `wanted` lists: "fluid=cell" fits
+/// "fluid=cell,amplitude_rad=0.1".
+bool has_values(const std::string& wanted, const std::string& variant);
 
 /// How many there are; saturates at 2^64 - 1.
 std::uint64_t variant_count(const Sweep& sweep);

@@ -151,6 +151,16 @@ TEST(FigureS3, EachTimeStepAgainstThatOfTheMainText) {
       << "two time steps have no runs; the overlap is not below 1e-3";
 }
 
+TEST(FigureS3, ALargerStepIsJudgedByOnsetPercentageAndOverlap) {
+  const auto larger = [](double excess) {
+    const Rulings all =
+        rulings("S3", two_groups("steps_per_cycle", 45600, 20000, 6, 0.0005, excess));
+    return Rulings(all.begin() + 10, all.end());
+  };
+  EXPECT_EQ(larger(0), (Rulings{agrees, agrees, agrees}));
+  EXPECT_EQ(larger(5), (Rulings{agrees, differs, agrees}));
+}
+
 TEST(FigureB5, PausesCompactFaster) {
   for (const auto& [speed, ruling] : {std::pair{0.0006, agrees}, std::pair{0.0005, differs}}) {
     std::vector<FigureRun> runs = two_groups("protocol", "continuous", "paused", 6, speed, 0);

@@ -54,7 +54,7 @@ TEST(Drag, ExpandsAtEveryScale) {
     std::uint64_t cycles;
   };
   for (const Expected& expected : {Expected{"smoke", 4, 600, 5}, Expected{"desk", 12, 5200, 120},
-                                   Expected{"paper", 12, 7900, 200}}) {
+                                   Expected{"paper", 12, 7900, 150}}) {
     const Plan plan = at(manifest, expected.scale);
     EXPECT_EQ(plan.scale, expected.scale);
     ASSERT_EQ(plan.runs.size(), expected.runs);
@@ -157,6 +157,35 @@ TEST(Expand, OptionsOverrideTheManifest) {
   EXPECT_EQ(plan.runs[2].seed, 3U);
   const Manifest listed = parse("experiment: a\nbase: {}\nseeds: [11, 7, 5]\n");
   EXPECT_EQ(expand(listed, {.scale = {}, .cycles = {}, .seeds = 2}).runs[1].seed, 7U);
+}
+
+// Small amplitudes take more cycles: a zip gives each variant its own length, which names no
+// variant.
+TEST(Expand, AZipHasALengthForEachVariant) {
+  const Manifest manifest =
+      parse("experiment: a\nsweep: {zip: {amplitude_rad: [0.05, 0.1], cycles: [300, 20]}}\n");
+  const Plan plan = expand(manifest);
+  EXPECT_EQ(variants(plan), (Strings{"amplitude_rad=0.05", "amplitude_rad=0.1"}));
+  EXPECT_EQ(plan.runs[0].cycles, 300U);
+  EXPECT_EQ(plan.runs[1].cycles, 20U);
+  EXPECT_EQ(plan.runs[1].labels, (nlohmann::json{{"amplitude_rad", 0.1}}));
+  EXPECT_EQ(plan.runs[1].last.key,
+            expand(parse("experiment: a\nbase: {amplitude_rad: 0.1}\n")).runs[0].last.key);
+  for (const PlannedRun& run : expand(manifest, {.cycles = 7}).runs) EXPECT_EQ(run.cycles, 7U);
+}
+
+TEST(Expand, TakesOnlyTheVariantsAskedFor) {
+  const Manifest manifest =
+      parse("experiment: a\nsweep: {grid: {amplitude_rad: [0.05, 0.1], fluid: [still, cell]}}\n");
+  EXPECT_EQ(variants(expand(manifest, {.variants = {"fluid=cell", "amplitude_rad=0.1"}})),
+            (Strings{"amplitude_rad=0.05,fluid=cell", "amplitude_rad=0.1,fluid=still",
+                     "amplitude_rad=0.1,fluid=cell"}));
+  EXPECT_EQ(variants(expand(manifest, {.variants = {"fluid=cell,amplitude_rad=0.1"}})),
+            Strings{"amplitude_rad=0.1,fluid=cell"});
+  EXPECT_EQ(message(manifest, {.variants = {"fluid=cell", "amplitude_rad=0.2"}}),
+            "test.yaml: variant: no variant has these values (got amplitude_rad=0.2). It has "
+            "amplitude_rad=0.05,fluid=still; amplitude_rad=0.05,fluid=cell; "
+            "amplitude_rad=0.1,fluid=still; amplitude_rad=0.1,fluid=cell.");
 }
 
 TEST(Expand, RefusesOptionsThatDoNotFit) {

@@ -55,7 +55,8 @@ TEST(Manifests, EachExpandsAtEveryScale) {
     for (const std::string& scale : kScales) {
       const Plan expanded = plan(experiment, scale);
       EXPECT_FALSE(expanded.runs.empty());
-      EXPECT_EQ(expanded.warnings, std::vector<std::string>{}) << scale;
+      // Two steps of S3 lie above 0.7 of the stability limit on purpose.
+      EXPECT_EQ(expanded.warnings.size(), experiment == "timestep" ? 2U : 0U) << scale;
     }
     experiments.insert(experiment);
   }
@@ -86,7 +87,7 @@ TEST(Manifests, ShareTheRunThatTheyHaveInCommon) {
   for (const std::string& key : last_stages(plan("gravity", "paper"))) {
     shared += amplitudes.contains(key) ? 1 : 0;
   }
-  EXPECT_EQ(shared, 2 * 10U);
+  EXPECT_EQ(shared, 2 * 3U);
 }
 
 TEST(Manifests, HaveTheSizesAndNumbersOfTheSupplement) {
@@ -94,16 +95,17 @@ TEST(Manifests, HaveTheSizesAndNumbersOfTheSupplement) {
   EXPECT_EQ(runs_of_variants(plan("timestep", "paper")), (Variants{{"steps_per_cycle=76923", 10},
                                                                    {"steps_per_cycle=57143", 10},
                                                                    {"steps_per_cycle=45600", 10},
-                                                                   {"steps_per_cycle=28571", 10}}));
+                                                                   {"steps_per_cycle=28571", 10},
+                                                                   {"steps_per_cycle=20000", 10},
+                                                                   {"steps_per_cycle=17000", 10}}));
   EXPECT_EQ(runs_of_variants(plan("moving_wall", "paper")),
             (Variants{{"moving_wall=bottom,pressure_at=top", 10},
                       {"moving_wall=top,pressure_at=top", 10},
                       {"moving_wall=bottom,pressure_at=moving_wall", 10}}));
-  EXPECT_EQ(plan("critical_size", "paper").runs.size(), 5 * 10U);
+  EXPECT_EQ(plan("critical_size", "paper").runs.size(), 5 * 6U);
   EXPECT_EQ(
       runs_of_variants(plan("system_size", "paper")),
-      (Variants{
-          {"grains=5200", 10}, {"grains=7900", 10}, {"grains=11400", 10}, {"grains=18200", 10}}));
+      (Variants{{"grains=5200", 3}, {"grains=7900", 3}, {"grains=11400", 3}, {"grains=18200", 3}}));
   for (const PlannedRun& run : plan("nucleation_sites", "paper").runs) {
     EXPECT_EQ(run.grains, 18200U);
   }

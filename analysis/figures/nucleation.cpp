@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figure nucleation: the onset as survival data. The share of runs without one against the cycle,
+// and the rate of nucleation against phi. Not in the supplement.
+#include <fmt/format.h>
+
+#include <map>
+#include <utility>
+
+#include "analysis/figures/curves.hpp"
+#include "analysis/figures/figures.hpp"
+#include "analysis/figures/groups.hpp"
+#include "analysis/nucleation_rate.hpp"
+#include "analysis/published.hpp"
+#include "analysis/survival.hpp"
+
+namespace shearcell {
+namespace {
+
+using Group = std::pair<double, double>;  // amplitude, grains
+using Groups = std::map<Group, std::vector<const FigureRun*>>;
+
+Groups grouped(std::span<const FigureRun> runs) {
+  Groups groups;
+  for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
+    for (const FigureRun* run : members) {
+      groups[{amplitude, number_of(*run, "grains")}].push_back(run);
+    }
+  }
+  return groups;
+}
+
+std::string name_of(const Group& group) {
+  return fmt::format("A={} N={}", group.first, group.second);
+}
+
+/// One curve for each group, by the rows whose first column names it.
+std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns, Join join) {
+  std::vector<Series> series;
+  for (const auto& [group, runs] : groups) {
+    const std::size_t k = series.size();
+    series.push_back({.title = italic("A") + fmt::format(" = {}, ", group.first) + italic("N") +
+                               fmt::format(" = {}", group.second),
+                      .colour = safe_colours[k % safe_colours.size()],
+                      .point = 5 + 2 * static_cast<int>(k % 5),
+                      .join = join,
+                      .columns = columns,
+                      .filter = {"group", name_of(group)}});
+  }
+  return series;
+}
+
+FigureTable survival_table(const Groups& groups) {
+  FigureTable table;
+  table.name = "nucleation_a";
+  table.columns = {"group", "amplitude_rad", "grains", "cycle", "share_without_onset", "runs"};
+  for (const auto& [group, runs] : groups) {
+    const std::vector<Waiting> waits = waits_for_onset(runs);
+    double before = 1;
+    const auto add = [&, &group = group](double cycle, double share) {
+      table.rows.push_back({name_of(group), group.first, group.second, cycle, share,
+                            static_cast<std::int64_t>(waits.size())});
+    };
+    add(0, before);
+    for (const SurvivalStep& step : kaplan_meier(waits)) {
+      add(step.cycle, before);
+      add(step.cycle, step.survival);
+      before = step.survival;
+    }
+  }
+  table.chart = {
+      .x = cycle_axis(),
+      .y = {.name = "share of runs without an onset", .low = 0, .high = 1},
+      .series = series_by(groups, {.x = "cycle", .y = "share_without_onset"}, Join::line)};
+  for (Series& series : table.chart.series) series.point = 0;
+  return table;
+}
+
+FigureTable rate_table(const Groups& groups) {
+  FigureTable table;
+  table.name = "nucleation_b";
+  table.columns = {"group",    "amplitude_rad", "grains",       "phi_low",
+                   "phi_high", "onsets",        "grain_cycles", "rate_per_grain_cycle",
+                   "rate_low", "rate_high"};
+  for (const auto& [group, runs] : groups) {
+    for (const NucleationRate& bin : nucleation_rates(runs)) {
+      table.rows.push_back({name_of(group), group.first, group.second, bin.phi_low, bin.phi_high,
+                            static_cast<std::int64_t>(bin.events), bin.grain_cycles,
+                            bin.events > 0 ? TableValue(bin.rate) : TableValue(), bin.interval.low,
+                            bin.interval.high});
+    }
+  }
+  table.chart = {
+      .x = phi_axis(),
+      .y = {.name = "onsets per grain and cycle", .log = true},
+      .series = series_by(
+          groups, {.x = "phi_low", .y = "rate_per_grain_cycle", .x_high = "phi_high"}, Join::line),
+      .lines = {}};
+  return table;
+}
+
+Verdict rate_follows_volume(std::span<const FigureRun> runs) {
+  const std::vector<const FigureRun*> all = pointers(runs);
+  const std::optional<Estimate> exponent = size_exponent(all);
+  std::optional<Estimate> excess = exponent;
+  if (excess) {
+    excess->value -= 1;
+    excess->interval = {excess->interval.low - 1, excess->interval.high - 1};
+  }
+  return decide({"title: the rate of nucleation is proportional to the volume, not to the area of "
+                 "the walls",
+                 margin_size_exponent.value},
+                "exponent of the rate against N_inves less 1", excess, all.size(),
+                exponent ? "maximum likelihood in bins of phi, bootstrap over runs"
+                         : "runs of two sizes with onsets at the same phi are needed");
+}
+
+}  // namespace
+
+FigureResult figure_nucleation(std::span<const FigureRun> runs) {
+  const Groups groups = grouped(runs);
+  FigureResult result{{survival_table(groups), rate_table(groups)}, {}};
+  if (runs_by(runs, "grains").size() > 1) result.verdicts.push_back(rate_follows_volume(runs));
+  return result;
+}
+
+}  // namespace shearcell
