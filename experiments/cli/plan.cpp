@@ -14,6 +14,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/numerics.hpp"
+#include "experiments/runner/asks.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/engine.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
@@ -170,6 +171,14 @@ void print_until(const std::vector<Line>& lines, double at_most) {
   }
 }
 
+// Whether the run is complete, and an experiment that shares it asked for the same end.
+bool ended_as_asked(const Store& store, const PlannedRun& run, const RunRecord& record) {
+  return record.state == RunState::completed && run.until &&
+         std::ranges::any_of(asks_of(store, record.id), [&](const RunAsk& ask) {
+           return ask.until == run.until && ask.target_cycles >= run.cycles;
+         });
+}
+
 std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
                            const std::vector<RunRecord>& runs) {
   const KnownRuns known(runs);
@@ -185,7 +194,8 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
         line.cycle = record->cycle;
         add_shares(*record, plan.experiment, line);
         const auto from = cycle_to_continue(run, *stage, record);
-        line.state = !from ? "done" : record->attempts > 0 ? name_of(record->state) : "to do";
+        const bool done = !from || ended_as_asked(*store, run, *record);
+        line.state = done ? "done" : record->attempts > 0 ? name_of(record->state) : "to do";
         if (line.state == "completed") line.state = "to extend";
       }
       if (line.state != "done") {

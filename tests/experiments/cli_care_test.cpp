@@ -154,6 +154,16 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
   EXPECT_EQ(stage(more, "shear", 2).at("new").at("fields"),
             nlohmann::json::parse(R"([{"field": "seed", "value": 2, "store_has": 1}])"));
 
+  // A run that ended early is done for every manifest with that `until`, whatever else it says.
+  const std::string early = tiny_manifest("", "until: {phi: 0.1}\n");
+  write("early.yaml", early);
+  ASSERT_EQ(run({"run", "early.yaml", "--cycles", "5", "-q"}).code, 0);
+  write("early.yaml", early + "# edited\n");
+  EXPECT_EQ(stage(json({"plan", "early.yaml", "--cycles", "5", "--json"}), "shear", 1).at("state"),
+            "done");
+  EXPECT_EQ(stage(json({"plan", "early.yaml", "--cycles", "6", "--json"}), "shear", 1).at("state"),
+            "to extend");
+
   // Another experiment: one run is shared, one is new by its amplitude.
   std::string twin = tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.0833, 0.1]}}\n");
   twin.replace(twin.find("tiny"), 4, "twin");
