@@ -3,6 +3,7 @@
 // and the rate of nucleation against phi. Not in the supplement.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -75,26 +76,43 @@ FigureTable survival_table(const Groups& groups) {
   return table;
 }
 
+/// That of a Poisson count; none for one event, whose bar would reach zero on a logarithmic axis.
+TableValue error_of(const NucleationRate& bin) {
+  if (bin.events < 2) return {};
+  return bin.rate / std::sqrt(static_cast<double>(bin.events));
+}
+
 FigureTable rate_table(const Groups& groups) {
   FigureTable table;
   table.name = "nucleation_b";
-  table.columns = {"group",    "amplitude_rad", "grains",       "phi_low",
-                   "phi_high", "onsets",        "grain_cycles", "rate_per_grain_cycle",
-                   "rate_low", "rate_high"};
+  table.columns = {"group",
+                   "amplitude_rad",
+                   "grains",
+                   "phi_low",
+                   "phi_high",
+                   "onsets",
+                   "grain_cycles",
+                   "rate_per_grain_cycle",
+                   "rate_standard_error",
+                   "rate_low",
+                   "rate_high"};
   for (const auto& [group, runs] : groups) {
     for (const NucleationRate& bin : nucleation_rates(runs)) {
       table.rows.push_back({name_of(group), group.first, group.second, bin.phi_low, bin.phi_high,
                             static_cast<std::int64_t>(bin.events), bin.grain_cycles,
-                            bin.events > 0 ? TableValue(bin.rate) : TableValue(), bin.interval.low,
-                            bin.interval.high});
+                            bin.events > 0 ? TableValue(bin.rate) : TableValue(), error_of(bin),
+                            bin.interval.low, bin.interval.high});
     }
   }
-  table.chart = {
-      .x = phi_axis(),
-      .y = {.name = "onsets per grain and cycle", .log = true},
-      .series = series_by(
-          groups, {.x = "phi_low", .y = "rate_per_grain_cycle", .x_high = "phi_high"}, Join::line),
-      .lines = {}};
+  table.chart = {.x = phi_axis(),
+                 .y = {.name = "onsets per grain and cycle", .log = true},
+                 .series = series_by(groups,
+                                     {.x = "phi_low",
+                                      .y = "rate_per_grain_cycle",
+                                      .y_error = "rate_standard_error",
+                                      .x_high = "phi_high"},
+                                     Join::none),
+                 .lines = {}};
   return table;
 }
 
