@@ -146,16 +146,14 @@ TEST(Comparisons, TwoRunsAreTooFewAndSoAreShortOnes) {
 
 TEST(FigureS3, EachTimeStepAgainstThatOfTheMainText) {
   const Rulings found = rulings("S3", two_groups("steps_per_cycle", 45600, 76923, 6, 0.0005, 0));
-  EXPECT_EQ(found, (Rulings{agrees, agrees, agrees, undecided, undecided, undecided, undecided,
-                            undecided, undecided, differs}))
-      << "two time steps have no runs; the overlap is not below 1e-3";
+  EXPECT_EQ(found, (Rulings{agrees, agrees, agrees, differs})) << "the overlap is not below 1e-3";
 }
 
 TEST(FigureS3, ALargerStepIsJudgedByOnsetPercentageAndOverlap) {
   const auto larger = [](double excess) {
     const Rulings all =
         rulings("S3", two_groups("steps_per_cycle", 45600, 20000, 6, 0.0005, excess));
-    return Rulings(all.begin() + 10, all.end());
+    return Rulings(all.begin() + 1, all.end());
   };
   EXPECT_EQ(larger(0), (Rulings{agrees, agrees, agrees}));
   EXPECT_EQ(larger(5), (Rulings{agrees, differs, agrees}));

@@ -24,15 +24,17 @@ HEADLINES = [
     ("S2", "B.3: crystallization begins", "onset cycle, moving over still fluid", "equal"),
     ("S3", "B.4: phi is the same at cycles 1 to 15 for steps of 7.0e-5", "phi, time step 7.0e-5 s less 4.4e-5 s", "equal"),
     ("S3", "B.4: at 4.4e-5 s the average overlap", "mean overlap [d]", "less than 0.001"),
+    ("S3", "time step: the onset is the same for steps of 1.0e-4", "phi at the onset, time step 1.0e-4 s less 4.4e-5 s", "not asked"),
     ("B5", "B.5: at cycles", "phi gained by pauses", "higher"),
     ("S4", "B.6: phi is the same at cycles", "phi, moving top less moving bottom wall", "equal"),
     ("C", "C: the critical size at A = 0.0833", "critical size [grains], A = 0.0833", "about 16"),
     ("S6", "D: the onset at A = 0.0833 rad is the same", "phi at the onset, without less with gravity", "equal"),
     ("walls", "walls: between rough ones the onset", "phi at the onset, A = 0.0833", "0.646 +- 0.001"),
+    ("nucleation", "title: the rate", "exponent of the nucleation rate against the volume, less 1", "homogeneous: 0"),
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper less the lower third", "more near the top"),
 ]
 # Where README.md takes them from; of several verdicts on a claim, the one with the most runs.
-SOURCES = ("desk", "load/top")
+SOURCES = ("paper", "desk", "load/top")
 
 # How a quantity of a verdict is shown: the pattern of its name, what converts its value, and a unit.
 SHOWN = [

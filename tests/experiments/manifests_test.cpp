@@ -97,7 +97,7 @@ TEST(Manifests, HaveTheSizesAndNumbersOfTheSupplement) {
                                                                    {"steps_per_cycle=45600", 10},
                                                                    {"steps_per_cycle=28571", 10},
                                                                    {"steps_per_cycle=20000", 10},
-                                                                   {"steps_per_cycle=17000", 10}}));
+                                                                   {"steps_per_cycle=18000", 10}}));
   EXPECT_EQ(runs_of_variants(plan("moving_wall", "paper")),
             (Variants{{"moving_wall=bottom,pressure_at=top", 10},
                       {"moving_wall=top,pressure_at=top", 10},
