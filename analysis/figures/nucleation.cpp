@@ -3,6 +3,7 @@
 // and the rate of nucleation against phi. Not in the supplement.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -67,6 +68,8 @@ FigureTable survival_table(const Groups& groups) {
       add(step.cycle, step.survival);
       before = step.survival;
     }
+    const auto longest = std::ranges::max_element(waits, {}, &Waiting::cycle);
+    if (longest != waits.end()) add(longest->cycle, before);
   }
   table.chart = {
       .x = cycle_axis(),

@@ -7,7 +7,7 @@
 
 #include "analysis/nucleation_rate.hpp"
 #include "core/random.hpp"
-#include "made_up_runs.hpp"
+#include "tests/analysis/made_up_runs.hpp"
 
 namespace shearcell {
 namespace {
