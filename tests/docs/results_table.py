@@ -28,12 +28,13 @@ HEADLINES = [
     ("B5", "B.5: at cycles", "phi gained by pauses", "higher"),
     ("S4", "B.6: phi is the same at cycles", "phi, moving top less moving bottom wall", "equal"),
     ("C", "C: the critical size at A = 0.0833", "critical size [grains], A = 0.0833", "about 16"),
+    ("C", "C: the critical size at A = 0.1", "critical size [grains], A = 0.1", "about 20"),
     ("S6", "D: the onset at A = 0.0833 rad is the same", "phi at the onset, without less with gravity", "equal"),
     ("walls", "walls: between rough ones the onset", "phi at the onset, A = 0.0833", "0.646 +- 0.001"),
     ("nucleation", "title: the rate", "exponent of the nucleation rate against the volume, less 1", "homogeneous: 0"),
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper less the lower third", "more near the top"),
 ]
-# Where README.md takes them from; of several verdicts on a claim, the one with the most runs.
+# Where README.md takes them from; of several verdicts on a claim, the one with the most runs, or else the first here.
 SOURCES = ("paper", "desk", "load/top")
 
 # How a quantity of a verdict is shown: the pattern of its name, what converts its value, and a unit.
@@ -100,9 +101,9 @@ def verdicts(results):
 def headlines(page, results):
     text = header(["claim", "supplement", "ours (90 % interval)", "runs", "verdict"])
     for figure, beginning, name, supplement in HEADLINES:
-        found = [(claim, drawing) for place, of, drawing, claim in verdicts(results)
+        found = [(claim, drawing) for source in SOURCES for place, of, drawing, claim in verdicts(results)
                  if of == figure and claim["claim"].startswith(beginning) and "(P on" not in claim["claim"]
-                 and place.startswith(SOURCES)]
+                 and place.startswith(source)]
         if not found:
             continue
         claim, drawing = max(found, key=lambda one: one[0]["runs"])
