@@ -15,7 +15,7 @@ set xlabel 'grains  {/:Italic N}'
 set ylabel 'onset  {/:Italic ϕ}'
 set xtics 5000
 set format x '%.0f'
-set ytics 0.001
+set ytics 0.002
 set format y '%.3f'
 set xrange [0:20000]
 set yrange [*<0.6445:0.6475<*]
@@ -23,8 +23,9 @@ set offsets 0, 0, graph 0.05, graph 0.05
 set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '#888888'
 set arrow from graph 0, first 0.647 to graph 1, first 0.647 nohead dt 2 lc rgb '#888888'
 $series0 << EOD
-2000,0.646954715,,0.0032781764
-5200,0.647107656,,0.000301201456
+1000,0.657609634,,0.00112349153
+2000,0.648065098,,0.00120190172
+5200,0.645868312,,0.000455506784
 EOD
 $series1 << EOD
 0,0.645,,
