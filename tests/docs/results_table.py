@@ -71,8 +71,8 @@ def measured(claim):
         return f"{digits(value)}{unit} (unbounded)"
     if None in ends:
         return f"{digits(value)}{unit} ({digits(ends[0])} to {digits(ends[1])})"
-    width = abs(ends[1] - ends[0]) / 2
-    # The last digit is the first digit of a quarter of the interval.
+    width = min(abs(end - value) for end in ends)
+    # The last digit is the first digit of half the way to the nearer end.
     decimals = 3 if width == 0 else max(0, -math.floor(math.log10(width / 2)))
     return f"{value:.{decimals}f}{unit} ({ends[0]:.{decimals}f} to {ends[1]:.{decimals}f})"
 
