@@ -114,15 +114,13 @@ FigureTable rate_table(const Groups& groups) {
                                       .y = "rate_per_grain_cycle",
                                       .y_error = "rate_standard_error",
                                       .x_high = "phi_high"},
-                                     Join::none),
-                 .lines = {}};
+                                     Join::none)};
   return table;
 }
 
 Verdict rate_follows_volume(std::span<const FigureRun> runs) {
   const std::vector<const FigureRun*> all = pointers(runs);
-  const std::optional<Estimate> exponent = size_exponent(all);
-  std::optional<Estimate> excess = exponent;
+  std::optional<Estimate> excess = size_exponent(all);
   if (excess) {
     excess->value -= 1;
     excess->interval = {excess->interval.low - 1, excess->interval.high - 1};
@@ -131,8 +129,8 @@ Verdict rate_follows_volume(std::span<const FigureRun> runs) {
                  "the walls",
                  margin_size_exponent.value},
                 "exponent of the rate against N_inves less 1", excess, all.size(),
-                exponent ? "maximum likelihood in bins of phi, bootstrap over runs"
-                         : "runs of two sizes with onsets at the same phi are needed");
+                excess ? "maximum likelihood in bins of phi, bootstrap over runs"
+                       : "runs of two sizes with onsets at the same phi are needed");
 }
 
 }  // namespace
