@@ -35,7 +35,7 @@ HEADLINES = [
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper less the lower third", "more near the top"),
 ]
 # Where README.md takes them from; of several verdicts on a claim, the one with the most runs, or else the first here.
-SOURCES = ("paper", "desk", "load/top")
+SOURCES = ("paper", "desk")
 
 # How a quantity of a verdict is shown: the pattern of its name, what converts its value, and a unit.
 SHOWN = [
