@@ -33,6 +33,7 @@ struct Neighbour {
 std::vector<std::vector<Neighbour>> neighbours_of_all(const Cell& cell, const WallPose& pose,
                                                       const Eigen::Matrix3Xd& grains) {
   std::vector<std::vector<Neighbour>> near(static_cast<std::size_t>(grains.cols()));
+  for (std::vector<Neighbour>& of_grain : near) of_grain.reserve(20);  // few grains have more
   const auto add = [&](std::int32_t site, std::int32_t other, const Eigen::Vector3d& separation) {
     const auto grain = static_cast<std::size_t>(site);
     if (grain < near.size()) near[grain].push_back({other, separation.norm(), separation});
