@@ -5,8 +5,7 @@
 #include <CGAL/Mpzf.h>
 
 #include <cmath>
-
-#include "analysis/rounding.hpp"
+#include <limits>
 
 namespace shearcell {
 namespace {
@@ -21,24 +20,13 @@ using Exact = CGAL::MP_Float;
 // line.
 constexpr double worst_corner_error = 1e-10;
 
-struct ExactVector {
-  Exact x, y, z;
-};
+// The relative error of one operation in doubles.
+constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 
-ExactVector exact(const Eigen::Vector3d& v) {
-  return {Exact(v.x()), Exact(v.y()), Exact(v.z())};
-}
-
-ExactVector cross(const ExactVector& a, const ExactVector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-Exact dot(const ExactVector& a, const ExactVector& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+using ExactVector = Eigen::Matrix<Exact, 3, 1>;
 
 Exact twice_offset(const HalfSpace& plane, const ExactVector& normal) {
-  return plane.bisector ? dot(normal, normal) : Exact(2 * plane.offset);
+  return plane.bisector ? normal.dot(normal) : Exact(2 * plane.offset);
 }
 
 /// The meeting point of three planes is numerator / (2 determinant), without rounding.
@@ -48,33 +36,31 @@ struct ExactCorner {
 };
 
 ExactCorner meet_exactly(const HalfSpace& a, const HalfSpace& b, const HalfSpace& c) {
-  const ExactVector na = exact(a.normal);
-  const ExactVector nb = exact(b.normal);
-  const ExactVector nc = exact(c.normal);
-  const ExactVector bc = cross(nb, nc);
-  const ExactVector ca = cross(nc, na);
-  const ExactVector ab = cross(na, nb);
-  const Exact wa = twice_offset(a, na);
-  const Exact wb = twice_offset(b, nb);
-  const Exact wc = twice_offset(c, nc);
-  return {{wa * bc.x + wb * ca.x + wc * ab.x, wa * bc.y + wb * ca.y + wc * ab.y,
-           wa * bc.z + wb * ca.z + wc * ab.z},
-          dot(na, bc)};
+  const ExactVector na = a.normal.cast<Exact>();
+  const ExactVector nb = b.normal.cast<Exact>();
+  const ExactVector nc = c.normal.cast<Exact>();
+  const ExactVector bc = nb.cross(nc);
+  return {twice_offset(a, na) * bc + twice_offset(b, nb) * nc.cross(na) +
+              twice_offset(c, nc) * na.cross(nb),
+          na.dot(bc)};
 }
 
 bool lies_outside(const ExactCorner& corner, const HalfSpace& plane) {
-  const ExactVector normal = exact(plane.normal);
+  const ExactVector normal = plane.normal.cast<Exact>();
   const Exact side =
-      dot(normal, corner.numerator) - twice_offset(plane, normal) * corner.determinant;
-  const auto sign = CGAL::sign(side);
-  return CGAL::sign(corner.determinant) == CGAL::NEGATIVE ? sign == CGAL::NEGATIVE
-                                                          : sign == CGAL::POSITIVE;
+      normal.dot(corner.numerator) - twice_offset(plane, normal) * corner.determinant;
+  return CGAL::sign(side) * CGAL::sign(corner.determinant) == CGAL::POSITIVE;
 }
 
 Eigen::Vector3d rounded(const ExactCorner& corner) {
   const double scale = 2 * CGAL::to_double(corner.determinant);
-  return {CGAL::to_double(corner.numerator.x) / scale, CGAL::to_double(corner.numerator.y) / scale,
-          CGAL::to_double(corner.numerator.z) / scale};
+  return corner.numerator.unaryExpr([&](const Exact& x) { return CGAL::to_double(x) / scale; });
+}
+
+/// Calls visit(a, b) for the three edges of a corner, each by two of its planes in turn.
+template <class Visit>
+void for_each_edge(const std::array<std::uint16_t, 3>& planes, const Visit& visit) {
+  for (std::size_t e = 0; e < 3; ++e) visit(planes[e], planes[(e + 1) % 3]);
 }
 
 }  // namespace
@@ -89,10 +75,9 @@ HalfSpace plane_at(const Eigen::Vector3d& normal, double offset) {
 }
 
 void ConvexCell::reset(const std::array<HalfSpace, 6>& box) {
-  count_ = 0;
+  corners_.clear();
   planes_.assign(box.begin(), box.end());
   if (stride_ < planes_.size()) grow_tables();
-  grow_corners(8);
   for (unsigned k = 0; k < 8; ++k) {
     const auto x = static_cast<std::uint16_t>(k & 1U);
     const auto y = static_cast<std::uint16_t>(2 + ((k >> 1U) & 1U));
@@ -106,13 +91,6 @@ void ConvexCell::grow_tables() {
   stride_ = stride_ == 0 ? 64 : 2 * stride_;
   marked_.assign(stride_ * stride_, 0);
   owner_.assign(stride_ * stride_, 0);
-}
-
-void ConvexCell::grow_corners(std::size_t count) {
-  if (count <= x_.size()) return;
-  const std::size_t size = 2 * count;
-  for (std::vector<double>* list : {&x_, &y_, &z_, &error_}) list->resize(size);
-  triples_.resize(size);
 }
 
 void ConvexCell::add_corner(Triple t) {
@@ -136,94 +114,64 @@ void ConvexCell::add_corner(Triple t) {
     v = rounded(meet_exactly(a, b, c));
     error = 8 * unit_roundoff * v.lpNorm<1>();
   }
-  x_[count_] = v.x();
-  y_[count_] = v.y();
-  z_[count_] = v.z();
-  error_[count_] = error;
-  triples_[count_] = t;
-  ++count_;
+  corners_.push_back({v, error, t});
 }
 
-void ConvexCell::remove_corner(std::size_t k) {
-  --count_;
-  x_[k] = x_[count_];
-  y_[k] = y_[count_];
-  z_[k] = z_[count_];
-  error_[k] = error_[count_];
-  triples_[k] = triples_[count_];
-}
-
-bool ConvexCell::outside_exactly(std::size_t k, const HalfSpace& plane) const {
-  const Triple& t = triples_[k];
-  return lies_outside(meet_exactly(planes_[t[0]], planes_[t[1]], planes_[t[2]]), plane);
-}
-
-void ConvexCell::find_outside(const HalfSpace& plane) {
-  const double slack = 8 * unit_roundoff * std::abs(plane.offset);
-  const double nx = plane.normal.x();
-  const double ny = plane.normal.y();
-  const double nz = plane.normal.z();
-  cut_.clear();
-  for (std::size_t k = 0; k < count_; ++k) {
-    const double value = nx * x_[k] + ny * y_[k] + nz * z_[k] - plane.offset;
-    const double doubt = plane.length * error_[k] + slack;
-    if (value < -doubt) continue;
-    if (value > doubt || outside_exactly(k, plane)) cut_.push_back(static_cast<std::uint16_t>(k));
-  }
+bool ConvexCell::is_outside(const Corner& corner, const HalfSpace& plane) const {
+  const double value = plane.normal.dot(corner.position) - plane.offset;
+  const double doubt = plane.length * corner.error + 8 * unit_roundoff * std::abs(plane.offset);
+  if (std::abs(value) > doubt) return value > 0;
+  const auto& [a, b, c] = corner.planes;
+  return lies_outside(meet_exactly(planes_[a], planes_[b], planes_[c]), plane);
 }
 
 bool ConvexCell::clip(const HalfSpace& plane) {
-  find_outside(plane);
+  cut_.clear();
+  for (std::size_t k = 0; k < corners_.size(); ++k) {
+    if (is_outside(corners_[k], plane)) cut_.push_back(static_cast<std::uint16_t>(k));
+  }
   if (cut_.empty()) return false;
 
   if (planes_.size() == stride_) grow_tables();
   const auto index = static_cast<std::uint16_t>(planes_.size());
   planes_.push_back(plane);
-  for (const std::uint16_t k : cut_) {
-    const Triple& t = triples_[k];
-    marked_[pair(t[0], t[1])] = 1;
-    marked_[pair(t[1], t[2])] = 1;
-    marked_[pair(t[2], t[0])] = 1;
-  }
+  const auto mark_cut = [&](std::uint8_t mark) {
+    for (const std::uint16_t k : cut_) {
+      for_each_edge(corners_[k].planes, [&](auto a, auto b) { marked_[pair(a, b)] = mark; });
+    }
+  };
+  mark_cut(1);
   fresh_.clear();
   for (const std::uint16_t k : cut_) {
-    const Triple& t = triples_[k];
-    if (marked_[pair(t[1], t[0])] == 0) fresh_.push_back({t[0], t[1], index});
-    if (marked_[pair(t[2], t[1])] == 0) fresh_.push_back({t[1], t[2], index});
-    if (marked_[pair(t[0], t[2])] == 0) fresh_.push_back({t[2], t[0], index});
+    for_each_edge(corners_[k].planes, [&](auto a, auto b) {
+      if (marked_[pair(b, a)] == 0) fresh_.push_back({a, b, index});
+    });
   }
-  for (const std::uint16_t k : cut_) {
-    const Triple& t = triples_[k];
-    marked_[pair(t[0], t[1])] = 0;
-    marked_[pair(t[1], t[2])] = 0;
-    marked_[pair(t[2], t[0])] = 0;
+  mark_cut(0);
+  for (std::size_t k = cut_.size(); k-- > 0;) {
+    corners_[cut_[k]] = corners_.back();
+    corners_.pop_back();
   }
-  for (std::size_t k = cut_.size(); k-- > 0;) remove_corner(cut_[k]);
-  grow_corners(count_ + fresh_.size());
   for (const Triple& t : fresh_) add_corner(t);
   return true;
 }
 
 double ConvexCell::measure(std::vector<double>& areas) {
   areas.assign(planes_.size(), 0.0);
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Triple& t = triples_[k];
-    for (std::size_t e = 0; e < 3; ++e) {
-      owner_[pair(t[e], t[(e + 1) % 3])] = static_cast<std::uint16_t>(k);
-    }
+  for (std::size_t k = 0; k < corners_.size(); ++k) {
+    for_each_edge(corners_[k].planes,
+                  [&](auto a, auto b) { owner_[pair(a, b)] = static_cast<std::uint16_t>(k); });
   }
   // An edge lies in two faces. With the origin as apex it spans a triangle, whose projections on
   // the two planes are the triangles that it spans with their foot points: those sum to the faces.
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Triple& t = triples_[k];
-    for (std::size_t e = 0; e < 3; ++e) {
-      const std::uint16_t a = t[e];
-      const std::uint16_t b = t[(e + 1) % 3];
-      if (a > b) continue;
-      const Eigen::Vector3d twice = corner(owner_[pair(b, a)]).cross(corner(k));
+  for (std::size_t k = 0; k < corners_.size(); ++k) {
+    for_each_edge(corners_[k].planes, [&](auto a, auto b) {
+      if (a > b) return;
+      const Eigen::Vector3d twice =
+          corners_[owner_[pair(b, a)]].position.cross(corners_[k].position);
       areas[a] += planes_[a].normal.dot(twice);
       areas[b] -= planes_[b].normal.dot(twice);
-    }
+    });
   }
   double volume = 0;
   for (std::size_t p = 0; p < planes_.size(); ++p) {

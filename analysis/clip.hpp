@@ -42,14 +42,13 @@ class ConvexCell {
   /// Starts from six half-spaces in the order -x, +x, -y, +y, -z, +z: a sheared box.
   void reset(const std::array<HalfSpace, 6>& box);
 
-  /// Intersects with a half-space. True when it cut; the plane then has the index planes() - 1.
+  /// Intersects with a half-space. True when it cut; the plane then has the next index after the
+  /// box and the cuts before.
   bool clip(const HalfSpace& plane);
 
-  bool empty() const { return count_ == 0; }
-  std::size_t planes() const { return planes_.size(); }
   const HalfSpace& plane(std::size_t p) const { return planes_[p]; }
-  std::size_t corners() const { return count_; }
-  Eigen::Vector3d corner(std::size_t k) const { return {x_[k], y_[k], z_[k]}; }
+  std::size_t corners() const { return corners_.size(); }
+  const Eigen::Vector3d& corner(std::size_t k) const { return corners_[k].position; }
 
   /// Area of each plane's face [d^2], by plane index; 0 for a plane with no face. Returns the
   /// volume [d^3].
@@ -57,20 +56,19 @@ class ConvexCell {
 
  private:
   using Triple = std::array<std::uint16_t, 3>;
+  struct Corner {
+    Eigen::Vector3d position;
+    double error;  // bound on the distance from the true one
+    Triple planes;
+  };
 
   void add_corner(Triple planes);
-  void remove_corner(std::size_t k);
-  bool outside_exactly(std::size_t k, const HalfSpace& plane) const;
-  void find_outside(const HalfSpace& plane);
-  void grow_corners(std::size_t count);
+  bool is_outside(const Corner& corner, const HalfSpace& plane) const;
   std::size_t pair(std::uint16_t a, std::uint16_t b) const { return a * stride_ + b; }
   void grow_tables();
 
   std::vector<HalfSpace> planes_;
-  std::size_t count_ = 0;  // of corners; the five lists below may be longer
-  std::vector<double> x_, y_, z_;
-  std::vector<double> error_;  // bound on the distance of the stored corner from the true one
-  std::vector<Triple> triples_;
+  std::vector<Corner> corners_;
 
   std::vector<std::uint16_t> cut_;
   std::vector<Triple> fresh_;

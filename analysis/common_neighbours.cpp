@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/common_neighbours.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <span>
+#include <tuple>
 
 #include "analysis/near_grains.hpp"
 #include "analysis/voronoi.hpp"
@@ -21,7 +23,34 @@ using Bonds = std::array<std::uint32_t, kMost>;  // a bit for each neighbour it 
 // Between the first and the second shell of FCC, as a multiple of the first.
 const double kCut = 0.5 * (1 + std::numbers::sqrt2);
 
-Bonds find_bonds(std::span<const NearGrain> near, double cut) {
+struct Neighbour {
+  std::int32_t site;
+  double distance;             // [d]
+  Eigen::Vector3d separation;  // from the grain to the neighbour's nearest image [d]
+};
+
+// The neighbours of each grain, nearest first; equal distances by site.
+std::vector<std::vector<Neighbour>> neighbours_of_all(const Cell& cell, const WallPose& pose,
+                                                      const Eigen::Matrix3Xd& grains) {
+  std::vector<std::vector<Neighbour>> near(static_cast<std::size_t>(grains.cols()));
+  for (std::vector<Neighbour>& of_grain : near) of_grain.reserve(20);  // few grains have more
+  const auto add = [&](std::int32_t site, std::int32_t other, const Eigen::Vector3d& separation) {
+    const auto grain = static_cast<std::size_t>(site);
+    if (grain < near.size()) near[grain].push_back({other, separation.norm(), separation});
+  };
+  for_each_pair(cell, pose, wrapped_sites(cell, pose, grains), kReach,
+                [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {
+                  add(i, j, -r);
+                  add(j, i, r);
+                });
+  for (std::vector<Neighbour>& of_grain : near) {
+    std::ranges::sort(of_grain, {},
+                      [](const Neighbour& n) { return std::tie(n.distance, n.site); });
+  }
+  return near;
+}
+
+Bonds find_bonds(std::span<const Neighbour> near, double cut) {
   Bonds bonds{};
   for (std::size_t a = 0; a < near.size(); ++a) {
     for (std::size_t b = a + 1; b < near.size(); ++b) {
@@ -33,7 +62,16 @@ Bonds find_bonds(std::span<const NearGrain> near, double cut) {
   return bonds;
 }
 
-// Bonds in the largest connected part of the graph that the neighbours `members` form.
+// Bonds among the neighbours `members`.
+int bonds_among(const Bonds& bonds, std::uint32_t members) {
+  int ends = 0;
+  for (std::uint32_t rest = members; rest != 0; rest &= rest - 1) {
+    ends += std::popcount(bonds[static_cast<std::size_t>(std::countr_zero(rest))] & members);
+  }
+  return ends / 2;
+}
+
+// Those in the largest connected part of the graph that the members form.
 int longest_chain(const Bonds& bonds, std::uint32_t members) {
   int longest = 0;
   for (std::uint32_t left = members; left != 0;) {
@@ -44,11 +82,7 @@ int longest_chain(const Bonds& bonds, std::uint32_t members) {
         part |= bonds[static_cast<std::size_t>(std::countr_zero(rest))] & members;
       }
     }
-    int ends = 0;
-    for (std::uint32_t rest = part; rest != 0; rest &= rest - 1) {
-      ends += std::popcount(bonds[static_cast<std::size_t>(std::countr_zero(rest))] & part);
-    }
-    longest = std::max(longest, ends / 2);
+    longest = std::max(longest, bonds_among(bonds, part));
     left &= ~part;
   }
   return longest;
@@ -58,42 +92,37 @@ int longest_chain(const Bonds& bonds, std::uint32_t members) {
 // common neighbours, bonds among them, bonds of the longest chain; 421 as one number.
 int signature(const Bonds& bonds, std::size_t neighbour) {
   const std::uint32_t common = bonds[neighbour];
-  int ends = 0;
-  for (std::uint32_t rest = common; rest != 0; rest &= rest - 1) {
-    ends += std::popcount(bonds[static_cast<std::size_t>(std::countr_zero(rest))] & common);
-  }
-  return 100 * std::popcount(common) + 10 * (ends / 2) + longest_chain(bonds, common);
+  return 100 * std::popcount(common) + 10 * bonds_among(bonds, common) +
+         longest_chain(bonds, common);
 }
 
-Lattice close_packed(std::span<const NearGrain> near) {
-  double mean = 0;
-  for (const NearGrain& neighbour : near) mean += neighbour.distance / 12;
-  const Bonds bonds = find_bonds(near, kCut * mean);
-  int cubic = 0, hexagonal = 0;
+// How many of the neighbours have each of two signatures; none if one of them has another.
+std::array<int, 2> count_signatures(std::span<const Neighbour> near, double cut, int first,
+                                    int second) {
+  const Bonds bonds = find_bonds(near, cut);
+  std::array<int, 2> counts{};
   for (std::size_t a = 0; a < near.size(); ++a) {
-    if (std::popcount(bonds[a]) != 4) return Lattice::none;
     const int found = signature(bonds, a);
-    cubic += found == 421 ? 1 : 0;
-    hexagonal += found == 422 ? 1 : 0;
+    if (found != first && found != second) return {};
+    ++counts[found == first ? 0 : 1];
   }
+  return counts;
+}
+
+Lattice close_packed(std::span<const Neighbour> near) {
+  double mean = 0;
+  for (const Neighbour& neighbour : near) mean += neighbour.distance / 12;
+  const auto [cubic, hexagonal] = count_signatures(near, kCut * mean, 421, 422);
   if (cubic == 12) return Lattice::fcc;
   return cubic == 6 && hexagonal == 6 ? Lattice::hcp : Lattice::none;
 }
 
-Lattice body_centred(std::span<const NearGrain> near) {
+Lattice body_centred(std::span<const Neighbour> near) {
   double side = 0;  // of the cubic cell, from both shells
   for (std::size_t a = 0; a < near.size(); ++a) {
     side += near[a].distance * (a < 8 ? 2 / std::numbers::sqrt3 : 1) / 14;
   }
-  const Bonds bonds = find_bonds(near, kCut * side);
-  int first_shell = 0, second_shell = 0;
-  for (std::size_t a = 0; a < near.size(); ++a) {
-    const int common = std::popcount(bonds[a]);
-    if (common != 6 && common != 4) return Lattice::none;
-    const int found = signature(bonds, a);
-    first_shell += found == 666 ? 1 : 0;
-    second_shell += found == 444 ? 1 : 0;
-  }
+  const auto [first_shell, second_shell] = count_signatures(near, kCut * side, 666, 444);
   return first_shell == 8 && second_shell == 6 ? Lattice::bcc : Lattice::none;
 }
 
@@ -101,17 +130,15 @@ Lattice body_centred(std::span<const NearGrain> near) {
 
 std::vector<Lattice> common_neighbour_analysis(const Cell& cell, const WallPose& pose,
                                                const Eigen::Matrix3Xd& grains) {
-  const auto count = static_cast<std::size_t>(grains.cols());
-  const NearGrains near(cell, pose, wrapped_sites(cell, pose, grains), count, kReach);
-  std::vector<Lattice> lattice(count, Lattice::none);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto neighbours = near.of(i);
-    if (neighbours.size() >= 12) lattice[i] = close_packed(neighbours.first(12));
-    if (lattice[i] == Lattice::none && neighbours.size() >= kMost) {
-      lattice[i] = body_centred(neighbours.first(kMost));
-    }
+  std::vector<Lattice> lattices;
+  for (const std::vector<Neighbour>& of_grain : neighbours_of_all(cell, pose, grains)) {
+    const std::span near(of_grain);
+    Lattice lattice = Lattice::none;
+    if (near.size() >= 12) lattice = close_packed(near.first(12));
+    if (lattice == Lattice::none && near.size() >= kMost) lattice = body_centred(near.first(kMost));
+    lattices.push_back(lattice);
   }
-  return lattice;
+  return lattices;
 }
 
 }  // namespace shearcell

@@ -2,36 +2,114 @@
 #include "analysis/crystal.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <string>
+
+#include "analysis/error.hpp"
 
 namespace shearcell {
 namespace {
 
-/// Disjoint sets of grains; the lowest id of a set stands for it.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) {
-      parent_[i] = parent_[parent_[i]];
-      i = parent_[i];
+// (4 pi / 13) times the square of the coefficient of Y_6m, for m = 0..6. Orders m and -m give equal
+// squares, so those above 0 count twice.
+constexpr std::array<double, 7> order_weight = {
+    1.0 / 256,        2 * 42.0 / 256,    2 * 420.0 / 4096, 2 * 420.0 / 1024,
+    2 * 126.0 / 1024, 2 * 2772.0 / 1024, 2 * 924.0 / 4096};
+
+/// Sums over bonds of w Y_6m(x, y, z) without its coefficient: (x + iy)^m times a polynomial in z.
+struct HarmonicSums {
+  double order0 = 0;
+  std::array<double, 6> real{};
+  std::array<double, 6> imaginary{};
+
+  void add(double weight, double x, double y, double z) {
+    const double z2 = z * z;
+    const std::array<double, 6> polynomial = {z * ((33 * z2 - 30) * z2 + 5),
+                                              (33 * z2 - 18) * z2 + 1,
+                                              z * (11 * z2 - 3),
+                                              11 * z2 - 1,
+                                              z,
+                                              1};
+    order0 += weight * (((231 * z2 - 315) * z2 + 105) * z2 - 5);
+    double re = x;
+    double im = y;
+    for (std::size_t m = 0; m < 6; ++m) {
+      real[m] += weight * polynomial[m] * re;
+      imaginary[m] += weight * polynomial[m] * im;
+      const double next = re * x - im * y;
+      im = re * y + im * x;
+      re = next;
     }
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) {
-    const std::size_t ra = find(a);
-    const std::size_t rb = find(b);
-    parent_[std::max(ra, rb)] = std::min(ra, rb);
   }
 
- private:
-  std::vector<std::size_t> parent_;
+  double norm() const {
+    double sum = order_weight[0] * order0 * order0;
+    for (std::size_t m = 0; m < 6; ++m) {
+      sum += order_weight[m + 1] * (real[m] * real[m] + imaginary[m] * imaginary[m]);
+    }
+    return std::sqrt(sum);
+  }
 };
 
+using nlohmann::json;
+
+static_assert(std::endian::native == std::endian::little, "stored maps hold native numbers");
+
+json packed(const std::vector<std::int32_t>& values) {
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(values.data());
+  return json::binary(std::vector(bytes, bytes + 4 * values.size()));
+}
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw AnalysisError("these are not the crystallites of a checkpoint: " + why);
+}
+
+std::vector<std::int32_t> unpacked(const json& result, const char* key) {
+  const auto& bytes = result.at(key).get_binary();
+  if (bytes.size() % 4 != 0) refuse(std::string(key) + " has a broken number");
+  std::vector<std::int32_t> values(bytes.size() / 4);
+  std::ranges::copy(bytes, reinterpret_cast<std::uint8_t*>(values.data()));
+  return values;
+}
+
+/// Ascending ids, each in a crystallite that exists, and as many in each as its size says.
+void check(const CrystalliteMap& map) {
+  if (map.label.size() != map.grain.size()) refuse("labels and grains differ in number");
+  if (map.centre.size() != map.size.size()) refuse("centres and sizes differ in number");
+  std::vector<std::int32_t> count(map.size.size());
+  for (std::size_t k = 0; k < map.grain.size(); ++k) {
+    const std::int32_t before = k == 0 ? -1 : map.grain[k - 1];
+    if (map.grain[k] <= before) refuse("grains do not ascend");
+    const auto label = static_cast<std::size_t>(map.label[k]);
+    if (map.label[k] < 0 || label >= count.size()) refuse("a label without a crystallite");
+    ++count[label];
+  }
+  if (count != map.size) refuse("sizes do not count the grains");
+}
+
 }  // namespace
+
+double bond_order_q6(std::span<const VoronoiFace> faces, double surface) {
+  HarmonicSums sums;
+  for (const VoronoiFace& face : faces) {
+    if (face.kind == NeighbourKind::wall_plane) continue;
+    const Eigen::Vector3d bond = face.to_neighbour / face.to_neighbour.norm();
+    sums.add(face.area / surface, bond.x(), bond.y(), bond.z());
+  }
+  return sums.norm();
+}
+
+std::vector<double> bond_order_q6(const VoronoiDiagram& diagram) {
+  std::vector<double> q6(diagram.volume.size());
+  for (std::size_t i = 0; i < q6.size(); ++i) {
+    q6[i] = bond_order_q6(diagram.faces_of(i), diagram.surface[i]);
+  }
+  return q6;
+}
 
 Structure structure(double phi_local, double q6) {
   if (!(phi_local > crystalline_phi_local)) return Structure::disordered;
@@ -41,34 +119,101 @@ Structure structure(double phi_local, double q6) {
 }
 
 Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::uint8_t> crystalline,
-                          double mean_surface) {
+                          double least_face) {
   const std::size_t count = crystalline.size();
-  const double least = connecting_face * mean_surface;
-  DisjointSets sets(count);
+  // Disjoint sets of grains; the lowest id of a set stands for it.
+  std::vector<std::size_t> parent(count);
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  const auto root_of = [&](std::size_t i) {
+    while (parent[i] != i) {
+      parent[i] = parent[parent[i]];
+      i = parent[i];
+    }
+    return i;
+  };
   for (std::size_t i = 0; i < count; ++i) {
     if (crystalline[i] == 0) continue;
     for (const VoronoiFace& face : diagram.faces_of(i)) {
-      if (face.kind != NeighbourKind::grain || face.area < least) continue;
+      if (face.kind != NeighbourKind::grain || face.area < least_face) continue;
       const auto j = static_cast<std::size_t>(face.neighbour);
-      if (crystalline[j] != 0) sets.join(i, j);
+      if (crystalline[j] == 0) continue;
+      const auto [lower, higher] = std::minmax({root_of(i), root_of(j)});
+      parent[higher] = lower;
     }
   }
   Crystallites result;
   result.label.assign(count, -1);
   for (std::size_t i = 0; i < count; ++i) {
     if (crystalline[i] == 0) continue;
-    const std::size_t root = sets.find(i);  // root <= i, so it has its label already
+    const std::size_t root = root_of(i);  // root <= i, so it has its label already
     if (root == i) {
       result.label[i] = static_cast<std::int32_t>(result.size.size());
       result.size.push_back(0);
-    } else {
-      result.label[i] = result.label[root];
     }
-    ++result.size[static_cast<std::size_t>(result.label[i])];
+    result.label[i] = result.label[root];
+    std::int32_t& size = ++result.size[static_cast<std::size_t>(result.label[i])];
+    result.largest = std::max(result.largest, size);
   }
-  if (!result.size.empty())
-    result.largest = *std::max_element(result.size.begin(), result.size.end());
   return result;
+}
+
+CrystalliteMap crystallite_map(const Crystallites& crystallites, const Cell& cell,
+                               const WallPose& pose, const Eigen::Matrix3Xd& positions) {
+  CrystalliteMap map;
+  map.size = crystallites.size;
+  map.width = cell.width;
+  map.bottom = pose.bottom;
+  map.top = pose.top;
+  const std::size_t count = map.size.size();
+  std::vector<Eigen::Vector2d> sum(count, Eigen::Vector2d::Zero());
+  std::vector<Eigen::Vector2d> phase(count, Eigen::Vector2d::Zero());
+  const double turn = 2 * std::numbers::pi / cell.depth;
+  for (std::size_t i = 0; i < crystallites.label.size(); ++i) {
+    if (crystallites.label[i] < 0) continue;
+    const auto label = static_cast<std::size_t>(crystallites.label[i]);
+    const Eigen::Vector3d r = positions.col(static_cast<Eigen::Index>(i));
+    map.grain.push_back(static_cast<std::int32_t>(i));
+    map.label.push_back(crystallites.label[i]);
+    sum[label] += Eigen::Vector2d(r.x() - (r.y() - pose.top) * pose.tan_theta, r.y());
+    phase[label] += Eigen::Vector2d(std::cos(turn * r.z()), std::sin(turn * r.z()));
+  }
+  for (std::size_t c = 0; c < count; ++c) {
+    const Eigen::Vector2d mean = sum[c] / map.size[c];
+    const double z = std::atan2(phase[c].y(), phase[c].x()) / turn;
+    map.centre.emplace_back(mean.x(), mean.y(), z < 0 ? z + cell.depth : z);
+  }
+  return map;
+}
+
+json to_json(const CrystalliteMap& map) {
+  json centres = json::array();
+  for (const Eigen::Vector3d& c : map.centre) centres.push_back({c.x(), c.y(), c.z()});
+  return {{"grain", packed(map.grain)},
+          {"label", packed(map.label)},
+          {"size", packed(map.size)},
+          {"centre_d", centres},
+          {"width_d", map.width},
+          {"bottom_d", map.bottom},
+          {"top_d", map.top}};
+}
+
+CrystalliteMap read_crystallite_map(const json& result) {
+  CrystalliteMap map;
+  try {
+    map.grain = unpacked(result, "grain");
+    map.label = unpacked(result, "label");
+    map.size = unpacked(result, "size");
+    for (const auto& [x, y, z] : result.at("centre_d").get<std::vector<std::array<double, 3>>>()) {
+      map.centre.emplace_back(x, y, z);
+    }
+    result.at("width_d").get_to(map.width);
+    result.at("bottom_d").get_to(map.bottom);
+    result.at("top_d").get_to(map.top);
+  } catch (const json::exception& problem) {
+    refuse(problem.what());
+  }
+  check(map);
+  return map;
 }
 
 }  // namespace shearcell

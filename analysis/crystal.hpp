@@ -1,15 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which grains are crystalline, and the crystallites that they form. Supplement A.
+// Bond order, which grains are crystalline, and the crystallites that they form. Supplement A.
 #pragma once
 
-#include <cstddef>
+#include <Eigen/Core>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
 #include "analysis/voronoi.hpp"
 
 namespace shearcell {
+
+/// q6 of one cell, Eq. S1:
+///
+///   q6 = sqrt( (4 pi / 13) sum_{m=-6..6} | sum_j (A_ij / A_i) Y_6m(bond i -> j) |^2 ).
+///
+/// Bonds go to grains and wall grains. A wall plane has no grain behind it and so no bond, but its
+/// face is part of the cell's whole surface A_i. Perfect FCC 0.57452, HCP 0.48476, BCC 0.56694,
+/// simple cubic 0.35355.
+double bond_order_q6(std::span<const VoronoiFace> faces, double surface);
+
+/// q6 of every grain, by grain id.
+std::vector<double> bond_order_q6(const VoronoiDiagram& diagram);
 
 /// Criteria of Rietz et al., Phys. Rev. Lett. 120, 055701 (2018), as in supplement A.
 inline constexpr double crystalline_phi_local = 0.72;  ///< phi_local is above this
@@ -31,9 +44,32 @@ struct Crystallites {
 };
 
 /// Sets of grains with `crystalline[i] != 0` that are connected through Voronoi faces between two
-/// of them of area >= connecting_face * mean_surface [d^2]. One grain alone is a crystallite of
-/// size 1.
+/// of them of at least `least_face` [d^2]. One grain alone is a crystallite of size 1.
 Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::uint8_t> crystalline,
-                          double mean_surface);
+                          double least_face);
+
+/// The crystallites of one checkpoint, their places and their grains, in a form that can be stored,
+/// for tracking.
+struct CrystalliteMap {
+  std::vector<std::int32_t> grain;      ///< ids of the crystalline interior grains, ascending
+  std::vector<std::int32_t> label;      ///< crystallite of each of them
+  std::vector<std::int32_t> size;       ///< grains in each crystallite
+  std::vector<Eigen::Vector3d> centre;  ///< of mass of each crystallite [d]; see crystallite_map()
+  double width = 0;                     ///< of the cell [d]
+  double bottom = 0;                    ///< heights of the horizontal planes [d]
+  double top = 0;
+};
+
+/// Centres are in the untilted cell: x is less the displacement of the walls at that height, so
+/// that 0 <= x <= width. z is a mean of angles over the period, in [0, depth): exact for what is
+/// small beside the period.
+CrystalliteMap crystallite_map(const Crystallites& crystallites, const Cell& cell,
+                               const WallPose& pose, const Eigen::Matrix3Xd& positions);
+
+/// Arrays as little-endian bytes, reals as JSON numbers.
+nlohmann::json to_json(const CrystalliteMap& map);
+
+/// The inverse. The JSON is not trusted: throws AnalysisError when arrays do not fit together.
+CrystalliteMap read_crystallite_map(const nlohmann::json& result);
 
 }  // namespace shearcell

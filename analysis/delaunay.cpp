@@ -10,12 +10,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <type_traits>
 
 #include "analysis/error.hpp"
-#include "analysis/rounding.hpp"
 
 namespace shearcell {
 namespace {
@@ -48,27 +48,22 @@ void throw_same_place(std::int32_t a, std::int32_t b, std::int32_t grains) {
 }
 
 Delaunay::Delaunay(const Eigen::Matrix3Xd& sites, std::int32_t grains, double depth, double margin)
-    : sites_(sites), grains_(grains), depth_(depth), margin_(margin) {
+    : sites_(sites), grains_(grains), depth_(depth) {
   for (std::int32_t i = 0; i < sites.cols(); ++i) add_point({i, 0});
-  add_images(0, margin);
-  insert(0);
+  widen(margin);
 }
 
 void Delaunay::widen(double margin) {
-  const std::size_t first = point_.size();
-  add_images(margin_, margin);
-  margin_ = margin;
-  insert(first);
-}
-
-void Delaunay::add_images(double inner, double outer) {
-  const auto beyond = [&](double distance) { return distance >= inner && distance < outer; };
-  for (std::int32_t k = 1; (k - 1) * depth_ < outer; ++k) {
+  const auto is_new = [&](double distance) { return distance >= margin_ && distance < margin; };
+  for (std::int32_t k = 1; (k - 1) * depth_ < margin; ++k) {
     for (std::int32_t i = 0; i < sites_.cols(); ++i) {
-      if (beyond(sites_(2, i) + (k - 1) * depth_)) add_point({i, k});
-      if (beyond(k * depth_ - sites_(2, i))) add_point({i, -k});
+      if (is_new(sites_(2, i) + (k - 1) * depth_)) add_point({i, k});
+      if (is_new(k * depth_ - sites_(2, i))) add_point({i, -k});
     }
   }
+  margin_ = margin;
+  insert_points();
+  copy_tetrahedra();
 }
 
 void Delaunay::add_point(SiteImage image) {
@@ -77,7 +72,8 @@ void Delaunay::add_point(SiteImage image) {
   point_.back().z() += image.image * depth_;
 }
 
-void Delaunay::insert(std::size_t first) {
+void Delaunay::insert_points() {
+  const std::size_t first = handle_.size();
   std::vector<Kernel::Point_3> points;
   points.reserve(point_.size());
   for (const Eigen::Vector3d& p : point_) points.emplace_back(p.x(), p.y(), p.z());
@@ -100,7 +96,6 @@ void Delaunay::insert(std::size_t first) {
     handle_[k] = vertex;
     hint = vertex->cell();
   }
-  copy_tetrahedra();
 }
 
 void Delaunay::copy_tetrahedra() {
@@ -137,6 +132,7 @@ Eigen::Vector3d Delaunay::circumcentre(const std::array<std::int32_t, 4>& vertic
   // Forward error of Cramer's rule: numerator and determinant each lose a few roundoffs of the
   // products of the edges' lengths, none above the longest. 32 covers the operations counted one
   // by one.
+  constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
   const double longest2 = std::max({aa, bb, cc});
   const double terms = longest2 * (longest2 + std::sqrt(longest2 * v.squaredNorm()));
   if (32 * unit_roundoff * terms < worst_centre_error * determinant) return origin + v;
@@ -200,15 +196,16 @@ double Delaunay::face_area(std::int32_t start, std::size_t i, std::size_t j) {
   return edge.dot(twice) / (2 * length);
 }
 
-void Delaunay::neighbours(std::int32_t site, std::vector<SiteImage>& found) const {
-  found.clear();
-  if (triangulation_.dimension() < 1) return;
+std::vector<SiteImage> Delaunay::neighbours(std::int32_t site) const {
+  std::vector<SiteImage> found;
+  if (triangulation_.dimension() < 1) return found;
   std::vector<Triangulation::Vertex_handle> adjacent;
   triangulation_.finite_adjacent_vertices(handle_[static_cast<std::size_t>(site)],
                                           std::back_inserter(adjacent));
   for (const auto& vertex : adjacent) {
     found.push_back(image_[static_cast<std::size_t>(vertex->info().value)]);
   }
+  return found;
 }
 
 }  // namespace shearcell

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -23,6 +24,8 @@ namespace shearcell {
 struct SiteImage {
   std::int32_t site;
   std::int32_t image;
+
+  auto operator<=>(const SiteImage&) const = default;
 };
 
 /// One cache line, since walks around edges visit tetrahedra in no order.
@@ -81,7 +84,7 @@ class Delaunay {
   std::vector<DualFace> faces(const std::vector<std::uint8_t>& wanted);
 
   /// Sites whose cells border on that of `site`, in no particular order.
-  void neighbours(std::int32_t site, std::vector<SiteImage>& found) const;
+  std::vector<SiteImage> neighbours(std::int32_t site) const;
 
   /// From a site to an image of another [d].
   Eigen::Vector3d offset(std::int32_t from, SiteImage to) const {
@@ -105,9 +108,8 @@ class Delaunay {
       CGAL::Delaunay_triangulation_3<Kernel,
                                      CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 
-  void add_images(double inner, double outer);
   void add_point(SiteImage image);
-  void insert(std::size_t first);
+  void insert_points();
   void copy_tetrahedra();
   Eigen::Vector3d circumcentre(const std::array<std::int32_t, 4>& vertices) const;
   double face_area(std::int32_t start, std::size_t i, std::size_t j);
@@ -115,12 +117,12 @@ class Delaunay {
   const Eigen::Matrix3Xd& sites_;
   std::int32_t grains_;
   double depth_;
-  double margin_;
+  double margin_ = 0;
   Triangulation triangulation_;
   // By vertex: the sites, then images.
   std::vector<SiteImage> image_;
   std::vector<Eigen::Vector3d> point_;
-  std::vector<Triangulation::Vertex_handle> handle_;
+  std::vector<Triangulation::Vertex_handle> handle_;  // as many as are in the triangulation
   std::vector<Tetrahedron> tetrahedra_;
 };
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 
 #include "analysis/common_neighbours.hpp"
@@ -14,7 +13,6 @@
 #include "analysis/packing_fraction.hpp"
 #include "analysis/pair_structure.hpp"
 #include "analysis/profiles.hpp"
-#include "analysis/sensitivity.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -22,30 +20,31 @@ namespace {
 
 using nlohmann::json;
 
-/// Calls visit(name, member) for those that are kept together.
-template <class Visit>
-void for_each_kept(Visit&& visit) {
-  for (const ScalarMeasure& scalar : all_scalar_measures()) {
-    std::visit(
-        [&](auto member) {
-          if constexpr (std::is_member_pointer_v<decltype(member)>) visit(scalar.name, member);
-        },
-        scalar.member);
+/// Scalars that are kept together: those of Measures itself, or of its Mechanics.
+enum class Scalars { own, mechanics };
+
+/// Calls visit(kept name, value) for each.
+template <Scalars kWhich, class AnyMeasures, class Visit>
+void for_each_kept(AnyMeasures& measures, const Visit& visit) {
+  for (const auto& [name, unit, meaning, member] : all_scalar_measures()) {
+    if constexpr (kWhich == Scalars::mechanics) {
+      const auto* mechanical = std::get_if<MechanicalMember>(&member);
+      if (mechanical != nullptr) visit(mechanical->kept, measures.mechanics.*mechanical->value);
+    } else {
+      if (const auto* value = std::get_if<double Measures::*>(&member)) {
+        visit(name, measures.**value);
+      } else if (const auto* count = std::get_if<std::size_t Measures::*>(&member)) {
+        visit(name, measures.**count);
+      }
+    }
   }
 }
 
+template <Scalars kWhich>
 json scalars_of(const MeasureInput& input) {
-  json scalars;
-  for_each_kept(
-      [&](std::string_view name, auto member) { scalars[name] = input.analysis.measures.*member; });
-  return scalars;
-}
-
-json mechanics_of(const MeasureInput& input) {
   json kept;
-  for (const auto& [name, member] : all_mechanical_quantities()) {
-    kept[name] = input.analysis.measures.mechanics.*member;
-  }
+  for_each_kept<kWhich>(input.analysis.measures,
+                        [&](std::string_view name, auto value) { kept[name] = value; });
   return kept;
 }
 
@@ -53,21 +52,13 @@ json crystallites_of(const MeasureInput& input) {
   return to_json(input.analysis.crystallites);
 }
 
-WallPose pose_of(const Checkpoint& checkpoint) {
-  return wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
-}
-
 json lattices_of(const MeasureInput& input) {
-  const Checkpoint& checkpoint = *input.checkpoint;
+  const Checkpoint& c = *input.checkpoint;
   const std::vector<Lattice> lattice =
-      common_neighbour_analysis(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
-  const std::vector<std::uint8_t>& interior = input.analysis.grains.interior;
+      common_neighbour_analysis(c.cell, pose_of(c), c.state.position);
   const auto percent = [&](Lattice wanted) {
-    double found = 0;
-    for (std::size_t i = 0; i < lattice.size(); ++i) {
-      found += interior[i] != 0 && lattice[i] == wanted ? 1 : 0;
-    }
-    return 100 * found / static_cast<double>(input.analysis.measures.interior_grains);
+    return percent_of_interior(input.analysis.grains,
+                               [&](std::size_t i) { return lattice[i] == wanted; });
   };
   const double fcc = percent(Lattice::fcc), hcp = percent(Lattice::hcp);
   return {{"cna_crystalline_percent", fcc + hcp},
@@ -76,12 +67,14 @@ json lattices_of(const MeasureInput& input) {
           {"cna_bcc_percent", percent(Lattice::bcc)}};
 }
 
+constexpr auto any_grain = [](std::size_t) { return true; };
+
 /// Over the interior grains for which `selected` holds and the value is a number.
 template <class Value, class Selected>
-double mean_over(const std::vector<std::uint8_t>& interior, Value&& value, Selected&& selected) {
+double mean_over(const GrainMeasures& grains, const Value& value, const Selected& selected) {
   double sum = 0, count = 0;
-  for (std::size_t i = 0; i < interior.size(); ++i) {
-    if (interior[i] == 0 || !selected(i)) continue;
+  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
+    if (grains.interior[i] == 0 || !selected(i)) continue;
     const double one = value(i);
     if (!std::isfinite(one)) continue;
     sum += one;
@@ -90,30 +83,8 @@ double mean_over(const std::vector<std::uint8_t>& interior, Value&& value, Selec
   return sum / count;
 }
 
-/// How grains of each structure moved over one cycle.
-void add_by_structure(const MeasureInput& input, const Motion& moved, json& kept) {
-  const GrainMeasures& grains = input.analysis.grains;
-  std::vector<std::uint8_t> crystalline;
-  for (const Structure structure : grains.structure) {
-    crystalline.push_back(structure == Structure::disordered ? 0 : 1);
-  }
-  const std::vector<std::uint8_t> boundary = crystal_boundary(*input.checkpoint, crystalline);
-  const auto square = [&](std::size_t i) {
-    return moved.displacement.col(static_cast<Eigen::Index>(i)).squaredNorm();
-  };
-  const auto mean = [&](auto&& value, auto&& selected) {
-    return mean_over(grains.interior, value, selected);
-  };
-  kept["reversible_percent"] =
-      mean([&](std::size_t i) { return square(i) <= reversible_d * reversible_d ? 100.0 : 0.0; },
-           [](std::size_t) { return true; });
-  kept["msd_inside_crystal_d2"] =
-      mean(square, [&](std::size_t i) { return crystalline[i] != 0 && boundary[i] == 0; });
-  kept["msd_crystal_boundary_d2"] = mean(square, [&](std::size_t i) { return boundary[i] != 0; });
-  kept["msd_disordered_d2"] = mean(square, [&](std::size_t i) { return crystalline[i] == 0; });
-}
-
 json motion_of(const MeasureInput& input) {
+  const GrainMeasures& grains = input.analysis.grains;
   json kept = json::object();
   for (const auto& [cycles, lag] : {std::pair{std::uint64_t{1}, "1_cycle_d2"},
                                     {std::uint64_t{10}, "10_cycles_d2"},
@@ -121,66 +92,73 @@ json motion_of(const MeasureInput& input) {
     const Checkpoint* earlier = input.earlier ? input.earlier(cycles) : nullptr;
     if (earlier == nullptr) continue;
     const Motion moved = motion(*earlier, *input.checkpoint);
-    const auto mean = [&](auto&& value) {
-      return mean_over(input.analysis.grains.interior, value, [](std::size_t) { return true; });
-    };
-    kept[std::string("msd_") + lag] = mean([&](std::size_t i) {
+    const auto square = [&](std::size_t i) {
       return moved.displacement.col(static_cast<Eigen::Index>(i)).squaredNorm();
-    });
-    kept[std::string("d2min_") + lag] = mean([&](std::size_t i) { return moved.nonaffine[i]; });
-    if (cycles == 1) add_by_structure(input, moved, kept);
+    };
+    const auto nonaffine = [&](std::size_t i) { return moved.nonaffine[i]; };
+    kept[std::string("msd_") + lag] = mean_over(grains, square, any_grain);
+    kept[std::string("d2min_") + lag] = mean_over(grains, nonaffine, any_grain);
+    if (cycles != 1) continue;
+    // How grains of each structure moved over one cycle.
+    std::vector<std::uint8_t> crystalline;
+    for (const Structure structure : grains.structure) {
+      crystalline.push_back(structure == Structure::disordered ? 0 : 1);
+    }
+    const std::vector<std::uint8_t> boundary = crystal_boundary(*input.checkpoint, crystalline);
+    const auto returned = [&](std::size_t i) { return square(i) <= reversible_d * reversible_d; };
+    const auto inside = [&](std::size_t i) { return crystalline[i] != 0 && boundary[i] == 0; };
+    const auto at_boundary = [&](std::size_t i) { return boundary[i] != 0; };
+    const auto disordered = [&](std::size_t i) { return crystalline[i] == 0; };
+    kept["reversible_percent"] = percent_of_interior(grains, returned);
+    kept["msd_inside_crystal_d2"] = mean_over(grains, square, inside);
+    kept["msd_crystal_boundary_d2"] = mean_over(grains, square, at_boundary);
+    kept["msd_disordered_d2"] = mean_over(grains, square, disordered);
   }
   return kept;
 }
 
-json curve(std::vector<double> x, std::vector<double> y) {
-  return {{"x", std::move(x)}, {"y", std::move(y)}};
+json to_json(const MeasuredCurve& curve) {
+  return {{"x", curve.x}, {"y", curve.y}};
 }
 
-json binned(const MeasureInput& input,
-            BinnedFunction (*compute)(const Cell&, const WallPose&, const Eigen::Matrix3Xd&,
-                                      std::span<const std::uint8_t>)) {
-  const Checkpoint& checkpoint = *input.checkpoint;
-  BinnedFunction found = compute(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position,
-                                 input.analysis.grains.interior);
-  return curve(std::move(found.x), std::move(found.y));
+/// A curve that depends on the places of the interior grains.
+template <auto kCompute>
+json of_places(const char* name, const MeasureInput& input) {
+  const Checkpoint& c = *input.checkpoint;
+  return {{name, to_json(kCompute(c.cell, pose_of(c), c.state.position,
+                                  input.analysis.grains.interior))}};
 }
 
 json pair_correlation_of(const MeasureInput& input) {
-  return {{"pair_correlation", binned(input, pair_correlation)}};
+  return of_places<pair_correlation>("pair_correlation", input);
 }
 
 json structure_factor_of(const MeasureInput& input) {
-  return {{"structure_factor", binned(input, structure_factor)}};
+  return of_places<structure_factor>("structure_factor", input);
 }
 
 json profiles_of(const MeasureInput& input) {
   const Profiles found = profiles(*input.checkpoint, input.analysis.grains);
-  return {{"phi_profile", curve(found.height, found.phi)},
-          {"pressure_profile_Pa", curve(found.height, found.pressure)},
-          {"coordination_profile", curve(found.height, found.coordination)},
-          {"crystalline_profile_percent", curve(found.height, found.crystalline_percent)}};
+  const auto against_height = [&](const std::vector<double>& values) {
+    return to_json(MeasuredCurve{found.height, values});
+  };
+  return {{"phi_profile", against_height(found.phi)},
+          {"pressure_profile_Pa", against_height(found.pressure)},
+          {"coordination_profile", against_height(found.coordination)},
+          {"crystalline_profile_percent", against_height(found.crystalline_percent)}};
 }
 
 json sensitivity_of(const MeasureInput& input) {
   const GrainMeasures& grains = input.analysis.grains;
-  const auto of = [](Sensitivity found) {
-    return curve(std::move(found.criterion), std::move(found.result));
-  };
-  return {{"crystalline_by_q6_window_percent", of(crystalline_by_window(grains))},
-          {"crystalline_by_phi_local_percent", of(crystalline_by_phi_local(grains))},
-          {"largest_by_face", of(largest_by_face(*input.checkpoint, grains))}};
+  return {{"crystalline_by_q6_window_percent", to_json(crystalline_by_window(grains))},
+          {"crystalline_by_phi_local_percent", to_json(crystalline_by_phi_local(grains))},
+          {"largest_by_face", to_json(largest_by_face(*input.checkpoint, grains))}};
 }
 
+template <Scalars kWhich>
 void read_scalars(const json& result, Measures& measures) {
-  for_each_kept(
-      [&](std::string_view name, auto member) { result.at(name).get_to(measures.*member); });
-}
-
-void read_mechanics(const json& result, Measures& measures) {
-  for (const auto& [name, member] : all_mechanical_quantities()) {
-    result.at(name).get_to(measures.mechanics.*member);
-  }
+  for_each_kept<kWhich>(measures,
+                        [&](std::string_view name, auto& value) { result.at(name).get_to(value); });
 }
 
 void read_numbers(const json& result, Measures& measures) {
@@ -228,8 +206,9 @@ json with(json parameters, const json& more) {
 }
 
 std::vector<DerivedMeasure> make_all() {
-  return {{"scalars", criteria(), scalars_of, checked<read_scalars>},
-          {"mechanics", interior(), mechanics_of, checked<read_mechanics>},
+  return {{"scalars", criteria(), scalars_of<Scalars::own>, checked<read_scalars<Scalars::own>>},
+          {"mechanics", interior(), scalars_of<Scalars::mechanics>,
+           checked<read_scalars<Scalars::mechanics>>},
           {"crystallites", criteria(), crystallites_of},
           {"lattices", interior(), lattices_of, checked<read_numbers>},
           {"motion",

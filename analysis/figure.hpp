@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "analysis/chart.hpp"
-#include "analysis/crystallite_map.hpp"
+#include "analysis/crystal.hpp"
 #include "analysis/measures.hpp"
 #include "analysis/verdict.hpp"
 

@@ -1,20 +1,85 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/growth.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace shearcell {
 namespace {
 
-void add(const GrowthBySize& from, GrowthBySize& to) {
-  for (const auto& [size, count] : from) {
-    GrowthCount& sum = to[size];
-    sum.grew += count.grew;
-    sum.shrank += count.shrank;
-    sum.vanished += count.vanished;
-    sum.same += count.same;
-    sum.undecided += count.undecided;
+/// One row for each size, of one run or of several.
+struct Cases {
+  Eigen::ArrayXd log_size;
+  Eigen::ArrayXXd grew;    ///< sizes x runs
+  Eigen::ArrayXXd shrank;  ///< likewise
+};
+
+Cases cases_of(std::span<const GrowthBySize> runs, Vanished vanished) {
+  Cases cases;
+  std::int32_t largest = 1;
+  for (const GrowthBySize& run : runs) {
+    if (!run.empty())
+      largest = std::max(largest, std::min(largest_size_fitted, run.rbegin()->first));
   }
+  cases.log_size = Eigen::ArrayXd::LinSpaced(largest, 1, largest).log();
+  cases.grew.setZero(largest, static_cast<Eigen::Index>(runs.size()));
+  cases.shrank = cases.grew;
+  Eigen::Index column = 0;
+  for (const GrowthBySize& run : runs) {
+    for (const auto& [size, count] : run) {
+      if (size > largest_size_fitted) break;
+      const std::size_t out = vanished == Vanished::left_out ? count.vanished : 0;
+      cases.grew(size - 1, column) = static_cast<double>(count.grew);
+      cases.shrank(size - 1, column) = static_cast<double>(count.shrank - out);
+    }
+    ++column;
+  }
+  return cases;
+}
+
+/// Newton's method on the log-likelihood, which is concave.
+std::optional<GrowthFit> fit(const Eigen::ArrayXd& log_size, const Eigen::ArrayXd& grew,
+                             const Eigen::ArrayXd& shrank) {
+  const Eigen::ArrayXd all = grew + shrank;
+  if (grew.sum() <= 0 || shrank.sum() <= 0) return std::nullopt;
+  const double mean = (all * log_size).sum() / all.sum();
+  const Eigen::ArrayXd x = log_size - mean;
+  if ((all * x.square()).sum() <= 1e-12 * all.sum()) return std::nullopt;
+  Eigen::Vector2d theta(std::log(grew.sum() / shrank.sum()), 0);
+  for (int step = 0; step < 50; ++step) {
+    const Eigen::ArrayXd p = 1 / (1 + (-(theta[0] + theta[1] * x)).exp());
+    const Eigen::ArrayXd residual = grew - all * p;
+    const Eigen::ArrayXd weight = all * p * (1 - p);
+    const Eigen::Vector2d gradient(residual.sum(), (residual * x).sum());
+    Eigen::Matrix2d curvature;
+    curvature << weight.sum(), (weight * x).sum(), (weight * x).sum(), (weight * x.square()).sum();
+    Eigen::Vector2d move = curvature.ldlt().solve(gradient);
+    if (!move.allFinite()) break;  // sizes that grew and sizes that shrank do not mix
+    if (move.norm() > 2) move *= 2 / move.norm();
+    theta += move;
+    if (move.norm() < 1e-10) break;
+  }
+  return GrowthFit{theta[0] - theta[1] * mean, theta[1]};
+}
+
+/// Interval of what `value` computes from the fit to a selection of runs.
+template <class Value>
+std::optional<Estimate> over_selections(std::span<const GrowthBySize> runs, Vanished vanished,
+                                        const Value& value) {
+  const Cases cases = cases_of(runs, vanished);
+  return bootstrapped(runs.size(), [&](std::span<const std::size_t> selection) {
+    Eigen::ArrayXd grew = Eigen::ArrayXd::Zero(cases.log_size.size());
+    Eigen::ArrayXd shrank = grew;
+    for (const std::size_t run : selection) {
+      grew += cases.grew.col(static_cast<Eigen::Index>(run));
+      shrank += cases.shrank.col(static_cast<Eigen::Index>(run));
+    }
+    const std::optional<GrowthFit> found = fit(cases.log_size, grew, shrank);
+    return found ? value(*found) : std::nullopt;
+  });
 }
 
 }  // namespace
@@ -47,10 +112,6 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     } else if (2 * smaller_or_none > size) {
       ++count.shrank;
       if (2 * fates[c].smaller <= size) ++count.vanished;
-    } else if (2 * fates[c].same > size) {
-      ++count.same;
-    } else {
-      ++count.undecided;
     }
   }
 }
@@ -71,7 +132,12 @@ GrowthBySize growth_of(const FigureRun& run, std::int64_t cycles) {
 
 std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs) {
   GrowthBySize all;
-  for (const GrowthBySize& run : runs) add(run, all);
+  for (const GrowthBySize& run : runs) {
+    for (const auto& [size, count] : run) {
+      all[size].grew += count.grew;
+      all[size].shrank += count.shrank;
+    }
+  }
   std::vector<GrowthRate> rates;
   for (const auto& [size, count] : all) {
     GrowthRate rate;
@@ -89,6 +155,54 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs) {
     rates.push_back(rate);
   }
   return rates;
+}
+
+double GrowthFit::delta_rho(double size) const {
+  return std::tanh((intercept + slope * std::log(size)) / 2);
+}
+
+std::optional<double> GrowthFit::critical_size() const {
+  if (!(slope > 0)) return std::nullopt;
+  return std::exp(-intercept / slope);
+}
+
+std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs, Vanished vanished) {
+  const Cases cases = cases_of(runs, vanished);
+  return fit(cases.log_size, cases.grew.rowwise().sum(), cases.shrank.rowwise().sum());
+}
+
+std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs, Vanished vanished) {
+  return over_selections(runs, vanished, [](const GrowthFit& fit) { return fit.critical_size(); });
+}
+
+std::optional<Estimate> fitted_delta_rho(std::span<const GrowthBySize> runs, double size) {
+  return over_selections(runs, Vanished::shrank, [size](const GrowthFit& fit) {
+    return std::optional<double>(fit.delta_rho(size));
+  });
+}
+
+std::vector<GrowthBin> binned_growth(std::span<const GrowthBySize> runs,
+                                     std::size_t least_counted) {
+  std::vector<GrowthBin> bins;
+  GrowthBin bin;
+  double grew = 0, log_sizes = 0;
+  for (const GrowthRate& rate : growth_rates(runs)) {
+    const auto n = static_cast<double>(rate.counted);
+    if (bin.counted == 0) bin.low = rate.size;
+    bin.high = rate.size;
+    bin.counted += rate.counted;
+    grew += n * rate.grow;
+    log_sizes += n * std::log(rate.size);
+    if (bin.counted < least_counted) continue;
+    const auto all = static_cast<double>(bin.counted);
+    bin.size = std::exp(log_sizes / all);
+    bin.delta = 2 * grew / all - 1;
+    bin.delta_error = 2 * std::sqrt((grew + 1) * (all - grew + 1) / (all + 3)) / (all + 2);
+    bins.push_back(bin);
+    bin = {};
+    grew = log_sizes = 0;
+  }
+  return bins;
 }
 
 }  // namespace shearcell

@@ -6,53 +6,24 @@
 #include <numeric>
 #include <utility>
 
-#include "analysis/bond_order.hpp"
 #include "analysis/packing_fraction.hpp"
 #include "analysis/voronoi.hpp"
 
 namespace shearcell {
 namespace {
 
-/// Mean surface [d^2] of the selected cells; 0 when none is selected, and then nothing uses it.
-double mean_surface(const std::vector<double>& surface, const std::vector<std::uint8_t>& selected) {
-  double sum = 0;
-  double count = 0;
-  for (std::size_t i = 0; i < selected.size(); ++i) {
-    if (selected[i] == 0) continue;
-    sum += surface[i];
-    ++count;
-  }
-  return count > 0 ? sum / count : 0;
-}
-
-void find_structures(GrainMeasures& grains) {
-  const std::size_t count = grains.q6.size();
-  grains.phi_local.resize(count);
-  grains.structure.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    grains.phi_local[i] = local_packing_fraction(grains.largest_overlap[i], grains.cell_volume[i]);
-    grains.structure[i] = structure(grains.phi_local[i], grains.q6[i]);
-  }
-}
-
 void find_crystallites(const VoronoiDiagram& diagram, Analysis& analysis) {
   GrainMeasures& grains = analysis.grains;
-  std::vector<std::uint8_t> crystalline(grains.structure.size());
-  double fcc = 0;
-  double hcp = 0;
-  for (std::size_t i = 0; i < crystalline.size(); ++i) {
-    if (grains.interior[i] == 0) continue;
-    crystalline[i] = grains.structure[i] == Structure::disordered ? 0 : 1;
-    fcc += grains.structure[i] == Structure::fcc ? 1 : 0;
-    hcp += grains.structure[i] == Structure::hcp ? 1 : 0;
-  }
   grains.crystallites =
-      crystallites(diagram, crystalline, mean_surface(grains.cell_surface, grains.interior));
+      crystallites(diagram, crystalline_interior(grains), connecting_face * mean_surface(grains));
+  const auto percent = [&](auto&& is_wanted) {
+    return percent_of_interior(grains,
+                               [&](std::size_t i) { return is_wanted(grains.structure[i]); });
+  };
   Measures& all = analysis.measures;
-  const auto interior = static_cast<double>(all.interior_grains);
-  all.fcc_percent = 100 * fcc / interior;
-  all.hcp_percent = 100 * hcp / interior;
-  all.crystalline_percent = 100 * (fcc + hcp) / interior;
+  all.fcc_percent = percent([](Structure s) { return s == Structure::fcc; });
+  all.hcp_percent = percent([](Structure s) { return s == Structure::hcp; });
+  all.crystalline_percent = percent([](Structure s) { return s != Structure::disordered; });
   all.crystallites = grains.crystallites.size.size();
   all.largest_crystallite = static_cast<std::size_t>(grains.crystallites.largest);
 }
@@ -61,6 +32,8 @@ void find_crystallites(const VoronoiDiagram& diagram, Analysis& analysis) {
 
 std::span<const ScalarMeasure> all_scalar_measures() {
   using M = Measures;
+  using F = Mechanics;
+  using U = MechanicalUnits;
   static constexpr ScalarMeasure measures[] = {
       {"grains", "1", "N, number of grains", &M::grains},
       {"interior_grains", "1", "N_inves, grains at least 1.5 d from the wall surfaces",
@@ -78,55 +51,57 @@ std::span<const ScalarMeasure> all_scalar_measures() {
       {"crystallites", "1", "number of crystallites of interior grains", &M::crystallites},
       {"largest_crystallite", "1", "grains in the largest crystallite", &M::largest_crystallite},
       {"pressure_Pa", "Pa", "mean normal stress of interior grains, from contacts",
-       MechanicalMember{&Mechanics::pressure, &MechanicalUnits::stress_Pa}},
+       MechanicalMember{"pressure_k_per_d", &F::pressure, &U::stress_Pa}},
       {"deviator_Pa", "Pa", "sqrt(s:s / 2) of the deviatoric stress s of interior grains",
-       MechanicalMember{&Mechanics::deviator, &MechanicalUnits::stress_Pa}},
+       MechanicalMember{"deviator_k_per_d", &F::deviator, &U::stress_Pa}},
       {"stress_xx_Pa", "Pa", "normal stress of interior grains, positive in compression",
-       MechanicalMember{&Mechanics::stress_xx, &MechanicalUnits::stress_Pa}},
+       MechanicalMember{"stress_xx_k_per_d", &F::stress_xx, &U::stress_Pa}},
       {"stress_yy_Pa", "Pa", "normal stress of interior grains, positive in compression",
-       MechanicalMember{&Mechanics::stress_yy, &MechanicalUnits::stress_Pa}},
+       MechanicalMember{"stress_yy_k_per_d", &F::stress_yy, &U::stress_Pa}},
       {"stress_zz_Pa", "Pa", "normal stress of interior grains, positive in compression",
-       MechanicalMember{&Mechanics::stress_zz, &MechanicalUnits::stress_Pa}},
+       MechanicalMember{"stress_zz_k_per_d", &F::stress_zz, &U::stress_Pa}},
       {"stress_xy_Pa", "Pa", "shear stress of interior grains",
-       MechanicalMember{&Mechanics::stress_xy, &MechanicalUnits::stress_Pa}},
+       MechanicalMember{"stress_xy_k_per_d", &F::stress_xy, &U::stress_Pa}},
       {"stress_xz_Pa", "Pa", "shear stress of interior grains",
-       MechanicalMember{&Mechanics::stress_xz, &MechanicalUnits::stress_Pa}},
+       MechanicalMember{"stress_xz_k_per_d", &F::stress_xz, &U::stress_Pa}},
       {"stress_yz_Pa", "Pa", "shear stress of interior grains",
-       MechanicalMember{&Mechanics::stress_yz, &MechanicalUnits::stress_Pa}},
+       MechanicalMember{"stress_yz_k_per_d", &F::stress_yz, &U::stress_Pa}},
       {"kinetic_pressure_Pa", "Pa",
        "kinetic part of the pressure, of velocities less the mean flow",
-       MechanicalMember{&Mechanics::kinetic_pressure, &MechanicalUnits::kinetic_stress_Pa}},
+       MechanicalMember{"kinetic_pressure_m_per_d_s2", &F::kinetic_pressure,
+                        &U::kinetic_stress_Pa}},
       {"coordination", "1", "contacts per interior grain",
-       MechanicalMember{&Mechanics::coordination, nullptr}},
+       MechanicalMember{"coordination", &F::coordination, nullptr}},
       {"rattlers_percent", "%", "interior grains that fewer than four contacts hold",
-       MechanicalMember{&Mechanics::rattlers, nullptr}},
+       MechanicalMember{"rattlers_percent", &F::rattlers, nullptr}},
       {"coordination_without_rattlers", "1",
        "contacts among interior grains that are not rattlers, per grain",
-       MechanicalMember{&Mechanics::coordination_without_rattlers, nullptr}},
+       MechanicalMember{"coordination_without_rattlers", &F::coordination_without_rattlers,
+                        nullptr}},
       {"force_bottom_x_N", "N", "force of the grains on the bottom wall",
-       MechanicalMember{&Mechanics::force_bottom_x, &MechanicalUnits::force_N}},
+       MechanicalMember{"force_bottom_x_k_d", &F::force_bottom_x, &U::force_N}},
       {"force_bottom_y_N", "N", "force of the grains on the bottom wall",
-       MechanicalMember{&Mechanics::force_bottom_y, &MechanicalUnits::force_N}},
+       MechanicalMember{"force_bottom_y_k_d", &F::force_bottom_y, &U::force_N}},
       {"force_top_x_N", "N", "force of the grains on the top wall",
-       MechanicalMember{&Mechanics::force_top_x, &MechanicalUnits::force_N}},
+       MechanicalMember{"force_top_x_k_d", &F::force_top_x, &U::force_N}},
       {"force_top_y_N", "N", "force of the grains on the top wall",
-       MechanicalMember{&Mechanics::force_top_y, &MechanicalUnits::force_N}},
+       MechanicalMember{"force_top_y_k_d", &F::force_top_y, &U::force_N}},
       {"force_left_x_N", "N", "force of the grains on the left wall",
-       MechanicalMember{&Mechanics::force_left_x, &MechanicalUnits::force_N}},
+       MechanicalMember{"force_left_x_k_d", &F::force_left_x, &U::force_N}},
       {"force_left_y_N", "N", "force of the grains on the left wall",
-       MechanicalMember{&Mechanics::force_left_y, &MechanicalUnits::force_N}},
+       MechanicalMember{"force_left_y_k_d", &F::force_left_y, &U::force_N}},
       {"force_right_x_N", "N", "force of the grains on the right wall",
-       MechanicalMember{&Mechanics::force_right_x, &MechanicalUnits::force_N}},
+       MechanicalMember{"force_right_x_k_d", &F::force_right_x, &U::force_N}},
       {"force_right_y_N", "N", "force of the grains on the right wall",
-       MechanicalMember{&Mechanics::force_right_y, &MechanicalUnits::force_N}},
+       MechanicalMember{"force_right_y_k_d", &F::force_right_y, &U::force_N}},
       {"elastic_energy_per_grain_J", "J",
        "elastic energy of all contacts over the number of grains",
-       MechanicalMember{&Mechanics::elastic_energy, &MechanicalUnits::elastic_J}},
+       MechanicalMember{"elastic_energy_per_grain_k_d2", &F::elastic_energy, &U::elastic_J}},
       {"kinetic_energy_per_grain_J", "J",
        "kinetic energy over the number of grains, half a time step later",
-       MechanicalMember{&Mechanics::kinetic_energy, &MechanicalUnits::kinetic_J}},
+       MechanicalMember{"kinetic_energy_per_grain_m_d2_per_s2", &F::kinetic_energy, &U::kinetic_J}},
       {"gravitational_energy_per_grain_J", "J", "weight times mean height above the bottom wall",
-       MechanicalMember{&Mechanics::height, &MechanicalUnits::weight_J}},
+       MechanicalMember{"height_d", &F::height, &U::weight_J}},
       {"cna_crystalline_percent", "%",
        "FCC and HCP grains among interior grains, by common neighbour analysis",
        NumberOf{"lattices"}},
@@ -255,15 +230,18 @@ Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd&
       std::accumulate(grains.contacts.begin(), grains.contacts.end(), std::int64_t{0});
   all.contacts_per_grain = static_cast<double>(contacts) / static_cast<double>(all.grains);
 
-  find_structures(grains);
+  for (std::size_t i = 0; i < all.grains; ++i) {
+    grains.phi_local.push_back(
+        local_packing_fraction(grains.largest_overlap[i], grains.cell_volume[i]));
+    grains.structure.push_back(structure(grains.phi_local[i], grains.q6[i]));
+  }
   find_crystallites(diagram, analysis);
   analysis.crystallites = crystallite_map(grains.crystallites, cell, pose, positions);
   return analysis;
 }
 
 Analysis analyse(const Checkpoint& checkpoint) {
-  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
-  Analysis analysis = analyse(checkpoint.cell, pose, checkpoint.state.position);
+  Analysis analysis = analyse(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
   GrainMeasures& grains = analysis.grains;
   PackingMechanics found = mechanics(checkpoint, grains.cell_volume, grains.interior);
   analysis.measures.mechanics = found.packing;
@@ -271,8 +249,22 @@ Analysis analyse(const Checkpoint& checkpoint) {
   return analysis;
 }
 
-Measures measure(const Checkpoint& checkpoint) {
-  return analyse(checkpoint).measures;
+std::vector<std::uint8_t> crystalline_interior(const GrainMeasures& grains) {
+  std::vector<std::uint8_t> crystalline(grains.interior);
+  for (std::size_t i = 0; i < crystalline.size(); ++i) {
+    if (grains.structure[i] == Structure::disordered) crystalline[i] = 0;
+  }
+  return crystalline;
+}
+
+double mean_surface(const GrainMeasures& grains) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
+    if (grains.interior[i] == 0) continue;
+    sum += grains.cell_surface[i];
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
 }
 
 }  // namespace shearcell

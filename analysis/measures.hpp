@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "analysis/crystal.hpp"
-#include "analysis/crystallite_map.hpp"
 #include "analysis/mechanics.hpp"
 #include "provenance/checkpoint.hpp"
 
@@ -46,10 +45,11 @@ struct Measures {
   std::map<std::string, MeasuredCurve, std::less<>> curves;
 };
 
-/// A member of Mechanics and the unit that turns it into SI; null for a number that has none.
+/// A member of Mechanics.
 struct MechanicalMember {
+  std::string_view kept;  ///< the name that kept results give it, with its unit there
   double Mechanics::*value;
-  double MechanicalUnits::*unit;
+  double MechanicalUnits::*unit;  ///< turns it into SI; null for a number that has none
 };
 
 /// One of Measures::numbers.
@@ -116,7 +116,22 @@ struct Analysis {
 Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions);
 Analysis analyse(const Checkpoint& checkpoint);
 
-/// The same without the per-grain arrays.
-Measures measure(const Checkpoint& checkpoint);
+/// Share of the interior grains for which `holds` [%]; not a number without any.
+template <class Predicate>
+double percent_of_interior(const GrainMeasures& grains, const Predicate& holds) {
+  double count = 0, found = 0;
+  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
+    if (grains.interior[i] == 0) continue;
+    ++count;
+    found += holds(i) ? 1 : 0;
+  }
+  return 100 * found / count;
+}
+
+/// 1 for crystalline interior grains, else 0.
+std::vector<std::uint8_t> crystalline_interior(const GrainMeasures& grains);
+
+/// Of the cells of interior grains [d^2]; 0 without any.
+double mean_surface(const GrainMeasures& grains);
 
 }  // namespace shearcell

@@ -2,9 +2,9 @@
 #include "analysis/mechanics.hpp"
 
 #include <Eigen/Core>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "core/diagnostics.hpp"
@@ -52,53 +52,39 @@ std::vector<std::uint8_t> find_rattlers(std::size_t grains, std::span<const Touc
 }
 
 // Everything that contacts alone give.
-class ContactSums {
- public:
-  ContactSums(const Checkpoint& checkpoint, Selected interior)
-      : interior_(interior), trace_(interior.size(), 0.0) {
-    const WallPose pose =
-        wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
-    for_each_contact(checkpoint.cell, checkpoint.state.position, pose,
-                     [this](const Contact& contact) { add(contact); });
-  }
+struct ContactSums {
+  Eigen::Matrix3d virial = Eigen::Matrix3d::Zero();             // of interior grains [k d^2]
+  double squares = 0;                                           // of overlaps [d^2]
+  Eigen::Matrix<double, 3, 4> force = decltype(force)::Zero();  // on each wall, by WallSide [k d]
+  std::vector<Touch> touches;
+  std::vector<double> trace;  // of each grain's own contacts [k d^2]
+};
 
-  const Eigen::Matrix3d& virial() const { return virial_; }  // [k d^2]
-  double elastic_energy() const { return 0.5 * squares_; }   // [k d^2]
-  const Eigen::Vector3d& force_on(WallSide side) const {
-    return force_[static_cast<std::size_t>(side)];
-  }
-  std::span<const Touch> touches() const { return touches_; }
-  const std::vector<double>& trace() const { return trace_; }  // per grain [k d^2]
-
- private:
-  bool inside(std::int32_t grain) const { return interior_[static_cast<std::size_t>(grain)] != 0; }
-
-  void add(const Contact& contact) {
-    squares_ += contact.overlap * contact.overlap;
+ContactSums sums_of(const Checkpoint& checkpoint, Selected interior) {
+  ContactSums sums;
+  sums.trace.assign(interior.size(), 0.0);
+  const auto grain = [](std::int32_t id) { return static_cast<std::size_t>(id); };
+  const auto add = [&](const Contact& contact) {
+    sums.squares += contact.overlap * contact.overlap;
     // The contact is in the middle of the overlap; that with a plane is on the plane.
     const double arm = contact.kind == Contact::Kind::wall_plane ? 0.5 - contact.overlap
                                                                  : 0.5 * (1 - contact.overlap);
     const double moment = contact.overlap * arm;
-    trace_[static_cast<std::size_t>(contact.grain)] += moment;
+    sums.trace[grain(contact.grain)] += moment;
     if (contact.kind != Contact::Kind::grain) {
-      force_[static_cast<std::size_t>(contact.side)] -= contact.overlap * contact.normal;
-      touches_.push_back({contact.grain, -1});
+      sums.force.col(static_cast<Eigen::Index>(contact.side)) -= contact.overlap * contact.normal;
+      sums.touches.push_back({contact.grain, -1});
       return;
     }
-    trace_[static_cast<std::size_t>(contact.other)] += moment;
-    touches_.push_back({contact.grain, contact.other});
-    const int ends = (inside(contact.grain) ? 1 : 0) + (inside(contact.other) ? 1 : 0);
-    if (ends > 0) virial_ += ends * moment * contact.normal * contact.normal.transpose();
-  }
-
-  Selected interior_;
-  Eigen::Matrix3d virial_ = Eigen::Matrix3d::Zero();
-  double squares_ = 0;
-  std::array<Eigen::Vector3d, 4> force_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
-                                           Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  std::vector<Touch> touches_;
-  std::vector<double> trace_;
-};
+    sums.trace[grain(contact.other)] += moment;
+    sums.touches.push_back({contact.grain, contact.other});
+    const int ends = (interior[grain(contact.grain)] != 0 ? 1 : 0) +
+                     (interior[grain(contact.other)] != 0 ? 1 : 0);
+    if (ends > 0) sums.virial += ends * moment * contact.normal * contact.normal.transpose();
+  };
+  for_each_contact(checkpoint.cell, checkpoint.state.position, pose_of(checkpoint), add);
+  return sums;
+}
 
 // Sum over the interior grains of the squares of their velocities less the mean flow [d^2/s^2].
 double fluctuation(const State& state, Selected interior) {
@@ -177,63 +163,31 @@ PackingMechanics mechanics(const Checkpoint& checkpoint, std::span<const double>
   double volume = 0;
   for (std::size_t i = 0; i < grains; ++i) volume += interior[i] != 0 ? cell_volume[i] : 0;
 
-  const ContactSums sums(checkpoint, interior);
-  PackingMechanics found;
-  found.grain_pressure = sums.trace();
-  for (std::size_t i = 0; i < grains; ++i) found.grain_pressure[i] /= 3 * cell_volume[i];
-  Mechanics& m = found.packing;
-  set_stress(sums.virial() / volume, m);
+  ContactSums sums = sums_of(checkpoint, interior);
+  for (std::size_t i = 0; i < grains; ++i) sums.trace[i] /= 3 * cell_volume[i];
+  Mechanics m;
+  set_stress(sums.virial / volume, m);
   m.kinetic_pressure = fluctuation(state, interior) / (3 * volume);
-  set_coordination(grains, sums.touches(), interior, m);
+  set_coordination(grains, sums.touches, interior, m);
   const auto set_force = [&](WallSide side, double& x, double& y) {
-    x = sums.force_on(side).x();
-    y = sums.force_on(side).y();
+    x = sums.force(0, static_cast<Eigen::Index>(side));
+    y = sums.force(1, static_cast<Eigen::Index>(side));
   };
   set_force(WallSide::bottom, m.force_bottom_x, m.force_bottom_y);
   set_force(WallSide::top, m.force_top_x, m.force_top_y);
   set_force(WallSide::left, m.force_left_x, m.force_left_y);
   set_force(WallSide::right, m.force_right_x, m.force_right_y);
   const auto count = static_cast<double>(grains);
-  m.elastic_energy = sums.elastic_energy() / count;
+  m.elastic_energy = 0.5 * sums.squares / count;
   m.kinetic_energy = 0.5 * state.velocity.squaredNorm() / count;
-  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, state.wall_height);
-  m.height = state.position.row(1).mean() - pose.bottom;
-  return found;
+  m.height = state.position.row(1).mean() - pose_of(checkpoint).bottom;
+  return {m, std::move(sums.trace)};
 }
 
 MechanicalUnits mechanical_units(double stiffness_N_per_m, double mass_kg, double diameter_m,
                                  double gravity_m_per_s2) {
   const double k = stiffness_N_per_m, m = mass_kg, d = diameter_m;
   return {k / d, m / d, k * d, k * d * d, m * d * d, m * gravity_m_per_s2 * d};
-}
-
-std::span<const MechanicalQuantity> all_mechanical_quantities() {
-  using M = Mechanics;
-  static constexpr MechanicalQuantity quantities[] = {
-      {"stress_xx_k_per_d", &M::stress_xx},
-      {"stress_yy_k_per_d", &M::stress_yy},
-      {"stress_zz_k_per_d", &M::stress_zz},
-      {"stress_xy_k_per_d", &M::stress_xy},
-      {"stress_xz_k_per_d", &M::stress_xz},
-      {"stress_yz_k_per_d", &M::stress_yz},
-      {"pressure_k_per_d", &M::pressure},
-      {"deviator_k_per_d", &M::deviator},
-      {"kinetic_pressure_m_per_d_s2", &M::kinetic_pressure},
-      {"coordination", &M::coordination},
-      {"rattlers_percent", &M::rattlers},
-      {"coordination_without_rattlers", &M::coordination_without_rattlers},
-      {"force_bottom_x_k_d", &M::force_bottom_x},
-      {"force_bottom_y_k_d", &M::force_bottom_y},
-      {"force_top_x_k_d", &M::force_top_x},
-      {"force_top_y_k_d", &M::force_top_y},
-      {"force_left_x_k_d", &M::force_left_x},
-      {"force_left_y_k_d", &M::force_left_y},
-      {"force_right_x_k_d", &M::force_right_x},
-      {"force_right_y_k_d", &M::force_right_y},
-      {"elastic_energy_per_grain_k_d2", &M::elastic_energy},
-      {"kinetic_energy_per_grain_m_d2_per_s2", &M::kinetic_energy},
-      {"height_d", &M::height}};
-  return quantities;
 }
 
 }  // namespace shearcell

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "provenance/checkpoint.hpp"
@@ -60,12 +59,5 @@ struct MechanicalUnits {
 };
 MechanicalUnits mechanical_units(double stiffness_N_per_m, double mass_kg, double diameter_m,
                                  double gravity_m_per_s2);
-
-/// One member of Mechanics by the name that kept results give it, which has its unit.
-struct MechanicalQuantity {
-  std::string_view name;
-  double Mechanics::*member;
-};
-std::span<const MechanicalQuantity> all_mechanical_quantities();
 
 }  // namespace shearcell

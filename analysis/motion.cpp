@@ -13,10 +13,6 @@
 namespace shearcell {
 namespace {
 
-WallPose pose_of(const Checkpoint& checkpoint) {
-  return wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
-}
-
 Eigen::Matrix3Xd untilted(const Checkpoint& checkpoint) {
   const WallPose pose = pose_of(checkpoint);
   Eigen::Matrix3Xd position = checkpoint.state.position;

@@ -3,11 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <span>
-#include <vector>
 
 #include "core/cell.hpp"
 
@@ -19,27 +16,5 @@ namespace shearcell {
 void for_each_pair(
     const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites, double reach,
     const std::function<void(std::int32_t i, std::int32_t j, const Eigen::Vector3d& r)>& visit);
-
-struct NearGrain {
-  std::int32_t index;          ///< in the sites
-  double distance;             ///< [d]
-  Eigen::Vector3d separation;  ///< from the grain to its neighbour's nearest image [d]
-};
-
-/// The neighbours of each of several sites, nearest first; equal distances by index.
-class NearGrains {
- public:
-  /// Of the first `count` sites, among all sites within `reach` [d]; as for_each_pair().
-  NearGrains(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites,
-             std::size_t count, double reach);
-
-  std::span<const NearGrain> of(std::size_t grain) const {
-    return {near_.data() + first_[grain], first_[grain + 1] - first_[grain]};
-  }
-
- private:
-  std::vector<std::size_t> first_;
-  std::vector<NearGrain> near_;
-};
 
 }  // namespace shearcell

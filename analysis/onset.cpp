@@ -56,14 +56,6 @@ std::optional<Slope> slope_at(std::span<const Point> points, double phi) {
   return Slope{xy / xx, cycle / n};
 }
 
-double largest_size(const FigureRun& run) {
-  std::size_t largest = 0;
-  for (const CheckpointMeasures& checkpoint : run.checkpoints) {
-    largest = std::max(largest, checkpoint.measures.largest_crystallite);
-  }
-  return static_cast<double>(largest);
-}
-
 }  // namespace
 
 RunOnset onset_by_size(const FigureRun& run, double critical_size) {
@@ -84,20 +76,16 @@ RunOnset onset_by_size(const FigureRun& run, double critical_size) {
 }
 
 RunOnset onset_by_slope(const FigureRun& run, double critical_size) {
-  if (largest_size(run) < critical_size) return {};
-  if (onset_by_size(run, critical_size).observed == Observed::before_start) {
-    return {Observed::before_start, 0, 0};
-  }
+  const RunOnset by_size = onset_by_size(run, critical_size);
+  if (by_size.observed != Observed::yes) return by_size;
   const std::vector<Point> points = points_of(run);
-  const auto [lowest, highest] = std::minmax_element(
-      points.begin(), points.end(), [](const Point& a, const Point& b) { return a.phi < b.phi; });
+  const auto [lowest, highest] = std::ranges::minmax(points, {}, &Point::phi);
   constexpr double step = slope_window / 32;
   RunOnset found;
   double steepest = 0;
-  const double range = highest->phi - lowest->phi;
-  const auto steps = static_cast<int>(range / step);
+  const auto steps = static_cast<int>((highest.phi - lowest.phi) / step);
   for (int k = 0; k <= steps; ++k) {
-    const double phi = lowest->phi + k * step;
+    const double phi = lowest.phi + k * step;
     const std::optional<Slope> here = slope_at(points, phi);
     if (!here || here->slope <= steepest) continue;
     steepest = here->slope;

@@ -43,7 +43,7 @@ Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd
 
 std::vector<std::uint8_t> interior_grains(const Cell& cell, const WallPose& pose,
                                           const Eigen::Matrix3Xd& grains) {
-  const double least = interior_distance + (cell.wall_grains.empty() ? 0.0 : rough_wall_surface);
+  const double least = interior_margin(cell);
   std::vector<std::uint8_t> interior(static_cast<std::size_t>(grains.cols()));
   for (Eigen::Index i = 0; i < grains.cols(); ++i) {
     const double distance = wall_distances(cell, pose, grains.col(i)).minCoeff();

@@ -16,6 +16,10 @@ namespace shearcell {
 inline constexpr double rough_wall_surface = 0.375;
 /// Interior grains are at least this far from the wall surfaces [d]. Supplement C.
 inline constexpr double interior_distance = 1.5;
+/// The same from the planes of the walls [d].
+inline double interior_margin(const Cell& cell) {
+  return interior_distance + (cell.wall_grains.empty() ? 0.0 : rough_wall_surface);
+}
 
 /// Overlaps delta = 1 - r_ij of grains with grains and wall grains; the plane behind a wall has no
 /// r_ij and does not count.

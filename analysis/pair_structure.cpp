@@ -43,8 +43,8 @@ double pair_volume(const InteriorRegion& region, double from, double to) {
   return 4 * kPi * region.depth * (integral(to) - integral(from));
 }
 
-BinnedFunction bins(double width, std::size_t count) {
-  BinnedFunction function;
+MeasuredCurve bins(double width, std::size_t count) {
+  MeasuredCurve function;
   for (std::size_t b = 0; b < count; ++b) {
     function.x.push_back((static_cast<double>(b) + 0.5) * width);
   }
@@ -70,60 +70,42 @@ class Waves {
   std::vector<Eigen::ArrayXcd> powers_;
 };
 
-struct WaveVector {
-  std::array<int, 3> n;
-};
+using WaveVector = std::array<int, 3>;  // in the reciprocal lattice
 
-// One of each pair k, -k up to the largest |k|, by bins.
-class WaveVectors {
- public:
-  explicit WaveVectors(const InteriorRegion& region)
-      : region_(region), bins_(static_cast<std::size_t>(largest_wave_per_d / wave_bin_per_d)) {
-    most_[0] = static_cast<int>(largest_wave_per_d * region.width / (2 * kPi));
-    // The second component of k has a share of the first one's where the walls are tilted.
-    most_[1] = static_cast<int>(largest_wave_per_d * region.height *
-                                (1 + std::abs(region.tan_theta)) / (2 * kPi));
-    most_[2] = static_cast<int>(largest_wave_per_d * region.depth / (2 * kPi));
-    std::vector<std::size_t> count(bins_.size(), 0), seen(bins_.size(), 0);
-    each([&](std::size_t bin, const WaveVector&) { ++count[bin]; });
-    each([&](std::size_t bin, const WaveVector& k) {
-      const std::size_t stride = (count[bin] + kMost - 1) / kMost;
-      if (seen[bin]++ % stride == 0) bins_[bin].push_back(k);
-    });
-  }
+// Largest components of wave vectors up to the largest |k|.
+WaveVector largest_components(const InteriorRegion& region) {
+  const auto within = [](double length) {
+    return static_cast<int>(largest_wave_per_d * length / (2 * kPi));
+  };
+  // The second component of k has a share of the first one's where the walls are tilted.
+  return {within(region.width), within(region.height * (1 + std::abs(region.tan_theta))),
+          within(region.depth)};
+}
 
-  const std::array<int, 3>& most() const { return most_; }
-  const std::vector<std::vector<WaveVector>>& bins() const { return bins_; }
+constexpr auto kWaveBins = static_cast<std::size_t>(largest_wave_per_d / wave_bin_per_d);
 
- private:
-  static constexpr std::size_t kMost = 48;
-
-  template <class Visit>
-  void each(const Visit& visit) const {
-    for (int a = 0; a <= most_[0]; ++a) {
-      const double x = 2 * kPi * a / region_.width;
-      for (int b = a == 0 ? 0 : -most_[1]; b <= most_[1]; ++b) {
-        const double y = 2 * kPi * b / region_.height - region_.tan_theta * x;
-        for (int c = a == 0 && b == 0 ? 1 : -most_[2]; c <= most_[2]; ++c) {
-          const double z = 2 * kPi * c / region_.depth;
-          const double bin = std::sqrt(x * x + y * y + z * z) / wave_bin_per_d;
-          if (bin < static_cast<double>(bins_.size())) {
-            visit(static_cast<std::size_t>(bin), {{a, b, c}});
-          }
-        }
+// Calls visit(bin, n) for one of each pair k, -k up to the largest |k|, in lexical order.
+template <class Visit>
+void for_each_wave_vector(const InteriorRegion& region, const WaveVector& most,
+                          const Visit& visit) {
+  for (int a = 0; a <= most[0]; ++a) {
+    const double x = 2 * kPi * a / region.width;
+    for (int b = a == 0 ? 0 : -most[1]; b <= most[1]; ++b) {
+      const double y = 2 * kPi * b / region.height - region.tan_theta * x;
+      for (int c = a == 0 && b == 0 ? 1 : -most[2]; c <= most[2]; ++c) {
+        const double z = 2 * kPi * c / region.depth;
+        const auto bin =
+            static_cast<std::size_t>(std::sqrt(x * x + y * y + z * z) / wave_bin_per_d);
+        if (bin < kWaveBins) visit(bin, WaveVector{a, b, c});
       }
     }
   }
-
-  InteriorRegion region_;
-  std::array<int, 3> most_{};
-  std::vector<std::vector<WaveVector>> bins_;
-};
+}
 
 }  // namespace
 
 InteriorRegion interior_region(const Cell& cell, const WallPose& pose) {
-  const double margin = interior_distance + (cell.wall_grains.empty() ? 0 : rough_wall_surface);
+  const double margin = interior_margin(cell);
   InteriorRegion region;
   region.tan_theta = pose.tan_theta;
   region.bottom = pose.bottom + margin;
@@ -134,15 +116,15 @@ InteriorRegion interior_region(const Cell& cell, const WallPose& pose) {
   return region;
 }
 
-BinnedFunction pair_correlation(const Cell& cell, const WallPose& pose,
-                                const Eigen::Matrix3Xd& grains,
-                                std::span<const std::uint8_t> interior) {
+MeasuredCurve pair_correlation(const Cell& cell, const WallPose& pose,
+                               const Eigen::Matrix3Xd& grains,
+                               std::span<const std::uint8_t> interior) {
   const InteriorRegion region = interior_region(cell, pose);
   const Eigen::Matrix3Xd sites = selected(grains, interior);
   const double reach =
       std::min({pair_reach_d, 0.5 * region.depth, region.height, region.width * pose.cos_theta});
   if (!(reach > 0) || sites.cols() < 2) return {};
-  BinnedFunction g = bins(pair_bin_d, static_cast<std::size_t>(reach / pair_bin_d));
+  MeasuredCurve g = bins(pair_bin_d, static_cast<std::size_t>(reach / pair_bin_d));
   std::vector<double> pairs(g.x.size(), 0);
   for_each_pair(cell, pose, sites, reach,
                 [&](std::int32_t, std::int32_t, const Eigen::Vector3d& r) {
@@ -158,26 +140,32 @@ BinnedFunction pair_correlation(const Cell& cell, const WallPose& pose,
   return g;
 }
 
-BinnedFunction structure_factor(const Cell& cell, const WallPose& pose,
-                                const Eigen::Matrix3Xd& grains,
-                                std::span<const std::uint8_t> interior) {
+MeasuredCurve structure_factor(const Cell& cell, const WallPose& pose,
+                               const Eigen::Matrix3Xd& grains,
+                               std::span<const std::uint8_t> interior) {
   const InteriorRegion region = interior_region(cell, pose);
   const Eigen::Matrix3Xd sites = selected(grains, interior);
   if (!(region.width > 0 && region.height > 0) || sites.cols() == 0) return {};
-  const WaveVectors vectors(region);
+  const WaveVector most = largest_components(region);
   const Eigen::ArrayXd y = sites.row(1).array() - region.bottom;
   const Eigen::ArrayXd x = sites.row(0).transpose().array() - region.left - region.tan_theta * y;
-  const Waves along_x(x / region.width, vectors.most()[0]);
-  const Waves along_y(y / region.height, vectors.most()[1]);
-  const Waves along_z(sites.row(2).transpose() / region.depth, vectors.most()[2]);
-  BinnedFunction s = bins(wave_bin_per_d, vectors.bins().size());
-  for (std::size_t b = 0; b < s.x.size(); ++b) {
-    double sum = 0;
-    for (const auto& [n] : vectors.bins()[b]) {
-      sum += std::norm((along_x.of(n[0]) * along_y.of(n[1]) * along_z.of(n[2])).sum());
-    }
-    const auto count = static_cast<double>(vectors.bins()[b].size());
-    if (count > 0) s.y[b] = sum / (count * static_cast<double>(sites.cols()));
+  const Waves along_x(x / region.width, most[0]);
+  const Waves along_y(y / region.height, most[1]);
+  const Waves along_z(sites.row(2).transpose() / region.depth, most[2]);
+  constexpr std::size_t most_of_bin = 48;
+  std::vector<std::size_t> vectors(kWaveBins), seen(kWaveBins), taken(kWaveBins);
+  std::vector<double> sum(kWaveBins);
+  for_each_wave_vector(region, most, [&](std::size_t bin, const WaveVector&) { ++vectors[bin]; });
+  for_each_wave_vector(region, most, [&](std::size_t bin, const WaveVector& n) {
+    const std::size_t stride = (vectors[bin] + most_of_bin - 1) / most_of_bin;
+    if (seen[bin]++ % stride != 0) return;
+    ++taken[bin];
+    sum[bin] += std::norm((along_x.of(n[0]) * along_y.of(n[1]) * along_z.of(n[2])).sum());
+  });
+  MeasuredCurve s = bins(wave_bin_per_d, kWaveBins);
+  for (std::size_t b = 0; b < kWaveBins; ++b) {
+    const double count = static_cast<double>(taken[b]) * static_cast<double>(sites.cols());
+    if (count > 0) s.y[b] = sum[b] / count;
   }
   return s;
 }

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// g(r) and S(k) of interior grains.
+// g(r) and S(k) of interior grains, at the middles of equal bins; not a number where nothing was
+// counted.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
-#include <vector>
 
-#include "core/cell.hpp"
+#include "analysis/measures.hpp"
 
 namespace shearcell {
-
-/// A function at the middles of equal bins; not a number where nothing was counted.
-struct BinnedFunction {
-  std::vector<double> x, y;
-};
 
 /// Where the centres of interior grains are: between planes parallel to the walls, periodic in z.
 struct InteriorRegion {
@@ -38,15 +33,15 @@ inline constexpr double largest_wave_per_d = 25;  ///< [1/d]
 /// Pair correlation of the interior grains: pairs at a distance r over those of as many grains
 /// placed at random in the interior region, whose shape is taken out exactly (the set covariance of
 /// a parallelepiped; Ohser, Math. Operationsforsch. Statist. 14, 63 (1983)).
-BinnedFunction pair_correlation(const Cell& cell, const WallPose& pose,
-                                const Eigen::Matrix3Xd& grains,
-                                std::span<const std::uint8_t> interior);
+MeasuredCurve pair_correlation(const Cell& cell, const WallPose& pose,
+                               const Eigen::Matrix3Xd& grains,
+                               std::span<const std::uint8_t> interior);
 
 /// Structure factor of the interior grains, |sum exp(i k r)|^2 / n, as a mean over wave vectors of
 /// the region's reciprocal lattice, for which a uniform density gives zero. Of each bin in |k| at
 /// most 48 vectors are taken, evenly spaced in their lexical order.
-BinnedFunction structure_factor(const Cell& cell, const WallPose& pose,
-                                const Eigen::Matrix3Xd& grains,
-                                std::span<const std::uint8_t> interior);
+MeasuredCurve structure_factor(const Cell& cell, const WallPose& pose,
+                               const Eigen::Matrix3Xd& grains,
+                               std::span<const std::uint8_t> interior);
 
 }  // namespace shearcell

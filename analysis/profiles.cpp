@@ -11,14 +11,10 @@
 namespace shearcell {
 namespace {
 
-double least_distance(const Cell& cell) {
-  return interior_distance + (cell.wall_grains.empty() ? 0.0 : rough_wall_surface);
-}
-
 // The layer of each grain, or `layers` for one near a side wall.
 std::vector<std::size_t> layers_of(const Checkpoint& checkpoint, const WallPose& pose,
                                    std::size_t layers) {
-  const double least = least_distance(checkpoint.cell);
+  const double least = interior_margin(checkpoint.cell);
   std::vector<std::size_t> found;
   for (Eigen::Index i = 0; i < checkpoint.state.position.cols(); ++i) {
     const Eigen::Vector3d centre = checkpoint.state.position.col(i);
@@ -30,10 +26,18 @@ std::vector<std::size_t> layers_of(const Checkpoint& checkpoint, const WallPose&
   return found;
 }
 
+double crystalline_percent(const GrainMeasures& grains, double least_phi_local, double window) {
+  return percent_of_interior(grains, [&](std::size_t i) {
+    const double distance =
+        std::min(std::abs(grains.q6[i] - q6_fcc), std::abs(grains.q6[i] - q6_hcp));
+    return grains.phi_local[i] > least_phi_local && distance < window;
+  });
+}
+
 }  // namespace
 
 Profiles profiles(const Checkpoint& checkpoint, const GrainMeasures& grains) {
-  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  const WallPose pose = pose_of(checkpoint);
   const auto layers = static_cast<std::size_t>(std::max(1.0, std::ceil(pose.top - pose.bottom)));
   const std::vector<std::size_t> layer = layers_of(checkpoint, pose, layers);
   Profiles found;
@@ -54,6 +58,36 @@ Profiles profiles(const Checkpoint& checkpoint, const GrainMeasures& grains) {
     found.pressure.push_back(trace / volume);
     found.coordination.push_back(contacts / count);
     found.crystalline_percent.push_back(100 * crystalline / count);
+  }
+  return found;
+}
+
+MeasuredCurve crystalline_by_window(const GrainMeasures& grains) {
+  MeasuredCurve found;
+  for (int n = 1; n <= 20; ++n) {
+    found.x.push_back(n * 0.1 * q6_tolerance);
+    found.y.push_back(crystalline_percent(grains, crystalline_phi_local, found.x.back()));
+  }
+  return found;
+}
+
+MeasuredCurve crystalline_by_phi_local(const GrainMeasures& grains) {
+  MeasuredCurve found;
+  for (int n = -16; n <= 8; ++n) {
+    found.x.push_back(crystalline_phi_local + n * 0.0025);
+    found.y.push_back(crystalline_percent(grains, found.x.back(), q6_tolerance));
+  }
+  return found;
+}
+
+MeasuredCurve largest_by_face(const Checkpoint& checkpoint, const GrainMeasures& grains) {
+  const VoronoiDiagram diagram =
+      voronoi(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
+  MeasuredCurve found;
+  for (const double share : {0.0, 0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06}) {
+    found.x.push_back(share);
+    found.y.push_back(
+        crystallites(diagram, crystalline_interior(grains), share * mean_surface(grains)).largest);
   }
   return found;
 }

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures as functions of the height above the bottom wall.
+// Measures against the height above the bottom wall, and against the criteria of supplement A.
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <vector>
 
 #include "analysis/measures.hpp"
-#include "provenance/checkpoint.hpp"
 
 namespace shearcell {
 
@@ -23,5 +20,17 @@ struct Profiles {
 };
 
 Profiles profiles(const Checkpoint& checkpoint, const GrainMeasures& grains);
+
+/// How the crystalline grains and crystallites depend on the criteria: results (y) against one
+/// criterion (x) while the others stay. Crystalline grains among interior grains [%] against the
+/// half width of the window of q6.
+MeasuredCurve crystalline_by_window(const GrainMeasures& grains);
+
+/// The same against the threshold of phi_local.
+MeasuredCurve crystalline_by_phi_local(const GrainMeasures& grains);
+
+/// Grains in the largest crystallite against the least connecting face, as a share of the mean
+/// surface of a cell. Finds the Voronoi cells again.
+MeasuredCurve largest_by_face(const Checkpoint& checkpoint, const GrainMeasures& grains);
 
 }  // namespace shearcell

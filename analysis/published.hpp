@@ -2,7 +2,9 @@
 // Numbers that the supplement of Phys. Rev. Lett. 125, 258003 states, for tests and drawings.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace shearcell {
@@ -29,7 +31,11 @@ inline constexpr std::array published_amplitudes = {
     PublishedAmplitude{0.1, 20, 1}};
 
 /// The stated amplitude nearest to `amplitude_rad`: others have its numbers. [choice]
-const PublishedAmplitude& published_nearest(double amplitude_rad);
+inline const PublishedAmplitude& published_nearest(double amplitude_rad) {
+  return *std::ranges::min_element(published_amplitudes, {}, [&](const PublishedAmplitude& one) {
+    return std::abs(one.amplitude_rad - amplitude_rad);
+  });
+}
 
 /// phi at the onset of crystallization in the limit of small A, Figs. S5(b) and S6.
 inline constexpr double published_onset_phi = 0.646;

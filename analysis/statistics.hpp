@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mean and standard error over independent runs; bootstrap.
+// Estimates over independent runs: means, errors, confidence intervals, the bootstrap, and the
+// number of runs that a decision needs.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <span>
-#include <vector>
 
 namespace shearcell {
 
@@ -19,16 +19,58 @@ struct RunStatistics {
 /// One value per run. Values that are not finite are left out and not counted.
 RunStatistics over_runs(std::span<const double> values);
 
-/// Values of `statistic` over bootstrap_selections selections of `runs` runs, drawn with
-/// replacement by core's counter-based generator: the same input gives the same values. Selections
-/// without a finite value are left out.
-inline constexpr std::size_t bootstrap_selections = 1000;
+/// A number computed from a selection of the runs, in which a run may occur several times. The
+/// bootstrap takes 1000 selections, drawn with replacement by core's counter-based generator: the
+/// same input gives the same values.
 using RunStatistic = std::function<std::optional<double>(std::span<const std::size_t>)>;
-std::vector<double> bootstrap_values(std::size_t runs, const RunStatistic& statistic);
 
-/// Standard error of a statistic: standard deviation of the bootstrap values times
+/// Standard error of a statistic: standard deviation over the selections times
 /// sqrt(runs / (runs - 1)), so that the error of a mean is that of over_runs(). None for fewer than
-/// two runs, or if fewer than half of the selections have a value.
+/// two runs, or if fewer than half of the selections have a finite value.
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic);
+
+/// Of every interval. An interval at 90 % within a margin is the two one-sided tests at 5 % of
+/// Schuirmann, J. Pharmacokinet. Biopharm. 15, 657 (1987).
+inline constexpr double confidence_level = 0.9;
+
+/// With fewer runs, or fewer pairs of runs, nothing is estimated. [choice]
+inline constexpr std::size_t least_runs = 3;
+
+struct Interval {
+  double low = 0;
+  double high = 0;
+};
+
+struct Estimate {
+  double value = 0;
+  Interval interval;       ///< at confidence_level; an end may be infinite
+  std::size_t runs = 0;    ///< or pairs; of two groups the smaller one
+  std::size_t groups = 1;  ///< 2: two independent groups
+  double spread = 0;       ///< the standard error would be spread / sqrt(n) with n runs a group
+};
+
+/// Quantiles of Student's t with `freedom` degrees of freedom and of the normal distribution.
+double student_quantile(double probability, double freedom);
+double normal_quantile(double probability);
+
+/// Mean of one value per run, or per pair of runs, by Student's t: mean +- t s / sqrt(n).
+std::optional<Estimate> mean_of(std::span<const double> values);
+
+/// mean(a) - mean(b) of two independent groups that may differ in variance: B. L. Welch,
+/// Biometrika 34, 28 (1947).
+std::optional<Estimate> difference_of_means(std::span<const double> a, std::span<const double> b);
+
+/// A statistic of a selection of runs that is not a mean. Expanded percentile interval of the
+/// bootstrap, which has the length of Student's interval where the statistic is a mean: T. C.
+/// Hesterberg, The American Statistician 69, 371 (2015). Selections that have no statistic widen
+/// the interval at both ends. None when all runs together have no statistic.
+std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic);
+
+/// Runs per group, or pairs, from which on an interval excludes a value at `distance` from the
+/// truth with 90 % probability; on both sides of the truth if `both_sides`. Normal theory, with
+/// Student's t for both errors: Chow, Shao and Wang, Sample Size Calculations in Clinical Research
+/// (2008), section 3.2. None when it is more than 10000.
+std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,
+                                           bool both_sides);
 
 }  // namespace shearcell

@@ -82,11 +82,8 @@ double log_rank(std::span<const Waiting> a, std::span<const Waiting> b) {
 }
 
 std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b) {
-  const auto is_event = [](const Waiting& run) { return run.observed; };
   if (std::min(a.size(), b.size()) < least_runs) return std::nullopt;
-  if (std::none_of(a.begin(), a.end(), is_event) && std::none_of(b.begin(), b.end(), is_event)) {
-    return std::nullopt;
-  }
+  if (event_cycles(a).empty() && event_cycles(b).empty()) return std::nullopt;
   const std::vector<double> edges = factors(a, b);
   if (edges.empty()) return std::nullopt;
   constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -105,14 +102,15 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
     if (z < 0 && k < edges.size()) negative = high;
     if (z > 0 && k > 0) positive = std::min(positive, low);
   }
-  Estimate estimate;
-  estimate.value = (negative + positive) / 2;
-  estimate.interval = {std::min(kept.low, estimate.value), std::max(kept.high, estimate.value)};
-  estimate.runs = std::min(a.size(), b.size());
-  estimate.groups = 2;
-  estimate.spread = (estimate.interval.high - estimate.interval.low) / (2 * limit) *
-                    std::sqrt(static_cast<double>(estimate.runs));
-  return estimate;
+  const double value = (negative + positive) / 2;
+  kept = {std::min(kept.low, value), std::max(kept.high, value)};
+  const std::size_t runs = std::min(a.size(), b.size());
+  return Estimate{
+      .value = value,
+      .interval = kept,
+      .runs = runs,
+      .groups = 2,
+      .spread = (kept.high - kept.low) / (2 * limit) * std::sqrt(static_cast<double>(runs))};
 }
 
 }  // namespace shearcell

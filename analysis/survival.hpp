@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/estimate.hpp"
+#include "analysis/statistics.hpp"
 
 namespace shearcell {
 

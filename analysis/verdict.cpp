@@ -9,7 +9,9 @@
 namespace shearcell {
 namespace {
 
-nlohmann::json rounded(double value) {
+using nlohmann::json;
+
+json rounded(double value) {
   if (!std::isfinite(value)) return nullptr;
   return std::stod(fmt::format("{:.6g}", value));
 }
@@ -34,19 +36,26 @@ std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, 
   return runs_to_resolve(estimate, std::abs(size - margin), false);
 }
 
-}  // namespace
-
-const char* name_of(Ruling ruling) {
-  switch (ruling) {
-    case Ruling::agrees:
-      return "agrees";
-    case Ruling::differs:
-      return "differs";
-    case Ruling::undecided:
-      break;
+json claim_of(const Verdict& verdict) {
+  json estimate, interval, runs_needed;
+  if (verdict.estimate) {
+    estimate = rounded(*verdict.estimate);
+    interval = {rounded(verdict.interval.low), rounded(verdict.interval.high)};
   }
-  return "undecided";
+  if (verdict.runs_needed) runs_needed = *verdict.runs_needed;
+  return {{"claim", verdict.claim},
+          {"quantity", verdict.quantity},
+          {"estimate", estimate},
+          {"interval", interval},
+          {"level", confidence_level},
+          {"margin", rounded(verdict.margin)},
+          {"verdict", name_of(verdict.ruling)},
+          {"runs", verdict.runs},
+          {"runs_needed", runs_needed},
+          {"note", verdict.note}};
 }
+
+}  // namespace
 
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note) {
@@ -76,30 +85,11 @@ std::optional<Ruling> overall(std::span<const Verdict> verdicts) {
   return result;
 }
 
-nlohmann::json to_json(std::span<const Verdict> verdicts) {
-  using nlohmann::json;
+json to_json(std::span<const Verdict> verdicts) {
   json claims = json::array();
-  for (const Verdict& verdict : verdicts) {
-    json claim = {{"claim", verdict.claim},
-                  {"quantity", verdict.quantity},
-                  {"estimate", nullptr},
-                  {"interval", nullptr},
-                  {"level", confidence_level},
-                  {"margin", rounded(verdict.margin)},
-                  {"verdict", name_of(verdict.ruling)},
-                  {"runs", verdict.runs},
-                  {"runs_needed", nullptr},
-                  {"note", verdict.note}};
-    if (verdict.estimate) {
-      claim["estimate"] = rounded(*verdict.estimate);
-      claim["interval"] = {rounded(verdict.interval.low), rounded(verdict.interval.high)};
-    }
-    if (verdict.runs_needed) claim["runs_needed"] = *verdict.runs_needed;
-    claims.push_back(std::move(claim));
-  }
-  json result = {{"verdict", nullptr}, {"claims", claims}};
-  if (const auto ruling = overall(verdicts)) result["verdict"] = name_of(*ruling);
-  return result;
+  for (const Verdict& verdict : verdicts) claims.push_back(claim_of(verdict));
+  const std::optional<Ruling> ruling = overall(verdicts);
+  return {{"verdict", ruling ? json(name_of(*ruling)) : json()}, {"claims", std::move(claims)}};
 }
 
 std::string numbers_of(const Verdict& verdict) {

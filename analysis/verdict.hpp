@@ -8,14 +8,14 @@
 #include <span>
 #include <string>
 
-#include "analysis/estimate.hpp"
+#include "analysis/statistics.hpp"
+#include "core/named.hpp"
 
 namespace shearcell {
 
 enum class Ruling { agrees, differs, undecided };
-
-/// "agrees", "differs", "undecided".
-const char* name_of(Ruling ruling);
+template <>
+inline constexpr auto kNames<Ruling> = names_in_order<Ruling>("agrees", "differs", "undecided");
 
 /// Where a claim puts its quantity: from -margin to margin, above the margin, or below it.
 enum class Claimed { within, above, below };

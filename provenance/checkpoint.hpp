@@ -27,6 +27,11 @@ struct Checkpoint {
   std::map<std::string, double> observables;  ///< name with unit -> value
 };
 
+/// The walls at its time.
+inline WallPose pose_of(const Checkpoint& checkpoint) {
+  return wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+}
+
 /// The bytes of the file; equal checkpoints give equal bytes. Throws std::invalid_argument for a
 /// checkpoint that could not be read again (NaN, bad names, too many observables).
 std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint);

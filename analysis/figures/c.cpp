@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/critical_size.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/figures/groups.hpp"

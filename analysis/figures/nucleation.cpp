@@ -11,7 +11,7 @@
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/figures/groups.hpp"
-#include "analysis/nucleation_rate.hpp"
+#include "analysis/nucleation.hpp"
 #include "analysis/published.hpp"
 #include "analysis/survival.hpp"
 

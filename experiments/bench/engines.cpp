@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "analysis/estimate.hpp"
+#include "analysis/statistics.hpp"
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/lammps/lammps_settle.hpp"

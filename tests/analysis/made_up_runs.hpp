@@ -1,20 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs that nobody simulated, for figures and statistics with known answers.
+// Numbers and runs that nobody simulated, for figures and statistics with known answers.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <numbers>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "analysis/crystallite_map.hpp"
+#include "analysis/crystal.hpp"
 #include "analysis/figure.hpp"
+#include "core/random.hpp"
 
 namespace shearcell::testing {
+
+/// Normal, of mean 0 and variance 1, by Box and Muller; each `sample` is independent of the others.
+inline std::vector<double> normal_numbers(std::uint32_t sample, std::size_t count) {
+  std::vector<double> values;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const auto [u, v] = uniform_pair({sample, k, 0, 1}, 7);
+    values.push_back(std::sqrt(-2 * std::log1p(-u)) * std::cos(2 * std::numbers::pi * v));
+  }
+  return values;
+}
+
+/// The mean of the selected values.
+inline RunStatistic mean_over(std::vector<double> values) {
+  return [values = std::move(values)](std::span<const std::size_t> selection) {
+    std::vector<double> selected;
+    for (const std::size_t k : selection) selected.push_back(values[k]);
+    return over_runs(selected).mean;
+  };
+}
 
 /// Cycles 0 .. cycles, each filled by `fill`.
 inline FigureRun made_up_run(const std::string& key, const nlohmann::json& value,
@@ -57,6 +81,12 @@ inline std::vector<FigureRun> two_variants() {
 /// Figure S2 of these runs.
 inline std::vector<FigureTable> s2(std::span<const FigureRun> runs) {
   return find_figure("S2")->make(runs).tables;
+}
+
+inline std::vector<std::int32_t> grain_ids(std::int32_t first, std::int32_t count) {
+  std::vector<std::int32_t> ids(static_cast<std::size_t>(count));
+  std::iota(ids.begin(), ids.end(), first);
+  return ids;
 }
 
 /// A map in which each list of grains is a crystallite. Grains need not be in order.

@@ -110,27 +110,25 @@ Packing empty_cell(double width, double height, double depth, double theta) {
 
 void roughen(Packing& p, std::uint64_t seed) {
   Random random(seed);
-  const double height = p.cell.top - p.cell.bottom;
   for (const WallSide side : {WallSide::left, WallSide::right, WallSide::bottom, WallSide::top}) {
     const bool upright = side == WallSide::left || side == WallSide::right;
-    const double length = upright ? height : p.cell.width;
+    const double length = upright ? p.cell.top - p.cell.bottom : p.cell.width;
     std::vector<Eigen::Vector2d> placed;
     for (int attempt = 0; attempt < static_cast<int>(40 * length * p.cell.depth); ++attempt) {
       const Eigen::Vector2d at(uniform(random, 0, length), uniform(random, 0, p.cell.depth));
-      bool free = true;
-      for (const Eigen::Vector2d& other : placed) {
+      const bool free = std::ranges::none_of(placed, [&](const Eigen::Vector2d& other) {
         Eigen::Vector2d gap = at - other;
         gap.y() -= p.cell.depth * std::round(gap.y() / p.cell.depth);
-        free = free && gap.norm() >= 1;
-      }
+        return gap.norm() < 1;
+      });
       if (!free) continue;
       placed.push_back(at);
-      const double u = uniform(random, 0, 0.25);
-      Eigen::Vector3d centre(0, 0, at.y());
-      if (side == WallSide::left) centre.head<2>() << -u, p.cell.bottom + at.x();
-      if (side == WallSide::right) centre.head<2>() << p.cell.width + u, p.cell.bottom + at.x();
-      if (side == WallSide::bottom) centre.head<2>() << at.x(), p.cell.bottom - u;
-      if (side == WallSide::top) centre.head<2>() << at.x(), p.cell.top + u;
+      const double behind = uniform(random, 0, 0.25);
+      Eigen::Vector3d centre(at.x(), at.x() + p.cell.bottom, at.y());
+      if (side == WallSide::left) centre.x() = -behind;
+      if (side == WallSide::right) centre.x() = p.cell.width + behind;
+      if (side == WallSide::bottom) centre.y() = p.cell.bottom - behind;
+      if (side == WallSide::top) centre.y() = p.cell.top + behind;
       p.cell.wall_grains.push_back({side, centre});
     }
   }

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "analysis/published.hpp"
+#include "analysis/figures/groups.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 
 namespace shearcell::testing {
@@ -25,23 +25,16 @@ FigureRun rising(std::uint64_t seed, double start, double gain = 0, double exces
   return run;
 }
 
-struct Group {
-  std::vector<FigureRun> runs;
-  std::vector<const FigureRun*> view() const {
-    std::vector<const FigureRun*> all;
-    for (const FigureRun& run : runs) all.push_back(&run);
-    return all;
-  }
-};
-
 constexpr double start(std::uint64_t seed) {
   return 0.62 + 0.001 * static_cast<double>(seed);
 }
 
-Group group(std::size_t runs, double gain, double excess = 0, std::uint64_t first_seed = 1) {
-  Group all;
+using Runs = std::vector<FigureRun>;
+
+Runs group(std::size_t runs, double gain, double excess = 0, std::uint64_t first_seed = 1) {
+  Runs all;
   for (std::uint64_t s = first_seed; s < first_seed + runs; ++s) {
-    all.runs.push_back(rising(s, start(s), gain, excess));
+    all.push_back(rising(s, start(s), gain, excess));
   }
   return all;
 }
@@ -75,20 +68,21 @@ TEST(Scalars, PercentageIsTheMeanOverTheWindow) {
 }
 
 TEST(Compare, RunsThatShareAPackingArePaired) {
-  const Group a = group(4, 0.0002), b = group(4, 0);
-  EXPECT_TRUE(share_packing(a.runs[1], b.runs[1]));
-  EXPECT_FALSE(share_packing(a.runs[1], b.runs[2]));
-  const Verdict verdict = compare(equal, early_phi(), a.view(), b.view());
+  const Runs a = group(4, 0.0002), b = group(4, 0);
+  EXPECT_TRUE(share_packing(a[1], b[1]));
+  EXPECT_FALSE(share_packing(a[1], b[2]));
+  const Verdict verdict = compare(equal, early_phi(), pointers(a), pointers(b));
   EXPECT_EQ(verdict.ruling, Ruling::agrees) << "seeds differ by more than the margin, pairs do not";
   EXPECT_NEAR(verdict.estimate.value(), 0.0002, 1e-12);
   EXPECT_EQ(verdict.runs, 4U);
   EXPECT_EQ(verdict.note, "4 pairs of runs that share a packing");
-  EXPECT_EQ(compare(equal, early_phi(), group(4, 0.002).view(), b.view()).ruling, Ruling::differs);
+  EXPECT_EQ(compare(equal, early_phi(), pointers(group(4, 0.002)), pointers(b)).ruling,
+            Ruling::differs);
 }
 
 TEST(Compare, OthersAreIndependent) {
-  const Group a = group(4, 0.0002), b = group(4, 0, 0, 11);
-  const Verdict verdict = compare(equal, early_phi(), a.view(), b.view());
+  const Runs a = group(4, 0.0002), b = group(4, 0, 0, 11);
+  const Verdict verdict = compare(equal, early_phi(), pointers(a), pointers(b));
   EXPECT_EQ(verdict.note, "4 and 4 independent runs");
   EXPECT_NEAR(verdict.estimate.value(), -0.0098, 1e-12);
   EXPECT_EQ(verdict.ruling, Ruling::differs);
@@ -98,42 +92,43 @@ TEST(Compare, RelativeDifferences) {
   Scalar overlap = at_cycle("overlap", &Measures::mean_overlap, 1);
   overlap.relative = true;
   const Claim claim = {"overlap", 0.03};
-  const Verdict verdict = compare(claim, overlap, group(3, 0, 0.02, 11).view(), group(3, 0).view());
+  const Verdict verdict =
+      compare(claim, overlap, pointers(group(3, 0, 0.02, 11)), pointers(group(3, 0)));
   EXPECT_NEAR(verdict.estimate.value(), 0.02, 1e-12);
   EXPECT_EQ(verdict.ruling, Ruling::agrees);
-  EXPECT_NEAR(compare_with(claim, overlap, group(3, 0, 0.05).view(), 0.002).estimate.value(), 0.05,
-              1e-12);
+  EXPECT_NEAR(compare_with(claim, overlap, pointers(group(3, 0, 0.05)), 0.002).estimate.value(),
+              0.05, 1e-12);
 }
 
 TEST(Compare, MissingCheckpointsShortRunsAndFewRunsAreThreeSentences) {
-  const Group b = group(8, 0, 0, 11);
-  Group a = group(8, 0);
-  a.runs[0].checkpoints.resize(10);
-  a.runs[1].checkpoints.erase(a.runs[1].checkpoints.begin() + 5);
-  Verdict verdict = compare(equal, early_phi(), a.view(), b.view());
+  const Runs b = group(8, 0, 0, 11);
+  Runs a = group(8, 0);
+  a[0].checkpoints.resize(10);
+  a[1].checkpoints.erase(a[1].checkpoints.begin() + 5);
+  Verdict verdict = compare(equal, early_phi(), pointers(a), pointers(b));
   EXPECT_EQ(verdict.note,
             "6 and 8 independent runs; 1 of 16 runs lack a checkpoint of cycles 1 to 15; "
             "1 of 16 runs end before cycles 1 to 15");
   EXPECT_TRUE(verdict.estimate.has_value());
-  for (FigureRun& run : a.runs) run.checkpoints.resize(10);
-  verdict = compare(equal, early_phi(), a.view(), b.view());
+  for (FigureRun& run : a) run.checkpoints.resize(10);
+  verdict = compare(equal, early_phi(), pointers(a), pointers(b));
   EXPECT_EQ(verdict.ruling, Ruling::undecided);
   EXPECT_NE(verdict.note.find("more than a quarter of the runs are left out"), std::string::npos);
-  verdict = compare(equal, early_phi(), group(2, 0).view(), b.view());
+  verdict = compare(equal, early_phi(), pointers(group(2, 0)), pointers(b));
   EXPECT_EQ(verdict.note, "2 and 8 independent runs; too few runs: 2 of at least 3");
-  EXPECT_EQ(compare(equal, early_phi(), {}, b.view()).note, "there are no such runs");
+  EXPECT_EQ(compare(equal, early_phi(), {}, pointers(b)).note, "there are no such runs");
 }
 
 TEST(CompareWaits, CountsRunsThatEndBefore) {
-  Group a = group(4, 0), b = group(4, 0, 0, 11);
-  a.runs[0].checkpoints.resize(12);
-  const Verdict verdict = compare_waits({"onset", 1}, "the onset", waits_for_onset(a.view()),
-                                        waits_for_onset(b.view()));
+  Runs a = group(4, 0), b = group(4, 0, 0, 11);
+  a[0].checkpoints.resize(12);
+  const Verdict verdict = compare_waits({"onset", 1}, "the onset", waits_for_onset(pointers(a)),
+                                        waits_for_onset(pointers(b)));
   EXPECT_EQ(
       verdict.note,
       "median cycle 16 of 4 runs, 1 of which end before; median cycle 16 of 4 runs, 0 of which "
       "end before");
-  const std::vector<Waiting> waits = waits_for(a.view(), &Measures::crystalline_percent, 5);
+  const std::vector<Waiting> waits = waits_for(pointers(a), &Measures::crystalline_percent, 5);
   EXPECT_FALSE(waits[0].observed);
   EXPECT_EQ(waits[0].cycle, 11);
   EXPECT_EQ(waits[1].cycle, 29) << "phi = 0.622 + 0.029";

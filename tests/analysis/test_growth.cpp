@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Crystallites with known fates: growth, merging, breaking, vanishing, ties.
+// Crystallites with known fates: growth, merging, breaking, vanishing, ties. Logistic regression
+// where it has a closed form, and on counts that follow a logistic curve.
 #include "analysis/growth.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "tests/analysis/made_up_runs.hpp"
 
 namespace shearcell::testing {
 namespace {
-
-std::vector<std::int32_t> grains(std::int32_t first, std::int32_t count) {
-  std::vector<std::int32_t> ids(static_cast<std::size_t>(count));
-  std::iota(ids.begin(), ids.end(), first);
-  return ids;
-}
 
 GrowthCount fate(const std::vector<std::int32_t>& crystallite, const CrystalliteMap& later) {
   GrowthBySize counts;
@@ -26,27 +20,19 @@ GrowthCount fate(const std::vector<std::int32_t>& crystallite, const Crystallite
 }
 
 TEST(Follow, TheMajorityDecides) {
-  EXPECT_EQ(fate({1, 2, 3}, map_of({{1, 2, 7, 8}})).grew, 1U) << "two of three in a larger one";
-  EXPECT_EQ(fate({1, 2, 3}, map_of({{1, 7, 8, 9}})).shrank, 1U) << "one of three";
-  EXPECT_EQ(fate({1, 2, 3}, map_of({{1, 2}})).shrank, 1U);
-  EXPECT_EQ(fate({1, 2, 3}, map_of({{2, 3, 9}})).same, 1U);
-}
-
-TEST(Follow, VanishingIsShrinking) {
-  EXPECT_EQ(fate({4, 5}, map_of({})).shrank, 1U);
-  EXPECT_EQ(fate({4}, map_of({{3, 5}})).vanished, 1U);
-  EXPECT_EQ(fate({1, 2, 3, 4}, map_of({{1, 2}, {8}})).vanished, 1U) << "half in a smaller one";
-  EXPECT_EQ(fate({1, 2, 3}, map_of({{1, 2}})).vanished, 0U) << "most are in a smaller one";
-}
-
-TEST(Follow, HalfIsNoMajority) {
-  EXPECT_EQ(fate({1, 2, 3, 4}, map_of({{1, 2, 5, 6, 7}})).undecided, 1U);
-  EXPECT_EQ(fate({1, 2}, map_of({{1, 9}, {2}})).undecided, 1U);
-}
-
-TEST(Follow, BreakingInPiecesIsShrinkingAndTwoLargerOnesAreGrowth) {
-  EXPECT_EQ(fate({1, 2, 3, 4}, map_of({{1, 2}, {3, 4}})).shrank, 1U);
-  EXPECT_EQ(fate(grains(0, 4), map_of({{0, 1, 10, 11, 12}, {2, 3, 20, 21, 22}})).grew, 1U);
+  const GrowthCount grew{1, 0, 0}, shrank{0, 1, 0}, vanished{0, 1, 1}, neither{};
+  EXPECT_EQ(fate({1, 2, 3}, map_of({{1, 2, 7, 8}})), grew) << "two of three in a larger one";
+  EXPECT_EQ(fate({1, 2, 3}, map_of({{1, 7, 8, 9}})), vanished) << "one of three in a larger one";
+  EXPECT_EQ(fate({1, 2, 3}, map_of({{1, 2}})), shrank);
+  EXPECT_EQ(fate({1, 2, 3}, map_of({{2, 3, 9}})), neither) << "most in one of the same size";
+  EXPECT_EQ(fate({4, 5}, map_of({})), vanished) << "vanishing is shrinking";
+  EXPECT_EQ(fate({4}, map_of({{3, 5}})), vanished);
+  EXPECT_EQ(fate({1, 2, 3, 4}, map_of({{1, 2}, {8}})), vanished) << "half in a smaller one";
+  EXPECT_EQ(fate({1, 2, 3, 4}, map_of({{1, 2, 5, 6, 7}})), neither) << "half is no majority";
+  EXPECT_EQ(fate({1, 2}, map_of({{1, 9}, {2}})), neither);
+  EXPECT_EQ(fate({1, 2, 3, 4}, map_of({{1, 2}, {3, 4}})), shrank) << "in two pieces";
+  EXPECT_EQ(fate(grain_ids(0, 4), map_of({{0, 1, 10, 11, 12}, {2, 3, 20, 21, 22}})), grew)
+      << "in two larger ones";
 }
 
 TEST(Follow, BothOfTwoThatMergeGrow) {
@@ -59,7 +45,7 @@ TEST(Follow, BothOfTwoThatMergeGrow) {
 TEST(GrowthOf, PairsAreTheStatedCyclesApart) {
   FigureRun run = made_up_run("fluid", "still", 1, 3, [](int, Measures&) {});
   for (CheckpointMeasures& c : run.checkpoints) {
-    c.crystallites = map_of({grains(0, 2 + static_cast<std::int32_t>(c.cycle))});
+    c.crystallites = map_of({grain_ids(0, 2 + static_cast<std::int32_t>(c.cycle))});
   }
   const GrowthBySize two = growth_of(run, 2);
   ASSERT_EQ(two.size(), 2U);
@@ -71,9 +57,9 @@ TEST(GrowthOf, PairsAreTheStatedCyclesApart) {
 
 TEST(GrowthRates, HaveBinomialErrors) {
   GrowthBySize a, b;
-  a[5] = {3, 1, 10, 10};
-  b[5] = {0, 12, 0, 0};
-  b[6] = {0, 0, 4, 0};
+  a[5] = {3, 1, 0};
+  b[5] = {0, 12, 0};
+  b[6] = {0, 0, 0};
   const std::vector<GrowthRate> rates = growth_rates(std::vector{a, b});
   ASSERT_EQ(rates.size(), 1U) << "a size that only stays has no probability";
   EXPECT_EQ(rates[0].counted, 16U);
@@ -81,8 +67,94 @@ TEST(GrowthRates, HaveBinomialErrors) {
   EXPECT_DOUBLE_EQ(rates[0].delta, -10.0 / 16);
   EXPECT_DOUBLE_EQ(rates[0].grow_error, std::sqrt(4.0 * 14 / (18 * 18 * 19)));
   EXPECT_DOUBLE_EQ(rates[0].delta_error, 2 * rates[0].grow_error);
-  a[7] = {1, 0, 0, 0};
+  a[7] = {1, 0, 0};
   EXPECT_GT(growth_rates(std::vector{a}).back().grow_error, 0.2) << "one case is no certainty";
+}
+
+/// P(grow) is logistic in ln(size), with counts that fall as sizes do.
+GrowthBySize logistic_growth(double critical, double slope, double scale = 1e6) {
+  GrowthBySize counts;
+  for (std::int32_t size = 1; size <= 60; ++size) {
+    const double n = scale / (size * size);
+    const double grow = 1 / (1 + std::pow(critical / size, slope));
+    counts[size].grew = static_cast<std::size_t>(std::lround(n * grow));
+    counts[size].shrank = static_cast<std::size_t>(std::lround(n * (1 - grow)));
+  }
+  return counts;
+}
+
+TEST(GrowthFit, TwoSizesAreFittedExactly) {
+  GrowthBySize counts;
+  counts[4] = {1, 3, 0};
+  counts[16] = {3, 1, 0};
+  const GrowthFit fit = fit_growth(std::vector{counts}).value();
+  EXPECT_NEAR(fit.critical_size().value(), 8, 1e-9);
+  EXPECT_NEAR(fit.slope, 2 * std::log(3.0) / std::log(4.0), 1e-9);
+  EXPECT_NEAR(fit.delta_rho(4), -0.5, 1e-9);
+  EXPECT_NEAR(fit.delta_rho(8), 0, 1e-9);
+}
+
+TEST(GrowthFit, FindsTheCurveThatMadeTheCounts) {
+  for (const double critical : {10.0, 13.4, 16.0, 20.0}) {
+    const GrowthFit fit = fit_growth(std::vector{logistic_growth(critical, 1.5)}).value();
+    EXPECT_NEAR(fit.critical_size().value(), critical, 0.02 * critical);
+    EXPECT_NEAR(fit.slope, 1.5, 0.01);
+  }
+}
+
+TEST(GrowthFit, NoneWithoutATurn) {
+  GrowthBySize counts;
+  counts[3] = {0, 9, 0};
+  EXPECT_FALSE(fit_growth(std::vector{counts}).has_value()) << "all shrink";
+  counts[3] = {4, 9, 0};
+  EXPECT_FALSE(fit_growth(std::vector{counts}).has_value()) << "one size";
+  counts[9] = {1, 9, 0};
+  EXPECT_FALSE(fit_growth(std::vector{counts})->critical_size().has_value()) << "falls with size";
+  EXPECT_FALSE(fit_growth({}).has_value());
+  counts[3] = {0, 9, 0};
+  counts[9] = {9, 0, 0};
+  const double between = fit_growth(std::vector{counts})->critical_size().value();
+  EXPECT_GT(between, 3) << "sizes that do not mix";
+  EXPECT_LT(between, 9);
+}
+
+TEST(GrowthFit, VanishedOnesMayBeLeftOut) {
+  GrowthBySize counts;
+  counts[4] = {1, 6, 3};
+  counts[16] = {3, 1, 0};
+  EXPECT_NEAR(fit_growth(std::vector{counts}, Vanished::left_out)->critical_size().value(), 8,
+              1e-9);
+  EXPECT_GT(fit_growth(std::vector{counts})->critical_size().value(), 8);
+}
+
+TEST(CriticalSize, IntervalComesFromTheRuns) {
+  std::vector<GrowthBySize> runs;
+  for (const double size : {14, 15, 16, 14, 15, 16}) runs.push_back(logistic_growth(size, 2));
+  const Estimate found = critical_size(runs).value();
+  EXPECT_NEAR(found.value, 15, 0.3);
+  // Student's interval of the mean of these six: +- 2.015 sqrt(0.8 / 6).
+  EXPECT_NEAR(found.interval.high - found.interval.low, 2 * 2.015 * std::sqrt(0.8 / 6), 0.4);
+  EXPECT_EQ(found.runs, 6U);
+  EXPECT_FALSE(critical_size(std::span(runs).first(2)).has_value());
+  const Estimate band = fitted_delta_rho(runs, 15).value();
+  EXPECT_LT(band.interval.low, 0);
+  EXPECT_GT(band.interval.high, 0);
+}
+
+TEST(BinnedGrowth, LeavesOutWhatIsRarelySeen) {
+  GrowthBySize counts;
+  counts[1] = {1, 9, 0};
+  counts[2] = {2, 4, 0};
+  counts[8] = {4, 2, 0};
+  counts[50] = {1, 0, 0};
+  const std::vector<GrowthBin> bins = binned_growth(std::vector{counts}, 10);
+  ASSERT_EQ(bins.size(), 2U);
+  EXPECT_DOUBLE_EQ(bins[0].delta, -0.8);
+  EXPECT_EQ(bins[1].low, 2);
+  EXPECT_EQ(bins[1].high, 8);
+  EXPECT_NEAR(bins[1].size, 4, 1e-12);
+  EXPECT_DOUBLE_EQ(bins[1].delta, 0);
+  EXPECT_DOUBLE_EQ(bins[1].delta_error, 2 * std::sqrt(7.0 * 7 / 15) / 14);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ TEST(Motion, ACellThatIsOnlyShearedMovesNoGrain) {
   const Checkpoint upright = checkpoint_of(p);
   Checkpoint tilted = upright;
   tilted.theta = 0.1;
-  const WallPose pose = wall_pose(tilted.cell, tilted.theta, tilted.state.wall_height);
+  const WallPose pose = pose_of(tilted);
   tilted.state.position.row(0).array() +=
       pose.tan_theta * (tilted.state.position.row(1).array() - pose.top);
   const Motion moved = motion(upright, tilted);

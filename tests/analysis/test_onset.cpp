@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "analysis/figures/groups.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 
 namespace shearcell::testing {
@@ -64,9 +65,7 @@ TEST(OnsetBySlope, NeverWithoutCrystallization) {
 TEST(Onset, CountsCensoredRuns) {
   const std::vector<FigureRun> runs = {logistic(0.645), logistic(0.647), logistic(0.646),
                                        logistic(0.66, 10)};
-  std::vector<const FigureRun*> all;
-  for (const FigureRun& run : runs) all.push_back(&run);
-  const Onset found = onset(all, onset_by_slope, 16);
+  const Onset found = onset(pointers(runs), onset_by_slope, 16);
   EXPECT_EQ(found.phi.runs, 3U);
   EXPECT_EQ(found.never, 1U);
   EXPECT_NEAR(found.phi.mean.value(), 0.646, 0.0006);

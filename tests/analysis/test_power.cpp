@@ -10,11 +10,11 @@
 #include <functional>
 #include <utility>
 
-#include "analysis/critical_size.hpp"
+#include "analysis/growth.hpp"
 #include "analysis/published.hpp"
 #include "analysis/survival.hpp"
 #include "analysis/verdict.hpp"
-#include "tests/analysis/normal_numbers.hpp"
+#include "tests/analysis/made_up_runs.hpp"
 
 namespace shearcell::testing {
 namespace {
@@ -99,11 +99,7 @@ Simulated shares(std::size_t nuclei) {
       }
       excess.push_back(sum / static_cast<double>(nuclei));
     }
-    return bootstrapped(runs, [&](std::span<const std::size_t> selection) {
-      std::vector<double> selected;
-      for (const std::size_t run : selection) selected.push_back(excess[run]);
-      return over_runs(selected).mean;
-    });
+    return bootstrapped(runs, mean_over(excess));
   };
 }
 

@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "analysis/packing_fraction.hpp"
-#include "analysis/sensitivity.hpp"
 #include "tests/analysis/packings.hpp"
 
 namespace shearcell::testing {
@@ -19,7 +18,7 @@ TEST(Profiles, LayersAddUpToTheWhole) {
   const Checkpoint checkpoint = checkpoint_of(jammed(1000, false, 0.05, 1));
   const Analysis analysis = analyse(checkpoint);
   const GrainMeasures& grains = analysis.grains;
-  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  const WallPose pose = pose_of(checkpoint);
   const Profiles found = profiles(checkpoint, grains);
   ASSERT_EQ(found.height.size(), static_cast<std::size_t>(std::ceil(pose.top - pose.bottom)));
   // One layer again, by hand.
@@ -60,24 +59,24 @@ TEST(Sensitivity, AtTheChosenCriteriaIsWhatIsMeasured) {
   jitter(p, 0.012, 3);
   const Checkpoint checkpoint = checkpoint_of(p);
   const Analysis analysis = analyse(checkpoint);
-  const auto at = [](const Sensitivity& found, double criterion) {
-    for (std::size_t i = 0; i < found.criterion.size(); ++i) {
-      if (std::abs(found.criterion[i] - criterion) < 1e-12) return found.result[i];
+  const auto at = [](const MeasuredCurve& found, double criterion) {
+    for (std::size_t i = 0; i < found.x.size(); ++i) {
+      if (std::abs(found.x[i] - criterion) < 1e-12) return found.y[i];
     }
     return std::nan("");
   };
   const double measured = analysis.measures.crystalline_percent;
   ASSERT_GT(measured, 5);
   ASSERT_LT(measured, 95);
-  const Sensitivity window = crystalline_by_window(analysis.grains);
+  const MeasuredCurve window = crystalline_by_window(analysis.grains);
   EXPECT_EQ(at(window, q6_tolerance), measured);
-  EXPECT_TRUE(std::ranges::is_sorted(window.result));
-  const Sensitivity threshold = crystalline_by_phi_local(analysis.grains);
+  EXPECT_TRUE(std::ranges::is_sorted(window.y));
+  const MeasuredCurve threshold = crystalline_by_phi_local(analysis.grains);
   EXPECT_EQ(at(threshold, crystalline_phi_local), measured);
-  EXPECT_TRUE(std::ranges::is_sorted(threshold.result, std::greater<>()));
-  const Sensitivity face = largest_by_face(checkpoint, analysis.grains);
+  EXPECT_TRUE(std::ranges::is_sorted(threshold.y, std::greater<>()));
+  const MeasuredCurve face = largest_by_face(checkpoint, analysis.grains);
   EXPECT_EQ(at(face, connecting_face), static_cast<double>(analysis.measures.largest_crystallite));
-  EXPECT_TRUE(std::ranges::is_sorted(face.result, std::greater<>()));
+  EXPECT_TRUE(std::ranges::is_sorted(face.y, std::greater<>()));
 }
 
 }  // namespace

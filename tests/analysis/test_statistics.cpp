@@ -1,46 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Errors, intervals and numbers of runs compared with closed forms and tables. Survival: the
+// remission times of Freireich et al., Blood 21, 699 (1963), whose Kaplan-Meier estimate and
+// log-rank statistic are in every textbook of survival analysis; scaled copies.
+#include "analysis/statistics.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <vector>
 
-#include "analysis/estimate.hpp"
-#include "analysis/statistics.hpp"
-#include "tests/analysis/normal_numbers.hpp"
+#include "analysis/survival.hpp"
+#include "tests/analysis/made_up_runs.hpp"
 
-namespace shearcell {
+namespace shearcell::testing {
 namespace {
 
 TEST(OverRuns, MeanAndStandardError) {
-  const RunStatistics s = over_runs(std::vector<double>{1, 2, 3, 6});
+  const RunStatistics s = over_runs(std::vector<double>{1, 2, std::nan(""), 3, 6});
   EXPECT_EQ(s.runs, 4U);
   EXPECT_DOUBLE_EQ(s.mean.value(), 3);
   EXPECT_DOUBLE_EQ(s.standard_error.value(), std::sqrt(14.0 / 12));
-}
-
-TEST(OverRuns, OneRunHasNoError) {
-  const RunStatistics s = over_runs(std::vector<double>{0.64});
-  EXPECT_EQ(s.mean.value(), 0.64);
-  EXPECT_FALSE(s.standard_error.has_value());
-}
-
-TEST(OverRuns, NothingMeasured) {
-  const RunStatistics s = over_runs(std::vector<double>{std::nan("")});
-  EXPECT_EQ(s.runs, 0U);
-  EXPECT_FALSE(s.mean.has_value());
+  const RunStatistics one = over_runs(std::vector<double>{0.64});
+  EXPECT_EQ(one.mean.value(), 0.64);
+  EXPECT_FALSE(one.standard_error.has_value());
+  const RunStatistics none = over_runs(std::vector<double>{std::nan("")});
+  EXPECT_EQ(none.runs, 0U);
+  EXPECT_FALSE(none.mean.has_value());
 }
 
 std::optional<double> bootstrap_of_mean(const std::vector<double>& values) {
-  return bootstrap_error(values.size(), [&](std::span<const std::size_t> selection) {
-    std::vector<double> selected;
-    for (const std::size_t k : selection) selected.push_back(values[k]);
-    return over_runs(selected).mean;
-  });
+  return bootstrap_error(values.size(), mean_over(values));
 }
 
 TEST(Bootstrap, OfAMeanIsItsStandardError) {
-  const std::vector<double> values = testing::normal_numbers(0, 10);
+  const std::vector<double> values = normal_numbers(0, 10);
   EXPECT_NEAR(bootstrap_of_mean(values).value() / over_runs(values).standard_error.value(), 1,
               0.08);
   EXPECT_EQ(bootstrap_of_mean(values), bootstrap_of_mean(values));
@@ -52,7 +47,7 @@ TEST(Bootstrap, CoversTheTrueMeanAsOftenAsItSays) {
   const double limit = student_quantile(0.97725, runs - 1);
   std::uint32_t covered = 0;
   for (std::uint32_t s = 0; s < samples; ++s) {
-    const std::vector<double> values = testing::normal_numbers(s, runs);
+    const std::vector<double> values = normal_numbers(s, runs);
     const double mean = over_runs(values).mean.value();
     covered += std::abs(mean) < limit * bootstrap_of_mean(values).value() ? 1U : 0U;
   }
@@ -67,5 +62,130 @@ TEST(Bootstrap, NeedsTwoRunsAndAStatistic) {
   EXPECT_FALSE(bootstrap_error(5, none).has_value());
 }
 
+double half_length(const Estimate& estimate) {
+  return (estimate.interval.high - estimate.interval.low) / 2;
+}
+
+TEST(Quantiles, AreThoseOfTheTables) {
+  EXPECT_NEAR(student_quantile(0.95, 3), 2.353363, 1e-6);
+  EXPECT_NEAR(student_quantile(0.95, 5), 2.015048, 1e-6);
+  EXPECT_NEAR(normal_quantile(0.95), 1.644854, 1e-6);
+}
+
+TEST(MeanOf, HasStudentsInterval) {
+  const Estimate found = mean_of(std::vector<double>{1, 2, 3, 6}).value();
+  EXPECT_DOUBLE_EQ(found.value, 3);
+  EXPECT_NEAR(half_length(found), 2.353363 * std::sqrt(14.0 / 12), 1e-6);
+  EXPECT_DOUBLE_EQ(found.spread, std::sqrt(14.0 / 3));
+  EXPECT_EQ(found.runs, 4U);
+  EXPECT_FALSE(mean_of(std::vector<double>{1, 2}).has_value());
+  EXPECT_EQ(half_length(mean_of(std::vector<double>{2, 2, 2}).value()), 0);
+}
+
+TEST(DifferenceOfMeans, HasWelchsInterval) {
+  const std::vector<double> a = {1, 2, 3}, b = {2, 4, 6};  // variances 1 and 4
+  const Estimate found = difference_of_means(a, b).value();
+  EXPECT_DOUBLE_EQ(found.value, -2);
+  EXPECT_NEAR(half_length(found), student_quantile(0.95, 50.0 / 17) * std::sqrt(5.0 / 3), 1e-12);
+  EXPECT_DOUBLE_EQ(found.spread, std::sqrt(5.0));
+  EXPECT_EQ(found.groups, 2U);
+  EXPECT_FALSE(difference_of_means(a, std::vector<double>{1, 2}).has_value());
+  EXPECT_EQ(half_length(
+                difference_of_means(std::vector<double>(3, 1), std::vector<double>(3, 2)).value()),
+            0);
+}
+
+TEST(Bootstrapped, HasTheLengthOfStudentsIntervalForAMean) {
+  for (const std::size_t runs : {6U, 10U, 20U}) {
+    const std::vector<double> values = normal_numbers(1, runs);
+    const Estimate found = bootstrapped(runs, mean_over(values)).value();
+    EXPECT_NEAR(half_length(found) / half_length(mean_of(values).value()), 1, 0.15) << runs;
+    EXPECT_DOUBLE_EQ(found.value, mean_of(values)->value);
+  }
+}
+
+TEST(Bootstrapped, SelectionsWithoutAValueWidenIt) {
+  const std::vector<double> values = {0, 0, 0, 1, 1, 1};
+  const Estimate found =
+      bootstrapped(6, [&](std::span<const std::size_t> selection) -> std::optional<double> {
+        const auto mean = mean_over(values)(selection);
+        return *mean < 0.3 ? std::nullopt : mean;
+      }).value();
+  EXPECT_TRUE(std::isinf(found.interval.low) && std::isinf(found.interval.high));
+  EXPECT_FALSE(runs_to_resolve(found, 1, true).has_value());
+  EXPECT_FALSE(bootstrapped(6, [](auto) { return std::optional<double>(); }).has_value());
+  EXPECT_FALSE(bootstrapped(2, mean_over(values)).has_value());
+}
+
+TEST(RunsToResolve, SolvesTheFormulaOfTheSampleSize) {
+  Estimate one{0, {}, 5, 1, 1};
+  // 2 t(0.95, n - 1) <= sqrt(n): 3.592 > 3.464 for n = 12 and 3.565 < 3.606 for n = 13.
+  EXPECT_EQ(runs_to_resolve(one, 1, true), 13U);
+  EXPECT_LT(runs_to_resolve(one, 1, false), 13U);
+  one.groups = 2;
+  EXPECT_EQ(runs_to_resolve(one, 1, true), 12U) << "more degrees of freedom";
+  one.spread = 0;
+  EXPECT_EQ(runs_to_resolve(one, 1, true), least_runs);
+  one.spread = 1;
+  EXPECT_FALSE(runs_to_resolve(one, 1e-3, true).has_value());
+}
+
+std::vector<Waiting> waits(std::initializer_list<double> cycles) {  // negative: censored
+  std::vector<Waiting> runs;
+  for (const double cycle : cycles) runs.push_back({std::abs(cycle), cycle > 0});
+  return runs;
+}
+
+const std::vector<Waiting> treated = waits(
+    {6, 6, 6, -6, 7, -9, 10, -10, -11, 13, 16, -17, -19, -20, 22, 23, -25, -32, -32, -34, -35});
+const std::vector<Waiting> untreated =
+    waits({1, 1, 2, 2, 3, 4, 4, 5, 5, 8, 8, 8, 8, 11, 11, 12, 12, 15, 17, 22, 23});
+
+std::vector<Waiting> scaled(std::vector<Waiting> runs, double factor) {
+  for (Waiting& run : runs) run.cycle *= factor;
+  return runs;
+}
+
+TEST(KaplanMeier, OfTheRemissionTimes) {
+  const std::vector<SurvivalStep> steps = kaplan_meier(treated);
+  const std::vector<double> expected = {0.857, 0.807, 0.753, 0.690, 0.627, 0.538, 0.448};
+  ASSERT_EQ(steps.size(), expected.size());
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    EXPECT_NEAR(steps[k].survival, expected[k], 5e-4) << steps[k].cycle;
+  }
+  EXPECT_EQ(median_wait(treated), 23);
+  EXPECT_EQ(median_wait(untreated), 8);
+  EXPECT_FALSE(median_wait(waits({3, -4, -5})).has_value());
+}
+
+TEST(LogRank, OfTheRemissionTimes) {
+  const double z = log_rank(untreated, treated);
+  EXPECT_NEAR(z * z, 16.79, 0.01);
+  EXPECT_GT(z, 0) << "the untreated relapse earlier";
+  EXPECT_DOUBLE_EQ(log_rank(treated, untreated), -z);
+  EXPECT_EQ(log_rank(waits({-3, -4}), waits({-5})), 0);
+}
+
+TEST(WaitRatio, IsTheFactorBetweenTheGroups) {
+  const Estimate same = log2_wait_ratio(untreated, untreated).value();
+  EXPECT_NEAR(same.value, 0, 0.15);
+  EXPECT_LT(same.interval.low, 0);
+  EXPECT_GT(same.interval.high, 0);
+  const Estimate longer = log2_wait_ratio(scaled(untreated, 4), untreated).value();
+  EXPECT_NEAR(longer.value, same.value + 2, 1e-9);
+  EXPECT_NEAR(longer.interval.low, same.interval.low + 2, 1e-9);
+  const Estimate drug = log2_wait_ratio(treated, untreated).value();
+  std::printf("remission lasts 2^%.2f times as long, interval %.2f to %.2f\n", drug.value,
+              drug.interval.low, drug.interval.high);
+  EXPECT_GT(drug.interval.low, 0);
+}
+
+TEST(WaitRatio, NeedsEvents) {
+  EXPECT_FALSE(log2_wait_ratio(waits({-3, -4, -5}), waits({-3, -4, -5})).has_value());
+  EXPECT_FALSE(log2_wait_ratio(waits({3, 4}), waits({3, 4, 5})).has_value());
+  const Estimate one = log2_wait_ratio(waits({3, -4, -5}), waits({-3, -4, -5})).value();
+  EXPECT_TRUE(std::isinf(one.interval.low) && std::isinf(one.interval.high));
+}
+
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::testing

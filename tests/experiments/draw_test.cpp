@@ -246,10 +246,10 @@ TEST_F(DrawFigure, PhiAtRestIsThatOfTheRestedPacking) {
     ASSERT_EQ(phi.size(), 3U);
     EXPECT_TRUE(std::isnan(phi[0])) << "the packings of cycle 0 are the same";
     Checkpoint checkpoint = store_.load_checkpoint(records[2]);
-    const double recorded = measure(checkpoint).phi;
+    const double recorded = analyse(checkpoint).measures.phi;
     checkpoint.state =
         rested(checkpoint.cell, shear_scene(read_stage(run.resolved).parameters), checkpoint.state);
-    EXPECT_EQ(phi[2], measure(checkpoint).phi);
+    EXPECT_EQ(phi[2], analyse(checkpoint).measures.phi);
     EXPECT_NE(phi[2], recorded);
     EXPECT_EQ(phi_at_rest(store_, records, {1, false, {}})[2], phi[2]) << "as kept";
   }

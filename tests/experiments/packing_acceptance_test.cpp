@@ -47,7 +47,7 @@ TEST(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
   ASSERT_EQ(result.completed, 2U);
   const RunRecord packing = test::runs_of_kind(store, "prepare").at(0);
   const CheckpointRecord settled = store.checkpoints(packing.id).back();
-  const Measures at_rest = measure(store.load_checkpoint(settled));
+  const Measures at_rest = analyse(store.load_checkpoint(settled)).measures;
   const double imbalance = settled.observables.at("wall_force_imbalance");
   std::printf(
       "settled in %.2f s: wall imbalance %.3g, phi %.4f (phi_u %.4f), N_inves %zu, "
@@ -68,14 +68,14 @@ TEST(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
   ASSERT_EQ(checkpoints.size(), 11U);
   double late = 0;  // mean over the last three cycles
   for (const CheckpointRecord& record : checkpoints) {
-    const Measures measures = measure(store.load_checkpoint(record));
+    const Measures measures = analyse(store.load_checkpoint(record)).measures;
     std::printf("cycle %2g: phi %.4f, crystalline %.2f %%\n", record.cycle, measures.phi,
                 measures.crystalline_percent);
     if (record.cycle > 7) late += measures.phi / 3;
   }
   EXPECT_GT(late, 0.638);
   EXPECT_GT(late, at_rest.phi);
-  EXPECT_EQ(measure(store.load_checkpoint(checkpoints.front())).phi, at_rest.phi);
+  EXPECT_EQ(analyse(store.load_checkpoint(checkpoints.front())).measures.phi, at_rest.phi);
 }
 
 // The virial gives the pressure within the packing from its overlaps,

@@ -81,7 +81,7 @@ class UntilTest : public testing::Test {
     ASSERT_EQ(whole_->size(), 7U);
     std::vector<double> phi;
     for (const CheckpointRecord& record : *whole_) {
-      phi.push_back(measure(store.load_checkpoint(record)).phi);
+      phi.push_back(analyse(store.load_checkpoint(record)).measures.phi);
     }
     // Reached at the densest of the first three checkpoints under shear, or before.
     value_ = *std::max_element(phi.begin() + 1, phi.begin() + 4);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/crystallite_map.hpp"
+#include "analysis/crystal.hpp"
 #include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"
 #include "tests/fuzz/seeds.hpp"

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "analysis/crystallite_map.hpp"
+#include "analysis/crystal.hpp"
 #include "analysis/derived_measures.hpp"
 #include "provenance/events.hpp"
 #include "provenance/hdf5_read.hpp"

@@ -1,18 +1,118 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rates of nucleation of runs whose rate is known.
+// Places of crystallites near the critical size, and their density. Rates of nucleation of runs
+// whose rate is known.
+#include "analysis/nucleation.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "analysis/nucleation_rate.hpp"
+#include "analysis/figures/figures.hpp"
+#include "analysis/figures/groups.hpp"
 #include "core/random.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 
-namespace shearcell {
+namespace shearcell::testing {
 namespace {
 
-using testing::made_up_run;
+/// In a cell 18 d wide and 20 d high.
+CrystalliteMap map_with(std::initializer_list<std::vector<std::int32_t>> crystallites,
+                        const Eigen::Vector3d& last_centre) {
+  CrystalliteMap map = map_of(crystallites);
+  map.centre.back() = last_centre;
+  map.width = 18;
+  map.bottom = 5;
+  map.top = 25;
+  return map;
+}
+
+CrystalliteMap one_crystallite(std::int32_t size, double x, double y, std::int32_t first = 0) {
+  return map_with({grain_ids(first, size)}, {x, y, 0});
+}
+
+FigureRun run_with(std::span<const CrystalliteMap> maps) {
+  FigureRun run =
+      made_up_run("fluid", "still", 1, static_cast<int>(maps.size()) - 1, [](int, Measures&) {});
+  for (std::size_t k = 0; k < maps.size(); ++k) run.checkpoints[k].crystallites = maps[k];
+  return run;
+}
+
+TEST(NucleusPlaces, AreSharesOfTheCell) {
+  const FigureRun run =
+      run_with(std::vector{one_crystallite(15, 9, 10), one_crystallite(14, 1, 6),
+                           one_crystallite(25, 0, 25), one_crystallite(26, 3, 6)});
+  EXPECT_EQ(nucleus_places(run, CellAxis::x), (std::vector<double>{0.5, 0.05}));
+  EXPECT_EQ(nucleus_places(run, CellAxis::y), (std::vector<double>{0.25, 1}));
+}
+
+TEST(NucleusBirths, OneThatIsFollowedCountsOnce) {
+  // 20 grains that were seen, and 15 others.
+  const CrystalliteMap two = map_with({grain_ids(0, 20), grain_ids(30, 15)}, {0, 20, 0});
+  const FigureRun run =
+      run_with(std::vector{one_crystallite(15, 9, 10), one_crystallite(3, 9, 10),
+                           one_crystallite(29, 9, 11), one_crystallite(20, 9, 11), two, two});
+  EXPECT_EQ(nucleus_births(run, CellAxis::y), (std::vector<double>{0.25, 0.75}));
+  EXPECT_TRUE(
+      nucleus_births(run_with(std::vector{one_crystallite(40, 9, 10), one_crystallite(20, 9, 10)}),
+                     CellAxis::x)
+          .empty())
+      << "first seen with more than 25 grains";
+}
+
+TEST(Density, IntegratesToOneAndHasErrorsOverRuns) {
+  const std::vector<std::vector<double>> runs = {{0.1, 0.2, 0.9}, {0.6, 1.0}, {0.3}};
+  const std::vector<DensityBin> bins = density(runs, 4);
+  ASSERT_EQ(bins.size(), 4U);
+  const std::vector<double> expected = {2.0 / 6 * 4, 1.0 / 6 * 4, 1.0 / 6 * 4, 2.0 / 6 * 4};
+  double integral = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_DOUBLE_EQ(bins[k].density, expected[k]);
+    EXPECT_TRUE(bins[k].error.has_value());
+    integral += bins[k].density * (bins[k].high - bins[k].low);
+  }
+  EXPECT_NEAR(integral, 1, 1e-15);
+  EXPECT_FALSE(density(std::span(runs).first(1), 4)[0].error.has_value());
+  EXPECT_TRUE(density({}, 4).empty());
+}
+
+/// Six runs of so many nuclei each, at x/w and y/h as two functions of random numbers in [0,
+/// 1) say.
+std::vector<FigureRun> runs_with_places(int count, const std::function<double(double)>& x,
+                                        const std::function<double(double)>& y) {
+  std::vector<FigureRun> runs;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    std::vector<CrystalliteMap> maps;
+    for (std::uint32_t n = 0; n < static_cast<std::uint32_t>(count); ++n) {
+      const auto random = uniform_pair({n, 0, 0, 0}, seed);
+      maps.push_back(one_crystallite(20, 20 * x(random[0]) - 1, 5 + 20 * y(random[1]),
+                                     static_cast<std::int32_t>(20 * n)));
+    }
+    runs.push_back(run_with(maps));
+  }
+  return runs;
+}
+
+std::vector<Ruling> rulings(std::span<const FigureRun> runs) {
+  std::vector<Ruling> all;
+  for (const Verdict& verdict : figure_s7(runs).verdicts) all.push_back(verdict.ruling);
+  return all;
+}
+
+TEST(FigureS7, JudgesPlacesWhoseTruthIsKnown) {
+  const auto even = [](double u) { return u; };
+  const auto in_one_spot = [](double u) { return 0.45 + 0.1 * u; };
+  const auto near_the_top = [](double u) { return std::sqrt(u); };
+  const auto near_the_bottom = [](double u) { return u * u; };
+  using R = Ruling;
+  EXPECT_EQ(rulings(runs_with_places(100, even, near_the_top)),
+            (std::vector{R::agrees, R::agrees}));
+  EXPECT_EQ(rulings(runs_with_places(100, in_one_spot, near_the_bottom)),
+            (std::vector{R::differs, R::differs}));
+  EXPECT_EQ(rulings(runs_with_places(100, even, even)), (std::vector{R::agrees, R::differs}))
+      << "no excess at the top";
+  EXPECT_EQ(rulings(runs_with_places(3, even, even)), (std::vector{R::undecided, R::undecided}));
+}
 
 /// Of `grains` interior grains, at one phi, with an onset just before cycle `onset` (0: none).
 FigureRun waiting(int grains, std::uint64_t seed, int onset, int cycles, double phi = 0.6451) {
@@ -25,16 +125,10 @@ FigureRun waiting(int grains, std::uint64_t seed, int onset, int cycles, double 
   return run;
 }
 
-std::vector<const FigureRun*> all(const std::vector<FigureRun>& runs) {
-  std::vector<const FigureRun*> pointers;
-  for (const FigureRun& run : runs) pointers.push_back(&run);
-  return pointers;
-}
-
 TEST(NucleationRate, IsEventsOverGrainCycles) {
   const std::vector<FigureRun> runs = {waiting(1000, 1, 10, 30), waiting(1000, 2, 20, 30),
                                        waiting(1000, 3, 0, 30), waiting(1000, 4, 0, 30, 0.6401)};
-  const auto rates = nucleation_rates(all(runs));
+  const auto rates = nucleation_rates(pointers(runs));
   ASSERT_EQ(rates.size(), 2U);
   EXPECT_DOUBLE_EQ(rates[0].phi_low, 0.64);
   EXPECT_EQ(rates[0].events, 0U);
@@ -52,7 +146,7 @@ TEST(NucleationRate, IsEventsOverGrainCycles) {
 TEST(NucleationRate, LeavesOutRunsThatBeginWithACriticalCrystallite) {
   std::vector<FigureRun> runs = {waiting(1000, 1, 10, 30)};
   for (CheckpointMeasures& c : runs[0].checkpoints) c.measures.largest_crystallite = 16;
-  EXPECT_TRUE(nucleation_rates(all(runs)).empty());
+  EXPECT_TRUE(nucleation_rates(pointers(runs)).empty());
 }
 
 // With one stratum and two sizes the maximum is where each size has its own rate.
@@ -69,7 +163,7 @@ TEST(SizeExponent, OfTwoSizesIsTheSlopeBetweenTheirRates) {
       events[size] += seen ? 1 : 0;
     }
   }
-  const auto found = size_exponent(all(runs));
+  const auto found = size_exponent(pointers(runs));
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->value,
               std::log(events[1] / cycles[1] / (events[0] / cycles[0])) / std::log(6.0), 1e-6);
@@ -98,7 +192,7 @@ TEST(SizeExponent, IsThatOfRunsMadeWithIt) {
         }
       }
     }
-    const auto found = size_exponent(all(runs));
+    const auto found = size_exponent(pointers(runs));
     ASSERT_TRUE(found);
     EXPECT_LT(found->interval.low, exponent);
     EXPECT_GT(found->interval.high, exponent);
@@ -109,10 +203,10 @@ TEST(SizeExponent, IsThatOfRunsMadeWithIt) {
 TEST(SizeExponent, NeedsTwoSizesAtOnePhi) {
   const std::vector<FigureRun> one = {waiting(1000, 1, 5, 30), waiting(1000, 2, 6, 30),
                                       waiting(1000, 3, 7, 30)};
-  EXPECT_FALSE(size_exponent(all(one)));
+  EXPECT_FALSE(size_exponent(pointers(one)));
   const std::vector<FigureRun> apart = {waiting(1000, 1, 5, 30), waiting(1000, 2, 6, 30),
                                         waiting(3000, 3, 7, 30, 0.6501)};
-  EXPECT_FALSE(size_exponent(all(apart)));
+  EXPECT_FALSE(size_exponent(pointers(apart)));
 }
 
 TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
@@ -132,4 +226,4 @@ TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::testing
