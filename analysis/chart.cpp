@@ -16,26 +16,26 @@ namespace {
 
 using nlohmann::json;
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + '"';
-}
-
 struct FieldText {
   std::string operator()(std::monostate) const { return {}; }
   std::string operator()(double value) const { return std::isfinite(value) ? digits(value) : ""; }
   std::string operator()(std::int64_t value) const { return std::to_string(value); }
-  std::string operator()(const std::string& value) const { return quoted(value); }
+  std::string operator()(const std::string& value) const { return csv_field(value); }
 };
 
-std::optional<double> number_in(const std::vector<TableValue>& row, int column) {
+/// Counted from 1.
+std::size_t column_number(const FigureTable& table, const std::string& name) {
+  const auto found = std::find(table.columns.begin(), table.columns.end(), name);
+  if (found == table.columns.end()) {
+    throw AnalysisError("table " + table.name + " has no column '" + name + "' to draw");
+  }
+  return static_cast<std::size_t>(found - table.columns.begin()) + 1;
+}
+
+/// That of a numbered column; nothing for column 0.
+std::optional<double> number_in(const TableRow& row, std::size_t column) {
   if (column == 0) return std::nullopt;
-  const TableValue& value = row.at(static_cast<std::size_t>(column) - 1);
+  const TableValue& value = row.at(column - 1);
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
   const auto* real = std::get_if<double>(&value);
   if (real == nullptr || !std::isfinite(*real)) return std::nullopt;
@@ -91,29 +91,29 @@ Text operator+(Text first, const Text& second) {
   return first;
 }
 
-TableValue table_value(const std::optional<double>& value) {
-  if (value) return *value;
-  return std::monostate{};
-}
-
 std::string digits(double value) {
   return fmt::format("{:.9g}", value == 0 ? 0.0 : value);  // no "-0"
 }
 
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c;
+  }
+  return result + '"';
+}
+
 std::string to_csv(const FigureTable& table) {
   std::string text;
-  const auto end_field = [&](std::size_t k, std::size_t count) {
-    text += k + 1 < count ? ',' : '\n';
+  const auto add_line = [&](const auto& cells, const auto& field) {
+    for (const auto& cell : cells) text += field(cell) + ',';
+    if (!cells.empty()) text.back() = '\n';
   };
-  for (std::size_t k = 0; k < table.columns.size(); ++k) {
-    text += quoted(table.columns[k]);
-    end_field(k, table.columns.size());
-  }
-  for (const std::vector<TableValue>& row : table.rows) {
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      text += std::visit(FieldText{}, row[k]);
-      end_field(k, row.size());
-    }
+  add_line(table.columns, csv_field);
+  for (const TableRow& row : table.rows) {
+    add_line(row, [](const TableValue& value) { return std::visit(FieldText{}, value); });
   }
   return text;
 }
@@ -124,26 +124,18 @@ std::filesystem::path write_csv(const FigureTable& table, const std::filesystem:
   return path;
 }
 
-int column_number(const FigureTable& table, const std::string& name) {
-  const auto found = std::find(table.columns.begin(), table.columns.end(), name);
-  if (found == table.columns.end()) {
-    throw AnalysisError("table " + table.name + " has no column '" + name + "' to draw");
-  }
-  return static_cast<int>(found - table.columns.begin()) + 1;
-}
-
 std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series) {
   const SeriesColumns& from = series.columns;
   if (from.x.empty()) return series.points;
   const auto number = [&](const std::string& name) {
     return name.empty() ? 0 : column_number(table, name);
   };
-  const int filter = number(series.filter.column);
-  const int x = number(from.x), y = number(from.y), x_high = number(from.x_high);
-  const int x_error = number(from.x_error), y_error = number(from.y_error);
+  const std::size_t filter = number(series.filter.column);
+  const std::size_t x = number(from.x), y = number(from.y), x_high = number(from.x_high);
+  const std::size_t x_error = number(from.x_error), y_error = number(from.y_error);
   std::vector<ChartPoint> points;
-  for (const std::vector<TableValue>& row : table.rows) {
-    if (filter > 0 && row.at(static_cast<std::size_t>(filter) - 1) != series.filter.value) continue;
+  for (const TableRow& row : table.rows) {
+    if (filter > 0 && row.at(filter - 1) != series.filter.value) continue;
     const auto at = number_in(row, x), value = number_in(row, y);
     if (!at || !value) continue;
     const double middle = (*at + number_in(row, x_high).value_or(*at)) / 2;
@@ -164,6 +156,9 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
   std::string text = title + ".";
   bool bars = false, bands = false;
   std::vector<std::string> lines, notes;
+  const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
+    if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);
+  };
   for (const FigureTable& table : tables) {
     const Chart& chart = table.chart;
     if (chart.series.empty()) continue;
@@ -174,13 +169,8 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
         if (p.y_error) (series.band ? bands : bars) = true;
       }
     }
-    if (!chart.note.empty() && std::ranges::find(notes, chart.note) == notes.end()) {
-      notes.push_back(chart.note);
-    }
-    for (const ReferenceLine& line : chart.lines) {
-      const std::string name = plain_text(line.title);
-      if (!name.empty() && std::ranges::find(lines, name) == lines.end()) lines.push_back(name);
-    }
+    add_once(notes, chart.note);
+    for (const ReferenceLine& line : chart.lines) add_once(lines, plain_text(line.title));
   }
   if (bars || bands) {
     text += fmt::format(" {}: standard errors over runs.", bars && bands ? "Bars and bands"

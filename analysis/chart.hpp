@@ -41,9 +41,14 @@ inline Text superscript(std::string text) {
 }
 
 /// Empty (not measured, or no error from one run), a number, a whole number, or text.
-using TableValue = std::variant<std::monostate, double, std::int64_t, std::string>;
-using TableRows = std::vector<std::vector<TableValue>>;
-TableValue table_value(const std::optional<double>& value);
+struct TableValue : std::variant<std::monostate, double, std::int64_t, std::string> {
+  using variant::variant;
+  TableValue(std::size_t count) : variant(static_cast<std::int64_t>(count)) {}  // NOLINT
+  TableValue(const std::optional<double>& value) {                              // NOLINT
+    if (value) emplace<double>(*value);
+  }
+};
+using TableRow = std::vector<TableValue>;
 
 struct Axis {
   Text name = {};    ///< "volume fraction"
@@ -130,10 +135,13 @@ struct TextTable {
 struct FigureTable {
   std::string name;                  ///< "S2a": letters, digits, '-' and '_'
   std::vector<std::string> columns;  ///< with the unit at the end where there is one
-  TableRows rows;
+  std::vector<TableRow> rows = {};
   Chart chart = {};
   TextTable text = {};
 };
+
+/// A text as a field of RFC 4180: in quotes where it needs them.
+std::string csv_field(const std::string& text);
 
 /// RFC 4180 with a header row and "\n" line ends. Numbers carry nine significant digits; a number
 /// that is not finite leaves its field empty.
@@ -141,9 +149,6 @@ std::string to_csv(const FigureTable& table);
 
 /// Writes FOLDER/NAME.csv and returns its path. Throws std::runtime_error when it cannot.
 std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder);
-
-/// Number of a column, counted from 1. Throws AnalysisError for a name that the table lacks.
-int column_number(const FigureTable& table, const std::string& name);
 
 /// The points of one series, without its shift. Rows in which x or y is not a finite number are
 /// left out.

@@ -23,17 +23,14 @@ RunValue measured(double value) {
 struct Values {
   std::map<const FigureRun*, double> found;
   std::size_t runs = 0;
-  std::array<std::size_t, 5> missing = {};  ///< by Missing
+  std::map<Missing, std::size_t> missing;
 
   void take(const Scalar& scalar, RunGroup group) {
     for (const FigureRun* run : group) {
       const RunValue value = scalar.of(*run);
       ++runs;
-      if (value.missing == Missing::nothing) {
-        found[run] = value.value;
-      } else {
-        ++missing[static_cast<std::size_t>(value.missing)];
-      }
+      ++missing[value.missing];
+      if (value.missing == Missing::nothing) found[run] = value.value;
     }
   }
   bool enough() const { return 4 * found.size() >= 3 * runs; }
@@ -44,15 +41,15 @@ void add(std::string& note, const std::string& text) {
 }
 
 void add_missing(std::string& note, const Values& values, const Scalar& scalar) {
-  const auto tell = [&](Missing why, const char* what) {
-    const std::size_t count = values.missing[static_cast<std::size_t>(why)];
-    if (count == 0) return;
-    add(note, fmt::format("{} of {} runs {} {}", count, values.runs, what, scalar.reach));
-  };
-  tell(Missing::checkpoint, "lack a checkpoint of");
-  tell(Missing::too_short, "end before");
-  tell(Missing::too_late, "begin after");
-  tell(Missing::undefined, "have no interior grains at");
+  for (const auto& [why, count] : values.missing) {
+    if (why == Missing::nothing) continue;
+    add(note, fmt::format("{} of {} runs {} {}", count, values.runs,
+                          why == Missing::checkpoint  ? "lack a checkpoint of"
+                          : why == Missing::too_short ? "end before"
+                          : why == Missing::too_late  ? "begin after"
+                                                      : "have no interior grains at",
+                          scalar.reach));
+  }
 }
 
 Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<Estimate> estimate,
@@ -67,16 +64,6 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
     add(note, fmt::format("too few runs: {} of at least {}", runs, least_runs));
   }
   return decide(claim, quantity, estimate, runs, std::move(note));
-}
-
-double share(double log_ratio) {
-  return std::expm1(log_ratio);
-}
-
-/// A difference of logarithms as a relative difference.
-void make_relative(Estimate& estimate) {
-  estimate.value = share(estimate.value);
-  estimate.interval = {share(estimate.interval.low), share(estimate.interval.high)};
 }
 
 /// Differences a - b of the runs that share packings.
@@ -100,16 +87,11 @@ Pairs paired(RunGroup a, RunGroup b, const Values& values,
   return pairs;
 }
 
-std::size_t unobserved(std::span<const Waiting> runs) {
-  return static_cast<std::size_t>(
-      std::count_if(runs.begin(), runs.end(), [](const Waiting& run) { return !run.observed; }));
-}
-
 std::string wait_in_words(std::span<const Waiting> runs) {
   const auto median = median_wait(runs);
   return fmt::format("median cycle {} of {} runs, {} of which end before",
                      median ? fmt::format("{:.3g}", *median) : "unknown", runs.size(),
-                     unobserved(runs));
+                     std::ranges::count(runs, false, &Waiting::observed));
 }
 
 }  // namespace
@@ -183,6 +165,12 @@ Scalar onset_phi(OnsetMethod method) {
   return {"phi at the onset", "the onset", of};
 }
 
+Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing) {
+  estimate.value = increasing(estimate.value);
+  estimate.interval = {increasing(estimate.interval.low), increasing(estimate.interval.high)};
+  return estimate;
+}
+
 bool share_packing(const FigureRun& a, const FigureRun& b) {
   if (a.seed != b.seed || a.checkpoints.empty() || b.checkpoints.empty()) return false;
   const CheckpointMeasures& x = a.checkpoints.front();
@@ -205,18 +193,21 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
     runs = pairs.differences.size();
     note = fmt::format("{} pairs of runs that share a packing", runs);
   } else {
-    std::vector<double> x, y;
-    for (const FigureRun* run : a) {
-      if (all.found.contains(run)) x.push_back(number(all.found.at(run)));
-    }
-    for (const FigureRun* run : b) {
-      if (all.found.contains(run)) y.push_back(number(all.found.at(run)));
-    }
+    const auto numbers = [&](RunGroup group) {
+      std::vector<double> found;
+      for (const FigureRun* run : group) {
+        if (all.found.contains(run)) found.push_back(number(all.found.at(run)));
+      }
+      return found;
+    };
+    const std::vector<double> x = numbers(a), y = numbers(b);
     estimate = difference_of_means(x, y);
     runs = std::min(x.size(), y.size());
     note = fmt::format("{} and {} independent runs", x.size(), y.size());
   }
-  if (estimate && scalar.relative) make_relative(*estimate);
+  if (estimate && scalar.relative) {  // a difference of logarithms
+    estimate = mapped(*estimate, [](double log_ratio) { return std::expm1(log_ratio); });
+  }
   if (a.empty() || b.empty()) all = {};
   return conclude(claim,
                   (scalar.relative ? "relative difference in " : "difference in ") + scalar.name,

@@ -50,6 +50,9 @@ Scalar percentage_over_phi();
 /// phi at the onset, with the supplement's critical size for the run's amplitude.
 Scalar onset_phi(OnsetMethod method);
 
+/// The estimate of an increasing function of the quantity. The spread stays that of the quantity.
+Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing);
+
 /// Runs share a packing if they have the same seed and the same measures at cycle 0.
 bool share_packing(const FigureRun& a, const FigureRun& b);
 

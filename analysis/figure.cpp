@@ -10,83 +10,50 @@
 namespace shearcell {
 namespace {
 
-constexpr auto scalars = FigureNeeds::scalars;
+using Make = FigureResult (*)(std::span<const FigureRun>);
+using Keys = std::vector<std::string>;
+
+/// A curve for each variant; `keys` are what they compare.
+Figure of_curves(const char* name, const char* title, Make make, Keys keys) {
+  return {name, title, FigureNeeds::scalars, make, FigureForm::curves, std::move(keys)};
+}
+
+/// Averages over the variants that have the same values of `keys`.
+Figure of_groups(const char* name, const char* title, Make make, Keys keys,
+                 FigureNeeds needs = FigureNeeds::scalars) {
+  return {name, title, needs, make, FigureForm::groups, std::move(keys)};
+}
+
+std::vector<Figure> make_figures() {
+  constexpr auto crystallites = FigureNeeds::crystallites;
+  Figure b5 = of_curves("B5", "Continuous and periodically paused shear", figure_b5, {"protocol"});
+  b5.at_rest = true;
+  return {
+      {"table1", "Table I beside the parameters of every experiment", FigureNeeds::none,
+       figure_table1, FigureForm::table},
+      of_groups("S1", "Packing fraction in the limit of hard grains", figure_s1, {"pressure_at"}),
+      of_curves("S2", "Still fluid and fluid that moves with the cell", figure_s2, {"fluid"}),
+      of_curves("S3", "Time steps", figure_s3, {"steps_per_cycle"}),
+      of_curves("S4", "Moving bottom wall and moving top wall", figure_s4,
+                {"moving_wall", "pressure_at"}),
+      of_groups("S5a", "Onset of crystallization against amplitude", figure_s5a, {"amplitude_rad"}),
+      of_groups("S5b", "Onset of crystallization against system size", figure_s5b, {"grains"}),
+      of_curves("S6", "Shear with and without gravity", figure_s6,
+                {"amplitude_rad", "gravity_m_per_s2"}),
+      of_groups("S7", "Where crystallites nucleate", figure_s7,
+                {"amplitude_rad", "stiffness_N_per_m"}, crystallites),
+      of_groups("C", "Growth of crystallites by size", figure_c, {"amplitude_rad"}, crystallites),
+      of_groups("nucleation", "Runs without an onset, and the rate of nucleation",
+                figure_nucleation, {"amplitude_rad", "grains"}),
+      std::move(b5),
+      of_curves("walls", "Rough and smooth walls", figure_walls, {"walls"}),
+      of_curves("choices", "Mass and drag of the moving wall, and other wall grains",
+                figure_choices,
+                {"wall_mass_grains_per_d2", "wall_drag_grains_per_d2_s", "wall_grain_draw"})};
+}
 
 const std::vector<Figure>& figures() {
-  constexpr auto crystallites = FigureNeeds::crystallites;
-  constexpr auto curves = FigureForm::curves;
-  constexpr auto groups = FigureForm::groups;
-  static const std::vector<Figure> all = {
-      {"table1",
-       "Table I beside the parameters of every experiment",
-       FigureNeeds::none,
-       figure_table1,
-       FigureForm::table,
-       {}},
-      {"S1",
-       "Packing fraction in the limit of hard grains",
-       scalars,
-       figure_s1,
-       groups,
-       {"pressure_at"}},
-      {"S2",
-       "Still fluid and fluid that moves with the cell",
-       scalars,
-       figure_s2,
-       curves,
-       {"fluid"}},
-      {"S3", "Time steps", scalars, figure_s3, curves, {"steps_per_cycle"}},
-      {"S4",
-       "Moving bottom wall and moving top wall",
-       scalars,
-       figure_s4,
-       curves,
-       {"moving_wall", "pressure_at"}},
-      {"S5a",
-       "Onset of crystallization against amplitude",
-       scalars,
-       figure_s5a,
-       groups,
-       {"amplitude_rad"}},
-      {"S5b",
-       "Onset of crystallization against system size",
-       scalars,
-       figure_s5b,
-       groups,
-       {"grains"}},
-      {"S6",
-       "Shear with and without gravity",
-       scalars,
-       figure_s6,
-       curves,
-       {"amplitude_rad", "gravity_m_per_s2"}},
-      {"S7",
-       "Where crystallites nucleate",
-       crystallites,
-       figure_s7,
-       groups,
-       {"amplitude_rad", "stiffness_N_per_m"}},
-      {"C", "Growth of crystallites by size", crystallites, figure_c, groups, {"amplitude_rad"}},
-      {"nucleation",
-       "Runs without an onset, and the rate of nucleation",
-       scalars,
-       figure_nucleation,
-       groups,
-       {"amplitude_rad", "grains"}},
-      {"B5",
-       "Continuous and periodically paused shear",
-       scalars,
-       figure_b5,
-       curves,
-       {"protocol"},
-       true},
-      {"walls", "Rough and smooth walls", scalars, figure_walls, curves, {"walls"}},
-      {"choices",
-       "Mass and drag of the moving wall, and other wall grains",
-       scalars,
-       figure_choices,
-       curves,
-       {"wall_mass_grains_per_d2", "wall_drag_grains_per_d2_s", "wall_grain_draw"}}};
+  static const std::vector<Figure> all = make_figures();
   return all;
 }
 

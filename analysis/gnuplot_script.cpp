@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/gnuplot_script.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "analysis/plot.hpp"
 
 namespace shearcell {
 namespace {

@@ -55,7 +55,7 @@ struct MechanicalMember {
 /// One of Measures::numbers.
 struct NumberOf {
   /// The DerivedMeasure that has it; "drive" and "ledger" are not taken from an Analysis
-  /// (experiments/figures/within_cycle.hpp).
+  /// (experiments/figures/more_measures.hpp).
   std::string_view derived;
 };
 

@@ -17,41 +17,45 @@
 namespace shearcell {
 namespace {
 
-Quantity quantity_of(const ScalarMeasure& measure) {
-  return [&measure](const Measures& m) { return measure.of(m); };
-}
-
 /// "phi_profile" and "", "pressure" and "Pa" of "pressure_Pa".
-std::pair<std::string, std::string> name_and_unit(std::string_view measure, std::string_view of) {
+MeasureColumn column_of(std::string_view measure, std::string_view of, Quantity quantity = {}) {
   std::string name(measure);
   std::string unit(of == "%" ? "percent" : of == "1" ? "" : of == "d^2" ? "d2" : of);
   if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
-  return {name, unit};
+  return {std::move(name), std::move(unit), std::move(quantity)};
 }
 
-MeasureColumn column_of(const ScalarMeasure& measure) {
-  auto [name, unit] = name_and_unit(measure.name, measure.unit);
-  return {std::move(name), std::move(unit), quantity_of(measure)};
+/// That of a scalar measure that exists.
+MeasureColumn scalar_column(std::string_view name) {
+  const ScalarMeasure& measure = *find_measure(name);
+  return column_of(name, measure.unit, [&measure](const Measures& m) { return measure.of(m); });
 }
 
-Axis named_axis(std::string name, std::string_view unit) {
+/// "largest crystallite" of "largest_crystallite".
+Axis named_axis(std::string_view measure, std::string_view unit) {
+  std::string name = column_of(measure, unit).name;
   std::ranges::replace(name, '_', ' ');
   return {.name = std::move(name), .unit = unit == "1" ? Text() : Text(std::string(unit))};
 }
 
-/// "largest crystallite" of "largest_crystallite".
 Axis axis_of(const std::string& key) {
   if (key == "cycle") return cycle_axis();
   if (key == "phi") return phi_axis();
   if (key == "crystalline_percent") return crystalline_axis();
   if (key == "mean_overlap_d") return overlap_axis();
-  if (const ScalarMeasure* measure = find_measure(key)) {
-    return named_axis(column_of(*measure).name, measure->unit);
-  }
-  if (const CurveMeasure* measure = find_curve_measure(key)) {
-    return named_axis(name_and_unit(measure->name, measure->unit).first, measure->unit);
-  }
+  if (const ScalarMeasure* measure = find_measure(key)) return named_axis(key, measure->unit);
+  if (const CurveMeasure* measure = find_curve_measure(key)) return named_axis(key, measure->unit);
   return named_axis(key, "1");
+}
+
+/// "drag_kg_per_s=0.001, fluid=still".
+std::string words_of(const nlohmann::json& values) {
+  std::string text;
+  for (const auto& [key, value] : values.items()) {
+    text += (text.empty() ? "" : ", ") + key + "=" +
+            (value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return text;
 }
 
 /// The checkpoint at a cycle, or the last one; null if there is none.
@@ -74,16 +78,10 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
   std::map<std::string, std::set<std::string>> names;
   for (FigureRun& run : found) {
     nlohmann::json labels = nlohmann::json::object();
-    std::string text;
-    for (const std::string& key : keys) {
-      labels[key] = parameter_of(run, key);
-      const auto& value = labels[key];
-      text += (text.empty() ? "" : ", ") + key + "=" +
-              (value.is_string() ? value.get<std::string>() : value.dump());
-    }
+    for (const std::string& key : keys) labels[key] = parameter_of(run, key);
     if (run.labels.is_object()) run.parameters.update(run.labels);
     run.labels = std::move(labels);
-    run.variant = text.empty() ? "all" : text;
+    run.variant = run.labels.empty() ? "all" : words_of(run.labels);
     names[run.variant].insert(run.name);
   }
   std::vector<nlohmann::json> curves;
@@ -99,22 +97,20 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
   return found;
 }
 
+/// Every run against the cycle, or against a measure `x`.
 FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Quantity& y,
-                   const std::function<double(const FigureRun&, const CheckpointMeasures&)>& x) {
-  FigureTable table{.name = plot.name, .columns = {"variant", "seed", plot.x, plot.y}, .rows = {}};
+                   const ScalarMeasure* x) {
+  FigureTable table{.name = plot.name, .columns = {"variant", "seed", plot.x, plot.y}};
   for (std::size_t k = 0; k < curves.size(); ++k) {
     const Curve& curve = curves[k];
     Text title = curve.style.title;  // once in the key
     for (const FigureRun* run : curve.runs) {
-      Series series{.title = std::exchange(title, Text()),
-                    // Without symbols, each curve has a colour of its own.
-                    .colour = safe_colours[k % safe_colours.size()],
-                    .point = 0,
-                    .join = Join::line,
-                    .thin = true};
+      // Without symbols, each curve has a colour of its own.
+      Series series =
+          thin_line(std::exchange(title, Text()), safe_colours[k % safe_colours.size()]);
       for (const CheckpointMeasures& c : run->checkpoints) {
-        const double at = x(*run, c), value = y(c.measures);
-        table.rows.push_back({curve.variant, static_cast<std::int64_t>(run->seed), at, value});
+        const double at = x == nullptr ? c.cycle : x->of(c.measures), value = y(c.measures);
+        table.rows.push_back({curve.variant, run->seed, at, value});
         if (std::isfinite(at) && std::isfinite(value)) series.points.push_back({at, value});
       }
       table.chart.series.push_back(std::move(series));
@@ -123,141 +119,106 @@ FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Qu
   return table;
 }
 
-FigureTable against_parameter(const PlotSpec& plot, std::span<const FigureRun> given,
-                              const NameVariants& names) {
-  const std::vector<FigureRun> runs = by_curve(given, plot, names);
-  const MeasureColumn y = column_of(*find_measure(plot.y));
-  FigureTable table{.name = plot.name, .columns = {"variant", plot.x}, .rows = {}};
-  add_columns(y, table.columns);
-  table.columns.emplace_back("runs");
-  const std::vector<Curve> curves =
-      curves_by(runs, {}, [](const FigureRun&) { return nullptr; }, {});
-  std::vector<Series> seeds;
-  for (const Curve& curve : curves) {
-    std::map<double, std::vector<double>> values;
-    std::map<std::uint64_t, std::map<double, double>> by_seed;
-    for (const FigureRun* run : curve.runs) {
-      const double at = number_of(*run, plot.x);
-      const Measures* measures = measures_at(*run, plot.cycle);
-      const double value = measures == nullptr ? std::nan("") : y.quantity(*measures);
-      if (!std::isfinite(at) || !std::isfinite(value)) continue;
-      values[at].push_back(value);
-      by_seed[run->seed][at] = value;
-    }
-    Text title = curve.style.title;  // once in the key
-    for (const auto& [seed, points] : by_seed) {
-      seeds.push_back({.title = std::exchange(title, Text()),
-                       .colour = curve.style.colour,
-                       .point = curve.style.point,
-                       .join = Join::line,
-                       .thin = true});
-      for (const auto& [at, value] : points) seeds.back().points.push_back({at, value});
-    }
-    for (const auto& [at, of] : values) {
-      auto& row = table.rows.emplace_back(std::vector<TableValue>{curve.variant, at});
-      const RunStatistics over = over_runs(of);
-      add_values(over, row);
-      row.emplace_back(static_cast<std::int64_t>(over.runs));
+/// What a curve is drawn from: y by x along each of its traces, and the values of all at each x.
+struct Points {
+  std::map<std::uint64_t, std::map<double, double>> traces;
+  std::map<double, std::vector<double>> values;
+
+  void add(std::uint64_t trace, double x, double y) {
+    if (!std::isfinite(x) || !std::isfinite(y)) return;
+    traces[trace][x] = y;
+    values[x].push_back(y);
+  }
+};
+
+/// The measure of one checkpoint of each run against a parameter; a trace for each seed.
+Points along_parameter(const PlotSpec& plot, const Curve& curve, const Quantity& y) {
+  Points points;
+  for (const FigureRun* run : curve.runs) {
+    if (const Measures* measures = measures_at(*run, plot.cycle)) {
+      points.add(run->seed, number_of(*run, plot.x), y(*measures));
     }
   }
-  table.chart.series = series_of(
-      curves,
-      {.x = plot.x, .y = column_name(y, "mean"), .y_error = column_name(y, "standard_error")});
-  for (Series& series : table.chart.series) series.band = false;
-  if (plot.traces) table.chart.series = std::move(seeds);
-  if (curves.size() == 1) table.chart.series.front().title = {};
+  return points;
+}
+
+/// A measured curve of one checkpoint of each run; a trace for each run.
+Points along_curve(const PlotSpec& plot, const Curve& curve, const CurveMeasure& measure) {
+  Points points;
+  for (std::size_t r = 0; r < curve.runs.size(); ++r) {
+    const Measures* measures = measures_at(*curve.runs[r], plot.cycle);
+    if (measures == nullptr) continue;
+    const MeasuredCurve measured = measure.of(*measures);
+    for (std::size_t i = 0; i < measured.x.size(); ++i) {
+      points.add(r, measured.x[i], measured.y[i]);
+    }
+  }
+  return points;
+}
+
+/// The mean over the runs at each x, or each trace: of a parameter, or of a measured curve.
+FigureTable against_x(const PlotSpec& plot, const CurveMeasure* measured,
+                      std::span<const Curve> curves) {
+  const std::string x(measured == nullptr ? plot.x : measured->x);
+  const MeasureColumn y =
+      measured == nullptr ? scalar_column(plot.y) : column_of(measured->name, measured->unit);
+  FigureTable table{.name = plot.name, .columns = {"variant", x}};
+  add_columns(y, table.columns);
+  table.columns.emplace_back("runs");
+  std::vector<Series> traces;
+  for (const Curve& curve : curves) {
+    const Points points = measured == nullptr ? along_parameter(plot, curve, y.quantity)
+                                              : along_curve(plot, curve, *measured);
+    Text title = curve.style.title;  // once in the key
+    for (const auto& [trace, values] : points.traces) {
+      traces.push_back(
+          thin_line(std::exchange(title, Text()), curve.style.colour, curve.style.point));
+      for (const auto& [at, value] : values) traces.back().points.push_back({at, value});
+    }
+    for (const auto& [at, values] : points.values) {
+      TableRow& row = table.rows.emplace_back(TableRow{curve.variant, at});
+      const RunStatistics over = over_runs(values);
+      add_values(over, row);
+      row.emplace_back(over.runs);
+    }
+  }
+  table.chart.series = series_of(curves, columns_against(x, y));
+  if (plot.traces) table.chart.series = std::move(traces);
+  for (Series& series : table.chart.series) {
+    if (measured == nullptr) {
+      series.band = false;
+    } else {
+      series.point = 0;  // hundreds of values: symbols would hide the curve
+    }
+    if (curves.size() == 1) series.title = {};
+  }
   return table;
 }
 
 /// Means of both measures over the runs at each cycle.
 FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves) {
-  const MeasureColumn x = column_of(*find_measure(plot.x)), y = column_of(*find_measure(plot.y));
-  const std::array<MeasureColumn, 2> both = {y, x};
+  const std::array<MeasureColumn, 2> both = {scalar_column(plot.y), scalar_column(plot.x)};
   FigureTable table = against_cycle(plot.name, curves, both, {});
-  table.chart.series = series_of(curves, {.x = column_name(x, "mean"),
-                                          .y = column_name(y, "mean"),
-                                          .y_error = column_name(y, "standard_error")});
-  return table;
-}
-
-/// A measured curve of one checkpoint: its mean over the runs at each x, or each run's.
-FigureTable measured_curves(const PlotSpec& plot, const CurveMeasure& measure,
-                            std::span<const Curve> curves) {
-  const auto [name, unit] = name_and_unit(measure.name, measure.unit);
-  const MeasureColumn y{name, unit, {}};
-  FigureTable table{.name = plot.name, .columns = {"variant", std::string(measure.x)}, .rows = {}};
-  add_columns(y, table.columns);
-  table.columns.emplace_back("runs");
-  std::vector<Series> single;
-  for (const Curve& curve : curves) {
-    std::map<double, std::vector<double>> values;
-    Text title = curve.style.title;  // once in the key
-    for (const FigureRun* run : curve.runs) {
-      const Measures* measures = measures_at(*run, plot.cycle);
-      if (measures == nullptr) continue;
-      single.push_back({.title = std::exchange(title, Text()),
-                        .colour = curve.style.colour,
-                        .point = 0,
-                        .join = Join::line,
-                        .thin = true});
-      const MeasuredCurve measured = measure.of(*measures);
-      for (std::size_t i = 0; i < measured.x.size(); ++i) {
-        if (!std::isfinite(measured.y[i])) continue;
-        values[measured.x[i]].push_back(measured.y[i]);
-        single.back().points.push_back({measured.x[i], measured.y[i]});
-      }
-    }
-    for (const auto& [x, of] : values) {
-      auto& row = table.rows.emplace_back(std::vector<TableValue>{curve.variant, x});
-      const RunStatistics over = over_runs(of);
-      add_values(over, row);
-      row.emplace_back(static_cast<std::int64_t>(over.runs));
-    }
-  }
-  table.chart.series = series_of(curves, {.x = std::string(measure.x),
-                                          .y = column_name(y, "mean"),
-                                          .y_error = column_name(y, "standard_error")});
-  // Hundreds of values: symbols would hide the curve.
-  for (Series& series : table.chart.series) series.point = 0;
-  if (plot.traces) table.chart.series = std::move(single);
-  if (curves.size() == 1) table.chart.series.front().title = {};
+  table.chart.series = series_of(curves, columns_against(column_name(both[1], "mean"), both[0]));
   return table;
 }
 
 FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
                  const NameVariants& names) {
   const CurveMeasure* measured = find_curve_measure(plot.y);
-  const bool by_parameter =
-      measured == nullptr && plot.x != "cycle" && find_measure(plot.x) == nullptr;
-  if (by_parameter) return against_parameter(plot, given, names);
-  const std::vector<FigureRun> grouped =
-      plot.by.empty() ? std::vector<FigureRun>() : by_curve(given, plot, names);
-  const std::span<const FigureRun> runs = plot.by.empty() ? given : grouped;
+  const ScalarMeasure* x = find_measure(plot.x);
+  const bool by_parameter = measured == nullptr && plot.x != "cycle" && x == nullptr;
+  const bool grouped = by_parameter || !plot.by.empty();
+  const std::vector<FigureRun> groups =
+      grouped ? by_curve(given, plot, names) : std::vector<FigureRun>();
   const std::vector<Curve> curves =
-      curves_by(runs, {}, [](const FigureRun&) { return nullptr; }, {});
-  if (measured != nullptr) return measured_curves(plot, *measured, curves);
-  const ScalarMeasure& measure = *find_measure(plot.y);
-  if (plot.traces) {
-    const ScalarMeasure* x = find_measure(plot.x);
-    return traces(plot, curves, quantity_of(measure),
-                  [of = x == nullptr ? Quantity() : quantity_of(*x)](const FigureRun&,
-                                                                     const CheckpointMeasures& c) {
-                    return of ? of(c.measures) : c.cycle;
-                  });
-  }
-  const MeasureColumn column = column_of(measure);
-  if (plot.x == "cycle") return against_cycle(plot.name, curves, std::span(&column, 1), {});
+      curves_by(grouped ? groups : given, {}, [](const FigureRun&) { return nullptr; }, {});
+  if (by_parameter || measured != nullptr) return against_x(plot, measured, curves);
+  const MeasureColumn column = scalar_column(plot.y);
+  if (plot.traces) return traces(plot, curves, column.quantity, x);
+  if (plot.x == "cycle") return against_cycle(plot.name, curves, {&column, 1}, {});
   if (plot.x == "phi") return against_phi(plot.name, curves, column, {});
   return against_measure(plot, curves);
-}
-
-std::string words_of(const nlohmann::json& where) {
-  std::string text;
-  for (const auto& [key, value] : where.items()) {
-    text += (text.empty() ? "" : ", ") + key + "=" +
-            (value.is_string() ? value.get<std::string>() : value.dump());
-  }
-  return text;
 }
 
 /// The runs of the one variant with these parameters.
@@ -280,12 +241,11 @@ std::vector<const FigureRun*> variant_with(const ClaimSpec& claim, const nlohman
 }
 
 FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> runs) {
-  const ScalarMeasure& measure = *find_measure(claim.compare);
+  const Quantity quantity = scalar_column(claim.compare).quantity;
   const auto first = static_cast<std::int64_t>(claim.first);
   const auto last = static_cast<std::int64_t>(claim.last);
-  const Scalar scalar = first == last
-                            ? at_cycle(claim.compare, quantity_of(measure), first)
-                            : over_cycles(claim.compare, quantity_of(measure), first, last);
+  const Scalar scalar = first == last ? at_cycle(claim.compare, quantity, first)
+                                      : over_cycles(claim.compare, quantity, first, last);
   const std::string a = words_of(claim.between[0]), b = words_of(claim.between[1]);
   const std::string text =
       claim.higher ? fmt::format("{}: {} is higher by more than {} for {} than for {}", claim.name,
@@ -310,11 +270,8 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   Figure figure{plot.name, plot.y + " against " + x, FigureNeeds::scalars,
                 [plot, names, measured](std::span<const FigureRun> runs) {
                   FigureTable table = draw(plot, runs, names);
-                  table.chart.x = axis_of(plot.x);
-                  if (measured != nullptr) {
-                    table.chart.x = named_axis(name_and_unit(measured->x, measured->x_unit).first,
-                                               measured->x_unit);
-                  }
+                  table.chart.x = measured == nullptr ? axis_of(plot.x)
+                                                      : named_axis(measured->x, measured->x_unit);
                   if (!plot.x_symbol.empty()) table.chart.x = {.symbol = italic(plot.x_symbol)};
                   if (!plot.x_unit.empty()) table.chart.x.unit = plot.x_unit;
                   table.chart.y = axis_of(plot.y);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "analysis/error.hpp"
-#include "analysis/gnuplot_script.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/plain_file.hpp"
 #include "provenance/io/temporary_folder.hpp"

@@ -4,10 +4,20 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 
-#include "analysis/figure.hpp"
+#include "analysis/chart.hpp"
 
 namespace shearcell {
+
+/// The gnuplot commands (gnuplot_script.cpp) that write NAME.svg into the current folder. They hold
+/// the points that they draw. A chart without points gets its axes and the words "no data". The
+/// same table gives the same bytes.
+std::string gnuplot_script(const FigureTable& table);
+
+/// How every script begins.
+inline constexpr std::string_view gnuplot_script_beginning = "set terminal svg size ";
 
 /// Throws NotOurs if a file that this program did not write has the name of one that it would
 /// write. A script is recognized by its first words, the CSV by its header or by the script beside

@@ -58,29 +58,19 @@ std::string colour_of(std::size_t k) {
   return amplitude_colours[k % amplitude_colours.size()];
 }
 
-int point_of(std::size_t k) {
-  return 5 + 2 * static_cast<int>(k % 5);
-}
-
 /// Fewer crystallites are not drawn as a point. [choice]
 constexpr std::size_t least_counted = 20;
 
 /// The fitted curve, and half the length of its interval.
-struct FittedSize {
-  double size;
-  double delta;
-  std::optional<double> error;
-};
-std::vector<FittedSize> fitted_sizes(const AmplitudeGrowth& one) {
-  std::vector<FittedSize> sizes;
+std::vector<ChartPoint> fitted_points(const AmplitudeGrowth& one) {
+  std::vector<ChartPoint> points;
   for (double size = 1; one.fit && size <= 60; size += size < 10 ? 1 : 5) {
-    FittedSize at{size, one.fit->delta_rho(size), std::nullopt};
+    ChartPoint& at = points.emplace_back(ChartPoint{size, one.fit->delta_rho(size)});
     if (const auto found = fitted_delta_rho(one.runs, size)) {
-      at.error = (found->interval.high - found->interval.low) / 2;
+      at.y_error = (found->interval.high - found->interval.low) / 2;
     }
-    sizes.push_back(at);
   }
-  return sizes;
+  return points;
 }
 
 /// Binned data over the fitted curve with its band.
@@ -96,16 +86,16 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     const AmplitudeGrowth& one = all[k];
     const std::string colour = colour_of(k);
-    Series fit{.colour = colour, .point = 0, .join = Join::line, .band = true};
-    for (const FittedSize& at : fitted_sizes(one)) {
-      fit.points.push_back({at.size, at.delta, std::nullopt, at.error});
-    }
-    Series data{.title = title_of(one.amplitude), .colour = colour, .point = point_of(k)};
+    chart.series.push_back({.colour = colour,
+                            .point = 0,
+                            .join = Join::line,
+                            .band = true,
+                            .points = fitted_points(one)});
+    Series& data = chart.series.emplace_back(
+        Series{.title = title_of(one.amplitude), .colour = colour, .point = filled_symbol(k)});
     for (const GrowthBin& bin : binned_growth(one.runs, least_counted)) {
       data.points.push_back({bin.size, bin.delta, std::nullopt, bin.delta_error});
     }
-    chart.series.push_back(std::move(fit));
-    chart.series.push_back(std::move(data));
     chart.lines.push_back({.at = one.published->critical_size,
                            .vertical = true,
                            .stub = true,
@@ -123,20 +113,19 @@ FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
                    "delta_rho_error",    "crystallites",   "runs"};
   for (const AmplitudeGrowth& one : all) {
     for (const GrowthRate& rate : growth_rates(one.runs)) {
-      table.rows.push_back({one.amplitude, std::int64_t{rate.size}, rate.grow, rate.shrink,
-                            rate.grow_error, rate.delta, rate.delta_error,
-                            static_cast<std::int64_t>(rate.counted),
-                            static_cast<std::int64_t>(one.runs.size())});
+      table.rows.push_back({one.amplitude, rate.size, rate.grow, rate.shrink, rate.grow_error,
+                            rate.delta, rate.delta_error, rate.counted, one.runs.size()});
     }
   }
   table.chart = chart_of(all);
   return table;
 }
 
-void add(std::vector<TableValue>& row, const std::optional<Estimate>& size) {
-  if (!size) return row.insert(row.end(), 4, std::monostate{}), void();
-  row.insert(row.end(), {size->value, size->interval.low, size->interval.high,
-                         size->spread / std::sqrt(static_cast<double>(size->runs))});
+/// Value, interval and standard error; nothing without an estimate.
+TableRow cells_of(const std::optional<Estimate>& size) {
+  if (!size) return TableRow(4);
+  return {size->value, size->interval.low, size->interval.high,
+          size->spread / std::sqrt(static_cast<double>(size->runs))};
 }
 
 FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
@@ -157,14 +146,13 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
                    "supplement_grains",
                    "runs"};
   for (const AmplitudeGrowth& one : all) {
-    std::vector<TableValue> row = {one.amplitude, one.published->n_bin,
-                                   table_value(one.onset_cycle)};
-    add(row, one.critical);
-    add(row, one.without_vanished);
-    row.insert(row.end(),
-               {one.fit ? TableValue(one.fit->slope) : std::monostate{},
-                one.published->critical_size, static_cast<std::int64_t>(one.runs.size())});
-    table.rows.push_back(std::move(row));
+    TableRow& row =
+        table.rows.emplace_back(TableRow{one.amplitude, one.published->n_bin, one.onset_cycle});
+    for (const auto& size : {one.critical, one.without_vanished}) {
+      std::ranges::move(cells_of(size), std::back_inserter(row));
+    }
+    row.insert(row.end(), {one.fit ? TableValue(one.fit->slope) : TableValue(),
+                           one.published->critical_size, one.runs.size()});
   }
   table.chart = {.x = amplitude_axis(),
                  .y = {.name = "critical size", .unit = "grains", .low = 0},
@@ -188,7 +176,8 @@ FigureTable largest_table(std::span<const FigureRun> runs, std::span<const Ampli
   std::vector<CurveStyle> styles;
   std::vector<ReferenceLine> lines;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    styles.push_back({all[k].amplitude, title_of(all[k].amplitude), colour_of(k), point_of(k)});
+    styles.push_back(
+        {all[k].amplitude, title_of(all[k].amplitude), colour_of(k), filled_symbol(k)});
     lines.push_back({.at = all[k].published->critical_size,
                      .colour = colour_of(k),
                      .title = "the supplement's critical sizes"});
@@ -210,9 +199,7 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   if (one.onset_cycle) note += fmt::format(", onset at cycle {:.3g} (median)", *one.onset_cycle);
   if (relative) {
     note += fmt::format("; {:.3g} grains", one.critical->value);
-    relative->value = relative->value / published - 1;
-    relative->interval = {relative->interval.low / published - 1,
-                          relative->interval.high / published - 1};
+    relative = mapped(*one.critical, [&](double size) { return size / published - 1; });
     relative->spread /= published;
   } else {
     note += one.runs.size() < least_runs ? "; too few runs" : "; no size at which growth begins";

@@ -38,52 +38,48 @@ std::string plain_field(std::string variant) {
   return variant;
 }
 
-/// Values of `keys` in a run.
-std::vector<nlohmann::json> values_of(const FigureRun& run, std::span<const std::string> keys) {
-  std::vector<nlohmann::json> values;
-  for (const std::string& key : keys) values.push_back(parameter_of(run, key));
-  return values;
-}
-
-template <class Value>
-int rank_in(const std::set<Value>& all, const Value& value) {
-  return static_cast<int>(std::distance(all.begin(), all.find(value)));
-}
-
-/// Styles by what varies: ranks of the values decide colour and symbol. Each pair comes once.
+/// Styles by what varies: the rank of a run's value of the first key decides the colour, that of
+/// the other values the symbol. Each pair comes once.
 class StylesOfOthers {
  public:
   explicit StylesOfOthers(std::span<const FigureRun> runs) : keys_(varied_keys(runs)) {
     for (const FigureRun& run : runs) {
-      std::vector<nlohmann::json> values = values_of(run, keys_);
-      if (!values.empty()) firsts_.insert(values.front());
-      if (!values.empty()) values.erase(values.begin());
-      rests_.insert(std::move(values));
+      const auto [first, rest] = values_of(run);
+      firsts_.insert(first);
+      rests_.insert(rest);
     }
   }
 
   /// Place among the variants.
-  std::pair<int, int> place(const FigureRun& run) const {
-    std::vector<nlohmann::json> values = values_of(run, keys_);
-    const int first = values.empty() ? 0 : rank_in(firsts_, values.front());
-    if (!values.empty()) values.erase(values.begin());
-    return {first, rank_in(rests_, values)};
+  std::pair<std::size_t, std::size_t> place(const FigureRun& run) const {
+    const auto rank = [](const std::set<nlohmann::json>& all, const nlohmann::json& value) {
+      return static_cast<std::size_t>(std::distance(all.begin(), all.find(value)));
+    };
+    const auto [first, rest] = values_of(run);
+    return {rank(firsts_, first), rank(rests_, rest)};
   }
   CurveStyle style(const FigureRun& run) const {
     const auto [first, rest] = place(run);
-    // 5, 7, 9, 11, 13: filled symbols; where one key varies, they change with the colour.
-    const int symbol = rests_.size() > 1 ? rest : first;
-    constexpr int symbols = 5;
+    // Where one key varies, the symbol changes with the colour.
     return {nullptr, run.name.empty() ? run.variant : run.name,
-            safe_colours[static_cast<std::size_t>(first) % safe_colours.size()],
-            5 + 2 * (symbol % symbols)};
+            safe_colours[first % safe_colours.size()],
+            filled_symbol(rests_.size() > 1 ? rest : first)};
   }
   const std::vector<std::string>& keys() const { return keys_; }
 
  private:
+  /// The value of the first key, and an array of the others.
+  std::pair<nlohmann::json, nlohmann::json> values_of(const FigureRun& run) const {
+    nlohmann::json first, rest = nlohmann::json::array();
+    for (const std::string& key : keys_) {
+      (key == keys_.front() ? first : rest.emplace_back()) = parameter_of(run, key);
+    }
+    return {first, rest};
+  }
+
   std::vector<std::string> keys_;
   std::set<nlohmann::json> firsts_;
-  std::set<std::vector<nlohmann::json>> rests_;
+  std::set<nlohmann::json> rests_;
 };
 
 std::vector<CurvePoint> points_of(std::span<const FigureRun* const> runs) {
@@ -105,6 +101,39 @@ std::vector<CurvePoint> points_of(std::span<const FigureRun* const> runs) {
   return points;
 }
 
+RunStatistics over(const CurvePoint& point, const Quantity& quantity) {
+  std::vector<double> values;
+  for (const Measures* measures : point.runs) values.push_back(quantity(*measures));
+  return over_runs(values);
+}
+
+/// Where runs end at different cycles, a mean over those that are left jumps: it ends with the
+/// first of them, and each run continues as a thin line. Returns whether there are such lines.
+bool follow_runs(const Curve& curve, const Quantity& quantity, Series& mean,
+                 std::vector<Series>& single) {
+  double first_end = std::numeric_limits<double>::infinity();
+  for (const FigureRun* run : curve.runs) {
+    if (!run->checkpoints.empty()) first_end = std::min(first_end, run->checkpoints.back().cycle);
+  }
+  if (static_cast<double>(curve.points.back().cycle) <= first_end) return false;
+  mean.columns = {};
+  for (const CurvePoint& point : curve.points) {
+    const auto cycle = static_cast<double>(point.cycle);
+    const RunStatistics statistics = over(point, quantity);
+    if (cycle > first_end || !statistics.mean) continue;
+    mean.points.push_back({cycle, *statistics.mean, std::nullopt, statistics.standard_error});
+  }
+  for (const FigureRun* run : curve.runs) {
+    Series line = thin_line({}, mean.colour);
+    for (const CheckpointMeasures& c : run->checkpoints) {
+      const double value = quantity(c.measures);
+      if (c.cycle >= first_end && std::isfinite(value)) line.points.push_back({c.cycle, value});
+    }
+    if (line.points.size() > 1) single.push_back(std::move(line));
+  }
+  return true;
+}
+
 const MeasureColumn crystalline = {"crystalline", "percent", &Measures::crystalline_percent};
 
 }  // namespace
@@ -118,9 +147,13 @@ void add_columns(const MeasureColumn& measure, std::vector<std::string>& columns
   columns.push_back(column_name(measure, "standard_error"));
 }
 
-void add_values(const RunStatistics& statistics, std::vector<TableValue>& row) {
-  row.push_back(table_value(statistics.mean));
-  row.push_back(table_value(statistics.standard_error));
+void add_values(const RunStatistics& statistics, TableRow& row) {
+  row.insert(row.end(), {statistics.mean, statistics.standard_error});
+}
+
+SeriesColumns columns_against(std::string x, const MeasureColumn& y) {
+  return {
+      .x = std::move(x), .y = column_name(y, "mean"), .y_error = column_name(y, "standard_error")};
 }
 
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
@@ -183,13 +216,6 @@ const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& val
   return found;
 }
 
-RunStatistics over(const CurvePoint& point, const Quantity& quantity) {
-  std::vector<double> values;
-  values.reserve(point.runs.size());
-  for (const Measures* measures : point.runs) values.push_back(quantity(*measures));
-  return over_runs(values);
-}
-
 Axis cycle_axis() {
   return {.name = "shear cycle", .symbol = italic("n"), .whole = true};
 }
@@ -220,6 +246,14 @@ std::vector<ReferenceLine> onset_lines() {
           {.at = published_onset_phi + published_onset_error, .title = title}};
 }
 
+Series thin_line(Text title, std::string colour, int point) {
+  return {.title = std::move(title),
+          .colour = std::move(colour),
+          .point = point,
+          .join = Join::line,
+          .thin = true};
+}
+
 std::vector<Series> series_of(std::span<const Curve> curves, const SeriesColumns& columns) {
   std::vector<Series> series;
   std::set<std::string> titles;
@@ -239,56 +273,21 @@ std::vector<Series> series_of(std::span<const Curve> curves, const SeriesColumns
   return series;
 }
 
-namespace {
-
-/// Where runs end at different cycles, a mean over those that are left jumps: it ends with the
-/// first of them, and each run continues as a thin line. Returns whether there are such lines.
-bool follow_runs(const Curve& curve, const Quantity& quantity, Series& mean,
-                 std::vector<Series>& single) {
-  double first_end = std::numeric_limits<double>::infinity();
-  for (const FigureRun* run : curve.runs) {
-    if (!run->checkpoints.empty()) first_end = std::min(first_end, run->checkpoints.back().cycle);
-  }
-  if (static_cast<double>(curve.points.back().cycle) <= first_end) return false;
-  mean.columns = {};
-  for (const CurvePoint& point : curve.points) {
-    const auto cycle = static_cast<double>(point.cycle);
-    const RunStatistics statistics = over(point, quantity);
-    if (cycle > first_end || !statistics.mean) continue;
-    mean.points.push_back({cycle, *statistics.mean, std::nullopt, statistics.standard_error});
-  }
-  for (const FigureRun* run : curve.runs) {
-    Series line{.colour = mean.colour, .point = 0, .join = Join::line, .thin = true};
-    for (const CheckpointMeasures& c : run->checkpoints) {
-      const double value = quantity(c.measures);
-      if (c.cycle < first_end || !std::isfinite(value)) continue;
-      line.points.push_back({c.cycle, value});
-    }
-    if (line.points.size() > 1) single.push_back(std::move(line));
-  }
-  return true;
-}
-
-}  // namespace
-
 FigureTable against_cycle(const std::string& name, std::span<const Curve> curves,
                           std::span<const MeasureColumn> measures, Axis y) {
-  FigureTable table{.name = name, .columns = {"variant", "cycle"}, .rows = {}};
+  FigureTable table{.name = name, .columns = {"variant", "cycle"}};
   for (const MeasureColumn& measure : measures) add_columns(measure, table.columns);
   table.columns.emplace_back("runs");
   for (const Curve& curve : curves) {
     for (const CurvePoint& point : curve.points) {
-      auto& row = table.rows.emplace_back(std::vector<TableValue>{curve.variant, point.cycle});
+      TableRow& row = table.rows.emplace_back(TableRow{curve.variant, point.cycle});
       for (const MeasureColumn& measure : measures) add_values(over(point, measure.quantity), row);
-      row.emplace_back(static_cast<std::int64_t>(over(point, measures.front().quantity).runs));
+      row.emplace_back(over(point, measures.front().quantity).runs);
     }
   }
-  table.chart = {
-      .x = cycle_axis(),
-      .y = std::move(y),
-      .series = series_of(curves, {.x = "cycle",
-                                   .y = column_name(measures.front(), "mean"),
-                                   .y_error = column_name(measures.front(), "standard_error")})};
+  table.chart = {.x = cycle_axis(),
+                 .y = std::move(y),
+                 .series = series_of(curves, columns_against("cycle", measures.front()))};
   std::vector<Series> single;
   for (std::size_t k = 0; k < curves.size(); ++k) {
     if (follow_runs(curves[k], measures.front().quantity, table.chart.series[k], single)) {
@@ -301,26 +300,22 @@ FigureTable against_cycle(const std::string& name, std::span<const Curve> curves
 
 FigureTable against_phi(const std::string& name, std::span<const Curve> curves,
                         const MeasureColumn& measure, Axis y) {
-  FigureTable table{.name = name,
-                    .columns = {"variant", "phi_low", "phi_high", "phi_mean", "phi_standard_error"},
-                    .rows = {}};
+  FigureTable table{
+      .name = name,
+      .columns = {"variant", "phi_low", "phi_high", "phi_mean", "phi_standard_error"}};
   add_columns(measure, table.columns);
   table.columns.emplace_back("runs");
   for (const Curve& curve : curves) {
     for (const PhiBin& bin : binned_by_phi(curve.runs, measure.quantity)) {
-      auto& row =
-          table.rows.emplace_back(std::vector<TableValue>{curve.variant, bin.low, bin.high});
+      TableRow& row = table.rows.emplace_back(TableRow{curve.variant, bin.low, bin.high});
       add_values(bin.phi, row);
       add_values(bin.value, row);
-      row.emplace_back(static_cast<std::int64_t>(bin.value.runs));
+      row.emplace_back(bin.value.runs);
     }
   }
-  table.chart = {.x = phi_axis(),
-                 .y = std::move(y),
-                 .series = series_of(curves, {.x = "phi_mean",
-                                              .y = column_name(measure, "mean"),
-                                              .x_error = "phi_standard_error",
-                                              .y_error = column_name(measure, "standard_error")})};
+  SeriesColumns columns = columns_against("phi_mean", measure);
+  columns.x_error = "phi_standard_error";
+  table.chart = {.x = phi_axis(), .y = std::move(y), .series = series_of(curves, columns)};
   return table;
 }
 
@@ -333,7 +328,7 @@ FigureTable phi_against_cycle(const std::string& name, std::span<const Curve> cu
 }
 
 FigureTable crystallinity_against_cycle(const std::string& name, std::span<const Curve> curves) {
-  return against_cycle(name, curves, std::span(&crystalline, 1), crystalline_axis());
+  return against_cycle(name, curves, {&crystalline, 1}, crystalline_axis());
 }
 
 FigureTable crystallinity_against_phi(const std::string& name, std::span<const Curve> curves) {

@@ -57,8 +57,6 @@ std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string&
 /// The one curve in which the parameter has that value; null if there is none, or several.
 const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& value);
 
-RunStatistics over(const CurvePoint& point, const Quantity& quantity);
-
 // The axes that several figures share.
 Axis cycle_axis();
 Axis phi_axis();
@@ -73,6 +71,14 @@ std::vector<ReferenceLine> onset_lines();
 /// Colours that readers with any colour vision tell apart (Okabe and Ito, jfly.uni-koeln.de/color).
 inline constexpr std::array<const char*, 7> safe_colours = {
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+
+/// Filled symbols, one after the other.
+inline int filled_symbol(std::size_t k) {
+  return 5 + 2 * static_cast<int>(k % 5);
+}
+
+/// The trace of one run.
+Series thin_line(Text title, std::string colour, int point = 0);
 
 /// Joined points with error bars for each curve. The table has a column "variant". Throws
 /// AnalysisError if two curves have the same title.
@@ -89,7 +95,9 @@ struct MeasureColumn {
 /// Name of a column: "mean", "standard_error".
 std::string column_name(const MeasureColumn& measure, const char* statistic);
 void add_columns(const MeasureColumn& measure, std::vector<std::string>& columns);
-void add_values(const RunStatistics& statistics, std::vector<TableValue>& row);
+void add_values(const RunStatistics& statistics, TableRow& row);
+/// Columns of x, by name, and of the measure's mean with its error.
+SeriesColumns columns_against(std::string x, const MeasureColumn& y);
 
 /// A row for each variant and cycle. The first measure is drawn.
 FigureTable against_cycle(const std::string& name, std::span<const Curve> curves,

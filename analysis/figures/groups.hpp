@@ -27,9 +27,15 @@ Verdict interior_is_published(double grains, RunGroup runs);
 /// The onset by method 1 is at phi = 0.646.
 Verdict onset_is_published(RunGroup runs, std::string claim);
 
+/// The onset by a method, with the supplement's critical size for the amplitude of the runs.
+Onset onset_of(RunGroup runs, OnsetMethod method);
+
 /// The columns of an onset, behind others.
 std::vector<std::string> onset_columns(std::vector<std::string> columns);
 /// Their values, behind those of the others.
-std::vector<TableValue> onset_row(std::vector<TableValue> row, const Onset& onset);
+TableRow onset_row(TableRow row, const Onset& onset);
+/// Points of those columns against the column `x`.
+Series onset_points(Text title, const char* colour, int point, const char* x,
+                    RowFilter filter = {});
 
 }  // namespace shearcell

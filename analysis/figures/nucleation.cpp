@@ -43,7 +43,7 @@ std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns
     series.push_back({.title = italic("A") + fmt::format(" = {}, ", group.first) + italic("N") +
                                fmt::format(" = {}", group.second),
                       .colour = safe_colours[k % safe_colours.size()],
-                      .point = 5 + 2 * static_cast<int>(k % 5),
+                      .point = filled_symbol(k),
                       .join = join,
                       .columns = columns,
                       .filter = {"group", name_of(group)}});
@@ -59,8 +59,7 @@ FigureTable survival_table(const Groups& groups) {
     const std::vector<Waiting> waits = waits_for_onset(runs);
     double before = 1;
     const auto add = [&, &group = group](double cycle, double share) {
-      table.rows.push_back({name_of(group), group.first, group.second, cycle, share,
-                            static_cast<std::int64_t>(waits.size())});
+      table.rows.push_back({name_of(group), group.first, group.second, cycle, share, waits.size()});
     };
     add(0, before);
     for (const SurvivalStep& step : kaplan_meier(waits)) {
@@ -102,7 +101,7 @@ FigureTable rate_table(const Groups& groups) {
   for (const auto& [group, runs] : groups) {
     for (const NucleationRate& bin : nucleation_rates(runs)) {
       table.rows.push_back({name_of(group), group.first, group.second, bin.phi_low, bin.phi_high,
-                            static_cast<std::int64_t>(bin.events), bin.grain_cycles,
+                            bin.events, bin.grain_cycles,
                             bin.events > 0 ? TableValue(bin.rate) : TableValue(), error_of(bin),
                             bin.interval.low, bin.interval.high});
     }
@@ -121,10 +120,7 @@ FigureTable rate_table(const Groups& groups) {
 Verdict rate_follows_volume(std::span<const FigureRun> runs) {
   const std::vector<const FigureRun*> all = pointers(runs);
   std::optional<Estimate> excess = size_exponent(all);
-  if (excess) {
-    excess->value -= 1;
-    excess->interval = {excess->interval.low - 1, excess->interval.high - 1};
-  }
+  if (excess) excess = mapped(*excess, [](double exponent) { return exponent - 1; });
   return decide({"title: the rate of nucleation is proportional to the volume, not to the area of "
                  "the walls",
                  margin_size_exponent.value},

@@ -80,7 +80,7 @@ std::vector<Series> series_under(const Load& load) {
                               .y = column + "_mean",
                               .x_error = "overlap_standard_error_d",
                               .y_error = column + "_standard_error"},
-                  .filter = {"pressure_at", std::string(load.moves)}};
+                  .filter = {"pressure_at", load.moves}};
   };
   return {phi_series(italic("ϕ") + subscript("u") + ", uncorrected", 6, "phi_u"),
           phi_series(italic("ϕ"), 7, "phi")};
@@ -100,13 +100,9 @@ FigureTable table_of(std::span<const FigureRun> runs) {
     const std::vector<const FigureRun*> under = runs_under(load, runs);
     if (under.empty()) continue;
     for (const auto& [hundredths, at] : by_stiffness(under)) {
-      const RunStatistics phi = over_runs(at.phi);
-      const RunStatistics phi_u = over_runs(at.phi_u);
-      const RunStatistics overlaps = over_runs(at.overlap);
-      table.rows.push_back({load.moves, hundredths / 100.0, table_value(overlaps.mean),
-                            table_value(overlaps.standard_error), table_value(phi_u.mean),
-                            table_value(phi_u.standard_error), table_value(phi.mean),
-                            table_value(phi.standard_error), static_cast<std::int64_t>(phi.runs)});
+      TableRow& row = table.rows.emplace_back(TableRow{load.moves, hundredths / 100.0});
+      for (const auto& values : {at.overlap, at.phi_u, at.phi}) add_values(over_runs(values), row);
+      row.emplace_back(over_runs(at.phi).runs);
     }
     for (Series& series : series_under(load)) table.chart.series.push_back(std::move(series));
   }

@@ -29,10 +29,11 @@ struct Places {
   std::size_t count = 0;
 };
 
-Places places_of(RunGroup runs, CellAxis axis) {
+/// By `find`: of all crystallites of that size, or of each nucleus once.
+Places places_of(RunGroup runs, CellAxis axis, decltype(nucleus_places)* find = nucleus_places) {
   Places places;
   for (const FigureRun* run : runs) {
-    std::vector<double> found = nucleus_places(*run, axis);
+    std::vector<double> found = find(*run, axis);
     if (found.empty()) continue;
     places.count += found.size();
     places.runs.push_back(std::move(found));
@@ -64,15 +65,13 @@ FigureTable density_table(std::string name, std::string first_column, Text x,
   static const std::array<const char*, 4> colours = {"#000000", "#d55e00", "#0072b2", "#009e73"};
   FigureTable table{.name = std::move(name),
                     .columns = {std::move(first_column), "low", "high", "probability_density",
-                                "standard_error", "crystallites", "runs"},
-                    .rows = {}};
+                                "standard_error", "crystallites", "runs"}};
   table.chart = {.x = {.name = "position", .symbol = std::move(x), .low = 0, .high = 1},
                  .y = {.name = "probability density", .symbol = italic("P"), .low = 0}};
   for (const Profile& profile : profiles) {
     for (const DensityBin& bin : density(profile.places.runs, bins)) {
-      table.rows.push_back({profile.key, bin.low, bin.high, bin.density, table_value(bin.error),
-                            static_cast<std::int64_t>(profile.places.count),
-                            static_cast<std::int64_t>(profile.places.runs.size())});
+      table.rows.push_back({profile.key, bin.low, bin.high, bin.density, bin.error,
+                            profile.places.count, profile.places.runs.size()});
     }
     const std::size_t k = table.chart.series.size();
     table.chart.series.push_back({.title = profile.title,
@@ -95,19 +94,12 @@ Text ratio(const char* length, const Text& unit) {
 /// in the one part, -1 in the other, 0 elsewhere, and nothing where a nucleus is not counted.
 Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
                       const std::function<std::optional<int>(double place)>& side) {
-  std::vector<std::vector<double>> places;
-  std::size_t count = 0;
-  for (const FigureRun* run : runs) {
-    std::vector<double> found = nucleus_births(*run, axis);
-    if (found.empty()) continue;
-    count += found.size();
-    places.push_back(std::move(found));
-  }
+  const Places places = places_of(runs, axis, nucleus_births);
   const auto difference = [&](std::span<const std::size_t> selection) {
     double sum = 0;
     double all = 0;
     for (const std::size_t run : selection) {
-      for (const double place : places[run]) {
+      for (const double place : places.runs[run]) {
         const std::optional<int> counted = side(place);
         if (!counted) continue;
         sum += *counted;
@@ -116,9 +108,10 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
     }
     return std::optional<double>(sum / all);
   };
-  return decide(claim, std::move(quantity), bootstrapped(places.size(), difference), places.size(),
-                fmt::format("{} nuclei of {} to {} grains in {} of {} runs", count,
-                            nucleus_smallest, nucleus_largest, places.size(), runs.size()));
+  const std::size_t found = places.runs.size();
+  return decide(claim, std::move(quantity), bootstrapped(found, difference), found,
+                fmt::format("{} nuclei of {} to {} grains in {} of {} runs", places.count,
+                            nucleus_smallest, nucleus_largest, found, runs.size()));
 }
 
 /// Inner half of the accessible width against the outer half.

@@ -149,8 +149,7 @@ FigureResult figure_table1(std::span<const FigureRun> runs) {
   }
   FigureTable table{.name = "table1",
                     .columns = {"experiment", "parameter", "supplement", "smallest", "largest",
-                                "runs", "comparison"},
-                    .rows = {}};
+                                "runs", "comparison"}};
   if (!experiments.empty()) table.text = heading();
   for (const auto& [experiment, members] : experiments) {
     auto& row = table.text.rows.emplace_back();
@@ -158,9 +157,8 @@ FigureResult figure_table1(std::span<const FigureRun> runs) {
     for (const Parameter& parameter : parameters()) {
       const Found found = found_in(members, parameter);
       const std::string comparison = found.beside(parameter.published);
-      table.rows.push_back({experiment, std::string(parameter.name), parameter.published,
-                            found.smallest, found.largest, static_cast<std::int64_t>(found.runs),
-                            comparison});
+      table.rows.push_back({experiment, parameter.name, parameter.published, found.smallest,
+                            found.largest, found.runs, comparison});
       row.push_back({range_text(found), colour_of(comparison)});
     }
   }

@@ -44,7 +44,9 @@ void table(const TableOptions& options, Context& context) {
       tell_stderr("not measured: {}\n", line);
     }
   }
-  if (!made.trouble.empty()) tell_stderr("measures cannot be cached: {}\n", made.trouble);
+  if (!made.cache_trouble.empty()) {
+    tell_stderr("measures cannot be cached: {}\n", made.cache_trouble);
+  }
   if (!made.damage.empty()) context.exit_code = kStoreDamaged;
 }
 

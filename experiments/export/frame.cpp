@@ -6,7 +6,7 @@
 
 #include "analysis/common_neighbours.hpp"
 #include "analysis/motion.hpp"
-#include "experiments/figures/within_cycle.hpp"
+#include "experiments/figures/more_measures.hpp"
 
 namespace shearcell {
 namespace {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <ranges>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -33,47 +34,35 @@ std::vector<std::uint64_t> asked_steps(const Store& store, const CollectedRun& r
   return checkpoint_steps(ask_of(store, run.run.id, run.membership), motion, first, last);
 }
 
-/// Of cycles first to last, with the phases that the experiment asks for: an interruption, or
-/// another experiment, leaves others.
-std::vector<CheckpointRecord> checkpoints_within(const Store& store,
-                                                 const std::array<std::uint64_t, 2>& cycles,
-                                                 const CollectedRun& run) {
-  const auto last = static_cast<double>(std::min(cycles[1], run.membership.target_cycles));
-  const auto steps = asked_steps(store, run, static_cast<double>(cycles[0]), last);
-  std::vector<CheckpointRecord> found = store.checkpoints(run.run.id, true);
-  std::erase_if(found, [&](const CheckpointRecord& record) {
-    const bool within = record.cycle >= static_cast<double>(cycles[0]) && record.cycle <= last;
-    const bool whole = record.cycle == std::floor(record.cycle);
-    return record.state == CheckpointState::rejected || !within ||
-           !(whole || std::ranges::binary_search(steps, record.step));
-  });
-  return found;
-}
-
-/// At whole cycles, up to the end that the experiment asks for: another experiment may have
-/// extended the run. A figure that measures nothing gets the last one only.
+/// Those of a figure: at whole cycles or, within the cycles that it names, also at the phases that
+/// the experiment asks for. Not beyond the end that the experiment asks for: another experiment may
+/// have extended the run, and an interruption leaves checkpoints of its own. A figure that measures
+/// nothing gets the last one only.
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
                                              const CollectedRun& run) {
-  if (figure.within) return checkpoints_within(store, *figure.within, run);
-  std::vector<CheckpointRecord> found;
-  const auto end = static_cast<double>(run.membership.target_cycles);
-  for (const CheckpointRecord& record : store.checkpoints(run.run.id, true)) {
-    if (record.state == CheckpointState::rejected) continue;
-    if (record.cycle != std::floor(record.cycle) || record.cycle > end) continue;
-    if (figure.needs == FigureNeeds::none) found.clear();
-    found.push_back(record);
+  double first = 0, last = static_cast<double>(run.membership.target_cycles);
+  std::vector<std::uint64_t> phases;
+  if (figure.within) {
+    first = static_cast<double>(figure.within->front());
+    last = std::min(last, static_cast<double>(figure.within->back()));
+    phases = asked_steps(store, run, first, last);
   }
+  std::vector<CheckpointRecord> found = store.checkpoints(run.run.id, true);
+  std::erase_if(found, [&](const CheckpointRecord& record) {
+    const bool whole = record.cycle == std::floor(record.cycle);
+    return record.state == CheckpointState::rejected || record.cycle < first ||
+           record.cycle > last || !(whole || std::ranges::binary_search(phases, record.step));
+  });
+  if (figure.needs == FigureNeeds::none && !found.empty())
+    found.erase(found.begin(), --found.end());
   return found;
 }
 
 /// "fluid=still, fluid=cell and 3 more".
 std::string some_of(const std::set<std::string>& names) {
   constexpr std::size_t most = 3;
-  const std::vector<std::string> first(
-      names.begin(),
-      std::next(names.begin(), static_cast<std::ptrdiff_t>(std::min(names.size(), most))));
-  return fmt::format("{}{}", fmt::join(first, ", "),
-                     names.size() > most ? fmt::format(" and {} more", names.size() - most) : "");
+  const std::string first = fmt::format("{}", fmt::join(names | std::views::take(most), ", "));
+  return names.size() > most ? fmt::format("{} and {} more", first, names.size() - most) : first;
 }
 
 /// Runs of one figure, each run once and each seed of a variant once.
@@ -103,9 +92,7 @@ class Chosen {
     Membership& m = run.membership;
     if (ids_.contains({m.experiment, run.run.id})) return;
     if (!all_versions_) {
-      Left& left = left_[{m.experiment, m.manifest}];
-      left.variants.insert(m.variant);
-      ++left.runs;
+      left_[{m.experiment, m.manifest}].push_back(m.variant);
       return;
     }
     m.labels["manifest"] = m.manifest.substr(0, 8);
@@ -114,26 +101,24 @@ class Chosen {
   }
 
   std::vector<std::string> notes() {
-    for (const auto& [version, left] : left_) {
+    for (const auto& [version, variants] : left_) {
       notes_.push_back(fmt::format(
           "experiment {}: {} runs of another version of its manifest ({:.8}) are left out: {}; "
           "--all-versions adds them",
-          version.first, left.runs, version.second, some_of(left.variants)));
+          version.first, variants.size(), version.second,
+          some_of({variants.begin(), variants.end()})));
     }
     return std::move(notes_);
   }
   std::vector<CollectedRun> runs() { return std::move(runs_); }
 
  private:
-  struct Left {
-    std::size_t runs = 0;
-    std::set<std::string> variants;
-  };
   bool all_versions_;
   std::vector<CollectedRun> runs_;
   std::set<std::pair<std::string, std::string>> ids_;  // experiment, run
   std::map<std::tuple<std::string, std::string, std::uint64_t>, std::size_t> places_;
-  std::map<std::pair<std::string, std::string>, Left> left_;  // by experiment and manifest
+  // Variants of the runs that were left out, by experiment and manifest.
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> left_;
   std::vector<std::string> notes_;
 };
 
@@ -166,27 +151,25 @@ std::vector<std::string> never_made(const Store& store, const Figure& figure,
     std::size_t checkpoints = 0;
     std::set<std::string> runs;
   };
-  Lack ours, lammps;
+  std::map<bool, Lack> lacks;  // by whether the run is of LAMMPS
   for (const CollectedRun& run : runs) {
     const std::size_t missing =
         figure.within ? missing_within(store, *figure.within, run) : missing_of(run);
     if (missing == 0) continue;
-    Lack& lack = engine_of(run.run.resolved) == EngineKind::lammps ? lammps : ours;
+    Lack& lack = lacks[engine_of(run.run.resolved) == EngineKind::lammps];
     lack.checkpoints += missing;
     lack.runs.insert(run.run.id.substr(0, 8));
   }
   std::vector<std::string> notes;
-  const auto add = [&](const Lack& lack, const char* remedy) {
-    if (lack.runs.empty()) return;
-    notes.push_back(
-        fmt::format("{} checkpoints that the manifest asks for were never made (runs {}); {}",
-                    lack.checkpoints, some_of(lack.runs), remedy));
-  };
-  add(ours, "`shearcell run` with the manifest, or `shearcell resume RUN`, computes them");
-  add(lammps,
-      "these runs are of LAMMPS, which does not repeat bits: `run` and `resume` leave them out, "
-      "and "
-      "the checkpoints cannot be made later");
+  for (const auto& [of_lammps, lack] : lacks) {
+    notes.push_back(fmt::format(
+        "{} checkpoints that the manifest asks for were never made (runs {}); {}", lack.checkpoints,
+        some_of(lack.runs),
+        of_lammps
+            ? "these runs are of LAMMPS, which does not repeat bits: `run` and `resume` leave "
+              "them out, and the checkpoints cannot be made later"
+            : "`shearcell run` with the manifest, or `shearcell resume RUN`, computes them"));
+  }
   return notes;
 }
 
@@ -196,12 +179,6 @@ std::string unknown_name(const char* what, const std::string& name,
   return fmt::format("there is no {} {}; {}", what, name,
                      nearest.name.empty() ? fmt::format("known are {}", fmt::join(known, ", "))
                                           : "did you mean " + nearest.name + "?");
-}
-
-std::string unknown_figure(const std::string& name) {
-  std::vector<std::string_view> known;
-  for (const Figure& figure : all_figures()) known.emplace_back(figure.name);
-  return unknown_name("figure", name, known);
 }
 
 std::vector<Figure> own_figures(const RegisteredManifest& manifest) {
@@ -261,8 +238,9 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
     return names.empty() || std::ranges::find(names, name) != names.end();
   };
   WantedFigures wanted;
-  std::set<std::string> known, reported;
-  for (const Figure& figure : all_figures()) known.insert(figure.name);
+  std::vector<std::string_view> supplement;
+  for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
+  std::set<std::string> known(supplement.begin(), supplement.end()), reported;
   for (const Figure& figure : all_figures()) {
     if (figure.form != FigureForm::table || manifests.empty() || !asked(figure.name)) continue;
     if (!experiment || !names.empty()) wanted.figures.push_back({figure, ""});
@@ -280,7 +258,8 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
     }
     for (const std::string& name : manifest.figures) {
       if (!names.empty() || find_figure(name) != nullptr || !reported.insert(name).second) continue;
-      wanted.unknown.push_back("experiment " + manifest.experiment + ": " + unknown_figure(name));
+      wanted.unknown.push_back("experiment " + manifest.experiment + ": " +
+                               unknown_name("figure", name, supplement));
     }
   }
   for (const std::string& name : names) {
@@ -322,15 +301,11 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   CollectedRuns collected;
   collected.scale = (current.empty() ? older : current).back().membership.scale;
   Chosen chosen(options.all_versions);
-  for (std::vector<CollectedRun>* runs : {&current, &older}) {
-    for (CollectedRun& run : *runs) {
-      if (run.membership.scale != collected.scale) continue;
-      if (runs == &current) {
-        chosen.take(std::move(run));
-      } else {
-        chosen.take_older(std::move(run));
-      }
-    }
+  for (CollectedRun& run : current) {
+    if (run.membership.scale == collected.scale) chosen.take(std::move(run));
+  }
+  for (CollectedRun& run : older) {
+    if (run.membership.scale == collected.scale) chosen.take_older(std::move(run));
   }
   collected.runs = chosen.runs();
   collected.notes = chosen.notes();

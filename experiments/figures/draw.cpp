@@ -11,10 +11,8 @@
 
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
-#include "experiments/figures/at_rest.hpp"
 #include "experiments/figures/lineage.hpp"
-#include "experiments/figures/measure.hpp"
-#include "experiments/figures/within_cycle.hpp"
+#include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/derived.hpp"
@@ -24,16 +22,11 @@
 namespace shearcell {
 namespace {
 
-struct FigureMeasures {
-  Measures measures;
-  std::optional<CrystalliteMap> crystallites;
-};
-
 std::vector<DerivedMeasure> needed(const Figure& figure) {
   if (figure.needs == FigureNeeds::none) return {};
   std::vector<DerivedMeasure> measures = {scalar_measures()};
   for (const std::string& name : figure.derived) {
-    if (name == "drive" || name == "ledger") continue;  // within_cycle.hpp
+    if (name == "drive" || name == "ledger") continue;  // more_measures.hpp
     if (std::ranges::find(measures, name, &DerivedMeasure::name) == measures.end()) {
       measures.push_back(derived_measure(name));
     }
@@ -43,21 +36,20 @@ std::vector<DerivedMeasure> needed(const Figure& figure) {
 }
 
 /// Measures of the checkpoints of all runs, one after the other; empty if one cannot be read.
-std::vector<std::optional<FigureMeasures>> measures_of(const Store& store, const Figure& figure,
-                                                       const std::vector<CollectedRun>& inputs,
-                                                       const FigureOptions& options,
-                                                       FigureSummary& result) {
+std::vector<std::optional<CheckpointMeasures>> measures_of(const Store& store, const Figure& figure,
+                                                           const std::vector<CollectedRun>& inputs,
+                                                           const MeasureOptions& options,
+                                                           MeasureOutcome& outcome) {
   std::vector<CheckpointRecord> records;
   for (const CollectedRun& input : inputs) {
     records.insert(records.end(), input.checkpoints.begin(), input.checkpoints.end());
   }
   const std::vector<DerivedMeasure> measures = needed(figure);
-  MeasuredCheckpoints found = measure_checkpoints(store, records, measures,
-                                                  {options.workers, options.fresh, options.report});
-  std::vector<std::optional<FigureMeasures>> measured;
+  MeasuredCheckpoints found = measure_checkpoints(store, records, measures, options);
+  std::vector<std::optional<CheckpointMeasures>> measured;
   try {
     for (auto& results : found.results) {
-      std::optional<FigureMeasures>& one = measured.emplace_back();
+      std::optional<CheckpointMeasures>& one = measured.emplace_back();
       if (std::ranges::any_of(results, &nlohmann::json::is_null)) continue;
       one.emplace();
       one->measures = read_results(measures, results);
@@ -71,29 +63,23 @@ std::vector<std::optional<FigureMeasures>> measures_of(const Store& store, const
                         problem.what() + "); delete it, or measure again with --fresh");
   }
   if (figure.at_rest) {
-    const std::vector<double> phi =
-        phi_at_rest(store, records, {options.workers, options.fresh, options.report});
+    const std::vector<double> phi = phi_at_rest(store, records, options);
     for (std::size_t i = 0; i < measured.size(); ++i) {
       if (measured[i]) measured[i]->measures.phi_at_rest = phi[i];
     }
   }
   if (figure.needs_derived("ledger")) {
-    const auto energies =
-        cycle_energies(store, records, {options.workers, options.fresh, options.report});
+    auto energies = cycle_energies(store, records, options);
     for (std::size_t i = 0; i < measured.size(); ++i) {
-      if (measured[i]) add_energy(energies[i], measured[i]->measures);
+      if (measured[i]) measured[i]->measures.numbers.merge(energies[i]);
     }
   }
-  result.measured = found.computed;
-  result.damage = std::move(found.damage);
-  result.pruned = std::move(found.pruned);
-  result.changed = std::move(found.changed);
-  result.cache_trouble = std::move(found.trouble);
+  outcome = std::move(found);
   return measured;
 }
 
 std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
-                                   std::vector<std::optional<FigureMeasures>> measured) {
+                                   std::vector<std::optional<CheckpointMeasures>> measured) {
   std::vector<FigureRun> runs;
   std::size_t next = 0;
   for (const CollectedRun& input : inputs) {
@@ -107,17 +93,14 @@ std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
                   input.membership.seed,
                   {}};
     for (const CheckpointRecord& record : input.checkpoints) {
-      std::optional<FigureMeasures>& one = measured[next++];
+      std::optional<CheckpointMeasures>& one = measured[next++];
       if (!one) continue;
-      CheckpointMeasures& checkpoint = run.checkpoints.emplace_back();
+      CheckpointMeasures& checkpoint = run.checkpoints.emplace_back(std::move(*one));
       checkpoint.cycle = record.cycle;
       checkpoint.step = record.step;
       checkpoint.sha256 = record.sha256;
-      checkpoint.measures = one->measures;
       checkpoint.measures.units = mechanical_units(input.run, record);
       add_drive(input.run, record, checkpoint.measures);
-      add_drive(input.run, record, checkpoint.measures);
-      checkpoint.crystallites = std::move(one->crystallites);
       const auto stiffness = record.observables.find("stiffness_N_per_m");
       if (stiffness != record.observables.end()) checkpoint.stiffness_N_per_m = stiffness->second;
     }
@@ -132,16 +115,16 @@ nlohmann::json lineage_of(const Store& store, const FigureSummary& result,
                           const std::vector<FigureRun>& runs) {
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t r = 0; r < runs.size(); ++r) {
+    const CollectedRun& input = inputs[r];
     nlohmann::json checkpoints = nlohmann::json::array();
     for (const CheckpointMeasures& c : runs[r].checkpoints) checkpoints.push_back(c.sha256);
-    list.push_back({{"run", runs[r].run_id},
-                    {"parent", inputs[r].run.parent},
-                    {"experiment", inputs[r].membership.experiment},
-                    {"manifest", inputs[r].membership.manifest},
-                    {"variant", runs[r].variant},
-                    {"seed", runs[r].seed},
+    list.push_back({{"run", input.run.id},
+                    {"parent", input.run.parent},
+                    {"experiment", input.membership.experiment},
+                    {"manifest", input.membership.manifest},
+                    {"variant", input.membership.variant},
+                    {"seed", input.membership.seed},
                     {"checkpoints", checkpoints}});
-    const CollectedRun& input = inputs[r];
     if (auto given = overrides_of(store, input.run, input.membership); !given.is_null()) {
       list.back()["overrides"] = std::move(given);
     }
@@ -251,18 +234,19 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
   lay_out(made.tables, options.wide);
   std::filesystem::create_directories(folder);
   for (const FigureTable& table : made.tables) require_own_files(table, folder);
-  require_ours(folder / (result.name + ".verdict.json"), [](std::string_view beginning) {
+  const std::string base = folder / result.name;
+  require_ours(base + ".verdict.json", [](std::string_view beginning) {
     return beginning.starts_with("{\n \"claims\": [");
   });
-  require_ours(folder / (result.name + ".caption.txt"), [&](std::string_view beginning) {
+  require_ours(base + ".caption.txt", [&](std::string_view beginning) {
     return beginning.starts_with("Figure " + result.name + ". ");
   });
-  require_ours(folder / (result.name + ".lineage.json"), [&](std::string_view beginning) {
+  require_ours(base + ".lineage.json", [&](std::string_view beginning) {
     return beginning.starts_with("{\n \"analysis_version\": ") &&
            beginning.find("\n \"figure\": \"" + result.name + "\"") != beginning.npos;
   });
   const auto write = [&](const char* ending, const std::string& text) {
-    result.files.push_back(folder / (result.name + ending));
+    result.files.emplace_back(base + ending);
     write_output(result.files.back(), text);
   };
   for (const FigureTable& table : made.tables) {

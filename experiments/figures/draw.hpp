@@ -4,40 +4,32 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/figures/collect.hpp"
+#include "experiments/figures/measure.hpp"
 
 namespace shearcell {
 
-struct FigureOptions {
+/// `fresh` measures every checkpoint again, even if the store keeps its measures.
+struct FigureOptions : MeasureOptions {
   std::filesystem::path folder;  ///< the files go into its folder EXPERIMENT; created if missing
   CollectOptions collect = {};
   bool wide = false;  ///< drawn over two columns of a journal
-  std::size_t workers = 1;
-  bool fresh = false;  ///< measure every checkpoint again, even if the store keeps its measures
-  std::function<void(std::size_t done, std::size_t total)> report;  ///< may be empty
 };
 
-struct FigureSummary {
+struct FigureSummary : MeasureOutcome {
   std::string name;
   std::string title;
   std::string experiment;  ///< "" if it is about all
   std::string scale;
   std::size_t runs = 0;
   std::size_t checkpoints = 0;
-  std::size_t measured = 0;                  ///< checkpoints that were analysed for it now
   std::vector<std::filesystem::path> files;  ///< CSV, SVG, PDF of each panel, verdict, lineage
   std::vector<Verdict> verdicts;             ///< on the supplement's claims
   std::vector<std::string> notes;            ///< as CollectedRuns::notes
-  std::vector<std::string> damage;           ///< checkpoints that could not be read, one line each
-  std::vector<std::string> pruned;           ///< checkpoints whose files were pruned, likewise
-  std::vector<std::string> changed;          ///< checkpoints whose kept measures were different
-  std::string cache_trouble;                 ///< why measures cannot be kept; "" if they can
   std::string plot_error;                    ///< why there is no SVG; "" if there is
 };
 

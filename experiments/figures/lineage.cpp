@@ -143,8 +143,7 @@ std::vector<FigureRecord> figure_records(const Store& store) {
       records.push_back({figure.name, event.seq, event.recorded_at, event.body()});
     }
   }
-  std::sort(records.begin(), records.end(),
-            [](const FigureRecord& a, const FigureRecord& b) { return a.seq < b.seq; });
+  std::ranges::sort(records, {}, &FigureRecord::seq);
   return records;
 }
 

@@ -2,13 +2,15 @@
 #include "experiments/figures/measure.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
 #include <map>
 #include <mutex>
 #include <utility>
 
 #include "analysis/error.hpp"
-#include "experiments/figures/parallel_reads.hpp"
+#include "core/threads.hpp"
 #include "experiments/runner/measure_sources.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
@@ -61,7 +63,7 @@ class Measuring {
       throw;
     }
     keep();
-    outcome_.computed = todo_.size() - unread.damaged.size() - unread.pruned.size();
+    outcome_.measured = todo_.size() - unread.damaged.size() - unread.pruned.size();
     outcome_.damage = std::move(unread.damaged);
     outcome_.pruned = std::move(unread.pruned);
     std::sort(outcome_.changed.begin(), outcome_.changed.end());
@@ -69,7 +71,7 @@ class Measuring {
     for (const std::size_t i : place_) {
       outcome_.results.push_back(distinct ? std::move(results_[i]) : results_[i]);
     }
-    outcome_.trouble = cache_.trouble();
+    outcome_.cache_trouble = cache_.trouble();
     return std::move(outcome_);
   }
 
@@ -132,6 +134,44 @@ class Measuring {
 };
 
 }  // namespace
+
+UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
+                                   const std::function<void(std::size_t)>& work,
+                                   const ReadProgress& progress) {
+  UnreadCheckpoints unread;
+  std::exception_ptr error;
+  std::size_t done = 0;
+  std::mutex mutex;  // guards the three above
+  std::atomic<std::size_t> next{0};
+  const auto work_on_some = [&](std::size_t) {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        work(i);
+        const std::lock_guard lock(mutex);
+        ++done;
+        if (progress) progress(done, count);
+      } catch (const StoreDamaged& damage) {
+        const std::lock_guard lock(mutex);
+        unread.damaged.emplace_back(damage.what());
+      } catch (const CheckpointPruned& pruned) {
+        const std::lock_guard lock(mutex);
+        unread.pruned.emplace_back(pruned.what());
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!error) error = std::current_exception();
+        next = count;
+      }
+    }
+  };
+  {
+    const auto threads = start_threads(std::min(workers, count), work_on_some);
+    work_on_some(0);
+  }
+  if (error) std::rethrow_exception(error);
+  std::sort(unread.damaged.begin(), unread.damaged.end());
+  std::sort(unread.pruned.begin(), unread.pruned.end());
+  return unread;
+}
 
 Measures read_results(std::span<const DerivedMeasure> measures, std::span<const json> results) {
   Measures found;

@@ -28,17 +28,20 @@ struct MeasureOptions {
       instead = {};
 };
 
-struct MeasuredCheckpoints {
-  /// In the order of the records; for each the results in the order of the measures, null where the
-  /// checkpoint, or an earlier one, had to be read and could not be.
-  std::vector<std::vector<nlohmann::json>> results;
-  std::size_t computed = 0;         ///< checkpoints
+struct MeasureOutcome {             // what came of measuring many checkpoints
+  std::size_t measured = 0;         ///< checkpoints that were analysed now
   std::size_t kept = 0;             ///< checkpoints whose results were kept
   std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each, sorted
   std::vector<std::string> pruned;  ///< likewise, whose files were pruned
-  std::vector<std::string>
-      changed;          ///< with `fresh`: checkpoints whose kept results were different
-  std::string trouble;  ///< why results cannot be kept; "" if they can
+  /// With `fresh`: checkpoints whose kept results were different.
+  std::vector<std::string> changed;
+  std::string cache_trouble;  ///< why results cannot be kept; "" if they can
+};
+
+struct MeasuredCheckpoints : MeasureOutcome {
+  /// In the order of the records; for each the results in the order of the measures, null where the
+  /// checkpoint, or an earlier one, had to be read and could not be.
+  std::vector<std::vector<nlohmann::json>> results;
 };
 
 /// Results are kept under the checkpoint's recorded SHA-256, so for a kept result the file is not
@@ -56,5 +59,20 @@ Measures read_results(std::span<const DerivedMeasure> measures,
 /// SI units of the mechanics of a run's checkpoint: by the run's resolved parameters, with the
 /// spring constant that a stiffening records. Not a number where the store does not say them.
 MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& checkpoint);
+
+/// Called after each item that succeeded, by one thread at a time; may be empty.
+using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
+
+/// A message for each checkpoint that is damaged, or whose file was pruned; sorted.
+struct UnreadCheckpoints {
+  std::vector<std::string> damaged;
+  std::vector<std::string> pruned;
+};
+
+/// Calls work(0) .. work(count - 1), at most `workers` at once. StoreDamaged and CheckpointPruned
+/// become messages; the first other exception ends the work and is rethrown.
+UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
+                                   const std::function<void(std::size_t)>& work,
+                                   const ReadProgress& progress);
 
 }  // namespace shearcell

@@ -7,10 +7,11 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <set>
 
 #include "analysis/onset.hpp"
-#include "experiments/figures/within_cycle.hpp"
+#include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/registered.hpp"
@@ -50,12 +51,10 @@ Column of_checkpoint(const char* name, const char* meaning, Value value) {
 
 // `recorded` is the name in the checkpoint where it differs from the column's.
 Column observable(const char* name, const char* meaning, const char* recorded = nullptr) {
-  return {{name, meaning},
-          [key = std::string(recorded == nullptr ? name : recorded)](const Row& row) -> json {
-            if (row.checkpoint == nullptr) return nullptr;
-            const auto found = row.checkpoint->observables.find(key);
-            return found == row.checkpoint->observables.end() ? json() : number(found->second);
-          }};
+  return of_checkpoint(name, meaning, [key = recorded == nullptr ? name : recorded](const auto& c) {
+    const auto found = c.observables.find(key);
+    return found == c.observables.end() ? json() : number(found->second);
+  });
 }
 
 std::vector<Column> names(const VariantNames& variants) {
@@ -93,43 +92,37 @@ std::vector<Column> measures(bool ledger) {
   }
   columns.push_back(of_checkpoint("time_s", "simulated time since the stage began",
                                   [](const CheckpointRecord& c) { return number(c.time_s); }));
-  for (const Column& column :
-       {observable("cell_height_d", "distance of the bottom and top wall"),
-        observable("largest_overlap_d", "largest overlap of two grains"),
-        observable("kinetic_energy_per_grain_m_d2_per_s2",
-                   "mean kinetic energy; m is the mass of a grain"),
-        observable("wall_force_imbalance", "net force on the moving wall over its load"),
-        observable("raised_stiffness_N_per_m", "spring constant of a stiffening",
-                   "stiffness_N_per_m"),
-        observable("force_residual_P_d2",
-                   "largest net force on a grain of a stiffening over P d^2")}) {
-    columns.push_back(column);
-  }
+  columns.insert(columns.end(),
+                 {observable("cell_height_d", "distance of the bottom and top wall"),
+                  observable("largest_overlap_d", "largest overlap of two grains"),
+                  observable("kinetic_energy_per_grain_m_d2_per_s2",
+                             "mean kinetic energy; m is the mass of a grain"),
+                  observable("wall_force_imbalance", "net force on the moving wall over its load"),
+                  observable("raised_stiffness_N_per_m", "spring constant of a stiffening",
+                             "stiffness_N_per_m"),
+                  observable("force_residual_P_d2",
+                             "largest net force on a grain of a stiffening over P d^2")});
   return columns;
 }
 
 void add_onset(const std::string& method, const std::string& meaning, OnsetMethod find,
                std::vector<Column>& columns) {
-  const auto onset = [find](const Row& row, auto value) -> json {
-    if (row.history == nullptr || row.history->checkpoints.empty()) return nullptr;
-    return value(find(*row.history, critical_size_for(*row.history)));
+  const auto add = [&](const std::string& ending, const std::string& what, auto value) {
+    columns.push_back({{"onset_" + method + ending, what}, [find, value](const Row& row) -> json {
+                         if (row.history == nullptr || row.history->checkpoints.empty()) return {};
+                         return value(find(*row.history, critical_size_for(*row.history)));
+                       }});
   };
-  const auto observed = [](auto member) {
-    return [member](const RunOnset& found) {
-      return found.observed == Observed::yes ? json(found.*member) : json();
-    };
-  };
-  columns.push_back(
-      {{"onset_" + method, "observed, never or before_start: " + meaning}, [onset](const Row& row) {
-         return onset(row, [](const RunOnset& found) -> json {
-           constexpr const char* names[] = {"observed", "never", "before_start"};
-           return names[static_cast<int>(found.observed)];
-         });
-       }});
-  columns.push_back({{"onset_" + method + "_cycle", "cycle of that onset"},
-                     [=](const Row& row) { return onset(row, observed(&RunOnset::cycle)); }});
-  columns.push_back({{"onset_" + method + "_phi", "packing fraction at that onset"},
-                     [=](const Row& row) { return onset(row, observed(&RunOnset::phi)); }});
+  add("", "observed, never or before_start: " + meaning, [](const RunOnset& found) {
+    constexpr const char* names[] = {"observed", "never", "before_start"};
+    return json(names[static_cast<int>(found.observed)]);
+  });
+  add("_cycle", "cycle of that onset", [](const RunOnset& found) {
+    return found.observed == Observed::yes ? json(found.cycle) : json();
+  });
+  add("_phi", "packing fraction at that onset", [](const RunOnset& found) {
+    return found.observed == Observed::yes ? json(found.phi) : json();
+  });
 }
 
 std::vector<Column> ends() {
@@ -144,22 +137,20 @@ std::vector<Column> ends() {
             columns);
   add_onset("slope", "its logarithm rises most steeply with phi (method 2)", onset_by_slope,
             columns);
-  for (const Column& column :
-       {of_run("state", "declared, running, interrupted, failed or completed",
-               [](const SelectedRun& s) { return name_of(s.run.state); }),
-        of_run("state_hash", "hash of the newest state; equal states have equal hashes",
-               [](const SelectedRun& s) { return s.run.state_hash; }),
-        of_run("target_cycles", "length that the experiment asks for",
-               [](const SelectedRun& s) { return s.membership.target_cycles; }),
-        of_run("wall_time_s", "time that the run took to compute, over all attempts",
-               [](const SelectedRun& s) { return number(s.run.wall_seconds); }),
-        of_run("particle_steps_per_s",
-               "mean speed of the computation, in particle-steps per second",
-               [](const SelectedRun& s) {
-                 return number(s.run.particle_steps / s.run.wall_seconds);
-               })}) {
-    columns.push_back(column);
-  }
+  columns.insert(
+      columns.end(),
+      {of_run("state", "declared, running, interrupted, failed or completed",
+              [](const SelectedRun& s) { return name_of(s.run.state); }),
+       of_run("state_hash", "hash of the newest state; equal states have equal hashes",
+              [](const SelectedRun& s) { return s.run.state_hash; }),
+       of_run("target_cycles", "length that the experiment asks for",
+              [](const SelectedRun& s) { return s.membership.target_cycles; }),
+       of_run("wall_time_s", "time that the run took to compute, over all attempts",
+              [](const SelectedRun& s) { return number(s.run.wall_seconds); }),
+       of_run("particle_steps_per_s", "mean speed of the computation, in particle-steps per second",
+              [](const SelectedRun& s) {
+                return number(s.run.particle_steps / s.run.wall_seconds);
+              })});
   return columns;
 }
 
@@ -192,10 +183,8 @@ std::vector<Column> columns_of_runs(const std::vector<SelectedRun>& runs,
 std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per,
                                 const VariantNames& variants, bool ledger) {
   std::vector<Column> columns = columns_of_runs(runs, variants);
-  for (Column& column : measures(ledger)) columns.push_back(std::move(column));
-  if (per == RowPer::run) {
-    for (Column& column : ends()) columns.push_back(std::move(column));
-  }
+  std::ranges::move(measures(ledger), std::back_inserter(columns));
+  if (per == RowPer::run) std::ranges::move(ends(), std::back_inserter(columns));
   return columns;
 }
 
@@ -223,34 +212,31 @@ Selected select_and_measure(const Store& store, const RunSelection& selection,
   all.runs = select_runs(store, selection);
   std::erase_if(all.runs, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
   for (const SelectedRun& run : all.runs) {
-    for (CheckpointRecord& record : checkpoints_of(store, run)) {
-      all.records.push_back(std::move(record));
-    }
+    std::ranges::move(checkpoints_of(store, run), std::back_inserter(all.records));
     all.ends.push_back(all.records.size());
   }
   MeasuredCheckpoints measured = measure_checkpoints(store, all.records, measures, options);
   all.results = std::move(measured.results);
-  table.damage = std::move(measured.damage);
-  table.pruned = std::move(measured.pruned);
-  table.trouble = std::move(measured.trouble);
+  static_cast<MeasureOutcome&>(table) = std::move(measured);
   return all;
 }
 
 /// Of the records that have a row: all, or the last one of each run.
-std::vector<CycleEnergy> energies_of(const Store& store, const Selected& all, RowPer per,
-                                     const MeasureOptions& options) {
-  if (per == RowPer::checkpoint || all.records.empty()) {
-    return cycle_energies(store, all.records, options);
-  }
-  std::vector<CheckpointRecord> last;
+std::vector<decltype(Measures::numbers)> energies_of(const Store& store, const Selected& all,
+                                                     RowPer per, const MeasureOptions& options) {
+  std::vector<CheckpointRecord> with_row;
+  std::vector<std::size_t> place;
+  std::size_t next = 0;
   for (const std::size_t end : all.ends) {
-    last.push_back(all.records[std::max<std::size_t>(end, 1) - 1]);
+    for (; next < end; ++next) {
+      if (per == RowPer::run && next + 1 < end) continue;
+      with_row.push_back(all.records[next]);
+      place.push_back(next);
+    }
   }
-  const std::vector<CycleEnergy> found = cycle_energies(store, last, options);
-  std::vector<CycleEnergy> energies(all.records.size());
-  for (std::size_t r = 0; r < last.size(); ++r) {
-    energies[std::max<std::size_t>(all.ends[r], 1) - 1] = found[r];
-  }
+  auto found = cycle_energies(store, with_row, options);
+  std::vector<decltype(Measures::numbers)> energies(all.records.size());
+  for (std::size_t n = 0; n < place.size(); ++n) energies[place[n]] = std::move(found[n]);
   return energies;
 }
 
@@ -270,11 +256,7 @@ std::string csv_cell(const json& value) {
   if (value.is_null()) return "";
   if (value.is_number_float()) return fmt::format("{}", value.get<double>());
   if (!value.is_string()) return value.dump();
-  const std::string& text = value.get_ref<const std::string&>();
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted;
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return '"' + quoted + '"';
+  return csv_field(value.get<std::string>());
 }
 
 }  // namespace
@@ -299,9 +281,9 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
   RunTable table;
   const Selected all = select_and_measure(store, selection, table_measures(), options, table);
   const std::vector<Column> columns = columns_for(all.runs, per, VariantNames(store), ledger);
-  const std::vector<CycleEnergy> energies =
-      ledger ? energies_of(store, all, per, options) : std::vector<CycleEnergy>();
-  for (const Column& column : columns) table.columns.push_back(column);
+  std::vector<decltype(Measures::numbers)> energies;
+  if (ledger) energies = energies_of(store, all, per, options);
+  table.columns.assign(columns.begin(), columns.end());
   const auto add = [&](const Row& row) {
     std::vector<json>& cells = table.rows.emplace_back();
     for (const Column& column : columns) cells.push_back(column.cell(row));
@@ -312,7 +294,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     for (; next < all.ends[r]; ++next) {
       Row& row = rows.emplace_back(Row{&all.runs[r], &all.records[next]});
       row.measures = read_table_measures(all.results[next], all.runs[r].run, all.records[next]);
-      if (ledger && row.measures) add_energy(energies[next], *row.measures);
+      if (ledger && row.measures) row.measures->numbers.merge(energies[next]);
     }
     if (per == RowPer::checkpoint) {
       for (const Row& row : rows) add(row);
@@ -332,8 +314,8 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
   RunTable table;
   const Selected all = select_and_measure(store, selection, measures, options, table);
   std::vector<Column> columns = columns_of_runs(all.runs, VariantNames(store));
-  for (Column& column : which_checkpoint()) columns.push_back(std::move(column));
-  for (const Column& column : columns) table.columns.push_back(column);
+  std::ranges::move(which_checkpoint(), std::back_inserter(columns));
+  table.columns.assign(columns.begin(), columns.end());
   table.columns.push_back({std::string(measure.x), ""});
   table.columns.push_back({std::string(measure.name), std::string(measure.meaning)});
   std::size_t next = 0;

@@ -24,12 +24,9 @@ enum class RowPer { checkpoint, run };
 template <>
 inline constexpr auto kNames<RowPer> = names_in_order<RowPer>("checkpoint", "run");
 
-struct RunTable {
+struct RunTable : MeasureOutcome {
   std::vector<TableColumn> columns;
   std::vector<std::vector<nlohmann::json>> rows;  ///< null: it does not apply or is not known
-  std::vector<std::string> damage;                ///< checkpoints that could not be read
-  std::vector<std::string> pruned;                ///< checkpoints that were pruned unmeasured
-  std::string trouble;                            ///< why measures cannot be kept; ""
 };
 
 /// Rows in the order of declaration, then by cycle. Settled packings are not among the runs.

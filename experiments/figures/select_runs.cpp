@@ -13,41 +13,35 @@
 namespace shearcell {
 namespace {
 
-/// One filter: what is wanted, what the store has, and what of the wanted was found.
-class Filter {
- public:
-  Filter(const char* what, std::vector<std::string> wanted,
-         bool (*fits)(const std::string& wanted, const std::string& value))
-      : what_(what), wanted_(std::move(wanted)), fits_(fits) {}
+/// One filter, and what it has seen: all values, and those of the wanted that were found.
+struct Filter {
+  const char* what;
+  std::vector<std::string> wanted;
+  bool (*fits)(const std::string& wanted, const std::string& value);
+  std::set<std::string> values = {};
+  std::set<std::string> found = {};
 
   bool passes(const std::string& value) {
-    values_.insert(value);
-    bool passes = wanted_.empty();
-    for (const std::string& wanted : wanted_) {
-      if (!fits_(wanted, value)) continue;
-      found_.insert(wanted);
+    values.insert(value);
+    bool passes = wanted.empty();
+    for (const std::string& one : wanted) {
+      if (!fits(one, value)) continue;
+      found.insert(one);
       passes = true;
     }
     return passes;
   }
 
   void require_found() const {
-    for (const std::string& wanted : wanted_) {
-      if (found_.contains(wanted)) continue;
-      const std::vector<std::string_view> known(values_.begin(), values_.end());
-      const std::string nearest = suggest_name(wanted, known).name;
-      throw NotFound(fmt::format("no run of the store has {} {}; {}", what_, wanted,
+    for (const std::string& one : wanted) {
+      if (found.contains(one)) continue;
+      const std::vector<std::string_view> known(values.begin(), values.end());
+      const std::string nearest = suggest_name(one, known).name;
+      throw NotFound(fmt::format("no run of the store has {} {}; {}", what, one,
                                  nearest.empty() ? fmt::format("it has {}", fmt::join(known, "; "))
                                                  : "did you mean " + nearest + "?"));
     }
   }
-
- private:
-  const char* what_;
-  std::vector<std::string> wanted_;
-  bool (*fits_)(const std::string&, const std::string&);
-  std::set<std::string> values_;
-  std::set<std::string> found_;
 };
 
 }  // namespace
@@ -58,12 +52,12 @@ Membership first_membership(const RunRecord& run) {
 
 std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& selection) {
   const auto same = [](const std::string& a, const std::string& b) { return a == b; };
-  Filter experiment("experiment", selection.experiments, same);
-  Filter scale("scale", selection.scales, same);
-  Filter variant("variant", selection.variants, has_values);
+  Filter experiment{"experiment", selection.experiments, same};
+  Filter scale{"scale", selection.scales, same};
+  Filter variant{"variant", selection.variants, has_values};
   std::vector<std::string> seeds;
   for (const std::uint64_t seed : selection.seeds) seeds.push_back(std::to_string(seed));
-  Filter seed("seed", seeds, same);
+  Filter seed{"seed", seeds, same};
   std::vector<SelectedRun> selected;
   for (const RunRecord& run : store.runs()) {
     std::vector<Membership> memberships = run.memberships;

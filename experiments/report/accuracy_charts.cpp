@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/report/accuracy_charts.hpp"
-
+// The charts of error against cost that `bench accuracy --out` wrote.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 #include <string>
 
+#include "experiments/report/report_data.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/plain_file.hpp"
 #include "provenance/json_text.hpp"

@@ -2,8 +2,9 @@
 #include "experiments/report/html.hpp"
 
 #include <fmt/format.h>
+#include <openssl/evp.h>
 
-#include <cstdint>
+#include <map>
 
 namespace shearcell {
 namespace {
@@ -17,38 +18,29 @@ std::string valid_utf8(std::string_view text) {
   return nlohmann::json::parse(dumped).get<std::string>();
 }
 
+using Escapes = std::map<char, std::string_view>;
+
+std::string escaped(const std::string& text, const Escapes& escapes) {
+  std::string result;
+  for (const char c : text) {
+    const auto escape = escapes.find(c);
+    result += escape == escapes.end() ? std::string_view(&c, 1) : escape->second;
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string escape_html(std::string_view text) {
-  std::string result;
-  for (const char c : valid_utf8(text)) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&#39;";
-        break;
-      default: {
-        const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-        if (control && c != '\t' && c != '\n') {
-          result += replacement;
-        } else {
-          result += c;
-        }
-      }
+  static const Escapes escapes = [] {
+    Escapes all = {{'&', "&amp;"},  {'<', "&lt;"},   {'>', "&gt;"},
+                   {'"', "&quot;"}, {'\'', "&#39;"}, {'\x7f', replacement}};
+    for (char control = 0; control < ' '; ++control) {
+      if (control != '\t' && control != '\n') all[control] = replacement;
     }
-  }
-  return result;
+    return all;
+  }();
+  return escaped(valid_utf8(text), escapes);
 }
 
 std::string text_html(const Text& text) {
@@ -93,43 +85,17 @@ std::string scroll_box(std::string_view label, const std::string& html,
 }
 
 std::string script_json(const nlohmann::json& value) {
-  std::string result;
-  for (const char c : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) {
-    // JSON has these only within strings, where an escape means the same.
-    switch (c) {
-      case '<':
-        result += "\\u003c";
-        break;
-      case '>':
-        result += "\\u003e";
-        break;
-      case '&':
-        result += "\\u0026";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
+  // JSON has these only within strings, where an escape means the same.
+  static const Escapes escapes = {{'<', "\\u003c"}, {'>', "\\u003e"}, {'&', "\\u0026"}};
+  return escaped(value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), escapes);
 }
 
 std::string base64(std::span<const std::byte> bytes) {
-  static constexpr std::string_view digits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string result;
-  result.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      word =
-          word << 8 | (at + k < bytes.size() ? std::to_integer<std::uint32_t>(bytes[at + k]) : 0);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      const bool padding = at + k > bytes.size();
-      result += padding ? '=' : digits[word >> (18 - 6 * k) & 63U];
-    }
-  }
-  return result;
+  std::string text((bytes.size() + 2) / 3 * 4, '=');
+  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                  reinterpret_cast<const unsigned char*>(bytes.data()),
+                  static_cast<int>(bytes.size()));
+  return text;
 }
 
 }  // namespace shearcell

@@ -13,7 +13,7 @@
 #include "analysis/motion.hpp"
 #include "analysis/profiles.hpp"
 #include "experiments/figures/measure.hpp"
-#include "experiments/figures/parallel_reads.hpp"
+#include "experiments/figures/select_runs.hpp"
 #include "experiments/report/frames.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/runner/measure_sources.hpp"
@@ -32,7 +32,8 @@ constexpr std::size_t kFactsInPage = 2500;  // [bytes]: facts, profiles and brac
 struct ChosenRun {
   RunRecord run;
   Membership membership;
-  std::vector<CheckpointRecord> checkpoints;  // that can be read
+  std::vector<CheckpointRecord> checkpoints;  // that can be read; then those to show
+  std::size_t stored = 0;                     // that can be read
   std::size_t bytes = 0;                      // of one of them in the page
   std::size_t grains = 0;
   std::size_t wall_grains = 0;
@@ -58,15 +59,10 @@ std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<
     if (member == nullptr || run.kind == "prepare") continue;
     std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id);
     if (checkpoints.empty()) continue;
-    const auto same = std::find_if(last.begin(), last.end(), [&](const ChosenRun& other) {
-      return other.membership.variant == member->variant;
-    });
-    ChosenRun chosen{run, *member, std::move(checkpoints), 0, 0, 0};
-    if (same == last.end()) {
-      last.push_back(std::move(chosen));
-    } else {
-      *same = std::move(chosen);
-    }
+    auto same = std::ranges::find(last, member->variant,
+                                  [](const ChosenRun& other) { return other.membership.variant; });
+    if (same == last.end()) same = last.emplace(last.end());
+    *same = {run, *member, std::move(checkpoints)};
   }
   std::vector<ChosenRun> kept;
   for (const std::size_t i : evenly(last.size(), limit)) kept.push_back(std::move(last[i]));
@@ -80,8 +76,7 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
   if (!choice.runs.empty()) {
     for (const std::string& id : choice.runs) {
       const RunRecord run = store.find_run(id);
-      const Membership member = run.memberships.empty() ? Membership{} : run.memberships.front();
-      chosen.push_back({run, member, store.checkpoints(run.id), 0, 0, 0});
+      chosen.push_back({run, first_membership(run), store.checkpoints(run.id)});
     }
     std::erase_if(chosen, [](const ChosenRun& run) { return run.checkpoints.empty(); });
     return chosen;
@@ -115,6 +110,7 @@ void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings)
     }
   }
   std::erase_if(runs, [](const ChosenRun& run) { return run.checkpoints.empty(); });
+  for (ChosenRun& run : runs) run.stored = run.checkpoints.size();
 }
 
 std::size_t bytes_with(const std::vector<ChosenRun>& runs, std::size_t frames) {
@@ -157,10 +153,6 @@ json facts_of(const Measures& measures, double theta) {
   }
   if (theta != 0) facts.push_back(to_json(fmt::format("tilt {:.4f} rad", theta)));
   return facts;
-}
-
-json vector_json(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
 }
 
 /// Ranges are the same for all packings of a run, so that colours can be compared.
@@ -241,8 +233,8 @@ Frame make_frame(const Store& store, const RunRecord& run, const CheckpointRecor
              {"tan_theta", pose.tan_theta}}},
            {"fields", std::move(described)},
            {"profiles", profiles_json(checkpoint, analysis.grains, units)},
-           {"origin", vector_json(packed.origin)},
-           {"step", vector_json(packed.step)},
+           {"origin", std::vector(packed.origin.begin(), packed.origin.end())},
+           {"step", std::vector(packed.step.begin(), packed.step.end())},
            {"data", base64(packed.bytes)}},
           packed.step.maxCoeff()};
 }
@@ -250,12 +242,11 @@ Frame make_frame(const Store& store, const RunRecord& run, const CheckpointRecor
 }  // namespace
 
 std::vector<std::size_t> evenly(std::size_t size, std::size_t count) {
-  std::vector<std::size_t> chosen;
-  if (size == 0 || count == 0) return chosen;
-  if (count == 1) return {size - 1};
   count = std::min(count, size);
+  if (count == 1) return {size - 1};
+  std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < count; ++k) {
-    chosen.push_back(count == 1 ? 0 : (k * (size - 1) + (count - 1) / 2) / (count - 1));
+    chosen.push_back((k * (size - 1) + (count - 1) / 2) / (count - 1));
   }
   return chosen;
 }
@@ -268,8 +259,6 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
   std::vector<ChosenRun> runs = choose(store, experiments, scale, choice);
   const VariantNames names(store);
   weigh(store, runs, packings);
-  std::vector<std::size_t> stored;
-  for (const ChosenRun& run : runs) stored.push_back(run.checkpoints.size());
   fit(runs, choice, packings);
 
   std::vector<CheckpointRecord> records;
@@ -290,10 +279,9 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
   for (const auto* list : {&unread.damaged, &unread.pruned}) {
     packings.notes.insert(packings.notes.end(), list->begin(), list->end());
   }
-  std::sort(packings.notes.begin(), packings.notes.end());
+  std::ranges::sort(packings.notes);
   auto next = frames.begin();
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    const ChosenRun& run = runs[r];
+  for (const ChosenRun& run : runs) {
     json list = json::array();
     for (std::size_t k = 0; k < run.checkpoints.size(); ++k, ++next) {
       if (next->value.is_null()) continue;
@@ -308,7 +296,7 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
                              {"experiment", run.membership.experiment},
                              {"grains", run.grains},
                              {"wall_grains", run.wall_grains},
-                             {"checkpoints", stored[r]},
+                             {"checkpoints", run.stored},
                              {"frames", std::move(list)}});
   }
   return packings;

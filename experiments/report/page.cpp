@@ -9,14 +9,23 @@
 #include <vector>
 
 #include "experiments/report/html.hpp"
-#include "experiments/report/run_tables.hpp"
-#include "experiments/report/web_assets.hpp"
 #include "provenance/sha256.hpp"
+
+// Files of the front end (web_assets.S).
+extern "C" {
+extern const char shearcell_style[], shearcell_style_end[];
+extern const char shearcell_script[], shearcell_script_end[];  // none when built without Node
+extern const char shearcell_licences[], shearcell_licences_end[];
+}
 
 namespace shearcell {
 namespace {
 
 using nlohmann::json;
+
+std::string_view front_end_script() {
+  return {shearcell_script, shearcell_script_end};
+}
 
 /// For a Content-Security-Policy that allows this script only.
 std::string script_hash(std::string_view script) {
@@ -41,7 +50,7 @@ std::string head_html(const ReportData& data) {
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; {}"
       "style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'\">\n"
       "<title>{} · shearcell report</title>\n<style>\n{}</style>\n</head>\n",
-      scripts, escape_html(data.store), page_style());
+      scripts, escape_html(data.store), std::string_view(shearcell_style, shearcell_style_end));
 }
 
 std::string count(std::size_t number, const char* one) {
@@ -149,7 +158,7 @@ std::string about_html(const ReportData& data) {
     html += fmt::format(
         "<details><summary>Licences of the libraries in this file</summary><pre "
         "tabindex=\"0\">{}</pre></details>\n",
-        escape_html(front_end_licences()));
+        escape_html({shearcell_licences, shearcell_licences_end}));
   }
   return html + "</section>\n";
 }
@@ -157,14 +166,13 @@ std::string about_html(const ReportData& data) {
 std::string data_html(const ReportData& data) {
   if (!data.interactive) return "";
   json charts = json::object();
-  for (const ReportFigure& figure : data.figures) {
-    for (const ReportPanel& panel : figure.panels) {
+  const auto add = [&](const std::vector<ReportPanel>& panels) {
+    for (const ReportPanel& panel : panels) {
       if (!panel.chart.is_null()) charts[panel.id] = panel.chart;
     }
-  }
-  for (const ReportPanel& panel : data.accuracy) {
-    if (!panel.chart.is_null()) charts[panel.id] = panel.chart;
-  }
+  };
+  for (const ReportFigure& figure : data.figures) add(figure.panels);
+  add(data.accuracy);
   return fmt::format(
       "<script type=\"application/json\" id=\"report-data\">{}</script>\n<script>{}</script>\n",
       script_json({{"charts", charts},
@@ -173,8 +181,7 @@ std::string data_html(const ReportData& data) {
       front_end_script());
 }
 
-}  // namespace
-
+/// The whole page: markup, style, data and, when it is interactive, the front end.
 std::string report_page(const ReportData& data) {
   std::string html =
       head_html(data) + "<body>\n" + title_html(data) + "<main>\n" + overview_html(data);
@@ -184,6 +191,26 @@ std::string report_page(const ReportData& data) {
   html += across_html(data) + compare_html(data) + packings_html(data) + accuracy_html(data) +
           runs_html(data) + about_html(data);
   return html + "</main>\n" + data_html(data) + "</body>\n</html>\n";
+}
+
+}  // namespace
+
+bool has_front_end() {
+  return !front_end_script().empty();
+}
+
+Report make_report(const Store& store, const ReportOptions& options) {
+  Report report;
+  const ReportData data = collect_report(store, options, report);
+  report.html = report_page(data);
+  report.experiments = data.experiments.size();
+  report.figures = data.figures.size();
+  report.runs = data.runs.size();
+  report.packings = data.packings.runs.size();
+  report.frames = data.packings.frames;
+  report.interactive = data.interactive;
+  if (!data.drawing_trouble.empty()) report.notes.push_back(data.drawing_trouble);
+  return report;
 }
 
 }  // namespace shearcell

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The report as HTML. Every text that comes from a store or a file is escaped here.
+// Parts of the report as HTML. Every text that comes from a store or a file is escaped here.
 #pragma once
 
 #include <string>
@@ -8,16 +8,8 @@
 
 namespace shearcell {
 
-/// The whole page: markup, style, data and, when it is interactive, the front end.
-std::string report_page(const ReportData& data);
-
-// --- Its parts ---
-
 /// The experiment's question, verdict, figures and runs.
 std::string experiment_html(const ReportData& data, const ReportExperiment& experiment);
-
-/// What the experiment is made of, from its manifest to its figures, with the states of each.
-std::string workflow_html(const ReportData& data, const ReportExperiment& experiment);
 
 /// A row for each run: its parameters and results.
 std::string run_table_html(const ReportData& data, const ReportExperiment& experiment);

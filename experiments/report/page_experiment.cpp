@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
 
 #include "experiments/report/html.hpp"
 #include "experiments/report/page.hpp"
@@ -31,6 +34,100 @@ std::string table_html(const ReportPanel& panel) {
   rows.erase(rows.begin());
   return scroll_box(panel.name, html_table(head, rows), "scroll tall") + "<p class=\"small\">" +
          text_html(panel.text.note) + "</p>";
+}
+
+struct Count {
+  const char* css_class;
+  const char* mark;  ///< tells the states apart without colour
+  const char* name;
+  std::size_t number;
+};
+
+/// A bar with a part for each state, and the counts as text below it.
+std::string counts_html(const std::vector<Count>& counts) {
+  std::string bar, list;
+  for (const Count& count : counts) {
+    if (count.number == 0) continue;
+    bar += fmt::format("<span class=\"{}\" style=\"flex-grow: {}\"></span>", count.css_class,
+                       count.number);
+    list += fmt::format("<li class=\"{}\"><span aria-hidden=\"true\">{}</span> {} {}</li>",
+                        count.css_class, count.mark, count.number, count.name);
+  }
+  if (list.empty()) return "<p>none</p>";
+  return "<div class=\"bar\" aria-hidden=\"true\">" + bar + "</div><ul>" + list + "</ul>";
+}
+
+std::string box_html(const char* title, const std::string& html) {
+  return fmt::format("<li class=\"box\"><h4>{}</h4>{}</li>\n", title, html);
+}
+
+std::string stages_html(const ReportExperiment& experiment, bool prepare) {
+  std::map<RunState, std::size_t> in;
+  for (const RunRecord& run : experiment.runs) {
+    if ((run.kind == "prepare") == prepare) ++in[run.state];
+  }
+  return counts_html({{"done", "✓", "done", in[RunState::completed]},
+                      {"running", "▸", "running", in[RunState::running]},
+                      {"stopped", "‖", "interrupted", in[RunState::interrupted]},
+                      {"failed", "✗", "failed", in[RunState::failed]},
+                      {"waiting", "·", "waiting", in[RunState::declared]}});
+}
+
+/// Checkpoints that an unfinished run will record if nothing ends it early.
+std::size_t to_come(const RunRecord& run, const std::string& experiment) {
+  double most = 0;
+  for (const Membership& m : run.memberships) {
+    if (m.experiment != experiment || run.kind != "shear") continue;
+    const double every = std::max(1.0, static_cast<double>(m.checkpoint_every));
+    const double target = static_cast<double>(m.target_cycles);
+    most = std::max(most, std::ceil(target / every) - std::floor(run.cycle / every));
+  }
+  return run.state == RunState::completed ? 0 : static_cast<std::size_t>(most);
+}
+
+std::string checkpoints_html(const ReportData& data, const ReportExperiment& experiment) {
+  std::size_t kept = 0, pruned = 0, rejected = 0, waiting = 0;
+  for (const RunRecord& run : experiment.runs) {
+    waiting += to_come(run, experiment.name);
+    for (const CheckpointHistory& c : data.runs.at(run.id).checkpoints) {
+      (c.rejected ? rejected : c.pruned ? pruned : kept) += 1;
+    }
+  }
+  return counts_html({{"done", "✓", "stored", kept},
+                      {"stopped", "‖", "pruned", pruned},
+                      {"failed", "✗", "damaged", rejected},
+                      {"waiting", "·", "to come, at most", waiting}});
+}
+
+std::string figures_html(const ReportData& data, const ReportExperiment& experiment) {
+  std::string names;
+  for (const std::size_t index : experiment.figures) {
+    const ReportFigure& figure = data.figures.at(index);
+    names += fmt::format(" <a href=\"#figure-{}\">{}</a>", escape_html(figure.id),
+                         escape_html(figure.name));
+  }
+  for (const std::string& name : experiment.unmade) names += " " + escape_html(name);
+  return counts_html({{"done", "✓", "made", experiment.figures.size()},
+                      {"failed", "✗", "cannot be made", experiment.unmade.size()}}) +
+         (names.empty() ? "" : "<p>" + names.substr(1) + "</p>");
+}
+
+std::string manifest_html(const ReportExperiment& experiment) {
+  const std::string brief = escape_html(experiment.manifest.substr(0, 12));
+  return fmt::format("<p><a href=\"#manifest-{0}\">{1}</a></p><p class=\"id\">{0}</p>", brief,
+                     escape_html(experiment.manifest_path));
+}
+
+/// What the experiment is made of, from its manifest to its figures, with the states of each: a
+/// picture of boxes, which the style sheet puts in a row or, on a narrow page, in a column.
+std::string workflow_html(const ReportData& data, const ReportExperiment& experiment) {
+  return fmt::format("<ol class=\"workflow\" aria-label=\"Workflow of {}\">\n",
+                     escape_html(experiment.name)) +
+         box_html("Manifest", manifest_html(experiment)) +
+         box_html("Packings", stages_html(experiment, true)) +
+         box_html("Runs", stages_html(experiment, false)) +
+         box_html("Checkpoints", checkpoints_html(data, experiment)) +
+         box_html("Figures", figures_html(data, experiment)) + "</ol>\n";
 }
 
 }  // namespace

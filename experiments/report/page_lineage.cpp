@@ -77,12 +77,12 @@ std::string outputs_html(const ReportFigure& figure) {
   for (const ReportPanel& panel : figure.panels) {
     const std::string file = panel.name + ".csv";
     const std::string sha256 = sha256_hex(panel.csv);
-    std::string recorded;
+    html += escape_html(file) + " " + code(sha256);
     if (figure.recorded) {
       const json outputs = at(figure.recorded->provenance, "outputs");
-      recorded = text_at(outputs, file.c_str()) == sha256 ? ", as recorded" : ", NOT as recorded";
+      html += text_at(outputs, file.c_str()) == sha256 ? ", as recorded" : ", NOT as recorded";
     }
-    html += fmt::format("{} {}{}<br>", escape_html(file), code(sha256), recorded);
+    html += "<br>";
   }
   return html;
 }
@@ -97,17 +97,11 @@ std::string manifests_html(const ReportFigure& figure) {
 }
 
 std::string span_of_cycles(const FigureInput& input, const RunLineage& run) {
-  double first = 0;
-  double last = 0;
-  bool any = false;
+  std::vector<double> cycles;
   for (const std::string& sha256 : input.checkpoints) {
-    const CheckpointHistory* known = run.find(sha256);
-    if (known == nullptr) continue;
-    if (!any) first = known->record.cycle;
-    last = known->record.cycle;
-    any = true;
+    if (const CheckpointHistory* known = run.find(sha256)) cycles.push_back(known->record.cycle);
   }
-  return any ? fmt::format("{:g} to {:g}", first, last) : "?";
+  return cycles.empty() ? "?" : fmt::format("{:g} to {:g}", cycles.front(), cycles.back());
 }
 
 /// Lines may break after its commas.

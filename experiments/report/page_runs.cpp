@@ -85,21 +85,20 @@ std::vector<ShownColumn> columns_of(const ReportExperiment& experiment) {
     const Field* field = find_field(key);
     shown.push_back({place(key), head_of(key), as_text, field != nullptr && !field->unit.empty()});
   }
-  for (ShownColumn& column : std::vector<ShownColumn>{
-           {place("seed"), "seed", as_text},
-           {place("grains"), "<i>N</i>", as_text},
-           {place("state"), "state", state_html, false},
-           {place("cycle"), "cycle", as_text},
-           {place("target_cycles"), "of", as_text},
-           {place("phi"), "<i>ϕ</i>", decimals(4)},
-           {place("crystalline_percent"), "crystalline [%]", decimals(1)},
-           {place("largest_crystallite"), "largest crystallite", as_text},
-           {place("onset_size_cycle"), "onset cycle", as_text},
-           {place("onset_size_phi"), "onset <i>ϕ</i>", decimals(4)},
-           {place("wall_time_s"), "time", duration},
-           {place("particle_steps_per_s"), "10<sup>6</sup> steps/s", decimals(1, 1e-6)}}) {
-    shown.push_back(std::move(column));
-  }
+  shown.insert(shown.end(),
+               std::initializer_list<ShownColumn>{
+                   {place("seed"), "seed", as_text},
+                   {place("grains"), "<i>N</i>", as_text},
+                   {place("state"), "state", state_html, false},
+                   {place("cycle"), "cycle", as_text},
+                   {place("target_cycles"), "of", as_text},
+                   {place("phi"), "<i>ϕ</i>", decimals(4)},
+                   {place("crystalline_percent"), "crystalline [%]", decimals(1)},
+                   {place("largest_crystallite"), "largest crystallite", as_text},
+                   {place("onset_size_cycle"), "onset cycle", as_text},
+                   {place("onset_size_phi"), "onset <i>ϕ</i>", decimals(4)},
+                   {place("wall_time_s"), "time", duration},
+                   {place("particle_steps_per_s"), "10<sup>6</sup> steps/s", decimals(1, 1e-6)}});
   return shown;
 }
 

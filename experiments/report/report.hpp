@@ -43,8 +43,8 @@ bool has_front_end();
 
 /// Reads the store and writes nothing but measures into its derived.sqlite. The same store and
 /// options give the same bytes with the same program (drawings: with the same gnuplot). Throws
-/// NotFound when the store has no experiment, a run of `packings.runs` is unknown, or the folder of
-/// `accuracy` holds no CSV file that this program can read.
+/// NotFound when the store has no experiment or a run of `packings.runs` is unknown, and UsageError
+/// when the folder of `accuracy` holds no CSV file that this program can read.
 Report make_report(const Store& store, const ReportOptions& options);
 
 }  // namespace shearcell

@@ -66,7 +66,18 @@ struct ReportData {
   std::string drawing_trouble;  ///< why a figure has no drawing
 };
 
-/// Throws as make_report() does.
+/// Throws as make_report() does. What was left out goes to `report`.
 ReportData collect_report(const Store& store, const ReportOptions& options, Report& report);
+
+/// For the front end: [{experiment, runs: [{id, kind, scale, variant, seed, cycle, phi,
+/// percent}]}], the runs in the order of the rows of the table; the last three are arrays with null
+/// for no value.
+nlohmann::json run_traces(const ReportData& data);
+
+/// A panel for each CSV file that `bench accuracy --out` wrote, by name: the numbers, the chart of
+/// NAME.chart.json and the drawing of NAME.svg, if there are such files. Files are not trusted.
+/// Throws UsageError for a file that is unreadable or too large, a chart that is malformed, and a
+/// folder without a CSV file.
+std::vector<ReportPanel> read_accuracy_charts(const std::filesystem::path& folder);
 
 }  // namespace shearcell

@@ -128,6 +128,17 @@ TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
   EXPECT_EQ(table({.name = "own", .y = "phi", .by = "fluid"}).chart.series.size(), 2U);
 }
 
+TEST(OwnPlot, OfRunsThatEndBeforeItsCycleIsEmpty) {
+  const std::vector<FigureRun> runs = {rising_run("still", 1, 3, 0)};
+  for (const char* y : {"phi", "pair_correlation"}) {
+    const FigureTable table =
+        plot_figure({.name = "own", .y = y, .x = "amplitude_rad", .traces = true, .cycle = 99})
+            .make(runs)
+            .tables.at(0);
+    EXPECT_TRUE(table.rows.empty() && table.chart.series.empty()) << y;
+  }
+}
+
 TEST(OwnClaim, IsDecidedAsThoseOfTheSupplement) {
   ClaimSpec claim{
       .name = "own", .compare = "phi", .first = 1, .last = 2, .between = {}, .margin = 0.5};

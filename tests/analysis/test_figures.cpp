@@ -1,26 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Figures of made-up runs, the bytes of a CSV file, and gnuplot's drawing.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
-#include <set>
 #include <string>
 #include <thread>
 
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
-#include "analysis/own_figure.hpp"
 #include "analysis/plot.hpp"
-#include "provenance/errors.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/files.hpp"
 
@@ -61,16 +53,12 @@ TEST(FigureS2, ARowPerVariantAndBinOfPhi) {
             "fluid=still,0.63,0.632,0.6305,,3,,1\n");
 }
 
-TEST(FigureS2, CheckpointsInsideACycleAreLeftOut) {
+TEST(FigureS2, HasOneCheckpointOfEachRunAtAWholeCycle) {
   std::vector<FigureRun> runs = {rising_run("still", 1, 1, 0)};
   runs[0].checkpoints[1].cycle = 0.5;
-  EXPECT_EQ(s2(runs)[0].rows.size(), 1U);
-}
-
-TEST(FigureS2, OneRunWithTwoCheckpointsOfACycleIsRefused) {
-  std::vector<FigureRun> runs = {rising_run("still", 1, 1, 0)};
+  EXPECT_EQ(s2(runs)[0].rows.size(), 1U) << "one inside a cycle is left out";
   runs[0].checkpoints[1].cycle = 0;
-  EXPECT_THROW(s2(runs), AnalysisError);
+  EXPECT_THROW(s2(runs), AnalysisError) << "two of one cycle";
 }
 
 const FigureTable& panel(const FigureResult& result, const std::string& name) {
@@ -95,15 +83,13 @@ FigureRun nucleated(double stiffness) {
 TEST(FigureS7, HasBothHeightsAndEachStiffness) {
   const std::vector<FigureRun> runs = {nucleated(6540), nucleated(654)};
   const FigureResult made = find_figure("S7")->make(runs);
-  const std::string s7 = to_csv(panel(made, "S7"));
-  EXPECT_NE(s7.find("x/w,0.3,0.35,20,,1,1\n"), std::string::npos) << "(3 + 1) / (10 + 2)\n" << s7;
-  EXPECT_NE(s7.find("y/h,0.25,0.3,20,,1,1\n"), std::string::npos) << "4 / 16, softest only\n" << s7;
-  const std::string heights = to_csv(panel(made, "S7_heights"));
-  EXPECT_NE(heights.find("y/1.675L,0.2,0.25,20,,1,1\n"), std::string::npos) << "4 / 16.75\n"
-                                                                            << heights;
-  const std::string stiffness = to_csv(panel(made, "S7_stiffness"));
-  for (const char* row : {"654,0.25,0.3,20,,1,1\n", "6540,0.25,0.3,20,,1,1\n"}) {
-    EXPECT_NE(stiffness.find(row), std::string::npos) << row << stiffness;
+  for (const auto& [name, row] :
+       {std::pair("S7", "x/w,0.3,0.35"),               // (3 + 1) / (10 + 2)
+        std::pair("S7", "y/h,0.25,0.3"),               // 4 / 16, softest only
+        std::pair("S7_heights", "y/1.675L,0.2,0.25"),  // 4 / 16.75
+        std::pair("S7_stiffness", "654,0.25,0.3"), std::pair("S7_stiffness", "6540,0.25,0.3")}) {
+    const std::string csv = to_csv(panel(made, name));
+    EXPECT_NE(csv.find(std::string("\n") + row + ",20,,1,1\n"), std::string::npos) << row << csv;
   }
 }
 
@@ -140,10 +126,6 @@ TEST(FigureS5, TheExperimentHasTheStandardDeviationOfOurRuns) {
   EXPECT_NEAR(experiment.y_error.value(), 0.001, 1e-9) << "onsets 0.001 apart";
 }
 
-TEST(Figures, UnknownNameIsNone) {
-  EXPECT_EQ(find_figure("S99"), nullptr);
-}
-
 TEST(Csv, QuotingAndNumbers) {
   FigureTable table;
   table.columns = {"a b", "c,d"};
@@ -154,123 +136,84 @@ TEST(Csv, QuotingAndNumbers) {
   EXPECT_EQ(to_csv(table), "a b,\"c,d\"\n\"say \"\"x\"\"\",-3\n0.333333333,\n1e-20,\n0,\n");
 }
 
-/// A temporary folder whose name has characters that are special in shell and gnuplot.
-struct Folder : TemporaryFolder {
-  Folder() : TemporaryFolder("shear cell's $HOME-") {}
+/// Draws into a folder whose name has characters that are special in shell and gnuplot.
+class Plot : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("gnuplot --version > /dev/null 2>&1") != 0) {
+      GTEST_SKIP() << "gnuplot is not installed";
+    }
+  }
+  fs::path draw(const FigureTable& table) const {
+    write_csv(table, folder_.path());
+    return draw_svg(table, folder_.path());
+  }
+  /// What it says when it cannot draw; the data must stay.
+  std::string trouble_with(const FigureTable& table) const {
+    try {
+      draw(table);
+    } catch (const AnalysisError& error) {
+      EXPECT_TRUE(fs::exists(folder_.path() / (table.name + ".csv")));
+      EXPECT_FALSE(fs::exists(folder_.path() / (table.name + ".svg")));
+      return error.what();
+    }
+    return "";
+  }
+
+  const TemporaryFolder folder_{"shear cell's $HOME-"};
 };
 
-bool has_gnuplot() {
-  return std::system("gnuplot --version > /dev/null 2>&1") == 0;
-}
-
-TEST(Plot, SameTableSameSvg) {
-  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const Folder folder;
-  for (const FigureTable& table : s2(two_variants())) {
-    write_csv(table, folder.path());
-    const fs::path svg = draw_svg(table, folder.path());
-    const std::string first = test::read_bytes(svg);
-    EXPECT_NE(first.find("</svg>"), std::string::npos);
-    EXPECT_NE(first.find("ϕ"), std::string::npos);
-    EXPECT_EQ(first.find(folder.path().string()), std::string::npos);
-    EXPECT_EQ(first.find("<text>"), std::string::npos) << "librsvg would drop spaces";
-    draw_svg(table, folder.path());
-    EXPECT_EQ(test::read_bytes(svg), first);
-  }
-}
-
-TEST(Plot, SameSvgSamePdf) {
-  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const Folder folder;
+TEST_F(Plot, SameTableSameSvgAndPdf) {
   const FigureTable table = s2(two_variants())[0];
-  write_csv(table, folder.path());
-  const fs::path svg = draw_svg(table, folder.path());
+  const fs::path svg = draw(table);
+  const std::string first = test::read_bytes(svg);
+  EXPECT_NE(first.find("</svg>"), std::string::npos);
+  EXPECT_NE(first.find("ϕ"), std::string::npos);
+  EXPECT_EQ(first.find(folder_.path().string()), std::string::npos);
+  EXPECT_EQ(first.find("<text>"), std::string::npos) << "librsvg would drop spaces";
   const auto pdf = convert_to_pdf(svg);
+  const std::string first_pdf = pdf ? test::read_bytes(*pdf) : "";
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // a date in them would differ
+  draw(table);
+  EXPECT_EQ(test::read_bytes(svg), first);
   if (!pdf) GTEST_SKIP() << "rsvg-convert is not installed";
-  const std::string first = test::read_bytes(*pdf);
-  EXPECT_EQ(first.substr(0, 5), "%PDF-");
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // a date in it would differ
+  EXPECT_EQ(first_pdf.substr(0, 5), "%PDF-");
   convert_to_pdf(svg);
-  EXPECT_EQ(test::read_bytes(*pdf), first);
+  EXPECT_EQ(test::read_bytes(*pdf), first_pdf);
 }
 
-TEST(Plot, UnnamedVariantsAndNoRunsAreDrawnToo) {
-  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const Folder folder;
-  const std::vector<FigureRun> odd = {rising_run("it's_{odd}^`echo`", 1, 3, 0)};
-  for (const std::vector<FigureRun>& runs : {odd, std::vector<FigureRun>{}}) {
-    for (const FigureTable& table : s2(runs)) {
-      write_csv(table, folder.path());
-      EXPECT_GT(fs::file_size(draw_svg(table, folder.path())), 1000U);
-    }
-  }
-}
-
-// Swept in two parameters: the name has a comma, at which gnuplot would cut it.
-TEST(Plot, VariantsOfTwoParametersAreDrawn) {
-  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const Folder folder;
-  std::vector<FigureRun> runs = {rising_run("still", 1, 3, 0), rising_run("still", 2, 3, 0.01)};
-  runs[0].variant = "gravity_m_per_s2=0,amplitude_rad=0.04";
-  runs[1].variant = "gravity_m_per_s2=0,amplitude_rad=0.05";
-  for (const char* name : {"S2", "S6", "choices"}) {
-    for (const FigureTable& table : find_figure(name)->make(runs).tables) {
-      write_csv(table, folder.path());
-      EXPECT_GT(fs::file_size(draw_svg(table, folder.path())), 1000U) << table.name;
-    }
-  }
-}
-
-TEST(Plot, EveryFigureIsDrawnWithFewRunsAndWithNone) {
-  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const Folder folder;
+// Names of variants may hold what is special in gnuplot, and a comma where two parameters vary.
+TEST_F(Plot, EveryFigureIsDrawnWithFewRunsAndWithNone) {
+  std::vector<FigureRun> few = two_variants();
+  few[0].variant = "it's_{odd}^`echo`";
+  few[1].variant = few[2].variant = "gravity_m_per_s2=0,amplitude_rad=0.04";
   for (const Figure& figure : all_figures()) {
-    for (const std::vector<FigureRun>& runs : {two_variants(), std::vector<FigureRun>{}}) {
+    for (const std::vector<FigureRun>& runs : {few, std::vector<FigureRun>{}}) {
       const FigureResult made = figure.make(runs);
       EXPECT_EQ(overall(made.verdicts).value_or(Ruling::undecided), Ruling::undecided)
           << figure.name;
       for (const FigureTable& table : made.tables) {
-        write_csv(table, folder.path());
-        EXPECT_GT(fs::file_size(draw_svg(table, folder.path())), 1000U) << table.name;
+        EXPECT_GT(fs::file_size(draw(table)), 1000U) << table.name;
       }
     }
   }
 }
 
-TEST(Plot, ABadScriptSaysWhatGnuplotSaid) {
-  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const Folder folder;
+TEST_F(Plot, ABadScriptSaysWhatGnuplotSaid) {
   FigureTable table = s2(two_variants())[0];
   table.chart.series[0].colour = "'no such colour";
-  write_csv(table, folder.path());
-  try {
-    draw_svg(table, folder.path());
-    FAIL() << "no error";
-  } catch (const AnalysisError& error) {
-    EXPECT_NE(std::string(error.what()).find("could not draw S2a"), std::string::npos);
-  }
-  EXPECT_FALSE(fs::exists(folder.path() / "S2a.svg"));
-  EXPECT_TRUE(fs::exists(folder.path() / "S2a.csv"));
+  EXPECT_NE(trouble_with(table).find("could not draw S2a"), std::string::npos);
 }
 
-TEST(Plot, MissingGnuplotNamesThePackageAndKeepsTheData) {
-  const Folder folder;
-  const FigureTable table = s2(two_variants())[0];
-  write_csv(table, folder.path());
+TEST_F(Plot, MissingGnuplotNamesThePackageAndKeepsTheData) {
   const std::string before = std::getenv("PATH") != nullptr ? std::getenv("PATH") : "";
   setenv("PATH", "/nonexistent", 1);
-  std::string message;
-  try {
-    draw_svg(table, folder.path());
-  } catch (const AnalysisError& error) {
-    message = error.what();
-  }
+  const std::string message = trouble_with(s2(two_variants())[0]);
   setenv("PATH", before.c_str(), 1);
   EXPECT_NE(message.find("gnuplot-nox"), std::string::npos) << message;
-  EXPECT_TRUE(fs::exists(folder.path() / "S2a.csv"));
 }
 
-TEST(Plot, NamesThatAreNoFileNamesAreRefused) {
+TEST_F(Plot, NamesThatAreNoFileNamesAreRefused) {
   FigureTable table;
   for (const char* name : {"", "../x", "a b", "a'b", "-d"}) {
     table.name = name;

@@ -11,8 +11,8 @@
 #include <map>
 #include <set>
 
-#include "experiments/figures/at_rest.hpp"
 #include "experiments/figures/collect.hpp"
+#include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "protocols/rest.hpp"

@@ -177,8 +177,8 @@ TEST_F(Measure, ResultsComeInTheOrderOfTheRecordsWhateverTheWorkers) {
   const MeasuredCheckpoints many = measure_checkpoints(store_, all, two, {4, true, {}});
   const MeasuredCheckpoints kept = measure_checkpoints(store_, all, two, {2, false, {}});
   ASSERT_EQ(one.results.size(), all.size());
-  EXPECT_EQ(one.computed, all.size() - 1);
-  EXPECT_EQ(kept.computed, 0U);
+  EXPECT_EQ(one.measured, all.size() - 1);
+  EXPECT_EQ(kept.measured, 0U);
   EXPECT_EQ(kept.kept, all.size() - 1);
   EXPECT_EQ(one.results, many.results);
   EXPECT_EQ(one.results, kept.results);

@@ -9,8 +9,8 @@
 
 #include "experiments/figures/collect.hpp"
 #include "experiments/figures/draw.hpp"
+#include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/run_table.hpp"
-#include "experiments/figures/within_cycle.hpp"
 #include "experiments/runner/asks.hpp"
 #include "experiments/runner/replay.hpp"
 #include "provenance/errors.hpp"
@@ -235,7 +235,7 @@ TEST_F(Phases, DrawALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
 
   // As kept, and as a plot or a claim has it.
   const auto energies = cycle_energies(store_, records, {1, false, {}});
-  EXPECT_EQ(energies.back().work_of_walls, work);
+  EXPECT_EQ(energies.back().at("work_of_walls_per_cycle_J"), work);
 }
 
 }  // namespace

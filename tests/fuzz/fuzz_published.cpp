@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "experiments/figures/lineage.hpp"
-#include "experiments/report/accuracy_charts.hpp"
+#include "experiments/report/report_data.hpp"
 #include "provenance/errors.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/fuzz/targets.hpp"

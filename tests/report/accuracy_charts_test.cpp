@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `bench accuracy --out` wrote is shown; malformed files are named.
-#include "experiments/report/accuracy_charts.hpp"
+#include "experiments/report/report_data.hpp"
 
 #include <gtest/gtest.h>
 

@@ -97,7 +97,6 @@ const checks = {
       `hostile: ${found.images} images, ${found.scripts} scripts`);
     expect(found.headings.some((text) => text.includes("</script><img src=x")),
       `hostile: its question is not shown as it stands: ${found.headings}`);
-    await page.context().close();
   },
 
   // The best of three, since other programs may keep the machine busy.
@@ -108,7 +107,6 @@ const checks = {
       await page.locator("svg.canvas .axes").first().waitFor();
       times.push(await page.evaluate(() =>
         Math.max(performance.getEntriesByType("navigation")[0].loadEventEnd, performance.now())));
-      await page.context().close();
     }
     console.log(`  first plot after ${times.map((t) => `${t.toFixed(0)} ms`).join(", ")}`);
     expect(Math.min(...times) < limits.milliseconds, `quick: ${times} ms`);
@@ -134,7 +132,6 @@ const checks = {
     await page.screenshot({path: join(shots, "report.png"), fullPage: true});
     await page.evaluate(() => scrollTo(0, 0));
     await page.screenshot({path: join(shots, "top.png")});
-    await page.context().close();
   },
 
   async interaction() {
@@ -176,7 +173,6 @@ const checks = {
     await shot.setContent(text);
     await shot.locator("body > svg").screenshot({path: join(shots, "saved-plot.png")});
     await shot.close();
-    await page.context().close();
   },
 
   async keyboard() {
@@ -215,7 +211,6 @@ const checks = {
     await page.keyboard.press("ArrowLeft");
     await page.waitForTimeout(250);
     expect(!still.equals(await pixels(page)), "keyboard: arrows do not turn the packing");
-    await page.context().close();
   },
 
   async lineage() {
@@ -230,7 +225,6 @@ const checks = {
     await lineage.locator("td a.id").first().click();
     await page.waitForTimeout(100);
     expect(await page.locator("details.run[open]").count() === 1, "lineage: its run does not open");
-    await page.context().close();
   },
 
   async packings() {
@@ -302,7 +296,6 @@ const checks = {
       expect(/disordered \d+/.test(key), `packings: run ${run} shows '${key}'`);
     }
     console.log(`  ${runs} runs`);
-    await page.context().close();
   },
 
   async themes() {
@@ -320,7 +313,6 @@ const checks = {
         const back = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
         expect(back === colours.light, "themes: the choice is not followed");
       }
-      await page.context().close();
     }
     expect(colours.light !== colours.dark, `themes: both have ${colours.dark}`);
   },
@@ -344,7 +336,6 @@ const checks = {
     await page.locator("details").evaluateAll((all) => all.forEach((one) => (one.open = false)));
     await page.evaluate(() => document.querySelector(".figure").scrollIntoView());
     await page.screenshot({path: join(shots, "phone.png")});
-    await page.context().close();
   }
 };
 
@@ -358,6 +349,7 @@ for (const [name, check] of Object.entries(checks)) {
   } catch (error) {
     expect(false, `${name}: ${error.message.split("\n").slice(0, 3).join(" ")}`);
   }
+  for (const context of browser.contexts()) await context.close();
 }
 await browser.close();
 console.log(failures.length === 0 ? "all as it must be" : `${failures.length} not as they must be`);

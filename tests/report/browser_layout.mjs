@@ -83,7 +83,6 @@ export function layoutChecks({open, expect, shots, drawAllPlots}) {
         for (const misfit of [...closed, ...opened].slice(0, 8)) {
           expect(false, `layout: at ${width}: ${misfit}`);
         }
-        await page.context().close();
       }
     };
   }

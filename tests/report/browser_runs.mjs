@@ -35,7 +35,6 @@ export function runChecks({open, expect, shots}) {
       expect(await head.getAttribute("aria-sort") === null, "sorting: by two columns at once");
       expect([...await column("run")].sort().join() === [...declared].sort().join(),
         "sorting: rows were lost");
-      await page.context().close();
     },
 
     async filtering() {
@@ -59,7 +58,6 @@ export function runChecks({open, expect, shots}) {
       expect((await column("seed")).every((seed) => seed === "1"), "filtering: another seed");
       expect((await shown("nothing like it")).length === 0, "filtering: a text of no row");
       expect((await shown("")).length === all.length, "filtering: an empty filter hides rows");
-      await page.context().close();
     },
 
     async traces() {
@@ -91,7 +89,6 @@ export function runChecks({open, expect, shots}) {
       expect(await table.locator("tr.trace").count() === 0, "traces: Escape does not close it");
       expect(await page.evaluate(() => document.activeElement.className === "disclosure"),
         "traces: the focus is lost");
-      await page.context().close();
     },
 
     async compare() {
@@ -129,7 +126,6 @@ export function runChecks({open, expect, shots}) {
       const facts = await left.locator(".small").textContent();
       await left.locator("select").selectOption({index: 2});
       expect(await left.locator(".small").textContent() !== facts, "compare: the choice is not followed");
-      await page.context().close();
     },
 
     async workflow() {
@@ -147,7 +143,6 @@ export function runChecks({open, expect, shots}) {
         done: parseInt(section.querySelector(".workflow .box:nth-child(3) li").innerText.match(/\d+/)[0], 10)
       }));
       expect(counted.rows === counted.done, `workflow: ${counted.done} runs of ${counted.rows}`);
-      await page.context().close();
     }
   };
 }

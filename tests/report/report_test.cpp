@@ -77,7 +77,7 @@ TEST_F(ReportOfRuns, HoldsQuestionVerdictRunsLineageAndNumbers) {
   }
 }
 
-TEST_F(ReportOfRuns, GivesTheFrontEndPlotsAndPackings) {
+TEST_F(ReportOfRuns, GivesTheFrontEndPlotsPackingsAndTraces) {
   if (!has_front_end()) GTEST_SKIP() << "built without Node: there is no front end";
   const nlohmann::json data = data_of(make().html);
   ASSERT_TRUE(data.is_object());
@@ -94,6 +94,15 @@ TEST_F(ReportOfRuns, GivesTheFrontEndPlotsAndPackings) {
   const auto& frame = run.at("frames")[0];
   EXPECT_EQ(frame.at("fields").size(), 6U);
   EXPECT_EQ(frame.at("profiles").at("phi").size(), frame.at("profiles").at("height").size());
+  ASSERT_EQ(data.at("experiments").size(), 1U);
+  std::set<std::string> variants;
+  for (const auto& trace : data.at("experiments")[0].at("runs")) {
+    EXPECT_EQ(trace.at("cycle"), (nlohmann::json{0.0, 1.0, 2.0}));
+    EXPECT_EQ(trace.at("percent").size(), 3U);
+    EXPECT_NEAR(trace.at("phi")[0].get<double>(), 0.6, 0.1);
+    variants.insert(trace.at("variant"));
+  }
+  EXPECT_EQ(variants, (std::set<std::string>{"fluid=cell", "fluid=still"}));
 }
 
 TEST_F(ReportOfRuns, HasTheTableOfRunsInBothForms) {
@@ -110,23 +119,6 @@ TEST_F(ReportOfRuns, HasTheTableOfRunsInBothForms) {
       EXPECT_EQ(count(report.html, "data-value=\"" + phi.dump() + "\""), 1U) << phi;
     }
   }
-}
-
-TEST_F(ReportOfRuns, GivesTheFrontEndTheTraceOfEachRun) {
-  if (!has_front_end()) GTEST_SKIP() << "built without Node: there is no front end";
-  const RunTable table = run_table(store_, {}, RowPer::checkpoint, {});
-  const nlohmann::json experiments = data_of(make().html).at("experiments");
-  ASSERT_EQ(experiments.size(), 1U);
-  const nlohmann::json& runs = experiments[0].at("runs");
-  ASSERT_EQ(runs.size(), 2U);
-  std::set<std::string> variants;
-  for (const auto& run : runs) {
-    EXPECT_EQ(run.at("cycle"), (nlohmann::json{0.0, 1.0, 2.0}));
-    EXPECT_EQ(run.at("percent").size(), 3U);
-    EXPECT_NEAR(run.at("phi")[0].get<double>(), 0.6, 0.1);
-    variants.insert(run.at("variant"));
-  }
-  EXPECT_EQ(variants, (std::set<std::string>{"fluid=cell", "fluid=still"}));
 }
 
 TEST_F(ReportOfRuns, ShowsTheStateOfEachStepOfTheWorkflow) {
@@ -157,7 +149,7 @@ TEST_F(ReportOf, CallsVariantsByTheirLabels) {
   }
 }
 
-TEST_F(ReportOfRuns, AllowsOnlyItsOwnScript) {
+TEST_F(ReportOfRuns, AllowsOnlyItsOwnScriptAndHasNoneWithDrawings) {
   const std::string html = make().html;
   EXPECT_NE(html.find("Content-Security-Policy\" content=\"default-src 'none';"),
             std::string::npos);
@@ -165,9 +157,6 @@ TEST_F(ReportOfRuns, AllowsOnlyItsOwnScript) {
   for (const char* link : {"src=\"http", "href=\"http", "url(http", "@import"}) {
     EXPECT_EQ(count(html, link), 0U) << link;
   }
-}
-
-TEST_F(ReportOfRuns, HasDrawingsAndNoScriptWhenItIsAskedTo) {
   const Report report = make(drawings());
   EXPECT_FALSE(report.interactive);
   EXPECT_EQ(count(report.html, "<script"), 0U);
@@ -207,9 +196,7 @@ TEST_F(ReportOf, ShowsMarkupAsText) {
   store_.start_run(run.id, {{"host", evil}, {"build", {{"version", evil}, {"flags", evil}}}});
   store_.fail_run(run.id, evil);
 
-  for (const bool interactive : {true, false}) {
-    ReportOptions options;
-    options.interactive = interactive;
+  for (const ReportOptions& options : {ReportOptions(), drawings()}) {
     const Report report = make(options);
     EXPECT_EQ(count(report.html, "<script>alert"), 0U);
     EXPECT_EQ(count(report.html, "<img"), report.interactive ? 0U : count(report.html, "<img alt"));

@@ -161,9 +161,8 @@ Section seeds_section(const Options& options, double engine_rate) {
     const double seconds = seconds_per_cycle(p, step.seconds, engine_rate);
     section.table.rows.push_back(
         {static_cast<std::int64_t>(steps[s]), step.seconds, step.over_stability_limit, seconds,
-         table_value(phi.mean), table_value(phi.standard_error), table_value(contacts.mean),
-         table_value(contacts.standard_error), table_value(overlap.mean),
-         table_value(overlap.standard_error), static_cast<std::int64_t>(phi.runs), stopped});
+         phi.mean, phi.standard_error, contacts.mean, contacts.standard_error, overlap.mean,
+         overlap.standard_error, static_cast<std::int64_t>(phi.runs), stopped});
     section.summary.push_back(
         {short_number(step.seconds), fmt::format("{:.2f}", step.over_stability_limit),
          fmt::format("{:.2f}", seconds), with_error(phi, 4), with_error(contacts, 2),
@@ -227,10 +226,9 @@ Section stiffness_section(const Options& options, double engine_rate) {
                         phi_u = over(here, &PackingNumbers::phi_uncorrected),
                         overlap = over(here, &PackingNumbers::overlap), b = over_runs(bias),
                         b_u = over_runs(bias_u);
-    section.table.rows.push_back(
-        {factor, seconds, table_value(overlap.mean), table_value(phi.mean), table_value(b.mean),
-         table_value(b.standard_error), table_value(phi_u.mean), table_value(b_u.mean),
-         table_value(b_u.standard_error), static_cast<std::int64_t>(phi.runs)});
+    section.table.rows.push_back({factor, seconds, overlap.mean, phi.mean, b.mean, b.standard_error,
+                                  phi_u.mean, b_u.mean, b_u.standard_error,
+                                  static_cast<std::int64_t>(phi.runs)});
     section.summary.push_back({short_number(factor), fmt::format("{:.2f}", seconds),
                                short_number(overlap.mean.value_or(std::nan(""))),
                                fmt::format("{:.5f}", phi.mean.value_or(std::nan(""))),

@@ -6,7 +6,7 @@ import {italic, plain, sub} from "./text.js";
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 
-export const classColours = ["#c9cdd3", "#0072b2", "#e69f00", "#009e73"];  // none, FCC, HCP, BCC
+const classColours = ["#c9cdd3", "#0072b2", "#e69f00", "#009e73"];  // none, FCC, HCP, BCC
 const crystalliteColours = [
   "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#a6761d", "#7570b3"
 ];

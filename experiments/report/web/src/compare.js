@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two variants side by side: every seed over the cycles on common axes, and a packing of each.
+import {addOptions, element, whenNear} from "./dom.js";
 import {Plot} from "./plot.js";
 import {chartsOfVariant, commonRange} from "./traces.js";
 import {Viewer} from "./viewer.js";
@@ -35,51 +36,30 @@ export class Comparison {
   constructor(host, experiments, packings) {
     this.variants = variantsOf(experiments);
     this.packings = packings;
-    const sides = document.createElement("div");
-    sides.className = "sides";
-    host.append(sides);
+    const sides = element("div", {className: "sides"});
     this.sides = ["Left", "Right"].map((label, k) => this.addSide(sides, label, k));
-    this.note = document.createElement("p");
-    this.note.className = "small";
-    this.view = document.createElement("div");
-    host.append(this.note, this.view);
+    this.note = element("p", {className: "small"});
+    this.view = element("div");
+    host.append(sides, this.note, this.view);
     this.viewer = null;
-    const watcher = new IntersectionObserver((entries) => {
-      if (!entries.some((entry) => entry.isIntersecting)) return;
-      watcher.disconnect();
-      this.viewer = new Viewer(this.view, packings, 2);
-      this.showPackings();
-    }, {rootMargin: "200px"});
-    if (packings.length > 0) watcher.observe(this.view);
+    if (packings.length > 0) {
+      whenNear(this.view, 200, () => {
+        this.viewer = new Viewer(this.view, packings, 2);
+        this.showPackings();
+      });
+    }
     this.show();
   }
 
   addSide(parent, label, k) {
-    const side = document.createElement("div");
-    side.className = "side";
-    const choice = document.createElement("label");
-    const select = document.createElement("select");
-    choice.append(`${label} `, select);
-    const groups = new Map();
-    this.variants.forEach(({experiment, name}, index) => {
-      if (!groups.has(experiment)) {
-        const group = document.createElement("optgroup");
-        group.label = experiment;
-        groups.set(experiment, group);
-        select.append(group);
-      }
-      const option = document.createElement("option");
-      option.value = String(index);
-      option.textContent = name;
-      groups.get(experiment).append(option);
-    });
+    const select = element("select");
+    addOptions(select, this.variants, ({experiment}) => experiment, ({name}) => name);
     select.value = String(Math.min(k, this.variants.length - 1));
     select.addEventListener("change", () => this.show());
-    const facts = document.createElement("p");
-    facts.className = "small";
-    const panels = document.createElement("div");
-    side.append(choice, facts, panels);
-    parent.append(side);
+    const facts = element("p", {className: "small"});
+    const panels = element("div");
+    const choice = element("label", {}, `${label} `, select);
+    parent.append(element("div", {className: "side"}, choice, facts, panels));
     return {select, facts, panels};
   }
 
@@ -94,8 +74,7 @@ export class Comparison {
       facts.textContent = `${chosen[k].experiment}, ${chosen[k].name}: ${factsOf(chosen[k])}`;
       panels.replaceChildren();
       for (const {name, chart} of chartsOfVariant(chosen[k].runs, chosen[k].name, range)) {
-        const host = document.createElement("div");
-        host.className = "plot";
+        const host = element("div", {className: "plot"});
         panels.append(host);
         new Plot(host, chart, name);
       }

@@ -20,7 +20,7 @@ const shapes = {
   2: symbolSquare, 3: symbolCircle, 4: symbolTriangle, 5: symbolTriangle, 6: symbolDiamond
 };
 
-export function symbolPath(point, size = 34) {
+function symbolPath(point, size = 34) {
   const shape = shapes[Math.floor(point / 2)] ?? symbolCircle;
   return symbol(shape, size)();
 }
@@ -29,7 +29,7 @@ const isOpen = (point) => point % 2 === 0;
 const pointsDown = (point) => point === 10 || point === 11;
 
 // Makes dark colours visible on a dark page.
-export function onDark(colour) {
+function onDark(colour) {
   const channels = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
   const light = (0.3 * channels[0] + 0.59 * channels[1] + 0.11 * channels[2]) / 255;
   const mix = Math.max(0, 0.62 - light) * 1.15;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Adds plots, packings, comparisons and downloads to the page; everything else works without scripts.
 import {Comparison} from "./compare.js";
+import {whenNear} from "./dom.js";
 import {Plot} from "./plot.js";
 import {RunTable} from "./run_table.js";
 import {saveText} from "./save.js";
@@ -11,25 +12,16 @@ const data = JSON.parse(document.getElementById("report-data").textContent);
 
 // A plot is drawn when it is scrolled near the window, or before printing.
 function addPlots() {
-  const waiting = new Map();
-  for (const host of document.querySelectorAll("[data-chart]")) {
-    const chart = data.charts[host.dataset.chart];
-    if (chart) waiting.set(host, () => new Plot(host, chart, host.dataset.chart));
-  }
+  const waiting = new Set();
   const draw = (host) => {
-    const make = waiting.get(host);
-    waiting.delete(host);
-    if (make) make();
+    if (waiting.delete(host)) new Plot(host, data.charts[host.dataset.chart], host.dataset.chart);
   };
-  const watcher = new IntersectionObserver((entries) => {
-    for (const {isIntersecting, target} of entries) {
-      if (!isIntersecting) continue;
-      watcher.unobserve(target);
-      draw(target);
-    }
-  }, {rootMargin: "300px"});
-  for (const host of waiting.keys()) watcher.observe(host);
-  window.addEventListener("beforeprint", () => [...waiting.keys()].forEach(draw));
+  for (const host of document.querySelectorAll("[data-chart]")) {
+    if (!data.charts[host.dataset.chart]) continue;
+    waiting.add(host);
+    whenNear(host, 300, () => draw(host));
+  }
+  window.addEventListener("beforeprint", () => [...waiting].forEach(draw));
 }
 
 function addViewer() {
@@ -38,12 +30,7 @@ function addViewer() {
   section.hidden = false;
   let viewer = null;
   const open = () => (viewer ??= new Viewer(section.querySelector(".viewer"), data.packings));
-  const watcher = new IntersectionObserver((entries) => {
-    if (!entries.some((entry) => entry.isIntersecting)) return;
-    watcher.disconnect();
-    open();
-  }, {rootMargin: "200px"});
-  watcher.observe(section);
+  whenNear(section, 200, open);
   for (const link of document.querySelectorAll("[data-packing]")) {
     link.hidden = false;
     link.addEventListener("click", () => open().showRunCalled(link.dataset.packing));
@@ -61,12 +48,8 @@ function addComparison() {
   const section = document.getElementById("compare");
   if (data.experiments.every(({runs}) => runs.every((run) => !run.cycle))) return;
   section.hidden = false;
-  const watcher = new IntersectionObserver((entries) => {
-    if (!entries.some((entry) => entry.isIntersecting)) return;
-    watcher.disconnect();
-    new Comparison(section.querySelector(".comparison"), data.experiments, data.packings);
-  }, {rootMargin: "300px"});
-  watcher.observe(section);
+  whenNear(section, 300, () =>
+    new Comparison(section.querySelector(".comparison"), data.experiments, data.packings));
 }
 
 function addDownloads() {

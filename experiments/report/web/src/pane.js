@@ -2,6 +2,7 @@
 // One packing: its picture, the key of its colours, its values.
 import {coloursOf, keyOf, viridis} from "./colours.js";
 import {pane as markup} from "./controls.js";
+import {element} from "./dom.js";
 import {crystalliteSizes, decodeFrame, structureNames} from "./frames.js";
 import {drawProfile} from "./profile.js";
 import {PackingScene} from "./scene.js";
@@ -12,9 +13,7 @@ const axes = {none: -1, x: 0, y: 1, z: 2};
 export class Pane {
   // Throws if the browser has no WebGL 2. `turned` is called when the reader turns or zooms it.
   constructor(host, turned) {
-    this.host = document.createElement("div");
-    this.host.className = "pane";
-    this.host.innerHTML = markup;
+    this.host = element("div", {className: "pane", innerHTML: markup});
     this.part = (name) => this.host.querySelector(`[data-part="${name}"]`);
     this.canvas = this.part("canvas");
     this.scene = new PackingScene(this.canvas, turned);
@@ -47,7 +46,7 @@ export class Pane {
     this.scene.setCell(stored.cell, hadCell);
     const facts = [plain(stored.name), plain(`N = ${grains}`), ...stored.facts];
     this.part("facts").replaceChildren(...facts.map((fact) => {
-      const one = document.createElement("span");
+      const one = element("span");
       writeHtmlText(one, fact);
       return one;
     }));
@@ -139,23 +138,18 @@ export class Pane {
     const key = this.part("key");
     key.replaceChildren();
     if (bar) {
-      const label = document.createElement("span");
-      label.className = "of";
+      const label = element("span", {className: "of"});
       writeHtmlText(label, bar.label);
-      const strip = document.createElement("span");
-      strip.className = "strip";
+      const strip = element("span", {className: "strip"});
       const stops = [0, 0.25, 0.5, 0.75, 1].map((t) => `rgb(${viridis(t).join(" ")})`);
       strip.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
       key.append(label, ` ${bar.low} `, strip, ` ${bar.high}`);
       return;
     }
     for (const {colour, text} of entries) {
-      const entry = document.createElement("span");
-      entry.className = "entry";
-      const dot = document.createElement("i");
+      const dot = element("i");
       dot.style.background = colour;
-      entry.append(dot, text);
-      key.append(entry);
+      key.append(element("span", {className: "entry"}, dot, text));
     }
   }
 }

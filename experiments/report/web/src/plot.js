@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One interactive plot: keeps which series and which part of the axes are visible, and redraws when
 // either changes.
+import {button, element} from "./dom.js";
 import {drawFrame, drawReferenceLines, drawSeries, drawSymbol, dress, svg} from "./draw.js";
 import {addGestures} from "./gestures.js";
 import {addReadout} from "./readout.js";
@@ -111,27 +112,18 @@ export class Plot {
   }
 
   addToolbar() {
-    const bar = document.createElement("div");
-    bar.className = "toolbar";
-    const button = (text, label, action) => {
-      const one = document.createElement("button");
-      one.type = "button";
-      one.textContent = text;
-      one.title = label;
-      one.setAttribute("aria-label", `${label} (${this.name})`);
-      one.addEventListener("click", action);
-      bar.append(one);
-    };
-    button("+", "Zoom in", () => this.zoom(0.6));
-    button("−", "Zoom out", () => this.zoom(1 / 0.6));
-    button("all", "Show everything", () => this.show(null));
-    button("SVG", "Save as SVG", () => saveSvg(this));
+    const bar = element("div", {className: "toolbar"});
+    const add = (text, title, action) =>
+      bar.append(button({title, "aria-label": `${title} (${this.name})`}, action, text));
+    add("+", "Zoom in", () => this.zoom(0.6));
+    add("−", "Zoom out", () => this.zoom(1 / 0.6));
+    add("all", "Show everything", () => this.show(null));
+    add("SVG", "Save as SVG", () => saveSvg(this));
     this.host.append(bar);
   }
 
   addLegend() {
-    const legend = document.createElement("div");
-    legend.className = "legend";
+    const legend = element("div", {className: "legend"});
     // A series without a title belongs to the entry before it.
     const groups = [];
     this.chart.series.forEach((one, index) => {
@@ -141,25 +133,21 @@ export class Plot {
     for (const group of groups) {
       const one = this.chart.series[group[0]];
       if (one.title.length === 0) continue;
-      const entry = document.createElement("button");
-      entry.type = "button";
-      entry.setAttribute("aria-pressed", "true");
-      entry.title = "Show or hide this curve";
       const empty = group.every((index) => this.chart.series[index].points.length === 0);
-      entry.classList.toggle("without-data", empty);
       const key = svg("svg", {class: "key", width: 26, height: 14, "aria-hidden": "true"});
       dress(key, one.colour);
       if (one.line) svg("path", {class: one.dashed ? "line dashed" : "line", d: "M0 7H26"}, key);
       drawSymbol(key, one.point, 13, 7);
-      const title = document.createElement("span");
+      const title = element("span");
       writeHtmlText(title, one.title);
-      entry.append(key, title);
-      entry.addEventListener("click", () => {
+      const entry = button({
+        "aria-pressed": "true", title: "Show or hide this curve", className: empty ? "without-data" : ""
+      }, () => {
         const shows = this.hidden.has(group[0]);
         for (const index of group) this.hidden[shows ? "delete" : "add"](index);
         entry.setAttribute("aria-pressed", String(shows));
         this.redraw();
-      });
+      }, key, title);
       legend.append(entry);
     }
     this.host.append(legend);

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shows the values of the point under the pointer, or of the one selected by the arrow keys.
+import {element} from "./dom.js";
 import {dress, svg} from "./draw.js";
 import {positionIn} from "./gestures.js";
 import {formatOn} from "./scales.js";
-import {plainText, writeHtmlText} from "./text.js";
+import {writeHtmlText} from "./text.js";
 
 const reach = 28;  // pixels
 
 export function addReadout(plot) {
-  const note = document.createElement("div");
-  note.className = "readout";
-  note.setAttribute("role", "status");
-  note.hidden = true;
+  const note = element("div", {className: "readout", role: "status", hidden: true});
   plot.host.append(note);
   let current = null;  // {one, index}
 
@@ -38,7 +36,7 @@ export function addReadout(plot) {
   }
 
   function quantity(label, scale, value, error) {
-    const line = document.createElement("div");
+    const line = element("div");
     writeHtmlText(line, label);
     const spread = error ? ` ± ${formatOn(scale, error)}` : "";
     line.append(` = ${formatOn(scale, value)}${spread}`);
@@ -53,7 +51,7 @@ export function addReadout(plot) {
     const at = place(found);
     const marker = svg("circle", {class: "marker", cx: at[0], cy: at[1], r: 7}, plot.overlay);
     dress(marker, found.one.colour);
-    const title = document.createElement("strong");
+    const title = element("strong");
     writeHtmlText(title, found.one.name ?? found.one.title);
     const [x, y, xError, yError] = found.one.points[found.index];
     note.replaceChildren(title, quantity(plot.chart.x.label, plot.scales.x, x - found.one.shift, xError),
@@ -99,7 +97,6 @@ export function addReadout(plot) {
       const kept = current && plot.visibleSeries().includes(current.one) &&
         inside(place(current));
       show(kept ? current : null);
-    },
-    text: () => plainText(note.textContent)
+    }
   };
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Makes an experiment's table of runs sortable and filterable, and shows a run's trace below its row.
+import {button, element} from "./dom.js";
 import {Plot} from "./plot.js";
 import {chartsOfRun} from "./traces.js";
 
@@ -9,14 +10,6 @@ const compare = {
   "<": (a, b) => a < b, ">": (a, b) => a > b, "<=": (a, b) => a <= b, ">=": (a, b) => a >= b,
   "=": (a, b) => a === b
 };
-
-function button(text, label) {
-  const made = document.createElement("button");
-  made.type = "button";
-  made.textContent = text;
-  if (label) made.setAttribute("aria-label", label);
-  return made;
-}
 
 export class RunTable {
   constructor(host, runs) {
@@ -37,9 +30,10 @@ export class RunTable {
       body, values, run: this.runs[Number(body.dataset.row)],
       words: cells.map((cell) => cell.textContent).concat(values).join(" ").toLowerCase()
     };
-    row.button = button("", `Trace of run ${row.run.id.slice(0, 8)}`);
-    row.button.className = "disclosure";
-    row.button.setAttribute("aria-expanded", "false");
+    row.button = element("button", {
+      type: "button", className: "disclosure", "aria-expanded": "false",
+      "aria-label": `Trace of run ${row.run.id.slice(0, 8)}`
+    });
     cells[0].prepend(row.button);
     body.rows[0].addEventListener("click", (event) => {
       if (!event.target.closest("a")) this.toggle(row);
@@ -48,16 +42,13 @@ export class RunTable {
   }
 
   addSort(head, column) {
-    const sort = document.createElement("button");
-    sort.type = "button";
-    sort.append(...head.childNodes);
-    head.append(sort);
-    sort.addEventListener("click", () => {
+    const sort = button({}, () => {
       const down = head.getAttribute("aria-sort") === "ascending";
       for (const other of this.heads) other.removeAttribute("aria-sort");
       head.setAttribute("aria-sort", down ? "descending" : "ascending");
       this.sort(column, down ? -1 : 1);
-    });
+    }, ...head.childNodes);
+    head.append(sort);
   }
 
   // Runs without the value come last, whichever way the others are sorted.
@@ -75,17 +66,13 @@ export class RunTable {
   }
 
   addFilter() {
-    const bar = document.createElement("div");
-    bar.className = "filter";
-    const label = document.createElement("label");
-    this.input = document.createElement("input");
-    this.input.type = "search";
-    this.input.placeholder = "fluid=still phi>0.63";
-    this.input.title = `Words that a row has, or conditions on ${this.keys.join(", ")}`;
-    this.count = document.createElement("output");
-    label.append("Filter ", this.input);
-    bar.append(label, this.count);
-    this.host.prepend(bar);
+    this.input = element("input", {
+      type: "search", placeholder: "fluid=still phi>0.63",
+      title: `Words that a row has, or conditions on ${this.keys.join(", ")}`
+    });
+    this.count = element("output");
+    const label = element("label", {}, "Filter ", this.input);
+    this.host.prepend(element("div", {className: "filter"}, label, this.count));
     this.input.addEventListener("input", () => this.filter());
     this.filter();
   }
@@ -125,21 +112,15 @@ export class RunTable {
 
   addTrace(row) {
     const {run, button: opener} = row;
-    const line = document.createElement("tr");
+    const panels = element("div", {className: "panels"});
+    const cell = element("td", {colSpan: this.keys.length + 1}, panels);
+    const line = element("tr", {className: "trace"}, cell);
     row.trace = line;
     row.body.append(line);  // plots need their width
-    line.className = "trace";
-    const cell = document.createElement("td");
-    cell.colSpan = this.keys.length + 1;
-    const panels = document.createElement("div");
-    panels.className = "panels";
-    cell.append(panels);
-    line.append(cell);
     const others = this.runs.filter((one) =>
       one !== run && one.scale === run.scale && one.variant === run.variant);
     for (const {name, chart} of chartsOfRun(run, others)) {
-      const host = document.createElement("div");
-      host.className = "plot";
+      const host = element("div", {className: "plot"});
       panels.append(host);
       new Plot(host, chart, name);
     }

@@ -20,7 +20,7 @@ export function saveText(name, text, type) {
 }
 
 // The plot as shown, in the colours for paper, with its legend below.
-export function plotAsSvg(plot) {
+function plotAsSvg(plot) {
   const stage = document.createElement("div");
   stage.className = "stage";
   stage.dataset.theme = "light";

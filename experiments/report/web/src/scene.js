@@ -11,7 +11,7 @@ import {Spheres} from "./spheres.js";
 const firstDirection = new Vector3(0.5, 0.28, 1).normalize();
 
 // Corners of the sheared box: side walls tilt about the height of the top wall.
-export function cellCorners(cell) {
+function cellCorners(cell) {
   const corners = [];
   for (const z of [0, cell.depth]) {
     for (const y of [cell.bottom, cell.top]) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Charts of runs over their cycles, as experiments/report/run_tables.cpp gives them: {cycle, phi,
+// Charts of runs over their cycles, as experiments/report/report_data.cpp gives them: {cycle, phi,
 // percent, seed, variant, kind, ...}.
 import {italic, plain} from "./text.js";
 

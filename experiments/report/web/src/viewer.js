@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The packing viewer: one packing or two side by side, with one set of controls for both.
 import {controls} from "./controls.js";
+import {addOptions} from "./dom.js";
 import {Pane} from "./pane.js";
 import {saveBlob} from "./save.js";
 import {onThemeChange, pageColours} from "./theme.js";
@@ -24,27 +25,11 @@ export class Viewer {
       return;
     }
     this.part("run").parentElement.hidden = count > 1;
-    this.fillRuns();
+    addOptions(this.part("run"), packings, ({experiment}) => experiment, ({label}) => label);
     this.connect();
     onThemeChange(() => this.setColours());
     this.setColours();
     if (count === 1) this.showRuns([packings[0]]);
-  }
-
-  fillRuns() {
-    const groups = new Map();
-    this.packings.forEach((packing, index) => {
-      if (!groups.has(packing.experiment)) {
-        const group = document.createElement("optgroup");
-        group.label = packing.experiment;
-        groups.set(packing.experiment, group);
-        this.part("run").append(group);
-      }
-      const option = document.createElement("option");
-      option.value = String(index);
-      option.textContent = packing.label;
-      groups.get(packing.experiment).append(option);
-    });
   }
 
   connect() {

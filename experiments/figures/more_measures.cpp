@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/figures/within_cycle.hpp"
+#include "experiments/figures/more_measures.hpp"
 
+#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
 
+#include "analysis/published.hpp"
 #include "core/drive.hpp"
 #include "core/trigonometry.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "protocols/ledger.hpp"
+#include "protocols/rest.hpp"
 
 namespace shearcell {
 namespace {
 
 constexpr double kTurn = 6.28318530717958647692;
+constexpr double kRest = 0.1;  // [s]
+/// Steps between two samples of an energy ledger: a period of the fastest vibration at Table I's
+/// time step.
+constexpr std::uint64_t kLedgerStride = 8;
 
 // A run that shears, and its checkpoints that may begin a cycle.
 struct Shear {
@@ -38,14 +45,15 @@ Shear shear_of(const Store& store, const std::string& run) {
   return shear;
 }
 
-const DerivedMeasure& cycle_ledger() {
-  static const DerivedMeasure measure{"ledger_of_next_cycle", {{"stride", kLedgerStride}}, nullptr};
-  return measure;
-}
-
-CycleEnergy read_energy(const nlohmann::json& kept, double unit_J) {
-  return {kept.at("work_of_walls").get<double>() * unit_J,
-          kept.at("dissipation").get<double>() * unit_J, kept.at("stored").get<double>() * unit_J};
+/// The result of one measure for some of the checkpoints.
+std::vector<nlohmann::json> results_of(const DerivedMeasure& measure, const Store& store,
+                                       std::span<const CheckpointRecord> records,
+                                       const MeasureOptions& options) {
+  std::vector<nlohmann::json> results;
+  for (auto& found : measure_checkpoints(store, records, {&measure, 1}, options).results) {
+    results.push_back(std::move(found.front()));
+  }
+  return results;
 }
 
 }  // namespace
@@ -66,15 +74,9 @@ void add_drive(const RunRecord& run, const CheckpointRecord& checkpoint, Measure
   }
 }
 
-void add_energy(const CycleEnergy& energy, Measures& measures) {
-  measures.numbers["work_of_walls_per_cycle_J"] = energy.work_of_walls;
-  measures.numbers["dissipation_per_cycle_J"] = energy.dissipation;
-  measures.numbers["energy_stored_per_cycle_J"] = energy.stored;
-}
-
-std::vector<CycleEnergy> cycle_energies(const Store& store,
-                                        std::span<const CheckpointRecord> records,
-                                        const MeasureOptions& options) {
+std::vector<decltype(Measures::numbers)> cycle_energies(const Store& store,
+                                                        std::span<const CheckpointRecord> records,
+                                                        const MeasureOptions& options) {
   std::map<std::string, Shear> shears;  // by run; threads must not read the log
   std::vector<CheckpointRecord> begins;
   std::vector<std::size_t> place;
@@ -100,14 +102,47 @@ std::vector<CycleEnergy> cycle_energies(const Store& store,
                           {"dissipation", sum.dissipation()},
                           {"stored", sum.stored()}};
   };
-  const auto found = measure_checkpoints(store, begins, std::span(&cycle_ledger(), 1), simulating);
-  std::vector<CycleEnergy> energies(records.size());
+  const DerivedMeasure measure{"ledger_of_next_cycle", {{"stride", kLedgerStride}}, nullptr};
+  const auto found = results_of(measure, store, begins, simulating);
+  std::vector<decltype(Measures::numbers)> energies(records.size());
   for (std::size_t n = 0; n < begins.size(); ++n) {
-    const nlohmann::json& result = found.results[n].front();
-    if (result.is_null()) continue;
-    energies[place[n]] = read_energy(result, shears.at(begins[n].run).unit_J);
+    if (found[n].is_null()) continue;
+    const double unit_J = shears.at(begins[n].run).unit_J;
+    const auto energy = [&](const char* name) { return found[n].at(name).get<double>() * unit_J; };
+    energies[place[n]] = {{"work_of_walls_per_cycle_J", energy("work_of_walls")},
+                          {"dissipation_per_cycle_J", energy("dissipation")},
+                          {"energy_stored_per_cycle_J", energy("stored")}};
   }
   return energies;
+}
+
+std::vector<double> phi_at_rest(const Store& store, std::span<const CheckpointRecord> records,
+                                const MeasureOptions& options) {
+  std::vector<CheckpointRecord> early;
+  std::vector<std::size_t> place;
+  std::map<std::string, Scene> scenes;  // by run; threads must not read the log
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (records[i].cycle < 1 || records[i].cycle > early_cycles) continue;
+    early.push_back(records[i]);
+    place.push_back(i);
+    const std::string& run = records[i].run;
+    if (scenes.contains(run)) continue;
+    scenes[run] = shear_scene(read_stage(store.run(run).resolved).parameters);
+  }
+  MeasureOptions resting = options;
+  resting.prepare = [&](const CheckpointRecord& record, Checkpoint& checkpoint) {
+    checkpoint.state =
+        rested(checkpoint.cell, scenes.at(record.run), std::move(checkpoint.state), kRest);
+  };
+  DerivedMeasure measure = scalar_measures();
+  measure.name = "scalars_at_rest";
+  measure.parameters["rest_s"] = kRest;
+  const auto found = results_of(measure, store, early, resting);
+  std::vector<double> phi(records.size(), std::nan(""));
+  for (std::size_t n = 0; n < early.size(); ++n) {
+    if (!found[n].is_null()) phi[place[n]] = read_measures(found[n]).phi;
+  }
+  return phi;
 }
 
 }  // namespace shearcell
