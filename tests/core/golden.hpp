@@ -49,10 +49,9 @@ struct Golden {
   std::uint64_t fingerprint;
 };
 
-inline constexpr std::array kGolden = {
-    Golden{"sheared", sheared, 0x1d65753234f77d8bU},
-    Golden{"minimized", minimized, 0xc450a98c9f1b8643U},
-    Golden{"deep", deep_and_shallow, 0x001eb85ecd807cacU}};
+inline constexpr std::array kGolden = {Golden{"sheared", sheared, 0x1d65753234f77d8bU},
+                                       Golden{"minimized", minimized, 0xc450a98c9f1b8643U},
+                                       Golden{"deep", deep_and_shallow, 0x001eb85ecd807cacU}};
 
 /// Whether each kernel of this machine reaches the state; prints those that do not.
 inline bool is_reached(const Golden& golden) {
