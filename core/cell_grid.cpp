@@ -10,21 +10,13 @@ namespace shearcell {
 void CellOrder::choose_grid(const Cell& cell, const WallPose& pose, double reach,
                             std::size_t sites) {
   // A pair at distance r is at most r sqrt(1 + tan^2) apart along x in the untilted frame.
-  double size_x = reach * std::sqrt(1 + pose.tan_theta * pose.tan_theta);
-  double size = reach;
+  const double reach_x = reach * std::sqrt(1 + pose.tan_theta * pose.tan_theta);
   const double height = pose.top - pose.bottom;
-  const auto count = [](double length, double width) {
-    return std::max(1.0, std::min(std::floor(length / width), 1e6));
-  };
-  // A nearly empty cell gets wider cells, so that it costs no more than its sites.
-  const double most = 64 + 4 * static_cast<double>(sites);
-  while (count(cell.width, size_x) * count(height, size) * count(cell.depth, size) > most) {
-    size_x *= 1.26;
-    size *= 1.26;
-  }
-  grid_.columns = static_cast<std::int32_t>(count(cell.width, size_x));
-  grid_.rows = static_cast<std::int32_t>(count(height, size));
-  grid_.layers = static_cast<std::int32_t>(count(cell.depth, size));
+  const CellCounts cells =
+      count_cells({cell.width, height, cell.depth}, {reach_x, reach, reach}, sites);
+  grid_.columns = cells.x;
+  grid_.rows = cells.y;
+  grid_.layers = cells.z;
   per_cell_ = {grid_.columns / cell.width, grid_.rows / height, grid_.layers / cell.depth};
 }
 
@@ -44,10 +36,10 @@ void CellOrder::choose_strip(std::size_t sites) {
 
 std::uint32_t CellOrder::cell_of(const double* row, const Cell& cell, const WallPose& pose) const {
   const double x = row[0] - pose.tan_theta * (row[1] - pose.top);
-  const double z = row[2] - cell.depth * std::floor(row[2] / cell.depth);
   const std::int32_t column = clamp_to_cell(x * per_cell_[0], grid_.columns);
   const std::int32_t line = clamp_to_cell((row[1] - pose.bottom) * per_cell_[1], grid_.rows);
-  const std::int32_t layer = clamp_to_cell(z * per_cell_[2], grid_.layers);
+  const std::int32_t layer =
+      clamp_to_cell(wrapped(row[2], cell.depth) * per_cell_[2], grid_.layers);
   return static_cast<std::uint32_t>(line_of(grid_, line, layer) * grid_.columns + column);
 }
 

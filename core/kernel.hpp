@@ -61,7 +61,7 @@ struct ContactTask {
   std::size_t grains = 0;
   const double* rows = nullptr;  ///< positions [d], rows of 4
   NeighbourRows neighbours;
-  WallPlane planes[4];  ///< that of the moving wall first
+  std::array<WallPlane, 4> planes;  ///< that of the moving wall first
   /// Output, per grain of blocks near the moving wall: y of its contact sum with that wall [d].
   double* moving_wall_force_y = nullptr;
   double depth = 0, per_depth = 0;  ///< period in z [d] and its inverse
@@ -132,7 +132,7 @@ struct PruneTask {
   std::size_t outer_stride = 0;
   const std::uint16_t* outer_count = nullptr;   ///< per grain
   std::int32_t first_wall = 0, moving_end = 0;  ///< offsets of the moving wall's grains
-  WallPlane planes[4];                          ///< that of the moving wall first
+  std::array<WallPlane, 4> planes;              ///< that of the moving wall first
   double wall_margin = 0;                       ///< of the planes [d]
   std::int32_t* inner = nullptr;                ///< laid out as NeighbourRows
   std::size_t inner_stride = 0;                 ///< most slots that a block may have

@@ -5,26 +5,32 @@
 #include <cmath>
 
 namespace shearcell {
+CellCounts count_cells(std::array<double, 3> lengths, std::array<double, 3> sizes,
+                       std::size_t points) {
+  const double most = 64 + 4 * static_cast<double>(points);
+  for (;;) {
+    std::array<double, 3> counts{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      counts[axis] = std::max(1.0, std::min(std::floor(lengths[axis] / sizes[axis]), 1e9));
+      sizes[axis] *= 1.26;
+    }
+    if (counts[0] * counts[1] * counts[2] > most) continue;
+    return {static_cast<std::int32_t>(counts[0]), static_cast<std::int32_t>(counts[1]),
+            static_cast<std::int32_t>(counts[2])};
+  }
+}
+
 LinkedCells::LinkedCells(double width, double low, double high, double depth, double reach,
                          std::size_t points)
     : low_(low), depth_(depth) {
-  const double most = 64 + 4 * static_cast<double>(points);
-  double size = reach;
-  double cells = 0;
-  const auto count = [&size](double length) {
-    return std::max(1.0, std::min(std::floor(length / size), 1e9));
-  };
-  for (;; size *= 1.26) {
-    cells = count(width) * count(high - low) * count(depth);
-    if (cells <= most) break;
-  }
-  nx_ = static_cast<int>(count(width));
-  ny_ = static_cast<int>(count(high - low));
-  nz_ = static_cast<int>(count(depth));
+  const CellCounts cells = count_cells({width, high - low, depth}, {reach, reach, reach}, points);
+  nx_ = cells.x;
+  ny_ = cells.y;
+  nz_ = cells.z;
   per_x_ = nx_ / width;
   per_y_ = ny_ / (high - low);
   per_z_ = nz_ / depth;
-  head_.assign(static_cast<std::size_t>(cells), -1);
+  head_.assign(index(0, ny_, 0), -1);
 }
 
 int LinkedCells::column(double x) const {
@@ -34,7 +40,7 @@ int LinkedCells::row(double y) const {
   return clamp_to_cell((y - low_) * per_y_, ny_);
 }
 int LinkedCells::layer(double z) const {
-  return clamp_to_cell((z - depth_ * std::floor(z / depth_)) * per_z_, nz_);
+  return clamp_to_cell(wrapped(z, depth_) * per_z_, nz_);
 }
 
 void LinkedCells::insert(std::int32_t point, double x, double y, double z) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -18,12 +19,27 @@ inline std::int32_t clamp_to_cell(double scaled, std::int32_t cells) {
   return static_cast<std::int32_t>(std::min(scaled, static_cast<double>(cells - 1)));
 }
 
+/// Numbers of cells along x, y and z.
+struct CellCounts {
+  std::int32_t x, y, z;
+};
+
+/// As many cells of at least these sizes as fit into the lengths [d], of which there are at most
+/// about four per point, so that a nearly empty box costs no more than its points: it has larger
+/// cells.
+CellCounts count_cells(std::array<double, 3> lengths, std::array<double, 3> sizes,
+                       std::size_t points);
+
+/// The image of z in [0, depth).
+inline double wrapped(double z, double depth) {
+  return z - depth * std::floor(z / depth);
+}
+
 /// A grid over [0, width] x [low, high] x [0, depth), periodic in z. Points outside in x or y
 /// belong to the border cells, which is correct up to a distance of one cell.
 class LinkedCells {
  public:
-  /// Cells are at least `reach` [d] wide. There are at most about four cells per expected point, so
-  /// a nearly empty box costs no more than its points.
+  /// Cells are at least `reach` [d] wide.
   LinkedCells(double width, double low, double high, double depth, double reach,
               std::size_t points);
 

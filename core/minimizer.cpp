@@ -142,20 +142,6 @@ Minimum minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settin
   return minimum;
 }
 
-double enthalpy(const Cell& cell, const Scene& scene, const State& state) {
-  const WallPose pose = wall_pose(cell, 0, state.wall_height);
-  const auto grains = static_cast<std::size_t>(state.position.cols());
-  const double load =
-      scene.pressure * cell.width * cell.depth + carried_weight(scene, cell, grains);
-  double sum = load * (pose.top - pose.bottom);
-  for_each_contact(cell, state.position, pose,
-                   [&](const Contact& c) { sum += 0.5 * scene.stiffness * c.overlap * c.overlap; });
-  for (Eigen::Index i = 0; i < state.position.cols(); ++i) {
-    sum += scene.gravity * state.position(1, i);
-  }
-  return sum;
-}
-
 double force_residual(const Cell& cell, const Scene& scene, const State& state) {
   const WallPose pose = wall_pose(cell, 0, state.wall_height);
   const WallSide moving = moving_side(cell);

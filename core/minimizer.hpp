@@ -29,9 +29,6 @@ struct Minimum {
 /// reached or a watchdog check fails.
 Minimum minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings = {});
 
-/// H [m d^2/s^2] of a state between upright walls, contact by contact. Gravity counts from y = 0.
-double enthalpy(const Cell& cell, const Scene& scene, const State& state);
-
 /// The residual of a state between upright walls, with forces summed contact by contact.
 double force_residual(const Cell& cell, const Scene& scene, const State& state);
 

@@ -8,6 +8,9 @@
 namespace shearcell {
 namespace {
 
+// Time steps for which the margin of a fast grain should suffice.
+constexpr double kOuterHorizon = 500, kInnerHorizon = 80;
+
 // Speed of a grain in the frame that moves with the shear [d/s].
 double speed(const Snapshot& now, std::size_t g) {
   const double vx = now.velocity[0][g] - now.shear_rate * (now.rows[4 * g + 1] - now.pose.top);
@@ -24,6 +27,50 @@ float round_down(double margin) {
 
 double ListSettings::widest_margin() const {
   return 0.5 * (std::max({widest_cutoff, outer_cutoff, inner_cutoff}) - 1);
+}
+
+void Reference::set(const double* rows, std::size_t grains, const WallPose& pose, double widest,
+                    Team& team) {
+  pose_ = pose;
+  widest_ = widest;
+  for (auto& axis : at_) axis.resize(padded(grains));
+  const double largest = team.largest(grains, [&](std::size_t first, std::size_t last) {
+    double coordinate = 0;
+    for (std::size_t g = first; g < last; ++g) {
+      const double* p = rows + 4 * g;
+      coordinate = std::max({coordinate, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+      at_[0][g] = static_cast<float>(p[0] - pose.tan_theta * (p[1] - pose.top));
+      at_[1][g] = static_cast<float>(p[1]);
+      at_[2][g] = static_cast<float>(p[2]);
+    }
+    return coordinate;
+  });
+  rounding_ = 0x1p-22 * largest;  // half a unit in the last place is 2^-25 of a coordinate at most
+}
+
+double Reference::moved(const double* rows, std::size_t grain, const WallPose& pose) const {
+  const double* p = rows + 4 * grain;
+  const double y = double{at_[1][grain]};
+  const double wx = p[0] - (double{at_[0][grain]} + pose.tan_theta * (y - pose_.top));
+  const double wy = p[1] - y;
+  const double wz = p[2] - double{at_[2][grain]};
+  return std::sqrt(wx * wx + wy * wy + wz * wz);
+}
+
+double Reference::wall_moved(const WallPose& pose) const {
+  // Side walls follow the shear about the top wall. The bottom's wall grains move in x with its
+  // plane: a grain up to d behind the plane differs from the shear by the strain times that
+  // distance.
+  const double travel =
+      std::max(std::fabs(pose.bottom - pose_.bottom), std::fabs(pose.top - pose_.top));
+  return travel * (1 + std::fabs(pose.tan_theta)) + std::fabs(pose.tan_theta - pose_.tan_theta);
+}
+
+double Reference::margin_loss(double tan_theta) const {
+  // The smallest singular value of a simple shear e is sqrt(1 + e^2/4) - e/2 > 1 - e/2. A distance
+  // of 1 plus two margins shrinks by at most that factor; each of the two grains bears half of the
+  // loss.
+  return 0.25 * std::fabs(tan_theta - pose_.tan_theta) * (1 + 2 * widest_) + rounding_ + 1e-9;
 }
 
 NeighbourLists::NeighbourLists(const Kernels& kernels, const ListSettings& settings, double depth,
@@ -57,7 +104,7 @@ void NeighbourLists::choose_widest_margin(const Snapshot& now) {
 void NeighbourLists::set_outer_margins(const Snapshot& now) {
   choose_widest_margin(now);
   const double least = settings_.outer_margin();
-  const double horizon = settings_.outer_horizon * now.time_step;
+  const double horizon = kOuterHorizon * now.time_step;
   outer_margin_.resize(now.grains);
   team_.run(now.grains, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t g = first; g < last; ++g) {
@@ -99,11 +146,10 @@ void NeighbourLists::search(const CellOrder& order, std::size_t grains) {
     outer_.resize(grains * outer_stride_);
     task.outer = outer_.data();
     task.stride = outer_stride_;
-    std::vector<std::size_t> longest(team_.size(), 0);
-    team_.run(order.size(), [&](std::size_t thread, std::size_t first, std::size_t last) {
-      longest[thread] = kernels_.search(task, first, last);
+    const double longest = team_.largest(order.size(), [&](std::size_t first, std::size_t last) {
+      return static_cast<double>(kernels_.search(task, first, last));
     });
-    const std::size_t most = *std::max_element(longest.begin(), longest.end());
+    const auto most = static_cast<std::size_t>(longest);
     if (most <= outer_stride_) return;
     outer_stride_ = padded(most + 8);
   }
@@ -119,7 +165,7 @@ bool NeighbourLists::prune(const Snapshot& now) {
 // of the outer ones. False when that rest is too small for some grain or wall.
 bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
-  const double horizon = settings_.inner_horizon * now.time_step;
+  const double horizon = kInnerHorizon * now.time_step;
   const double loss = outer_reference_.margin_loss(now.pose.tan_theta);
   double smallest_room = outer_wall_margin_ - outer_reference_.wall_moved(now.pose) - loss;
   inner_wall_margin_ = std::min(least + horizon * now.wall_speed, smallest_room);
@@ -156,8 +202,7 @@ void NeighbourLists::prune_inner(const Snapshot& now) {
   task.outer_count = outer_count_.data();
   task.first_wall = wall_offset(now.grains);
   task.moving_end = task.first_wall + static_cast<std::int32_t>(4 * walls_.moving_size());
-  const auto planes = walls_.planes(now.pose);
-  std::copy(planes.begin(), planes.end(), task.planes);
+  task.planes = walls_.planes(now.pose);
   task.wall_margin = inner_wall_margin_;
   task.inner_count = inner_count_.data();
   task.other_slots = other_slots_.data();
@@ -172,11 +217,10 @@ void NeighbourLists::prune_inner(const Snapshot& now) {
     inner_.resize(blocks * kernels_.lanes * inner_stride_);
     task.inner = inner_.data();
     task.inner_stride = inner_stride_;
-    std::vector<char> fits(team_.size(), 0);
-    team_.run(blocks, [&](std::size_t thread, std::size_t first, std::size_t last) {
-      fits[thread] = kernels_.prune(task, first, last) ? 1 : 0;
-    });
-    if (std::count(fits.begin(), fits.end(), 0) == 0) break;
+    const auto too_long = [&](std::size_t first, std::size_t last) {
+      return kernels_.prune(task, first, last) ? 0.0 : 1.0;
+    };
+    if (team_.largest(blocks, too_long) == 0) break;
   }
   at_moving_wall_.clear();
   for (std::size_t i = walls_.size(); i < offset_of_id_.size(); ++i) {

@@ -4,7 +4,7 @@
 //
 // With one thin margin for all, bursts of fast grains would require a new search every few dozen
 // steps. So the search uses wide margins, the inner list is pruned often, and the margin of a grain
-// in both (reference.hpp) grows with its speed. None of this changes a result (kernel.hpp).
+// in both (Reference) grows with its speed. None of this changes a result (kernel.hpp).
 #pragma once
 
 #include <array>
@@ -16,7 +16,6 @@
 #include "core/cell.hpp"
 #include "core/cell_grid.hpp"
 #include "core/kernel.hpp"
-#include "core/reference.hpp"
 #include "core/team.hpp"
 #include "core/walls.hpp"
 
@@ -27,14 +26,42 @@ struct ListSettings {
   double outer_cutoff = 1.25;  ///< for two grains that only follow the shear [d]
   double inner_cutoff = 1.04;  ///< the same for the inner list
   double widest_cutoff = 1.4;  ///< for the fastest grains [d]
-  double outer_horizon = 500;  ///< time steps for which a fast grain's margin should suffice
-  double inner_horizon = 80;   ///< the same for the inner list
   bool rebuild_every_step = false;
   bool sort_memory = true;  ///< keep grains that are near in space near in memory
 
   double outer_margin() const { return 0.5 * (outer_cutoff - 1); }  ///< smallest [d]
   double inner_margin() const { return 0.5 * (inner_cutoff - 1); }
   double widest_margin() const;
+};
+
+/// Positions when a list was built, in the frame that moves with the affine shear.
+///
+/// A pair that is not in a list was at least 1 + m_i + m_j apart, with margins m. It cannot touch
+/// until a grain has moved farther in that frame than its margin, less the part that the shear of
+/// the frame has used up since. So each grain checks its own margin, and fast grains can have wide
+/// ones without longer lists for the others.
+class Reference {
+ public:
+  /// Positions of the grains and the pose of the walls now. `widest` is the largest margin [d].
+  void set(const double* rows, std::size_t grains, const WallPose& pose, double widest, Team& team);
+
+  /// Distance [d] of the grain from where it would be if it had only followed the shear.
+  double moved(const double* rows, std::size_t grain, const WallPose& pose) const;
+  /// Upper bound of the same for all wall grains and wall planes.
+  double wall_moved(const WallPose& pose) const;
+  /// Part of every margin used up by the shear since and by rounding of the reference [d].
+  double margin_loss(double tan_theta) const;
+
+  /// Height [d] at which the frame does not move.
+  double frame_height() const { return pose_.top; }
+  /// One coordinate of the grains in the untilted frame, in single precision.
+  const float* data(std::size_t axis) const { return at_[axis].data(); }
+  std::size_t bytes() const { return 3 * sizeof(float) * at_[0].size(); }
+
+ private:
+  std::array<AlignedVector<float>, 3> at_;
+  double rounding_ = 0, widest_ = 0;
+  WallPose pose_;
 };
 
 /// The cell when its lists are built.

@@ -41,7 +41,6 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state, Engine
                                 "grain could meet a neighbour, or itself, through both ends of the "
                                 "period. Use a deeper cell");
   }
-  excess_of_thread_.resize(team_->size());
   load(state);
   set_constants();
 }
@@ -133,20 +132,15 @@ void Simulation::set_contacts(ContactTask& task, double tan_theta) const {
   task.tan_theta = tan_theta;
   task.margin_loss = lists_.reference().margin_loss(tan_theta);
   task.ahead = order_.ahead();
-  const auto planes = walls_.planes(pose_);
-  std::copy(planes.begin(), planes.end(), task.planes);
+  task.planes = walls_.planes(pose_);
 }
 
 // Calls a kernel, which returns the excess over the margins, for all blocks.
 template <class Call>
 double Simulation::over_blocks(Call&& call) {
   const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;
-  std::vector<double>& excess = excess_of_thread_;
-  team_->run(blocks, [&](std::size_t thread, std::size_t first, std::size_t last) {
-    excess[thread] = call(first, last);
-  });
   ++evaluations_;
-  return *std::max_element(excess.begin(), excess.end());
+  return team_->largest(blocks, call);
 }
 
 // False when the lists were not valid.
@@ -231,17 +225,19 @@ void Simulation::check() const {
 }
 
 void Simulation::watch(double time_step) const {
-  WatchTask task;
-  task.rows = rows_[0].data();
-  for (std::size_t axis = 0; axis < 3; ++axis) task.velocity[axis] = velocity_[axis].data();
-  task.id = &id_;
-  task.neighbours = lists_.rows();
-  task.lanes = kernels_.lanes;
-  task.step = step_;
-  task.time_step = time_step;
-  task.wall_height = wall_height_;
-  task.wall_velocity = wall_velocity_;
-  check_grains(task, cell_, scene_, pose_, settings_.limits);
+  check_grains({.cell = cell_,
+                .scene = scene_,
+                .pose = pose_,
+                .limits = settings_.limits,
+                .rows = rows_[0].data(),
+                .velocity = {velocity_[0].data(), velocity_[1].data(), velocity_[2].data()},
+                .id = id_,
+                .neighbours = lists_.rows(),
+                .lanes = kernels_.lanes,
+                .step = step_,
+                .time_step = time_step,
+                .wall_height = wall_height_,
+                .wall_velocity = wall_velocity_});
 }
 
 // Upwards: the load acts inwards, and contacts push the wall by minus what they push the grains by.

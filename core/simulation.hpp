@@ -125,7 +125,6 @@ class Simulation {
   NeighbourLists lists_;
   WallPose pose_;  // at step_
   StepTask task_;
-  std::vector<double> excess_of_thread_;
   std::array<AlignedVector<double>, 3> sum_;  // contact sums for forces()
   Forces forces_;
   bool was_set_ = false;  // the lists have not been checked for the new state

@@ -36,7 +36,9 @@ void wait_for_change(const std::atomic<std::uint32_t>& number, std::uint32_t see
 
 Team::Team(std::size_t threads)
     : spins_(threads <= std::thread::hardware_concurrency() ? kSpins : kSpinsWithFewCores),
-      workers_(start_threads(threads, [this](std::size_t k) { work_until_stopped(k); })) {}
+      workers_(start_threads(threads, [this](std::size_t k) { work_until_stopped(k); })) {
+  most_.resize(size());
+}
 
 Team::~Team() {
   stop_ = true;

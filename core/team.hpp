@@ -48,11 +48,10 @@ class Team {
   /// The largest of what work(first, last) returns for the parts of [0, count).
   template <class Work>
   double largest(std::size_t count, Work&& work) {
-    std::vector<double> most(size());
     run(count, [&](std::size_t thread, std::size_t first, std::size_t last) {
-      most[thread] = work(first, last);
+      most_[thread] = work(first, last);
     });
-    return *std::max_element(most.begin(), most.end());
+    return *std::max_element(most_.begin(), most_.end());
   }
 
  private:
@@ -69,6 +68,7 @@ class Team {
   // Number of the current round, and of the workers that have done it.
   alignas(64) std::atomic<std::uint32_t> round_{0};
   alignas(64) std::atomic<std::uint32_t> done_{0};
+  std::vector<double> most_;           // of each thread, in largest()
   std::vector<std::jthread> workers_;  // last: they use the other members
 };
 

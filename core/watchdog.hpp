@@ -34,15 +34,19 @@ struct WatchdogLimits {
 
 /// Input of the checks; arrays as in kernel.hpp.
 struct WatchTask {
-  const double* rows = nullptr;
-  const double* velocity[3] = {};
-  const std::vector<std::int32_t>* id = nullptr;
+  const Cell& cell;
+  const Scene& scene;
+  const WallPose& pose;
+  const WatchdogLimits& limits;
+  const double* rows;
+  const double* velocity[3];
+  const std::vector<std::int32_t>& id;
   NeighbourRows neighbours;
-  std::size_t lanes = 1;
-  std::uint64_t step = 0;
-  double time_step = 0;      ///< [s]; 0 skips the time-step check
-  double wall_height = 0;    ///< of the moving wall [d]
-  double wall_velocity = 0;  ///< [d/s]
+  std::size_t lanes;
+  std::uint64_t step;
+  double time_step;      ///< [s]; 0 skips the time-step check
+  double wall_height;    ///< of the moving wall [d]
+  double wall_velocity;  ///< [d/s]
 };
 
 /// Checks that all numbers are finite, all grains are inside the walls, no overlap is over its
@@ -53,7 +57,6 @@ struct WatchTask {
 /// for a fixed wall and 5/4 for the moving wall, and of 5 (sum of n_y^2) / M for that wall itself.
 /// The bound is exact for a pair (2 k/m) and for an FCC crystal (8 k/m). Costs about four time
 /// steps. Throws NumericalFailure for the first failing grain in memory.
-void check_grains(const WatchTask& task, const Cell& cell, const Scene& scene, const WallPose& pose,
-                  const WatchdogLimits& limits);
+void check_grains(const WatchTask& task);
 
 }  // namespace shearcell

@@ -61,26 +61,23 @@ WallForces wall_forces(const Cell& cell, const Scene& scene, const State& state,
   return sum;
 }
 
-// A whole step: positions of one state, and velocities half a step later in the next.
-struct Energies {
-  double elastic = 0, kinetic = 0, gravitational = 0, load = 0;
-};
-
-Energies energies(const Cell& cell, const Scene& scene, const State& here, const State& after,
-                  const WallPose& pose) {
-  Energies e;
+// Adds `sign` times the energies at a whole step: of the positions of one state, and of the
+// velocities before and half a step later, in the next.
+void add_energies(const Cell& cell, const Scene& scene, const State& here, const State& after,
+                  const WallPose& pose, double sign, Ledger& sum) {
+  double elastic = 0;
   for_each_contact(cell, here.position, pose, [&](const Contact& c) {
-    e.elastic += 0.5 * scene.stiffness * c.overlap * c.overlap;
+    elastic += 0.5 * scene.stiffness * c.overlap * c.overlap;
   });
   const double area = cell.width * cell.depth;
   const double wall = 0.5 * (here.wall_velocity + after.wall_velocity);
   const auto grains = static_cast<std::size_t>(here.position.cols());
-  e.kinetic = 0.5 * (0.5 * (here.velocity + after.velocity)).squaredNorm() +
-              0.5 * scene.wall_mass * area * wall * wall;
-  e.gravitational = scene.gravity * here.position.row(1).sum();
-  e.load = -inwards(cell) * (scene.pressure * area + carried_weight(scene, cell, grains)) *
-           here.wall_height;
-  return e;
+  const double load = scene.pressure * area + carried_weight(scene, cell, grains);
+  sum.elastic += sign * elastic;
+  sum.kinetic += sign * (0.5 * (0.5 * (here.velocity + after.velocity)).squaredNorm() +
+                         0.5 * scene.wall_mass * area * wall * wall);
+  sum.gravitational += sign * scene.gravity * here.position.row(1).sum();
+  sum.load -= sign * inwards(cell) * load * here.wall_height;
 }
 
 // Power that drag takes from the grains in the half step before `state`.
@@ -108,11 +105,11 @@ Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const St
   };
   Simulation simulation(cell, scene, start, settings);
   simulation.advance(drive, 1);
-  const Energies before = energies(cell, scene, start, simulation.state(), pose_of(start));
+  Ledger sum;
+  add_energies(cell, scene, start, simulation.state(), pose_of(start), -1, sum);
 
   const std::uint64_t end = start.step + steps;
   const double area = cell.width * cell.depth;
-  Ledger sum;
   State here = start;
   WallPose pose = pose_of(here);
   WallForces forces = wall_forces(cell, scene, here, pose);
@@ -134,11 +131,7 @@ Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const St
     forces = next_forces;
   }
   simulation.advance(drive, 1);
-  const Energies after = energies(cell, scene, here, simulation.state(), pose);
-  sum.elastic = after.elastic - before.elastic;
-  sum.kinetic = after.kinetic - before.kinetic;
-  sum.gravitational = after.gravitational - before.gravitational;
-  sum.load = after.load - before.load;
+  add_energies(cell, scene, here, simulation.state(), pose, 1, sum);
   return sum;
 }
 

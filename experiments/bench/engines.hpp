@@ -3,13 +3,10 @@
 // trajectories from one state, means over seeds, speed and memory.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "analysis/statistics.hpp"
 #include "experiments/bench/packing.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 
@@ -24,7 +21,7 @@ struct EngineCheckOptions {
   std::size_t ranks = 1;  ///< processes of LAMMPS, in addition to one alone
   bool settle = false;    ///< settle in LAMMPS too, with `ranks` processes
   double settle_time_limit = SettleParameters{}.time_limit;  ///< [s], of both engines
-  std::function<void(const std::string&)> report;            ///< progress messages; may be empty
+  std::function<void(const std::string&)> report;            ///< progress messages
 };
 
 /// How far two runs from one settled packing are apart after the same time under shear.
@@ -40,7 +37,7 @@ struct TrajectoryCheck {
 
 struct EngineSpeed {
   std::string engine;
-  double million_particle_steps_per_second = 0;
+  double million_particle_steps_per_second = 0;  ///< of LAMMPS: in its time loop alone
   double bytes = 0;  ///< ours: of the simulation; LAMMPS: of its largest process
 };
 
@@ -60,22 +57,19 @@ struct EngineMeans {
   bool agree() const;
 };
 
-struct Settling {
-  std::string engine;
+struct Settling : EngineSpeed {
   std::uint64_t seed = 0;
-  State state;                                   ///< settled; its step counts from the loose grains
-  double seconds = 0;                            ///< wall time of the whole settling
-  double million_particle_steps_per_second = 0;  ///< of LAMMPS: in its time loop alone
-  double bytes = 0;  ///< ours: of the simulation; LAMMPS: of its largest process
+  State state;         ///< settled; its step counts from the loose grains
+  double seconds = 0;  ///< wall time of the whole settling
   PackingNumbers numbers;
 };
 
-/// Throw NumericalFailure, for example when a packing is not settled after the time limit, and
+/// Settles the grains in LAMMPS with so many processes, or in our engine if that is 0. Throws
+/// NumericalFailure, for example when a packing is not settled after the time limit, and
 /// EngineError. `seen` gets the state of LAMMPS every 0.1 s of simulated time.
-Settling settling_by_us(const Packing& loose, const SettleParameters& settle);
-Settling settling_by_lammps(const Packing& loose, const SettleParameters& settle,
-                            const LammpsProgram& program, std::size_t ranks,
-                            const std::function<void(const State&)>& seen = {});
+Settling settle_by(std::size_t ranks, const LammpsProgram& program, const Packing& loose,
+                   const SettleParameters& parameters,
+                   const std::function<void(const State&)>& seen = {});
 
 struct EngineCheck {
   std::string lammps_version;

@@ -38,12 +38,6 @@ Packing settled_packing(const Parameters& parameters, std::uint64_t seed) {
   return packing;
 }
 
-Simulation sheared(const Packing& packing, std::uint64_t steps_per_cycle) {
-  Parameters parameters = packing.parameters;
-  parameters.steps_per_cycle = steps_per_cycle;
-  return {packing.cell, shear_scene(parameters), packing.state};
-}
-
 PackingNumbers numbers_of(const Cell& cell, const Scene& scene, double theta, const State& state) {
   const WallPose pose = wall_pose(cell, theta, state.wall_height);
   const Measures measures = analyse(cell, pose, state.position).measures;
@@ -53,6 +47,12 @@ PackingNumbers numbers_of(const Cell& cell, const Scene& scene, double theta, co
           measures.mean_overlap,
           std::fabs(diagnose(cell, scene, state, pose).wall_imbalance),
           pose.top - pose.bottom};
+}
+
+RunStatistics over(std::span<const PackingNumbers> packings, double PackingNumbers::*number) {
+  std::vector<double> values;
+  for (const PackingNumbers& packing : packings) values.push_back(packing.*number);
+  return over_runs(values);
 }
 
 }  // namespace shearcell::bench

@@ -2,9 +2,10 @@
 // The packings that the benchmarks start from, and the numbers by which packings are compared.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "analysis/statistics.hpp"
 #include "core/simulation.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "protocols/settle.hpp"
@@ -33,9 +34,6 @@ Packing settled_packing(const Parameters& parameters, std::uint64_t seed);
 
 void settle(Simulation& simulation, const SettleParameters& parameters, const Scene& scene);
 
-/// A settled packing ready to be sheared with this number of steps per cycle.
-Simulation sheared(const Packing& packing, std::uint64_t steps_per_cycle);
-
 struct PackingNumbers {
   double phi = 0;              ///< Eq. S4
   double phi_uncorrected = 0;  ///< without the correction for overlaps
@@ -47,5 +45,8 @@ struct PackingNumbers {
 
 /// Of a state at tilt `theta` [rad]. Throws AnalysisError as analyse() does.
 PackingNumbers numbers_of(const Cell& cell, const Scene& scene, double theta, const State& state);
+
+/// Statistics of one number over several packings.
+RunStatistics over(std::span<const PackingNumbers> packings, double PackingNumbers::*number);
 
 }  // namespace shearcell::bench

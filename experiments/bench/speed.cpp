@@ -8,7 +8,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/bench/machine_limit.hpp"
 #include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "provenance/checkpoint.hpp"
@@ -41,10 +40,8 @@ auto timed(double& total, Call&& call) {
   return result;
 }
 
-template <int kGravity, int kFlow>
-void sample_parts(StepTask task, std::size_t first, std::size_t last) {
-  constexpr std::size_t kInterval = 16;
-  if (++times.calls % kInterval != 0) return;
+void sample_parts(StepTask task, double (*step)(const StepTask&, std::size_t, std::size_t),
+                  std::size_t first, std::size_t last) {
   const Stopwatch watch;
   const std::size_t room = padded(task.grains);
   times.elsewhere.resize(8 * room);
@@ -59,22 +56,23 @@ void sample_parts(StepTask task, std::size_t first, std::size_t last) {
     task.velocity[axis] = velocity;
   }
   task.moving_wall_force_y = times.elsewhere.data() + 7 * room;
-  const auto step = [&] { return times.inner->step[kGravity][kFlow](task, first, last); };
-  timed(times.whole, step);
+  const auto again = [&] { return step(task, first, last); };
+  timed(times.whole, again);
   std::vector<std::uint8_t> near(task.neighbours.near + first, task.neighbours.near + last);
   for (std::uint8_t& bits : near) bits &= static_cast<std::uint8_t>(~kNearWall);
   task.neighbours.near = near.data() - first;
-  timed(times.without_walls, step);
+  timed(times.without_walls, again);
   const std::vector<std::uint16_t> none(last - first, 0);
   task.neighbours.other_slots = none.data() - first;
-  timed(times.without_neighbours, step);
+  timed(times.without_neighbours, again);
   times.sampled += watch.seconds();
 }
 
 template <int kGravity, int kFlow>
 double timed_step(const StepTask& task, std::size_t first, std::size_t last) {
-  sample_parts<kGravity, kFlow>(task, first, last);
-  return timed(times.step, [&] { return times.inner->step[kGravity][kFlow](task, first, last); });
+  const auto step = times.inner->step[kGravity][kFlow];
+  if (++times.calls % 16 == 0) sample_parts(task, step, first, last);
+  return timed(times.step, [&] { return step(task, first, last); });
 }
 
 Kernels timed_kernels(const Kernels& inner) {
@@ -90,16 +88,6 @@ Kernels timed_kernels(const Kernels& inner) {
           [](const PruneTask& task, std::size_t first, std::size_t last) {
             return timed(times.prune, [&] { return times.inner->prune(task, first, last); });
           }};
-}
-
-// The pressure of Table I cannot lift the column of a cell with more grains.
-constexpr std::size_t kHighest = 18200;
-
-// The smallest number of equal parts along the depth that are small enough.
-std::size_t parts_of(std::size_t grains) {
-  std::size_t parts = (grains + kHighest - 1) / kHighest;
-  while (grains % parts != 0) ++parts;
-  return parts;
 }
 
 Packing repeated(const Packing& one, std::size_t copies) {
@@ -119,8 +107,11 @@ Packing repeated(const Packing& one, std::size_t copies) {
   return made;
 }
 
+// The pressure of Table I cannot lift the column of a cell with more than 18,200 grains: beyond
+// that, the smallest number of equal parts along the depth.
 Packing prepare(std::size_t grains) {
-  const std::size_t parts = parts_of(grains);
+  std::size_t parts = (grains + 18199) / 18200;
+  while (grains % parts != 0) ++parts;
   Parameters parameters;
   parameters.grains = grains / parts;
   Packing made = bench::pressed_packing(parameters, 1);
@@ -135,7 +126,7 @@ std::string hash_after(const Packing& made, const EngineSettings& settings, std:
   Simulation simulation(made.cell, made.scene, made.state, settings);
   simulation.advance(drive(made.parameters), steps);
   Checkpoint checkpoint;
-  checkpoint.cell = simulation.cell();
+  checkpoint.cell = made.cell;
   checkpoint.state = simulation.state();
   return state_hash(checkpoint);
 }
@@ -165,14 +156,12 @@ void measure_shares(const Packing& made, const Kernels& kernels, std::uint64_t s
 // After measure_shares.
 void measure_limits(std::size_t lanes, SpeedResult& result) {
   const double slots = times.slots / times.blocks;
-  const bench::StepWork work = bench::step_work(lanes, slots);
+  const bench::StepWork work = result.work = bench::step_work(lanes, slots);
   const auto threads = static_cast<double>(result.threads);
-  result.operations_per_step = work.vector_operations;
-  result.bytes_per_step = work.bytes;
   result.arithmetic_limit = 1e-6 * threads * bench::peak_operations(lanes) / work.vector_operations;
   // More than any cache holds is read no slower.
   constexpr double kMostRead = 1 << 28;
-  const double arrays = bench::step_footprint(lanes, slots) * static_cast<double>(result.grains);
+  const double arrays = work.footprint * static_cast<double>(result.grains);
   const auto read = static_cast<std::size_t>(std::min(arrays, kMostRead));
   result.memory_limit = 1e-6 * threads * bench::read_bandwidth(read) / work.bytes;
 }
@@ -197,30 +186,29 @@ void measure_rate(const Packing& made, const EngineSettings& settings, const Spe
   result.fastest_rate = rates.back();
 }
 
-std::vector<SpeedResult> measure_size(std::size_t grains, const SpeedOptions& options) {
+// Appends the results of one size.
+void measure_size(std::size_t grains, const SpeedOptions& options,
+                  std::vector<SpeedResult>& results) {
   const auto say = [&](const std::string& what) {
     if (options.report) options.report(fmt::format("N = {}: {}", grains, what));
   };
   say("pressing a packing");
   const Packing made = prepare(grains);
-  std::vector<SpeedResult> results;
+  const std::size_t first = results.size();
   for (const Simd simd : kEverySimd) {
     const Kernels* kernels = find_kernels(simd);
     if (kernels == nullptr) continue;
     for (const std::size_t threads : options.threads) {
-      SpeedResult result;
-      result.grains = grains;
-      result.simd = kernels->name;
-      result.threads = threads;
+      SpeedResult result{.grains = grains, .simd = kernels->name, .threads = threads};
       say(fmt::format("{}, {} thread{}", kernels->name, threads, threads == 1 ? "" : "s"));
       EngineSettings settings;
       settings.kernels = kernels;
       settings.threads = threads;
       result.state_hash = hash_after(made, settings, 200);
-      if (!results.empty() && result.state_hash != results.front().state_hash) {
+      if (results.size() > first && result.state_hash != results[first].state_hash) {
         throw std::runtime_error(
             fmt::format("{} with {} threads and {} give different states after 200 steps at N = {}",
-                        result.simd, threads, results.front().simd, grains));
+                        result.simd, threads, results[first].simd, grains));
       }
       measure_rate(made, settings, options, result);
       const double steps = 1e6 * result.median_rate * options.seconds_per_repeat /
@@ -231,17 +219,13 @@ std::vector<SpeedResult> measure_size(std::size_t grains, const SpeedOptions& op
       results.push_back(result);
     }
   }
-  return results;
 }
 
 }  // namespace
 
 std::vector<SpeedResult> measure_speed(const SpeedOptions& options) {
   std::vector<SpeedResult> all;
-  for (const std::size_t grains : options.sizes) {
-    const std::vector<SpeedResult> results = measure_size(grains, options);
-    all.insert(all.end(), results.begin(), results.end());
-  }
+  for (const std::size_t grains : options.sizes) measure_size(grains, options, all);
   return all;
 }
 

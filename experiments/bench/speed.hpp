@@ -10,6 +10,34 @@
 #include "core/kernel.hpp"
 
 namespace shearcell {
+namespace bench {
+
+// How fast the kernel could run at most on this machine: its counted operations at the measured
+// peak of the vector units, and its counted bytes at the measured speed of reading.
+//
+// Peak: a loop of independent fused multiply-adds, additions and shuffles of doubles in registers,
+// 4 : 2 : 3 as in the kernel. Reading: sums over an array as large as the one that a time step
+// passes through, so from the cache that holds it, or from memory. Both are the best of several
+// short runs on one core.
+
+/// What one particle-step does at least.
+struct StepWork {
+  double vector_operations = 0;  ///< arithmetic and shuffles; loads and stores are not counted
+  double bytes = 0;              ///< read and written in arrays over grains; each row counts once
+  double footprint = 0;  ///< bytes of these arrays; the velocity is written where it was read
+};
+
+/// Work of a kernel with `lanes` grains per vector and `slots` neighbour slots per block, averaged.
+StepWork step_work(std::size_t lanes, double slots);
+
+/// Vector operations per second in vectors of `lanes` doubles: 8, 4 or 2 as find_kernels() offers
+/// them, 1 for scalars.
+double peak_operations(std::size_t lanes);
+
+/// Bytes per second read from an array of `bytes`.
+double read_bandwidth(std::size_t bytes);
+
+}  // namespace bench
 
 struct SpeedOptions {
   std::vector<std::size_t> sizes = {600, 2000, 5200, 18200, 100000};
@@ -22,7 +50,7 @@ struct SpeedOptions {
 /// One size with one kernel and one number of threads. Rates are in 1e6 particle-steps/s.
 struct SpeedResult {
   std::size_t grains = 0;
-  std::string simd;
+  std::string simd = {};
   std::size_t threads = 1;
   double median_rate = 0, slowest_rate = 0, fastest_rate = 0;
   /// Shares of the time. Walls: planes and the moving wall's grains; grains of the other walls
@@ -32,11 +60,11 @@ struct SpeedResult {
   double steps_per_search = 0, steps_per_prune = 0;
   double bytes_per_grain = 0;
   /// What a particle-step does at least, and the rates that this machine's vector units and its
-  /// caches or memory would allow (machine_limit.hpp), as measured on one core and multiplied by
+  /// caches or memory would allow, as measured on one core and multiplied by
   /// the threads.
-  double operations_per_step = 0, bytes_per_step = 0;
+  bench::StepWork work = {};
   double arithmetic_limit = 0, memory_limit = 0;
-  std::string state_hash;  ///< after 200 steps; the same for all results of one size
+  std::string state_hash = {};  ///< after 200 steps; the same for all results of one size
 };
 
 /// Table I in a rough cell sheared at A = 0.0833, from a packing pressed together first. Beyond

@@ -2,65 +2,363 @@
 // `bench`: measurements of the program itself.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <thread>
 
+#include "analysis/plot.hpp"
+#include "experiments/bench/accuracy/accuracy.hpp"
+#include "experiments/bench/engines.hpp"
 #include "experiments/bench/speed.hpp"
+#include "experiments/bench/stability/stability.hpp"
 #include "experiments/cli/command.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {
 
-nlohmann::json facts(const SpeedResult& r) {
-  return {{"N", r.grains},
-          {"simd", r.simd},
-          {"threads", r.threads},
-          {"million_particle_steps_per_second", r.median_rate},
-          {"slowest", r.slowest_rate},
+// A value of a result, for JSON; with a heading also in the printed table, as `text` or as it is.
+struct Fact {
+  std::string key;
+  nlohmann::json value;
+  std::string heading = {}, text = {};
+};
+using Facts = std::vector<Fact>;
+
+std::string digits(double value, int count) {
+  return fmt::format("{:.{}f}", value, count);
+}
+
+std::string significant(double value, int count) {
+  return fmt::format("{:.{}g}", value, count);
+}
+
+Facts facts(const SpeedResult& r) {
+  const auto percent = [](double share) { return digits(100 * share, 1); };
+  return {{"N", r.grains, "N"},
+          {"simd", r.simd, "SIMD"},
+          {"threads", r.threads, "thr"},
+          {"million_particle_steps_per_second", r.median_rate, "M/s", digits(r.median_rate, 1)},
+          {"slowest", r.slowest_rate, "range",
+           fmt::format("{:.0f}-{:.0f}", r.slowest_rate, r.fastest_rate)},
           {"fastest", r.fastest_rate},
-          {"share_forces", r.force_share},
-          {"share_integration", r.integration_share},
-          {"share_walls", r.wall_share},
-          {"share_search", r.search_share},
-          {"share_prune", r.prune_share},
+          {"arithmetic_limit", r.arithmetic_limit, "arith", digits(r.arithmetic_limit, 0)},
+          {"memory_limit", r.memory_limit, "mem", digits(r.memory_limit, 0)},
+          {"share_forces", r.force_share, "force%", percent(r.force_share)},
+          {"share_integration", r.integration_share, "integ%", percent(r.integration_share)},
+          {"share_walls", r.wall_share, "wall%", percent(r.wall_share)},
+          {"share_search", r.search_share, "search%", percent(r.search_share)},
+          {"share_prune", r.prune_share, "prune%", percent(r.prune_share)},
+          {"bytes_per_grain", r.bytes_per_grain, "B/grain", digits(r.bytes_per_grain, 0)},
           {"steps_per_search", r.steps_per_search},
           {"steps_per_prune", r.steps_per_prune},
-          {"bytes_per_grain", r.bytes_per_grain},
-          {"vector_operations_per_particle_step", r.operations_per_step},
-          {"bytes_per_particle_step", r.bytes_per_step},
-          {"arithmetic_limit", r.arithmetic_limit},
-          {"memory_limit", r.memory_limit},
+          {"vector_operations_per_particle_step", r.work.vector_operations},
+          {"bytes_per_particle_step", r.work.bytes},
           {"state_hash", r.state_hash}};
 }
 
-void speed(const SpeedOptions& options, Context& context) {
-  const std::vector<SpeedResult> results = measure_speed(options);
-  if (context.json) {
-    nlohmann::json sizes = nlohmann::json::array();
-    for (const SpeedResult& result : results) sizes.push_back(facts(result));
-    print_json({{"sizes", sizes}});
-    return;
+Facts facts(const bench::TrajectoryCheck& t) {
+  return {{"scene", t.scene, "scene"},
+          {"steps", t.steps, "steps"},
+          {"distance_d", t.distance, "distance [d]", significant(t.distance, 2)},
+          {"height_difference_d", t.height, "height [d]", significant(t.height, 2)},
+          {"rounding_d", t.rounding, "one rounding [d]", significant(t.rounding, 2)}};
+}
+
+Facts facts(const bench::EngineSpeed& speed) {
+  const double rate = speed.million_particle_steps_per_second;
+  return {{"engine", speed.engine, "engine"},
+          {"million_particle_steps_per_second", rate, "M/s", digits(rate, 2)},
+          {"bytes", speed.bytes, "memory", format_bytes(speed.bytes)}};
+}
+
+Facts facts(const bench::Settling& s) {
+  const bench::PackingNumbers& n = s.numbers;
+  const double rate = s.million_particle_steps_per_second;
+  return {{"engine", s.engine, "settled by"},
+          {"seed", s.seed, "seed"},
+          {"steps", s.state.step, "steps"},
+          {"wall_seconds", s.seconds, "seconds", digits(s.seconds, 1)},
+          {"million_particle_steps_per_second", rate, "M/s", digits(rate, 2)},
+          {"bytes", s.bytes, "memory", format_bytes(s.bytes)},
+          {"phi", n.phi, "phi", digits(n.phi, 4)},
+          {"contacts_per_grain", n.contacts, "contacts", digits(n.contacts, 3)},
+          {"mean_overlap_d", n.overlap, "overlap [d]", fmt::format("{:.3e}", n.overlap)},
+          {"wall_force_imbalance", n.imbalance, "imbalance", fmt::format("{:.1e}", n.imbalance)},
+          {"height_d", n.height}};
+}
+
+template <class Result>
+std::vector<Facts> all_facts(const std::vector<Result>& results) {
+  std::vector<Facts> all;
+  for (const Result& result : results) all.push_back(facts(result));
+  return all;
+}
+
+nlohmann::json json_of(const std::vector<Facts>& results) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const Facts& result : results) {
+    nlohmann::json& one = all.emplace_back();
+    for (const Fact& fact : result) one[fact.key] = fact.value;
   }
+  return all;
+}
+
+void print_facts(const std::vector<Facts>& results) {
+  std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
-  const auto percent = [](double share) { return fmt::format("{:.1f}", 100 * share); };
-  for (const SpeedResult& r : results) {
-    rows.push_back({std::to_string(r.grains), r.simd, std::to_string(r.threads),
-                    fmt::format("{:.1f}", r.median_rate),
-                    fmt::format("{:.0f}-{:.0f}", r.slowest_rate, r.fastest_rate),
-                    fmt::format("{:.0f}", r.arithmetic_limit),
-                    fmt::format("{:.0f}", r.memory_limit), percent(r.force_share),
-                    percent(r.integration_share), percent(r.wall_share), percent(r.search_share),
-                    percent(r.prune_share), fmt::format("{:.0f}", r.bytes_per_grain)});
+  for (const Facts& result : results) {
+    header.clear();
+    rows.emplace_back();
+    for (const auto& [key, value, heading, text] : result) {
+      if (heading.empty()) continue;
+      header.push_back(heading);
+      const std::string as_it_is = value.is_string() ? value.get<std::string>() : value.dump();
+      rows.back().push_back(text.empty() ? as_it_is : text);
+    }
   }
-  print_table({"N", "SIMD", "thr", "M/s", "range", "arith", "mem", "force%", "integ%", "wall%",
-               "search%", "prune%", "B/grain"},
-              rows);
+  print_table(header, rows);
+}
+
+void report_progress(const std::string& what) {
+  tell_stderr("{}\n", what);
+}
+
+void add_speed(CLI::App& bench, Context& context) {
+  auto options = std::make_shared<SpeedOptions>();
+  CLI::App* command = bench.add_subcommand(
+      "speed",
+      "Measure particle-steps per second in the sheared rough cell, and the share of each part");
+  add_count(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000);
+  add_count(*command, "--threads", options->threads, "Threads inside one run", "T", 1, 1024);
+  add_count(*command, "--repeats", options->repeats, "Number of timings; the median is printed",
+            "N", 1, 1000);
+  add_number(*command, "--seconds", options->seconds_per_repeat, "Length of one timing", "S", 0.01,
+             60);
+  command->add_flag("--json", context.json, "Print JSON for programs");
+  command->footer(
+      "Checks that all kernels of this machine give the same state, then times each.\n"
+      "Examples:\n  shearcell bench speed --size 600 5200\n"
+      "  shearcell bench speed --size 18200 --threads 1 2 --json");
+  command->callback([options, &context] {
+    options->report = report_progress;
+    const std::vector<Facts> results = all_facts(measure_speed(*options));
+    if (context.json) return print_json({{"sizes", json_of(results)}});
+    print_facts(results);
+    fmt::print(
+        "M/s: million particle-steps/s, median of {}. arith, mem: what this machine's vector units "
+        "and\nits caches or memory would allow. Shares of one thread's time; search: building the "
+        "outer\nneighbour list, prune: the inner one.\n",
+        options->repeats);
+  });
+}
+
+nlohmann::json json_of(const accuracy::Section& section) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const std::vector<TableValue>& row : section.table.rows) {
+    nlohmann::json& values = rows.emplace_back();
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      nlohmann::json& value = values[section.table.columns[c]];
+      if (const auto* number = std::get_if<double>(&row[c])) value = *number;
+      if (const auto* count = std::get_if<std::int64_t>(&row[c])) value = *count;
+      if (const auto* text = std::get_if<std::string>(&row[c])) value = *text;
+    }
+  }
+  return {{"name", section.table.name}, {"title", section.title}, {"rows", rows}};
+}
+
+// All data before the first figure, which needs gnuplot.
+void write(const std::vector<accuracy::Section>& sections, const std::filesystem::path& folder) {
+  for (const accuracy::Section& section : sections) require_own_files(section.table, folder);
+  for (const accuracy::Section& section : sections) {
+    write_csv(section.table, folder);
+    write_output(folder / (section.table.name + ".chart.json"),
+                 chart_json(section.table).dump() + "\n");
+  }
+  for (const accuracy::Section& section : sections) draw_svg(section.table, folder);
+}
+
+void measure(const accuracy::Options& options, const std::string& out, Context& context) {
+  // A folder that cannot be created is an error before minutes of measuring, not after.
+  if (!out.empty()) std::filesystem::create_directories(out);
+  nlohmann::json all = nlohmann::json::array();
+  const std::vector<accuracy::Section> sections = accuracy::measure_accuracy(options);
+  for (const accuracy::Section& section : sections) {
+    all.push_back(json_of(section));
+    if (context.json) continue;
+    fmt::print("{}\n", section.title);
+    print_table(section.header, section.summary);
+    fmt::print("\n");
+  }
+  if (context.json) print_json({{"quick", options.quick}, {"sections", all}});
+  if (!out.empty()) write(sections, out);
+}
+
+void add_accuracy(CLI::App& bench, Context& context) {
+  auto options = std::make_shared<accuracy::Options>();
+  auto out = std::make_shared<std::string>();
+  options->jobs = std::max(1U, std::thread::hardware_concurrency());
+  CLI::App* command = bench.add_subcommand(
+      "accuracy", "Measure error against cost of integrators, time steps and stiffness");
+  command->add_flag("--quick", options->quick,
+                    "Seconds instead of minutes: the same tables from fewer runs");
+  add_count(*command, "--jobs", options->jobs, "Runs computed at once", "J", 1, 1024);
+  command->add_option("--out", *out, "Folder for CSV files and figures")->type_name("DIR");
+  command->add_flag("--json", context.json, "Print JSON for programs");
+  command->footer(
+      "core/ACCURACY.md explains the tables and how to choose a time step.\n"
+      "Examples:\n  shearcell bench accuracy --quick\n  shearcell bench accuracy --out accuracy");
+  command->callback([options, out, &context] {
+    options->report = report_progress;
+    measure(*options, *out, context);
+  });
+}
+
+nlohmann::json json_of(const bench::EngineMeans& all) {
+  nlohmann::json means = nlohmann::json::array();
+  for (const bench::EngineMean& mean : all.means) {
+    for (std::size_t e = 0; e < mean.of.size(); ++e) {
+      means.push_back({{"quantity", mean.name},
+                       {"engine", all.engines[e]},
+                       {"mean", mean.of[e].mean.value_or(0)},
+                       {"standard_error", mean.of[e].standard_error.value_or(0)},
+                       {"standard_errors_apart", mean.apart[e]}});
+    }
+  }
+  return means;
+}
+
+void print_means(const char* title, const bench::EngineMeans& all) {
+  if (all.means.empty()) return;
+  std::vector<std::string> header = {title};
+  header.insert(header.end(), all.engines.begin(), all.engines.end());
+  std::vector<std::vector<std::string>> rows;
+  for (const bench::EngineMean& mean : all.means) {
+    rows.push_back({mean.name});
+    for (std::size_t e = 0; e < mean.of.size(); ++e) {
+      const RunStatistics& of = mean.of[e];
+      std::string text = significant(of.mean.value_or(0), 4);
+      if (of.standard_error) text += " +- " + significant(*of.standard_error, 1);
+      if (e > 0) text += fmt::format(" ({:.1f})", mean.apart[e]);
+      rows.back().push_back(text);
+    }
+  }
+  print_table(header, rows);
+  fmt::print("In brackets: standard errors from ours, at most {:.1f} by chance.\n\n", all.limit);
+}
+
+nlohmann::json json_of(const bench::EngineCheck& check) {
+  return {{"lammps", check.lammps_version},
+          {"N", check.grains},
+          {"settlings", json_of(all_facts(check.settlings))},
+          {"settled_means", json_of(check.settled)},
+          {"settled_limit_in_standard_errors", check.settled.limit},
+          {"trajectories", json_of(all_facts(check.trajectories))},
+          {"means", json_of(check.sheared)},
+          {"limit_in_standard_errors", check.sheared.limit},
+          {"speeds", json_of(all_facts(check.speeds))},
+          {"agree", check.agree()}};
+}
+
+void print(const bench::EngineCheck& check) {
+  fmt::print("LAMMPS {}; N = {}\n\n", check.lammps_version, check.grains);
+  print_facts(all_facts(check.settlings));
+  fmt::print("\n");
+  print_means("settled, mean over seeds", check.settled);
+  print_facts(all_facts(check.trajectories));
   fmt::print(
-      "M/s: million particle-steps/s, median of {}. arith, mem: what this machine's vector units "
-      "and\n"
-      "its caches or memory would allow. Shares of one thread's time; search: building the outer\n"
-      "neighbour list, prune: the inner one.\n",
-      options.repeats);
+      "distance: largest of a grain from ours; one rounding: effect of 1 ulp in one number.\n\n");
+  print_means("sheared, mean over seeds", check.sheared);
+  print_facts(all_facts(check.speeds));
+  fmt::print(
+      "M/s: million particle-steps/s, of LAMMPS in its time loop. Memory: of our simulation, or "
+      "of\nthe largest process of LAMMPS.\n{}\n",
+      check.agree() ? "The engines agree." : "The engines do NOT agree.");
+}
+
+void add_engines(CLI::App& bench, Context& context) {
+  auto options = std::make_shared<bench::EngineCheckOptions>();
+  auto weightless = std::make_shared<bool>(false);
+  CLI::App* command = bench.add_subcommand(
+      "engines", "Compare LAMMPS and our engine: trajectories, means over seeds, speed");
+  add_count(*command, "--size", options->grains, "Number of grains", "N", 100, 100'000'000);
+  add_count(*command, "--steps", options->steps, "Time steps of trajectories and timing", "S", 1,
+            1'000'000);
+  add_count(*command, "--cycles", options->cycles, "Cycles before the means; 0: no means", "C", 0,
+            1000);
+  add_count(*command, "--seeds", options->seeds, "Packings of the means", "K", 3, 1000);
+  add_count(*command, "--mpi", options->ranks,
+            "Run LAMMPS also with this many processes, by mpirun", "N", 1, 65536);
+  command->add_flag("--settle", options->settle,
+                    "Settle the loose grains in LAMMPS too, with the processes of --mpi");
+  add_number(*command, "--settle-time-limit", options->settle_time_limit,
+             "Simulated time after which grains that have not settled are an error "
+             "(settle_time_limit_s)",
+             "S", 1e-3, 1e6);
+  command->add_flag("--no-gravity", *weightless, "Without gravity, for cells that P cannot lift");
+  command->add_flag("--json", context.json, "Print JSON for programs");
+  command->footer(
+      "Ends with code 3 if the engines do not agree: trajectories within the effect of rounding,\n"
+      "means within their scatter over seeds. Both shear our packings; --settle also compares "
+      "packings\n"
+      "that LAMMPS settles. Means of three cycles at N = 2000 take minutes.\n"
+      "Examples:\n  shearcell bench engines --size 600 --cycles 1 --settle\n"
+      "  shearcell bench engines --size 100000 --no-gravity --cycles 0 --mpi 2");
+  command->callback([options, weightless, &context] {
+    options->gravity = !*weightless;
+    options->report = report_progress;
+    const bench::EngineCheck check = bench::check_engines(*options);
+    context.json ? print_json(json_of(check)) : print(check);
+    if (!check.agree()) context.exit_code = kRunFailed;
+  });
+}
+
+void stability(const StabilityOptions& options, Context& context) {
+  nlohmann::json cases = nlohmann::json::array();
+  const std::vector<StabilityResult> results = map_stability(options);
+  std::size_t right = 0;
+  double total = 0;
+  for (const auto& [hard, outcome, seconds] : results) {
+    right += outcome.as_expected ? 1 : 0;
+    total += seconds;
+    cases.push_back({{"name", hard.name},
+                     {"done", hard.done},
+                     {"expected", hard.expected},
+                     {"outcome", outcome.text},
+                     {"as_expected", outcome.as_expected},
+                     {"seconds", seconds}});
+    if (context.json) continue;
+    fmt::print("{} {}  ({:.1f} s)\n    {}\n    expected: {}\n    outcome:  {}\n",
+               outcome.as_expected ? "ok " : "NOT", hard.name, seconds, hard.done, hard.expected,
+               outcome.text);
+  }
+  if (context.json) {
+    print_json({{"cases", cases}});
+  } else {
+    fmt::print("{} of {} cases ended as expected, in {:.0f} s.\n", right, results.size(), total);
+  }
+  if (right < results.size()) context.exit_code = kRunFailed;
+}
+
+void add_stability(CLI::App& bench, Context& context) {
+  auto options = std::make_shared<StabilityOptions>();
+  CLI::App* command = bench.add_subcommand(
+      "stability", "Run hard cases: each must give the right answer or be stopped with the reason");
+  command->add_option("--only", options->only, "Names of cases, or their beginnings")
+      ->type_name("NAME")
+      ->check(unknown_case, "");
+  command->add_flag("--quick", options->quick, "Fewer steps in the very long cases");
+  add_number(*command, "--seconds", options->seconds_per_case,
+             "A case that takes longer counts as hanging", "S", 0.1, 86400);
+  command->add_flag("--json", context.json, "Print JSON for programs");
+  command->footer(
+      "Ends with code 3 if a case does not end as expected.\n"
+      "Examples:\n  shearcell bench stability --quick\n"
+      "  shearcell bench stability --only vacancy limit --json");
+  command->callback([options, &context] {
+    options->report = report_progress;
+    stability(*options, context);
+  });
 }
 
 }  // namespace
@@ -71,28 +369,10 @@ void add_bench(CLI::App& app, Context& context) {
   command->footer(
       "Examples:\n  shearcell bench speed\n  shearcell bench accuracy --quick\n"
       "  shearcell bench stability --quick\n  shearcell bench engines --size 600 --cycles 1");
-  auto options = std::make_shared<SpeedOptions>();
-  CLI::App* rate = command->add_subcommand(
-      "speed",
-      "Measure particle-steps per second in the sheared rough cell, and the share of each part");
-  add_count(*rate, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000);
-  add_count(*rate, "--threads", options->threads, "Threads inside one run", "T", 1, 1024);
-  add_count(*rate, "--repeats", options->repeats, "Number of timings; the median is printed", "N",
-            1, 1000);
-  add_number(*rate, "--seconds", options->seconds_per_repeat, "Length of one timing", "S", 0.01,
-             60);
-  rate->add_flag("--json", context.json, "Print JSON for programs");
-  rate->footer(
-      "Checks that all kernels of this machine give the same state, then times each.\n"
-      "Examples:\n  shearcell bench speed --size 600 5200\n"
-      "  shearcell bench speed --size 18200 --threads 1 2 --json");
-  rate->callback([options, &context] {
-    options->report = [](const std::string& what) { tell_stderr("{}\n", what); };
-    speed(*options, context);
-  });
-  add_bench_accuracy(*command, context);
-  add_bench_engines(*command, context);
-  add_bench_stability(*command, context);
+  add_speed(*command, context);
+  add_accuracy(*command, context);
+  add_engines(*command, context);
+  add_stability(*command, context);
 }
 
 }  // namespace shearcell::cli

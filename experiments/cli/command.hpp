@@ -42,14 +42,10 @@ void add_figures(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
 void add_export(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);
-void add_bench_engines(CLI::App& bench, Context& context);
-void add_bench_accuracy(CLI::App& bench, Context& context);
 void add_new(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);
 void add_completion(CLI::App& app, Context& context);
 void add_manual(CLI::App& app, Context& context);
-/// A subcommand of `bench`.
-void add_bench_stability(CLI::App& bench, Context& context);
 
 /// Prints what came of a campaign and sets the exit code.
 void report(const CampaignResult& result, Context& context);

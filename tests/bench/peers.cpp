@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -21,6 +20,7 @@
 #include "core/simulation.hpp"
 #include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "provenance/io/clock.hpp"
 
 namespace shearcell {
 namespace {
@@ -93,7 +93,7 @@ void write_data(const Kicked& kicked, const fs::path& folder) {
 
 // An input deck; drag as b/m, and how many steps.
 void write_input(const Kicked& kicked, const fs::path& folder, const std::string& name,
-                 double drag_rate, std::uint64_t steps, int finer) {
+                 double drag_rate, std::uint64_t steps) {
   const double k = kicked.scene.stiffness;
   std::ofstream in(folder / (name + ".in"));
   in << "units lj\natom_style sphere\nboundary f f p\nnewton off\ncomm_modify vel yes\n"
@@ -106,8 +106,7 @@ void write_input(const Kicked& kicked, const fs::path& folder, const std::string
             k, kicked.cell.width, kicked.state.wall_height, kicked.cell.top)
      << "fix move grains nve/sphere\n";
   if (drag_rate > 0) in << fmt::format("fix drag grains viscous {:.17g}\n", drag_rate);
-  in << fmt::format("timestep {:.17g}\nthermo 1000000\n", kicked.scene.time_step / finer)
-     << fmt::format("run {}\n", steps * static_cast<std::uint64_t>(finer))
+  in << fmt::format("timestep {:.17g}\nthermo 1000000\nrun {}\n", kicked.scene.time_step, steps)
      << "dump out grains custom 1 " << name << ".dump id xu yu zu\n"
      << "dump_modify out sort id format float %.17g\nrun 0\n";
 }
@@ -164,35 +163,27 @@ double farthest(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b, double dep
 }
 
 void compare(const Kicked& kicked, const fs::path& folder) {
-  const auto distance = [&](const std::string& name, double drag_rate, int finer) {
-    Kicked fine = kicked;
-    fine.scene.time_step /= finer;
-    Simulation simulation = simulate(fine, drag_rate);
-    simulation.advance(Drive{}, kAccuracySteps * static_cast<std::uint64_t>(finer));
+  const auto distance = [&](const std::string& name) {
+    Simulation simulation = simulate(kicked, 0);
+    simulation.advance(Drive{}, kAccuracySteps);
     return farthest(simulation.state().position,
                     read_dump(folder / (name + ".dump"), kicked.state.position.cols()),
                     kicked.cell.depth);
   };
-  const double lammps = distance("free", 0, 1);
-  const double liggghts = distance("liggghts-free", 0, 1);
-  const double with = distance("drag", 64, 1);
-  const double finer = distance("drag4", 64, 4);
+  const double lammps = distance("free");
+  const double liggghts = distance("liggghts-free");
   fmt::print("largest distance from ours after {} steps [d]\n", kAccuracySteps);
   fmt::print("  LAMMPS, no drag      {:.3g}   (must be below 1e-9)\n", lammps);
   fmt::print("  LIGGGHTS, no drag    {:.3g}   (must be below 1e-9)\n", liggghts);
-  fmt::print("  LAMMPS, drag, dt     {:.3g}\n", with);
-  fmt::print("  LAMMPS, drag, dt/4   {:.3g}   (it takes the drag explicitly: order {:.2f})\n",
-             finer, std::log2(with / finer) / 2);
   if (!(lammps < 1e-9 && liggghts < 1e-9)) throw std::runtime_error("the trajectories disagree");
 }
 
 void time_ours(const Kicked& kicked) {
   Simulation simulation = simulate(kicked, 64);
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   simulation.advance(Drive{}, kSpeedSteps);
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  fmt::print("{:.4f}\n", 1e-6 * static_cast<double>(kSpeedSteps * simulation.grains()) / seconds);
+  const auto work = 1e-6 * static_cast<double>(kSpeedSteps * simulation.grains());
+  fmt::print("{:.4f}\n", work / watch.seconds());
 }
 
 int run(int argc, char** argv) {
@@ -202,10 +193,8 @@ int run(int argc, char** argv) {
   const Kicked kicked = prepare(std::stoul(argv[3]));
   if (what == "prepare") {
     write_data(kicked, folder);
-    write_input(kicked, folder, "free", 0, kAccuracySteps, 1);
-    write_input(kicked, folder, "drag", 64, kAccuracySteps, 1);
-    write_input(kicked, folder, "drag4", 64, kAccuracySteps, 4);
-    write_input(kicked, folder, "speed", 64, kSpeedSteps, 1);
+    write_input(kicked, folder, "free", 0, kAccuracySteps);
+    write_input(kicked, folder, "speed", 64, kSpeedSteps);
     write_liggghts(kicked, folder, "liggghts-free", 0, kAccuracySteps);
     write_liggghts(kicked, folder, "liggghts-speed", 64, kSpeedSteps);
   } else if (what == "ours") {

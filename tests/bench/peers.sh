@@ -26,7 +26,7 @@ export OMP_NUM_THREADS=1
 
 "$bench" prepare "$folder" "$grains"
 cd "$folder"
-for deck in free drag drag4; do lmp -in $deck.in -log $deck.log >/dev/null; done
+lmp -in free.in >/dev/null
 liggghts -in liggghts-free.in >/dev/null 2>&1
 "$bench" compare "$folder" "$grains"
 

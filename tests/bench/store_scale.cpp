@@ -9,30 +9,26 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <random>
 #include <stdexcept>
 #include <vector>
 
+#include "provenance/io/clock.hpp"
 #include "provenance/schema.hpp"
-#include "provenance/sha256.hpp"
-#include "provenance/store.hpp"
+#include "tests/provenance/samples.hpp"
 
 namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 double seconds(const std::function<void()>& work) {
-  const auto start = Clock::now();
+  const Stopwatch watch;
   work();
-  return std::chrono::duration<double>(Clock::now() - start).count();
+  return watch.seconds();
 }
 
 double slowest_of_three(const std::function<void()>& work) {
@@ -45,46 +41,20 @@ void require(bool holds, const char* what) {
   if (!holds) throw std::runtime_error(std::string("not as it must be: ") + what);
 }
 
-Checkpoint make_checkpoint(const std::string& run, std::uint64_t cycle) {
-  constexpr Eigen::Index kGrains = 20;
-  std::mt19937_64 random(cycle + 1);
-  const auto number = [&random] { return static_cast<double>(random() >> 11) * 0x1p-50 - 4.0; };
-  Checkpoint c;
-  c.run = run;
-  c.cycle = static_cast<double>(cycle);
-  c.cell = {.width = 12,
-            .depth = 11.5,
-            .bottom = 0,
-            .top = 20,
-            .moving = MovingWall::bottom,
-            .wall_grains = {}};
-  c.state.step = cycle * 45600;
-  c.state.position = Eigen::Matrix3Xd::NullaryExpr(3, kGrains, number);
-  c.state.velocity = Eigen::Matrix3Xd::NullaryExpr(3, kGrains, number);
-  c.observables = {{"mean_overlap_d", 2.7e-3}, {"contacts_per_grain", 6.4}};
-  return c;
-}
-
 /// Seconds that each recorded checkpoint took: file, event and all syncs.
 std::vector<double> fill(const fs::path& folder, int runs, int checkpoints) {
   Store store(folder, Access::create);
   const std::string manifest = store.register_manifest("bench: 1\n", "bench.yaml", {});
   std::vector<double> took;
   for (int r = 0; r < runs; ++r) {
-    RunDeclaration run;
-    run.id = sha256_hex(fmt::format("run {}", r));
-    run.kind = "shear";
-    run.resolved = {{"seed", r}};
-    run.grains = 20;
+    RunDeclaration run = test::sample_run(r);
     run.target_cycles = static_cast<std::uint64_t>(checkpoints) - 1;
-    run.membership.experiment = "bench";
-    run.membership.variant = "base";
-    run.membership.seed = static_cast<std::uint64_t>(r);
     run.membership.manifest = manifest;
     store.declare_run(run);
     store.start_run(run.id, {{"host", "bench"}});
     for (int c = 0; c < checkpoints; ++c) {
-      const Checkpoint checkpoint = make_checkpoint(run.id, static_cast<std::uint64_t>(c));
+      const auto step = static_cast<std::uint64_t>(c) * test::kCycle;
+      const Checkpoint checkpoint = test::sample_checkpoint(run.id, step);
       took.push_back(seconds([&] { store.record_checkpoint(run.id, checkpoint, {1, 1}); }));
     }
     store.complete_run(run.id, {}, run.target_cycles);
@@ -147,9 +117,7 @@ void measure(const fs::path& folder, int runs, int checkpoints) {
   require(report.ok() && report.checkpoints == took.size(), "the store");
   const double reading = slowest_of_three([&] {
     for (const auto& entry : fs::recursive_directory_iterator(folder / "objects")) {
-      if (!entry.is_regular_file()) continue;
-      std::ifstream file(entry.path(), std::ios::binary);
-      sha256_hex(std::string((std::istreambuf_iterator<char>(file)), {}));
+      if (entry.is_regular_file()) sha256_hex(test::read_bytes(entry.path()));
     }
   });
   tell("verify: chain, tables and every file hashed", all, "s", 2 + reading);

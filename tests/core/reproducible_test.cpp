@@ -2,7 +2,7 @@
 // The same bits whatever the instructions, the lists, the threads and the compiler.
 #include <gtest/gtest.h>
 
-#include "tests/core/scenes.hpp"
+#include "tests/core/golden.hpp"
 
 namespace shearcell {
 namespace {
@@ -39,26 +39,9 @@ TEST(Reproducible, AnyInstructionsAndAnyLists) {
   EXPECT_TRUE(same_bits(golden, advanced(start, 700, settings))) << "memory not sorted";
 }
 
-// The same number from every build: g++ and clang++, optimized or not.
-TEST(Reproducible, TheBitsOfTheReferenceBuild) {
-  const State state = advanced(pressed(600, 9000), 700);
-  EXPECT_EQ(test::fingerprint(state), 0x1d65753234f77d8bU) << std::hex << test::fingerprint(state);
-}
-
-// Deep overlaps take the closed form of the contact law; lanes beside them must not notice.
-TEST(Reproducible, DeepAndShallowOverlapsSideBySide) {
-  Sheared start{test::open_cell(), {}};
-  std::vector<Eigen::Vector3d> positions;
-  for (int i = 0; i < 40; ++i) {
-    positions.emplace_back(5 + 3 * (i % 8), 5 + 3 * (i / 8), 10);
-    positions.emplace_back(5 + 3 * (i % 8) + (i % 3 == 0 ? 0.5 : 0.99), 5 + 3 * (i / 8), 10);
-  }
-  start.state = test::at_rest(positions, start.cell);
-  EngineSettings best;
-  best.limits.overlap = 1;
-  EngineSettings scalar = best;
-  scalar.kernels = &scalar_kernels();
-  EXPECT_TRUE(same_bits(advanced(start, 200, best), advanced(start, 200, scalar)));
+// tests/bits.sh compares other builds with these: g++ and clang++, optimized or not, and NEON.
+TEST(Reproducible, TheBitsOfTheReferenceBuildOnEveryKernel) {
+  for (const test::Golden& golden : test::kGolden) EXPECT_TRUE(is_reached(golden)) << golden.name;
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time loop against closed forms and conservation laws.
+// The time loop against closed forms. More of them: experiments/bench/accuracy and stability, which
+// tests/experiments runs.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "core/diagnostics.hpp"
-#include "core/random.hpp"
 #include "core/simulation.hpp"
 #include "tests/core/scenes.hpp"
 
@@ -17,56 +17,6 @@ using test::at_rest;
 using test::only_contacts;
 using test::open_cell;
 using test::table_1;
-
-// Two grains that just touch and approach at relative speed v: while they touch, the overlap is
-// (v/w) sin(w t) with w^2 = 2k/m. Largest error of it over the first half of the contact.
-double collision_error(int steps_per_contact) {
-  Scene scene = only_contacts();
-  const double omega = std::sqrt(2 * scene.stiffness);
-  scene.time_step = std::numbers::pi / omega / steps_per_contact;
-  const Cell cell = open_cell();
-  State state = at_rest({{20, 20, 20}, {21, 20, 20}}, cell);
-  const double v = 10;
-  // At half a step before the touch both are free.
-  state.position(0, 0) = 20;
-  state.velocity(0, 0) = v / 2;
-  state.velocity(0, 1) = -v / 2;
-  Simulation simulation(cell, scene, state);
-  double worst = 0;
-  for (int n = 1; n < steps_per_contact / 2; ++n) {
-    simulation.advance(Drive{}, 1);
-    const Eigen::Matrix3Xd p = simulation.state().position;
-    const double overlap = 1 - (p.col(1) - p.col(0)).norm();
-    const double exact = v / omega * std::sin(omega * scene.time_step * n);
-    worst = std::max(worst, std::fabs(overlap - exact) / (v / omega));
-  }
-  return worst;
-}
-
-TEST(Collision, FollowsTheHarmonicContactAtSecondOrder) {
-  const double coarse = collision_error(50);
-  const double fine = collision_error(200);
-  std::printf("error of the overlap: %.3g at 50, %.3g at 200 steps a contact\n", coarse, fine);
-  EXPECT_LT(coarse, 2e-3);
-  EXPECT_NEAR(std::log2(coarse / fine) / 2, 2, 0.25);
-}
-
-TEST(Collision, ExchangesVelocitiesAndConservesMomentum) {
-  Scene scene = only_contacts();
-  scene.time_step /= 10;
-  const Cell cell = open_cell();
-  // Across the periodic seam, and oblique.
-  State state = at_rest({{20, 20, 39.6}, {20, 20, 0.7}}, cell);
-  state.velocity.col(0) << 0, 0, 5;
-  state.velocity.col(1) << 0, 0, -3;
-  Simulation simulation(cell, scene, state);
-  simulation.advance(Drive{}, 20000);
-  const Eigen::Matrix3Xd v = simulation.state().velocity;
-  // Where within a step the contact begins and ends changes the speed by order dt.
-  EXPECT_NEAR(v(2, 0), -3, 2e-3);
-  EXPECT_NEAR(v(2, 1), 5, 2e-3);
-  EXPECT_NEAR(v(2, 0) + v(2, 1), 2, 1e-13);
-}
 
 TEST(FreeFall, ReachesTheTerminalVelocityOfStokesDrag) {
   Scene scene = table_1();
@@ -119,17 +69,6 @@ TEST(Wall, WithoutGrainsMovesAtPressureOverDrag) {
   }
 }
 
-TEST(Wall, CarriesAGrainAtTheOverlapThatItsWeightNeeds) {
-  Scene scene = table_1();
-  scene.pressure = 0;
-  scene.wall_mass = 1e30;  // does not stir
-  const Cell cell = open_cell();
-  Simulation simulation(cell, scene, at_rest({{20, 0.5, 20}}, cell));
-  simulation.advance(Drive{}, 20000);
-  const double overlap = 0.5 - simulation.state().position(1, 0);
-  EXPECT_NEAR(overlap, scene.gravity / scene.stiffness, 1e-12);
-}
-
 TEST(Wall, TiltedPlanesPushAlongTheirNormals) {
   const Cell cell = open_cell();
   const double theta = 0.1;
@@ -147,42 +86,6 @@ TEST(Wall, TiltedPlanesPushAlongTheirNormals) {
     EXPECT_LT((contact.normal - normal).norm(), 1e-15);
   });
   EXPECT_EQ(touches, 1);
-}
-
-// A ball of overlapping grains flies apart: nothing outside acts, so momentum stays 0 to rounding,
-// and the energy of the springs becomes kinetic.
-TEST(Contacts, BalanceMomentumAndEnergy) {
-  Scene scene = only_contacts();
-  scene.time_step /= 4;
-  const Cell cell = open_cell();
-  std::vector<Eigen::Vector3d> positions;
-  for (std::uint32_t i = 0; i < 60; ++i) {
-    const auto a = uniform_pair({i, 0, 0, 0}, 1);
-    const auto b = uniform_pair({i, 1, 0, 0}, 1);
-    // A jittered simple cubic block at 0.96 d, straddling the seam.
-    const std::uint32_t x = i % 4, y = i / 4 % 4, z = i / 16;
-    positions.emplace_back(18 + 0.96 * x + 0.02 * a[0], 18 + 0.96 * y + 0.02 * a[1],
-                           38.5 + 0.96 * z + 0.02 * b[0]);
-  }
-  const State state = at_rest(positions, cell);
-  const WallPose pose = wall_pose(cell, 0, 0);
-  const auto spring_energy = [&](const State& s) {
-    double energy = 0;
-    for_each_contact(cell, s.position, pose, [&](const Contact& c) {
-      energy += 0.5 * scene.stiffness * c.overlap * c.overlap;
-    });
-    return energy;
-  };
-  const double before = spring_energy(state);
-  ASSERT_GT(before, 0);
-  Simulation simulation(cell, scene, state);
-  simulation.advance(Drive{}, 4000);
-  const State after = simulation.state();
-  const Eigen::Vector3d momentum = after.velocity.rowwise().sum();
-  const double scale = after.velocity.cwiseAbs().sum();
-  EXPECT_LT(momentum.norm(), 1e-13 * scale);
-  const double energy = spring_energy(after) + 0.5 * after.velocity.squaredNorm();
-  EXPECT_NEAR(energy / before, 1, 2e-3);
 }
 
 }  // namespace

@@ -13,9 +13,10 @@
 namespace shearcell::test {
 namespace {
 
+using bench::settle_by;
 using bench::Settling;
-using bench::settling_by_lammps;
-using bench::settling_by_us;
+
+constexpr std::size_t kOurs = 0, kLammps = 1;
 
 class LammpsSettling : public testing::Test {
  protected:
@@ -52,8 +53,8 @@ TEST_F(LammpsSettling, TakesOurStepsAtFirst) {
 
 TEST_F(LammpsSettling, EndsAtAPackingOfTheSameKind) {
   const bench::Packing loose = bench::loose_packing(small(), 1);
-  const Settling ours = settling_by_us(loose, {});
-  const Settling theirs = settling_by_lammps(loose, {}, find_lammps(), 1);
+  const Settling ours = settle_by(kOurs, find_lammps(), loose, {});
+  const Settling theirs = settle_by(kLammps, find_lammps(), loose, {});
   for (const Settling* s : {&ours, &theirs}) {
     std::printf(
         "%g steps, phi %.4f, contacts %.3f, overlap %.3e d, imbalance %.1e, height %.3f d\n",
@@ -98,8 +99,8 @@ TEST_F(LammpsSettling, EndsAtTheTimeLimitWhereAWallNeverRests) {
     ADD_FAILURE() << "it settled";
     return "";
   };
-  const std::string ours = message([&] { settling_by_us(loose, settle); });
-  const std::string theirs = message([&] { settling_by_lammps(loose, settle, program, 1); });
+  const std::string ours = message([&] { settle_by(kOurs, program, loose, settle); });
+  const std::string theirs = message([&] { settle_by(kLammps, program, loose, settle); });
   EXPECT_NE(ours.find("takes to settle"), std::string::npos) << ours;
   EXPECT_NE(theirs.find("takes to settle"), std::string::npos) << theirs;
 }

@@ -12,15 +12,15 @@
 namespace shearcell::fuzz {
 namespace {
 
-class FuzzTarget : public testing::TestWithParam<const Target*> {
+class FuzzTarget : public testing::TestWithParam<Target> {
  protected:
   static void run(const std::string& input) {
-    GetParam()->run({reinterpret_cast<const std::uint8_t*>(input.data()), input.size()});
+    GetParam().run({reinterpret_cast<const std::uint8_t*>(input.data()), input.size()});
   }
 };
 
 TEST_P(FuzzTarget, TakesItsSeeds) {
-  const std::vector<std::string> seeds = GetParam()->seeds();
+  const std::vector<std::string> seeds = GetParam().seeds();
   ASSERT_FALSE(seeds.empty());
   for (const std::string& seed : seeds) EXPECT_NO_THROW(run(seed));
   EXPECT_NO_THROW(run(""));
@@ -28,7 +28,7 @@ TEST_P(FuzzTarget, TakesItsSeeds) {
 
 TEST_P(FuzzTarget, TakesDamagedSeeds) {
   std::mt19937 random(11);
-  const std::vector<std::string> seeds = GetParam()->seeds();
+  const std::vector<std::string> seeds = GetParam().seeds();
   for (int round = 0; round < 200; ++round) {
     std::string input = seeds[random() % seeds.size()];
     for (unsigned change = 0; change < 1 + random() % 4 && !input.empty(); ++change) {
@@ -41,7 +41,7 @@ TEST_P(FuzzTarget, TakesDamagedSeeds) {
 }
 
 TEST_P(FuzzTarget, TakesWhatOnceFoundAFault) {
-  const auto folder = std::filesystem::path(SHEARCELL_FUZZ_REGRESSIONS) / GetParam()->name;
+  const auto folder = std::filesystem::path(SHEARCELL_FUZZ_REGRESSIONS) / GetParam().name;
   if (!std::filesystem::exists(folder)) return;  // no fault was found with this target
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     EXPECT_NO_THROW(run(test::read_bytes(entry.path()))) << entry.path();
@@ -49,7 +49,7 @@ TEST_P(FuzzTarget, TakesWhatOnceFoundAFault) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FuzzTarget, testing::ValuesIn(all_targets),
-                         [](const auto& target) { return std::string(target.param->name); });
+                         [](const auto& target) { return std::string(target.param.name); });
 
 }  // namespace
 }  // namespace shearcell::fuzz

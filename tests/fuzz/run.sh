@@ -16,10 +16,7 @@ if ! command -v clang++ >/dev/null 2>&1; then
 fi
 build="$PWD/build/fuzz"
 [ -f "$build/build.ninja" ] || cmake --preset fuzz >/dev/null
-programs=""
-for target in $targets; do programs="$programs fuzz_$target"; done
-# shellcheck disable=SC2086  # one word a target
-cmake --build "$build" --target $programs >&2
+cmake --build "$build" --target fuzz >&2
 
 # The keys of all parameters, from the reference that the program printed.
 dictionary="$build/manifest.dict"
@@ -34,15 +31,15 @@ trap 'rm -rf "$TMPDIR"' EXIT
 export ASAN_OPTIONS="detect_leaks=1:allocator_may_return_null=0:max_allocation_size_mb=1024"
 export UBSAN_OPTIONS="print_stacktrace=1"
 
+program="$build/tests/fuzz/fuzz"
 total=0
 failed=0
 for target in $targets; do
-  program="$build/tests/fuzz/fuzz_$target"
   corpus="$build/corpus/$target"
   faults="$build/faults/$target"
   log="$build/fuzz-$target.log"
   mkdir -p "$corpus" "$faults"
-  "$program" --write-seeds "$TMPDIR/seeds-$target"
+  "$program" "--target=$target" "--write-seeds=$TMPDIR/seeds-$target"
   regressions="tests/fuzz/regressions/$target"
   [ -d "$regressions" ] || regressions=""
   words=""
@@ -53,7 +50,7 @@ for target in $targets; do
   esac
   code=0
   # shellcheck disable=SC2086
-  "$program" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=2048 -max_len="$longest" \
+  "$program" "--target=$target" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=2048 -max_len="$longest" \
     -print_final_stats=1 $words -artifact_prefix="$faults/" "$corpus" "$TMPDIR/seeds-$target" \
     $regressions >"$log" 2>&1 || code=$?
   runs="$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")"

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tests/fuzz/seeds.hpp"
-
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
@@ -45,12 +42,6 @@ std::string as_string(std::span<const std::byte> bytes) {
 }
 
 }  // namespace
-
-void require(bool fact, const char* what) {
-  if (fact) return;
-  std::fprintf(stderr, "not so: %s\n", what);
-  std::abort();
-}
 
 fs::path make_store(const fs::path& folder) {
   Store store(folder, Access::create);

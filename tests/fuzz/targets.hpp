@@ -4,9 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "provenance/event_log.hpp"
 
 namespace shearcell::fuzz {
 
@@ -17,27 +21,28 @@ struct Target {
   /// Takes any bytes. It catches the exceptions that such an input may end in, those with a message
   /// for people; whatever else leaves it is a fault, as are crashes, leaks and undefined behaviour.
   void (*run)(Input);
-  /// Sound inputs, small ones, to start from.
+  /// Sound inputs, small ones, to start from, made by the program's own code.
   std::vector<std::string> (*seeds)();
 };
 
-extern const Target manifest_target;    ///< text of a manifest: read, check, expand
-extern const Target events_target;      ///< lines of events: upcast, fold, query
-extern const Target checkpoint_target;  ///< bytes of a checkpoint file, as they are and reframed
-extern const Target store_target;       ///< a store with changed bytes or with forged events
-extern const Target
-    published_target;  ///< a CSV and the lineage beside it, as `show FILE` reads them
-extern const Target measures_target;  ///< what derived.sqlite keeps of a checkpoint
+extern const std::array<Target, 6> all_targets;
 
-inline const std::array<const Target*, 6> all_targets = {&manifest_target,   &events_target,
-                                                         &checkpoint_target, &store_target,
-                                                         &published_target,  &measures_target};
+std::vector<std::string> manifest_seeds();
+std::vector<std::string> event_seeds();
+std::vector<std::string> checkpoint_seeds();
+std::vector<std::string> store_seeds();
+std::vector<std::string> published_seeds();
+std::vector<std::string> measure_seeds();
 
-inline std::string_view text_of(Input input) {
-  return {reinterpret_cast<const char*>(input.data()), input.size()};
-}
+/// Lines of "TYPE<tab>STREAM<tab>SCHEMA<tab>PAYLOAD" as events, numbered on from those of
+/// make_store. A line with fewer fields is left out.
+std::vector<Event> forged_events(std::string_view lines);
 
-/// For what must hold whatever the input is.
-void require(bool fact, const char* what);
+/// The bytes with the frame of a checkpoint and a right SHA-256 before them; a frame that they have
+/// is put right.
+std::vector<std::byte> sealed(std::span<const std::byte> bytes);
+
+/// A store with a manifest, two runs, three checkpoints and a figure; returns its folder.
+std::filesystem::path make_store(const std::filesystem::path& folder);
 
 }  // namespace shearcell::fuzz

@@ -35,58 +35,27 @@ const Packing& settled_packing() {
   return packing;
 }
 
-TEST(SettledPacking, HasItsMovingWallInBalance) {
-  const Packing& packing = settled_packing();
-  const double push = -forces(packing).of_wall.at(WallSide::bottom).y();
-  const double imbalance = 1 + push / load(packing);
-  std::printf("moving wall: P A = %.6g, contacts %.6g, imbalance %.3g\n", load(packing), push,
-              imbalance);
-  EXPECT_LT(std::fabs(imbalance), 1e-3);
-  // The wall's own drag counts too, so that a creeping wall is not taken for one at rest.
-  EXPECT_LT(std::fabs(packing.state.wall_velocity) * packing.scene.wall_drag,
-            1e-3 * packing.scene.pressure);
-}
-
-TEST(SettledPacking, IsAtRest) {
-  const Packing& packing = settled_packing();
-  const double kinetic = 0.5 * packing.state.velocity.squaredNorm() / 600;
-  std::printf("kinetic energy per grain over P d^3: %.3g\n", kinetic / packing.scene.pressure);
-  EXPECT_LT(kinetic, 1e-8 * packing.scene.pressure);
-}
-
 // Sum of contact forces and weight on every grain that is held, by at least four contacts.
-TEST(SettledPacking, ObeysNewtonsLawGrainByGrain) {
+TEST(SettledPacking, IsAtRestGrainByGrain) {
   const Packing& packing = settled_packing();
+  const double gravity = packing.scene.gravity, pressure = packing.scene.pressure;
+  const double kinetic = 0.5 * packing.state.velocity.squaredNorm() / 600;
   const Forces f = forces(packing);
   double worst = 0;
   int held = 0;
   for (Eigen::Index i = 0; i < 600; ++i) {
     if (f.contacts[static_cast<std::size_t>(i)] < 4) continue;
     ++held;
-    const Eigen::Vector3d sum =
-        f.on_grain.col(i) - packing.scene.gravity * Eigen::Vector3d::UnitY();
-    worst = std::max(worst, sum.norm());
+    worst = std::max(worst, (f.on_grain.col(i) - gravity * Eigen::Vector3d::UnitY()).norm());
   }
   std::printf("held grains %d of 600, mean contact force %.4g, weight %.4g, worst residual %.3g\n",
-              held, f.mean, packing.scene.gravity, worst);
+              held, f.mean, gravity, worst);
   EXPECT_GT(held, 540);
   EXPECT_LT(worst, 0.01 * f.mean);
-  EXPECT_LT(worst, 0.2 * packing.scene.gravity);
-}
-
-TEST(SettledPacking, PassesWeightAndPressureOnToTopAndSideWalls) {
-  const Packing& packing = settled_packing();
-  const Forces f = forces(packing);
-  const double weight = 600 * packing.scene.gravity;
-  const double top = f.of_wall.at(WallSide::top).y();
-  const double sides = f.of_wall.at(WallSide::left).y() + f.of_wall.at(WallSide::right).y();
-  std::printf("over P A: weight %.4f, top wall %.4f, side walls %.4f\n", weight / load(packing),
-              top / load(packing), sides / load(packing));
-  EXPECT_LT(top, 0);
-  EXPECT_NEAR((load(packing) - weight + top + sides) / load(packing), 0, 2e-3);
-  const double across = f.of_wall.at(WallSide::left).x() + f.of_wall.at(WallSide::right).x() +
-                        f.of_wall.at(WallSide::bottom).x() + f.of_wall.at(WallSide::top).x();
-  EXPECT_NEAR(across / load(packing), 0, 2e-3);
+  EXPECT_LT(worst, 0.2 * gravity);
+  EXPECT_LT(kinetic, 1e-8 * pressure);
+  // The wall's own drag counts too, so that a creeping wall is not taken for one at rest.
+  EXPECT_LT(std::fabs(packing.state.wall_velocity) * packing.scene.wall_drag, 1e-3 * pressure);
 }
 
 TEST(SettledPacking, IsAsDenseAndAsSoftAsSphereGlass) {
@@ -103,6 +72,50 @@ TEST(SettledPacking, IsAsDenseAndAsSoftAsSphereGlass) {
   // What a run records says the same.
   EXPECT_DOUBLE_EQ(facts.contacts_per_grain, f.touches_per_grain);
   EXPECT_NEAR(facts.mean_overlap, f.mean_overlap, 1e-12);
+}
+
+// Forces of the walls on the grains, over P A: the moving wall carries its load, the others the
+// rest of the weight. Whichever wall moves, with P at the top the top feels P.
+TEST(Settle, BalancesTheLoadOfTheMovingWallAndTheWeightWithTheOtherWalls) {
+  const struct {
+    const char* name;
+    MovingWall moving;
+    PressureAt at;
+    double gravity;
+  } cases[] = {
+      {"bottom", MovingWall::bottom, PressureAt::moving_wall, table_1().gravity},
+      {"bottom, no gravity", MovingWall::bottom, PressureAt::moving_wall, 0},
+      {"bottom, P at the top", MovingWall::bottom, PressureAt::top, table_1().gravity},
+      {"top", MovingWall::top, PressureAt::moving_wall, table_1().gravity},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.name);
+    Scene scene = table_1();
+    scene.gravity = c.gravity;
+    scene.pressure_at = c.at;
+    Packing packing = loose(rough_geometry(600, c.moving), scene);
+    settle(packing);
+    EXPECT_EQ(packing.pressed == 0, c.gravity == 0);
+    const Forces f = forces(packing);
+    const bool bottom = c.moving == MovingWall::bottom;
+    const double weight = 600 * scene.gravity / load(packing);
+    const double carried = c.at == PressureAt::top ? 1 + weight : 1;
+    Eigen::Vector3d all = Eigen::Vector3d::Zero();
+    for (const auto& [side, force] : f.of_wall) all += force / load(packing);
+    const double moving =
+        f.of_wall.at(bottom ? WallSide::bottom : WallSide::top).y() / load(packing);
+    std::printf("%s: from %.3f to %.3f d, moving wall %.5f, weight %.4f, others %.5f of P A\n",
+                c.name, packing.cell.top, packing.state.wall_height, moving, weight,
+                all.y() - moving);
+    EXPECT_NEAR(moving, bottom ? carried : -carried, 1e-3);
+    EXPECT_NEAR(all.y(), weight, 2e-3);
+    EXPECT_NEAR(all.x(), 0, 2e-3);
+    EXPECT_GT(f.touches_per_grain, 5.5);
+    const Diagnostics facts = diagnose(packing.cell, scene, packing.state, test::upright(packing));
+    EXPECT_LT(std::fabs(facts.wall_imbalance), 1e-3);
+    EXPECT_GT(std::fabs(packing.state.wall_height - (bottom ? 0 : packing.cell.top)),
+              0.4 * packing.cell.top);
+  }
 }
 
 TEST(Settle, GivesTheSameBitsWhenItIsInterrupted) {
@@ -139,60 +152,6 @@ TEST(Settle, TakesAFinishedStateAsFinished) {
   EXPECT_TRUE(progress.checkpoint_due);
   EXPECT_EQ(progress.cycle, 0);
   EXPECT_TRUE(same_bits(simulation.state(), packing.state));
-}
-
-TEST(Settle, WithoutGravityTheTopAndSidesCarryThePressureAlone) {
-  Scene scene = table_1();
-  scene.gravity = 0;
-  Packing packing = loose(rough_geometry(600), scene);
-  settle(packing);
-  EXPECT_EQ(packing.pressed, 0U);
-  const Forces f = forces(packing);
-  const double bottom = f.of_wall.at(WallSide::bottom).y() / load(packing);
-  const double rest = (f.of_wall.at(WallSide::top).y() + f.of_wall.at(WallSide::left).y() +
-                       f.of_wall.at(WallSide::right).y()) /
-                      load(packing);
-  std::printf("no gravity: bottom %.5f, top and sides %.5f of P A, %.3f contacts per grain\n",
-              bottom, rest, f.touches_per_grain);
-  EXPECT_NEAR(bottom, 1, 1e-3);
-  EXPECT_NEAR(rest, -1, 2e-3);
-  EXPECT_GT(f.touches_per_grain, 5.5);
-}
-
-// Whichever wall moves, the top feels P and the side walls carry little.
-TEST(Settle, LoadsABottomWallWithTheWeightWhereThePressureIsThatAtTheTop) {
-  Scene scene = table_1();
-  scene.pressure_at = PressureAt::top;
-  Packing packing = loose(rough_geometry(600), scene);
-  settle(packing);
-  const Forces f = forces(packing);
-  const double bottom = f.of_wall.at(WallSide::bottom).y() / load(packing);
-  const double weight = 600 * scene.gravity / load(packing);
-  const double rest = (f.of_wall.at(WallSide::top).y() + f.of_wall.at(WallSide::left).y() +
-                       f.of_wall.at(WallSide::right).y()) /
-                      load(packing);
-  std::printf("P at the top: bottom %.5f, weight %.4f, top and sides %.5f of P A\n", bottom, weight,
-              rest);
-  EXPECT_NEAR(bottom, 1 + weight, 1e-3);
-  EXPECT_NEAR(rest, -1, 2e-3);
-  const Diagnostics facts = diagnose(packing.cell, scene, packing.state, test::upright(packing));
-  EXPECT_LT(std::fabs(facts.wall_imbalance), 1e-3);
-}
-
-TEST(Settle, LowersAMovingTopWall) {
-  Packing packing = loose(rough_geometry(600, MovingWall::top), table_1());
-  settle(packing);
-  const Forces f = forces(packing);
-  const double top = f.of_wall.at(WallSide::top).y() / load(packing);
-  const double weight = 600 * packing.scene.gravity / load(packing);
-  const double rest = (f.of_wall.at(WallSide::bottom).y() + f.of_wall.at(WallSide::left).y() +
-                       f.of_wall.at(WallSide::right).y()) /
-                      load(packing);
-  std::printf("moving top: from %.3f to %.3f d, top %.5f, weight %.4f, others %.5f of P A\n",
-              packing.cell.top, packing.state.wall_height, top, weight, rest);
-  EXPECT_LT(packing.state.wall_height, 0.6 * packing.cell.top);
-  EXPECT_NEAR(top, -1, 1e-3);
-  EXPECT_NEAR(rest, 1 + weight, 2e-3);
 }
 
 TEST(Settle, SaysWhichLimitItRanInto) {

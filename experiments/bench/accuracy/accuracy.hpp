@@ -27,12 +27,4 @@ struct Section {
 /// All sections, with the grains of Table I. Only the times depend on the machine.
 std::vector<Section> measure_accuracy(const Options& options);
 
-/// `engine_rate`: million particle-steps/s of one thread in the sheared cell of 600 grains.
-std::vector<Section> closed_form_sections(const Options& options, double engine_rate);
-Section seeds_section(const Options& options, double engine_rate);
-Section stiffness_section(const Options& options, double engine_rate);
-
-/// Three significant digits; `otherwise` for a value that is not finite.
-std::string short_number(double value, const std::string& otherwise = "");
-
 }  // namespace shearcell::accuracy

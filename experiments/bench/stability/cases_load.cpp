@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/diagnostics.hpp"
-#include "experiments/bench/stability/oracle.hpp"
 #include "experiments/bench/stability/scenes.hpp"
 
 namespace shearcell::stability {
@@ -157,56 +156,39 @@ Outcome light_wall() {
 
 }  // namespace
 
-Cases load_cases() {
+void add_load_cases(Cases& cases) {
   const std::string overlap_stop = "stopped: the overlap over its limit";
-  Cases cases;
+  const std::string balanced = "all forces in balance";
   for (const double ratio : {1.0, 10.0, 100.0, 1e3, 1e4}) {
-    cases.push_back({fmt::format("k-{:g}-similar", ratio),
-                     fmt::format("{:g} k0, dt and all loads scaled alike", ratio),
-                     "the same paths, scaled; equal to the last bit for a power of four",
-                     [ratio](bool) { return similar(ratio); }});
-    cases.push_back({fmt::format("k-{:g}-scaled-dt", ratio),
-                     fmt::format("{:g} k0 with dt ~ 1/sqrt(k) under the loads of Table I", ratio),
-                     "overlaps P A / 3 k below and that less m g / k above",
-                     [ratio](bool quick) { return balance(ratio, quick); }});
+    add_each(cases, {ratio}, "k-{:g}-similar", "{:g} k0, dt and all loads scaled alike",
+             "the same paths, scaled; equal to the last bit for a power of four", similar);
+    add(cases, fmt::format("k-{:g}-scaled-dt", ratio),
+        fmt::format("{:g} k0 with dt ~ 1/sqrt(k) under the loads of Table I", ratio),
+        "overlaps P A / 3 k below and that less m g / k above",
+        [ratio](bool quick) { return balance(ratio, quick); });
   }
-  for (const double ratio : {1.0, 4.0, 10.0, 100.0, 1e3, 1e4}) {
-    cases.push_back(
-        {fmt::format("k-{:g}-fixed-dt", ratio),
-         fmt::format("{:g} k0 at the time step of Table I", ratio),
-         ratio > 8 ? "stopped: the time step over its limit" : "at rest with all forces in balance",
-         [ratio](bool) { return fixed_step(ratio); }});
-  }
-  cases.push_back({"pressure-0", "three grains on the moving wall, P = 0",
-                   "all sink at 3 m g / (B A + 3 b)", [](bool) { return no_pressure(); }});
-  for (const double overlap : {1e-6, 1e-3, 0.05, 0.099, 0.101, 0.3}) {
-    cases.push_back({fmt::format("pressure-overlap-{:g}", overlap),
-                     fmt::format("a grain under P = {:g} k d / A", overlap),
-                     overlap > 0.1 ? overlap_stop : "that overlap",
-                     [overlap](bool) { return pressed_grain(overlap); }});
-  }
-  for (const double ratio : {0.01, 3.0, 10.0, 100.0}) {
-    cases.push_back({fmt::format("pressure-packing-{:g}", ratio),
-                     fmt::format("a packing under {:g} times the pressure of Table I", ratio),
-                     ratio > 5 ? overlap_stop : "all forces in balance",
-                     [ratio](bool) { return pressed_packing(ratio); }});
-  }
-  const Cases more = {
-      {"drag-1e4", "ten thousand times the drag of Table I",
-       "creep and fall at the speeds that b allows", [](bool) { return much_drag(); }},
-      {"gravity-0", "a packing whose weight is removed", "all forces in balance",
-       [](bool) { return no_gravity(); }},
-      {"gravity-100g", "a grain of 100 times its weight on a wall", "overlap m g / k",
-       [](bool) {
-         return all_of({heavy_grain(1), heavy_grain(100)});
-       }},
-      {"gravity-100g-stack", "twelve such grains stacked", overlap_stop,
-       [](bool) { return heavy_stack(); }},
-      {"light-wall", "a moving wall of 0.01 m per d^2",
-       "stopped: the time step over the limit of the wall", [](bool) { return light_wall(); }},
-  };
-  cases.insert(cases.end(), more.begin(), more.end());
-  return cases;
+  const std::string fixed_dt = "{:g} k0 at the time step of Table I";
+  add_each(cases, {1.0, 4.0}, "k-{:g}-fixed-dt", fixed_dt, "at rest with " + balanced, fixed_step);
+  add_each(cases, {10.0, 100.0, 1e3, 1e4}, "k-{:g}-fixed-dt", fixed_dt,
+           "stopped: the time step over its limit", fixed_step);
+  add(cases, "pressure-0", "three grains on the moving wall, P = 0",
+      "all sink at 3 m g / (B A + 3 b)", no_pressure);
+  const std::string grain = "a grain under P = {:g} k d / A";
+  add_each(cases, {1e-6, 1e-3, 0.05, 0.099}, "pressure-overlap-{:g}", grain, "that overlap",
+           pressed_grain);
+  add_each(cases, {0.101, 0.3}, "pressure-overlap-{:g}", grain, overlap_stop, pressed_grain);
+  const std::string packing = "a packing under {:g} times the pressure of Table I";
+  add_each(cases, {0.01, 3.0}, "pressure-packing-{:g}", packing, balanced, pressed_packing);
+  add_each(cases, {10.0, 100.0}, "pressure-packing-{:g}", packing, overlap_stop, pressed_packing);
+  add(cases, "drag-1e4", "ten thousand times the drag of Table I",
+      "creep and fall at the speeds that b allows", much_drag);
+  add(cases, "gravity-0", "a packing whose weight is removed", balanced, no_gravity);
+  add(cases, "gravity-100g", "a grain of 100 times its weight on a wall", "overlap m g / k", [] {
+    return all_of({heavy_grain(1), heavy_grain(100)});
+  });
+  add(cases, "gravity-100g-stack", "twelve such grains stacked", overlap_stop, heavy_stack);
+  add(cases, "light-wall", "a moving wall of 0.01 m per d^2",
+      "stopped: the time step over the limit of the wall", light_wall);
 }
 
 }  // namespace shearcell::stability

@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "core/filling.hpp"
-#include "experiments/bench/stability/oracle.hpp"
 #include "experiments/bench/stability/scenes.hpp"
 
 namespace shearcell::stability {
@@ -38,6 +37,12 @@ Outcome held_grain(double amplitude) {
   const double tangent = wall_pose(packing.cell, tilt(drive, 100000).theta, 0).tan_theta;
   return expect_near("displacement", at.x() - (0.5 - overlap), tangent * (at.y() - 4),
                      1e-6 * amplitude);
+}
+
+Outcome sheared(double amplitude) {
+  return all_of({shear(amplitude, 0, Fluid::still), shear(amplitude, 400, Fluid::still),
+                 shear(amplitude, 400, Fluid::cell), shear(amplitude, 1400, Fluid::cell),
+                 held_grain(amplitude)});
 }
 
 Outcome two_apart(double apart) {
@@ -163,10 +168,10 @@ Outcome expect_refusal(const std::string& what, Make&& make) {
   return {false, "accepted"};
 }
 
-// `grains` along the depth; at one diameter and below each touches its own image.
-Outcome shallow(double depth, int grains) {
-  std::vector<V> positions;
-  for (int i = 0; i < grains; ++i) positions.emplace_back(2, 2, depth / grains * i);
+// Grains along the depth; at one diameter and below each touches its own image.
+Outcome shallow(double depth) {
+  std::vector<V> positions = {{2, 2, 0}};
+  if (depth >= 2) positions.emplace_back(2, 2, depth / 2);
   return expect_refusal<std::invalid_argument>("depth", [&] {
     simulate(placed(table_1(), positions, {4, 4, depth}));
   });
@@ -180,75 +185,52 @@ Outcome no_cell(std::size_t grains) {
 
 }  // namespace
 
-Cases motion_cases() {
+void add_motion_cases(Cases& cases) {
   const std::string as_oracle = "as by the sum over all pairs and images";
   const std::string overlapping = "stopped before the first step: the overlap over its limit";
-  Cases cases;
-  for (const double amplitude : {1e-6, 1e-4, 1e-2, 0.0833, 0.5}) {
-    cases.push_back({fmt::format("amplitude-{:g}", amplitude),
-                     fmt::format("a packing sheared by {:g} rad", amplitude),
-                     as_oracle + "; a held grain follows the walls", [amplitude](bool) {
-                       return all_of({shear(amplitude, 0, Fluid::still),
-                                      shear(amplitude, 400, Fluid::still),
-                                      shear(amplitude, 400, Fluid::cell),
-                                      shear(amplitude, 1400, Fluid::cell), held_grain(amplitude)});
-                     }});
-  }
-  const Cases placements = {
-      {"equal-positions", "two grains at the same position", overlapping,
-       [](bool) { return two_apart(0); }},
-      {"nearly-equal-positions", "two grains 1e-300 and 1e-9 d apart", overlapping,
-       [](bool) {
-         return all_of({two_apart(1e-300), two_apart(1e-9)});
-       }},
-      {"touching", "three grains that touch exactly", "stay",
-       [](bool) {
-         return stays({{20, 20, 20}, {21, 20, 20}, {22, 20, 20}});
-       }},
-      {"touching-seam", "grains that touch exactly across the seam", "stay",
-       [](bool) {
-         return stays({{20, 20, 0}, {20, 20, 39}, {20, 20, 38}, {10, 9, 40}, {10, 9, 1}});
-       }},
-      {"touching-walls", "grains that touch one or two walls exactly", "stay",
-       [](bool) {
-         return stays({{0.5, 20, 20}, {20, 0.5, 20}, {0.5, 0.5, 5}, {39.5, 39.5, 9}});
-       }},
-      {"on-wall-plane", "a grain with its centre on each of the wall planes",
-       "stopped before the first step: the overlap with the plane over its limit",
-       [](bool) { return on_plane(); }},
-      {"corner", "a grain pressed into a corner and released", "leaves at overlap times sqrt(k/m)",
-       [](bool) { return corner(); }},
-      {"seam", "an oblique collision across the periodic seam", "as in the middle of the cell",
-       [](bool) { return seam(); }},
-      {"head-on-1", "two grains approach, each at one diameter per step",
-       "stopped before the first step: the speed over its limit", [](bool) { return head_on(1); }},
-      {"head-on-0.02", "the same at 0.02 diameters per step", as_oracle,
-       [](bool) { return head_on(0.02); }},
-      {"impact-row", "a grain hits a row of eight", as_oracle,
-       [](bool) { return flies_into_row(); }},
-  };
-  cases.insert(cases.end(), placements.begin(), placements.end());
-  for (const int count : {1, 2, 3}) {
-    cases.push_back(
-        {fmt::format("grains-{}", count),
-         fmt::format("{} grain{} sheared under all loads", count, count == 1 ? "" : "s"),
-         as_oracle + ", the same bits on every kernel",
-         [count](bool) { return few_grains(count); }});
-  }
-  cases.push_back({"grains-1-manifest", "a cell as manifests define it, for 1, 3 and 40 grains",
-                   "refused: less than 3 d deep", [](bool) {
-                     return all_of({no_cell(1), no_cell(3), no_cell(40)});
-                   }});
-  cases.push_back({"depth-2.9", "a ring of three grains in a cell 2.9 d deep", as_oracle,
-                   [](bool) { return ring(2.9); }});
-  for (const double depth : {2.0, 1.5, 1.0}) {
-    cases.push_back({fmt::format("depth-{:g}", depth), fmt::format("a cell {:g} d deep", depth),
-                     "refused: a grain would meet a neighbour, or itself, through both seams",
-                     [depth](bool) { return shallow(depth, depth < 2 ? 1 : 2); }});
-  }
-  cases.push_back({"own-image", "a grain in contact with its own image, 0.95 d deep",
-                   "refused: a grain would meet itself", [](bool) { return shallow(0.95, 1); }});
-  return cases;
+  add_each(cases, {1e-6, 1e-4, 1e-2, 0.0833, 0.5}, "amplitude-{:g}",
+           "a packing sheared by {:g} rad", as_oracle + "; a held grain follows the walls",
+           sheared);
+  add(cases, "equal-positions", "two grains at the same position", overlapping,
+      [] { return two_apart(0); });
+  add(cases, "nearly-equal-positions", "two grains 1e-300 and 1e-9 d apart", overlapping, [] {
+    return all_of({two_apart(1e-300), two_apart(1e-9)});
+  });
+  add(cases, "touching", "three grains that touch exactly", "stay", [] {
+    return stays({{20, 20, 20}, {21, 20, 20}, {22, 20, 20}});
+  });
+  add(cases, "touching-seam", "grains that touch exactly across the seam", "stay", [] {
+    return stays({{20, 20, 0}, {20, 20, 39}, {20, 20, 38}, {10, 9, 40}, {10, 9, 1}});
+  });
+  add(cases, "touching-walls", "grains that touch one or two walls exactly", "stay", [] {
+    return stays({{0.5, 20, 20}, {20, 0.5, 20}, {0.5, 0.5, 5}, {39.5, 39.5, 9}});
+  });
+  add(cases, "on-wall-plane", "a grain with its centre on each of the wall planes",
+      "stopped before the first step: the overlap with the plane over its limit", on_plane);
+  add(cases, "corner", "a grain pressed into a corner and released",
+      "leaves at overlap times sqrt(k/m)", corner);
+  add(cases, "seam", "an oblique collision across the periodic seam",
+      "as in the middle of the cell", seam);
+  add(cases, "head-on-1", "two grains approach, each at one diameter per step",
+      "stopped before the first step: the speed over its limit", [] { return head_on(1); });
+  add(cases, "head-on-0.02", "the same at 0.02 diameters per step", as_oracle,
+      [] { return head_on(0.02); });
+  add(cases, "impact-row", "a grain hits a row of eight", as_oracle, flies_into_row);
+  const std::string on_every_kernel = as_oracle + ", the same bits on every kernel";
+  add_each(cases, {1}, "grains-{}", "{} grain sheared under all loads", on_every_kernel,
+           few_grains);
+  add_each(cases, {2, 3}, "grains-{}", "{} grains sheared under all loads", on_every_kernel,
+           few_grains);
+  add(cases, "grains-1-manifest", "a cell as manifests define it, for 1, 3 and 40 grains",
+      "refused: less than 3 d deep", [] {
+        return all_of({no_cell(1), no_cell(3), no_cell(40)});
+      });
+  add_each(cases, {2.9}, "depth-{:g}", "a ring of three grains in a cell {:g} d deep", as_oracle,
+           ring);
+  add_each(cases, {2.0, 1.5, 1.0}, "depth-{:g}", "a cell {:g} d deep",
+           "refused: a grain would meet a neighbour, or itself, through both seams", shallow);
+  add_each(cases, {0.95}, "own-image", "a grain in contact with its own image, {:g} d deep",
+           "refused: a grain would meet itself", shallow);
 }
 
 }  // namespace shearcell::stability

@@ -7,46 +7,41 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <exception>
-#include <memory>
+#include <fstream>
 #include <stdexcept>
-#include <string_view>
 #include <system_error>
 #include <thread>
 
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/io/clock.hpp"
+#include "provenance/io/plain_file.hpp"
+#include "provenance/io/temporary_folder.hpp"
 
 namespace shearcell {
-namespace {
 
 using stability::HardCase;
 using stability::Outcome;
 
-Outcome outcome_of(const HardCase& hard, bool quick) {
-  try {
-    return hard.run(quick);
-  } catch (const std::exception& error) {
-    return {false, std::string("threw: ") + error.what()};
-  }
-}
-
 // The child writes '+' or '-' and the text to a temporary file.
 Outcome compute_apart(const HardCase& hard, bool quick, double seconds) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "outcome";
   std::fflush(nullptr);
-  const pid_t child = file ? fork() : -1;
+  const pid_t child = fork();
   if (child < 0) {
     throw std::system_error(errno, std::generic_category(), "process for a hard case");
   }
   if (child == 0) {
-    const Outcome outcome = outcome_of(hard, quick);
-    std::fputs(((outcome.as_expected ? '+' : '-') + outcome.text).c_str(), file.get());
-    std::fflush(file.get());
+    Outcome outcome;
+    try {
+      outcome = hard.run(quick);
+    } catch (const std::exception& error) {
+      outcome = {false, std::string("threw: ") + error.what()};
+    }
+    std::ofstream(file) << (outcome.as_expected ? '+' : '-') << outcome.text;
     _exit(0);
   }
   const Stopwatch watch;
@@ -63,39 +58,26 @@ Outcome compute_apart(const HardCase& hard, bool quick, double seconds) {
     return {false,
             fmt::format("crashed: {} (signal {})", strsignal(WTERMSIG(status)), WTERMSIG(status))};
   }
-  std::string message;
-  std::array<char, 4096> part{};
-  std::rewind(file.get());
-  while (const std::size_t n = std::fread(part.data(), 1, part.size(), file.get())) {
-    message.append(part.data(), n);
-  }
+  const std::string message = read_plain(file, std::size_t{1} << 24).value_or("");
   if (status != 0 || message.empty()) return {false, "ended without an outcome"};
   return {message[0] == '+', message.substr(1)};
 }
-
-}  // namespace
 
 namespace stability {
 
 const Cases& hard_cases() {
   static const Cases cases = [] {
     Cases all;
-    for (const auto group : {time_step_cases, load_cases, motion_cases, crystal_cases}) {
-      const Cases some = group();
-      all.insert(all.end(), some.begin(), some.end());
-    }
+    add_time_step_cases(all);
+    add_load_cases(all);
+    add_motion_cases(all);
+    add_crystal_cases(all);
     return all;
   }();
   return cases;
 }
 
 }  // namespace stability
-
-StabilityResult map_case(const HardCase& hard, bool quick, double seconds) {
-  const Stopwatch watch;
-  const Outcome outcome = compute_apart(hard, quick, seconds);
-  return {hard.name, hard.done, hard.expected, outcome.text, outcome.as_expected, watch.seconds()};
-}
 
 std::string unknown_case(const std::string& name) {
   std::vector<std::string_view> names;
@@ -116,8 +98,10 @@ std::vector<StabilityResult> map_stability(const StabilityOptions& options) {
   for (const HardCase& hard : stability::hard_cases()) {
     const auto named = [&](const std::string& name) { return hard.name.starts_with(name); };
     if (!options.only.empty() && std::ranges::none_of(options.only, named)) continue;
-    if (options.report) options.report(hard.name + ": " + hard.done);
-    results.push_back(map_case(hard, options.quick, options.seconds_per_case));
+    options.report(hard.name + ": " + hard.done);
+    const Stopwatch watch;
+    const Outcome outcome = compute_apart(hard, options.quick, options.seconds_per_case);
+    results.push_back({hard, outcome, watch.seconds()});
   }
   return results;
 }

@@ -1,27 +1,51 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs the hard cases, each in a process of its own, so that a crash or a hang is reported as its
-// outcome.
+// Cases at and beyond the limits of what the engine can compute. Each has a right answer that is
+// known without the engine, or must be stopped or refused with the numbers that say why. Each runs
+// in a process of its own, so that a crash or a hang is reported as its outcome.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "experiments/bench/stability/hard_case.hpp"
-
 namespace shearcell {
+namespace stability {
+
+struct Outcome {
+  bool as_expected = false;
+  std::string text;  ///< the result, with its numbers
+};
+
+struct HardCase {
+  std::string name;
+  std::string done;      ///< what is computed
+  std::string expected;  ///< the right answer, or the check that stops it
+  /// With `quick` a case of very many steps takes fewer. An exception counts as not as expected.
+  std::function<Outcome(bool quick)> run;
+};
+
+using Cases = std::vector<HardCase>;
+
+void add_time_step_cases(Cases& cases);
+void add_load_cases(Cases& cases);
+void add_motion_cases(Cases& cases);
+void add_crystal_cases(Cases& cases);
+
+/// All of them. `shearcell bench stability` and the tests `stability.*` run this table.
+const Cases& hard_cases();
+
+}  // namespace stability
 
 struct StabilityOptions {
   bool quick = false;             ///< fewer steps in the very long cases
   std::vector<std::string> only;  ///< names of cases or their beginnings; all if empty
   double seconds_per_case = 300;  ///< a case that takes longer counts as hanging
-  std::function<void(const std::string&)> report;  ///< progress messages; may be empty
+  std::function<void(const std::string&)> report;  ///< progress messages
 };
 
 struct StabilityResult {
-  std::string name, done, expected;
-  std::string outcome;  ///< with the numbers
-  bool as_expected = false;
+  stability::HardCase hard;
+  stability::Outcome outcome;
   double seconds = 0;
 };
 
@@ -32,7 +56,7 @@ std::string unknown_case(const std::string& name);
 /// started.
 std::vector<StabilityResult> map_stability(const StabilityOptions& options);
 
-/// One case in a process of its own, which is killed after `seconds`.
-StabilityResult map_case(const stability::HardCase& hard, bool quick, double seconds);
+/// The outcome of one case in a process of its own, which is killed after `seconds`.
+stability::Outcome compute_apart(const stability::HardCase& hard, bool quick, double seconds);
 
 }  // namespace shearcell

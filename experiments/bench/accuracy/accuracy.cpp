@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/bench/accuracy/accuracy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+
+#include "analysis/statistics.hpp"
+#include "core/watchdog.hpp"
+#include "experiments/bench/accuracy/closed_forms.hpp"
+#include "experiments/bench/packing.hpp"
+#include "experiments/bench/speed.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/numerics.hpp"
+#include "protocols/stiffen.hpp"
+
+namespace shearcell::accuracy {
+namespace {
+
+using bench::PackingNumbers;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// A column of a section's table; one with a heading is also in the summary, as `text`.
+struct Column {
+  std::string name;
+  TableValue value;
+  std::string heading = {}, text = {};
+};
+
+void add_row(Section& section, const std::vector<Column>& columns) {
+  section.table.columns.clear();
+  section.header.clear();
+  section.table.rows.emplace_back();
+  section.summary.emplace_back();
+  for (const Column& column : columns) {
+    section.table.columns.push_back(column.name);
+    section.table.rows.back().push_back(column.value);
+    if (column.heading.empty()) continue;
+    section.header.push_back(column.heading);
+    section.summary.back().push_back(column.text);
+  }
+}
+
+// Three significant digits; `otherwise` for a value that is not finite.
+std::string short_number(double value, const std::string& otherwise = "") {
+  return std::isfinite(value) ? fmt::format("{:.3g}", value) : otherwise;
+}
+
+std::string fixed(const std::optional<double>& value, int digits) {
+  return fmt::format("{:.{}f}", value.value_or(kNaN), digits);
+}
+
+std::string with_error(const RunStatistics& of, int digits) {
+  return fixed(of.mean, digits) + " +- " + fixed(of.standard_error, digits);
+}
+
+Parameters small_cell(bool quick) {
+  Parameters parameters;
+  parameters.grains = quick ? 300 : 600;
+  return parameters;
+}
+
+// Seconds of one core that a cycle takes, at so many million particle-steps/s.
+double seconds_per_cycle(std::uint64_t grains, double time_step, double engine_rate) {
+  return Parameters{}.period_s / time_step * static_cast<double>(grains) / (1e6 * engine_rate);
+}
+
+// NaN when the time step is too large for this scene.
+double error_of(const ClosedForm& form, const Method& method, double dt) {
+  try {
+    return form.measure(method, dt);
+  } catch (const NumericalFailure&) {
+    return kNaN;
+  }
+}
+
+Chart chart_of(const ClosedForm& form) {
+  constexpr std::array kColours = {"#000000", "#1f4fd8", "#2ca02c"};
+  constexpr std::array kPoints = {7, 9, 11};
+  Chart chart{.x = {.name = "seconds per cycle of 600 sheared grains", .log = true},
+              .y = {.name = "relative error", .log = true},
+              .title = form.title};
+  for (std::size_t m = 0; m < methods().size(); ++m) {
+    chart.series.push_back({.title = methods()[m].name,
+                            .colour = kColours[m],
+                            .point = kPoints[m],
+                            .join = Join::line,
+                            .columns = {.x = "seconds_per_cycle", .y = form.error},
+                            .filter = {"method", methods()[m].name}});
+  }
+  return chart;
+}
+
+// Error against cost of every method. The summary has a row for each time step.
+Section section_of(const ClosedForm& form, const Scene& scene, const std::vector<double>& steps,
+                   double engine_rate) {
+  const double limit = stability_limit_s(Parameters{}), contact = contact_time(scene);
+  Section section;
+  section.title = form.title;
+  std::vector<std::string> header = {"dt [s]", "dt/limit"};
+  std::vector<std::vector<std::string>> summary;
+  for (const double dt : steps) summary.push_back({short_number(dt), fixed(dt / limit, 2)});
+  summary.push_back({"order", ""});
+  for (const Method& method : methods()) {
+    header.push_back(method.name);
+    for (std::size_t s = 0; s < steps.size(); ++s) {
+      const double dt = steps[s], error = error_of(form, method, dt);
+      add_row(section,
+              {{"method", method.name},
+               {"time_step_s", dt},
+               {"time_step_over_contact_time", dt / contact},
+               {"time_step_over_stability_limit", dt / limit},
+               {"evaluations_per_contact_time", method.evaluations / dt * contact},
+               {"seconds_per_cycle", method.evaluations * seconds_per_cycle(600, dt, engine_rate)},
+               {form.error, error}});
+      summary[s].push_back(short_number(error, "stopped"));
+    }
+    summary.back().push_back(fixed(fitted_order(form, method, 4.4e-5), 2));  // larger steps bend it
+  }
+  section.table.name = "accuracy-" + form.name;
+  section.table.chart = chart_of(form);
+  section.header = header;
+  section.summary = summary;
+  return section;
+}
+
+// From a quarter of the supplement's smallest time step to the stability limit; its own four are
+// among them.
+std::vector<Section> closed_form_sections(const Options& options, double engine_rate) {
+  std::vector<double> steps = {5.5e-6, 1.1e-5, 2.6e-5, 3.5e-5, 2.0 / 45600, 7.0e-5, 1.0e-4, 1.2e-4};
+  if (options.quick) steps = {1.1e-5, 2.0 / 45600, 7.0e-5};
+  const Scene scene = shear_scene(Parameters{});
+  std::vector<Section> sections;
+  for (const ClosedForm& form : closed_forms(scene, options.quick)) {
+    options.report(form.title);
+    sections.push_back(section_of(form, scene, steps, engine_rate));
+  }
+  return sections;
+}
+
+// A settled packing, its stiffness raised to `decades` powers of ten above k_0, in quarters.
+std::vector<PackingNumbers> stiffened(const Parameters& p, std::size_t seed,
+                                      std::uint64_t decades) {
+  const bench::Packing packing = bench::settled_packing(p, seed);
+  StiffenParameters parameters;
+  parameters.steps = decades * parameters.steps_per_decade + 1;
+  const Scene scene = stiffen_scene(p);
+  const Stiffen protocol(parameters, scene);
+  Simulation simulation(packing.cell, scene, packing.state);
+  std::vector<PackingNumbers> all;
+  for (std::uint64_t n = 0; n < parameters.steps; ++n) {
+    protocol.advance(simulation, 1);
+    all.push_back(bench::numbers_of(packing.cell, simulation.scene(), 0, simulation.state()));
+  }
+  return all;
+}
+
+Section stiffness_section(const Options& options, double engine_rate) {
+  options.report("finite stiffness");
+  const std::size_t seeds = options.quick ? 2 : 4;
+  const Parameters p = small_cell(options.quick);
+  std::vector<std::vector<PackingNumbers>> runs;
+  while (runs.size() < seeds) {
+    std::vector<std::future<std::vector<PackingNumbers>>> at_once;
+    for (std::size_t s = runs.size() + 1; s <= std::min(runs.size() + options.jobs, seeds); ++s) {
+      at_once.push_back(std::async(std::launch::async, stiffened, p, s, options.quick ? 1 : 2));
+    }
+    for (auto& run : at_once) runs.push_back(run.get());
+  }
+  Section section;
+  section.title =
+      fmt::format("Finite stiffness: {} settled packings of {} grains", seeds, p.grains);
+  section.table.name = "accuracy-stiffness";
+  section.table.chart = {
+      .x = {.name = fmt::format("seconds per cycle of {} sheared grains", p.grains), .log = true},
+      .y = {.name = "bias of the volume fraction"},
+      .series =
+          {{.title = italic("ϕ") + subscript("u"),
+            .colour = "#000000",
+            .point = 6,
+            .columns = {.x = "seconds_per_cycle",
+                        .y = "phi_uncorrected_bias",
+                        .y_error = "phi_uncorrected_bias_error"}},
+           {.title = italic("ϕ") + Text(" (S4)"),
+            .colour = "#d62728",
+            .columns = {.x = "seconds_per_cycle", .y = "phi_bias", .y_error = "phi_bias_error"}}},
+      .lines = {{.at = 0}}};
+  for (std::size_t n = 0; n < runs.front().size(); ++n) {
+    // At the same part of a contact time, a cycle takes sqrt(k) as many steps.
+    const double factor = raised_stiffness(1, n, StiffenParameters{}.steps_per_decade);
+    const double seconds =
+        seconds_per_cycle(p.grains, shear_time_step_s(p), engine_rate) * std::sqrt(factor);
+    std::vector<PackingNumbers> here;
+    std::vector<double> biases, biases_u;
+    for (const std::vector<PackingNumbers>& run : runs) {
+      here.push_back(run[n]);
+      biases.push_back(run[n].phi - run.back().phi);
+      biases_u.push_back(run[n].phi_uncorrected - run.back().phi);
+    }
+    const RunStatistics phi = bench::over(here, &PackingNumbers::phi),
+                        phi_u = bench::over(here, &PackingNumbers::phi_uncorrected),
+                        overlap = bench::over(here, &PackingNumbers::overlap),
+                        bias = over_runs(biases), bias_u = over_runs(biases_u);
+    add_row(
+        section,
+        {{"stiffness_factor", factor, "k/k_0", short_number(factor)},
+         {"seconds_per_cycle", seconds, "s/cycle", fixed(seconds, 2)},
+         {"mean_overlap_d", overlap.mean, "overlap [d]", short_number(overlap.mean.value_or(kNaN))},
+         {"phi", phi.mean, "phi (S4)", fixed(phi.mean, 5)},
+         {"phi_bias", bias.mean, "phi - hardest", with_error(bias, 5)},
+         {"phi_bias_error", bias.standard_error},
+         {"phi_uncorrected", phi_u.mean, "phi_u", fixed(phi_u.mean, 5)},
+         {"phi_uncorrected_bias", bias_u.mean, "phi_u - hardest phi", with_error(bias_u, 5)},
+         {"phi_uncorrected_bias_error", bias_u.standard_error},
+         {"runs", static_cast<std::int64_t>(phi.runs)}});
+  }
+  return section;
+}
+
+}  // namespace
+
+std::vector<Section> measure_accuracy(const Options& options) {
+  options.report("the engine's rate");
+  const double rate = measure_speed({.sizes = {small_cell(options.quick).grains},
+                                     .threads = {1},
+                                     .repeats = options.quick ? 1U : 9U,
+                                     .seconds_per_repeat = options.quick ? 0.05 : 0.3,
+                                     .report = {}})
+                          .front()
+                          .median_rate;
+  std::vector<Section> sections = closed_form_sections(options, rate);
+  sections.push_back(stiffness_section(options, rate));
+  return sections;
+}
+
+}  // namespace shearcell::accuracy

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/fuzz/targets.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <set>
+
+#include "analysis/crystal.hpp"
+#include "analysis/derived_measures.hpp"
+#include "analysis/error.hpp"
+#include "analysis/measures.hpp"
+#include "experiments/figures/lineage.hpp"
+#include "experiments/manifest/expand.hpp"
+#include "experiments/manifest/lines.hpp"
+#include "experiments/report/report_data.hpp"
+#include "provenance/derived.hpp"
+#include "provenance/projections.hpp"
+#include "provenance/queries.hpp"
+#include "provenance/ro_crate.hpp"
+#include "tests/provenance/samples.hpp"
+
+namespace shearcell::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string_view text_of(Input input) {
+  return {reinterpret_cast<const char*>(input.data()), input.size()};
+}
+
+// For what must hold whatever the input is.
+void require(bool fact, const char* what) {
+  if (fact) return;
+  std::fprintf(stderr, "not so: %s\n", what);
+  std::abort();
+}
+
+// What reads an input ends in an answer or in an error of this kind, with a message.
+template <class Told, class Work>
+void attempt(Work&& work) {
+  try {
+    work();
+  } catch (const Told& told) {
+    require(*told.what() != '\0', "an error says what is wrong");
+  }
+}
+
+// Text of a manifest: read, check, expand.
+void check_plan(const Plan& plan) {
+  std::set<std::pair<std::string, std::uint64_t>> places;
+  for (const PlannedRun& run : plan.runs) {
+    require(places.emplace(run.variant, run.seed).second, "no run is planned twice");
+    require(read_stage(run.last.resolved).seed == run.seed, "a record reads back as its run");
+    require(stage_key(run.last.resolved) == run.last.key, "a run is named after its record");
+  }
+}
+
+void take_manifest(Input input) {
+  constexpr std::size_t kExpanded = 200;  // runs; more would only take longer
+  const std::string text(text_of(input));
+  try {
+    const Manifest manifest = parse_manifest(text, "fuzz.yaml");
+    std::vector<std::optional<std::string>> scales;
+    for (const Scale& scale : manifest.scales) scales.emplace_back(scale.name);
+    if (scales.empty()) scales.emplace_back();
+    for (const auto& scale : scales) {
+      const Plan plan = expand(manifest, {.scale = scale, .cycles = {}, .seeds = 1});
+      if (plan.runs.size() > kExpanded) continue;
+      check_plan(plan);
+      for (const PlannedRun& run : plan.runs) manifest_lines(text, run.scale, run.labels);
+    }
+  } catch (const ManifestError& error) {
+    require(!error.problems().empty(), "an error says what is wrong");
+  }
+}
+
+// Lines of events: upcast, fold, query.
+void take_events(Input input) {
+  static sqlite::Database database = [] {
+    sqlite::Database fresh = sqlite::Database::in_memory();
+    fresh.execute("PRAGMA foreign_keys=ON");
+    create_projections(fresh);
+    return fresh;
+  }();
+  const sqlite::WriteTransaction undone(database);
+  for (const Event& event : forged_events(text_of(input))) {
+    attempt<StoreDamaged>([&] { apply(database, event); });
+  }
+  attempt<StoreDamaged>([&] {
+    for (const RunRecord& record : query_runs(database)) {
+      query_checkpoints(database, record.id);
+      query_run_ids(database, record.id.substr(0, 3), 10);
+    }
+    query_figures(database);
+    projection_rows(database);
+  });
+}
+
+// Bytes of a checkpoint file, as they are and reframed.
+void take_checkpoint(Input input) {
+  constexpr Eigen::Index kAnalysed = 64;  // grains; the Voronoi cells of more take long
+  const std::span<const std::byte> bytes = std::as_bytes(input);
+  attempt<StoreDamaged>([&] { decode_checkpoint(bytes); });
+  attempt<StoreDamaged>([&] {
+    const Checkpoint checkpoint = decode_checkpoint(sealed(bytes));
+    if (checkpoint.state.position.cols() > kAnalysed ||
+        checkpoint.cell.wall_grains.size() > kAnalysed) {
+      return;
+    }
+    require(state_hash(decode_checkpoint(encode_checkpoint(checkpoint))) == state_hash(checkpoint),
+            "a checkpoint that is read, written and read again is the same");
+    require_plausible(checkpoint);
+    attempt<AnalysisError>([&] { analyse(checkpoint); });
+  });
+}
+
+// A CSV, and after a NUL the lineage file and the chart beside it, as `show FILE` reads them.
+void take_published(Input input) {
+  struct Place {
+    TemporaryFolder folder;
+    fs::path published = folder.path() / "published";
+    Store store;
+    Place() : store(make_store(folder.path() / "store"), Access::read) {
+      fs::create_directory(published);
+    }
+  };
+  static const Place place;
+  const std::string_view text = text_of(input);
+  const std::size_t end = std::min(text.find('\0'), text.size());
+  test::write_bytes(place.published / "S2a.csv", std::string(text.substr(0, end)));
+  const std::string second(text.substr(std::min(end + 1, text.size())));
+  test::write_bytes(place.published / "S2.lineage.json", second);
+  test::write_bytes(place.published / "S2a.chart.json", second);
+  for (const char* name : {"S2a.csv", "S2.lineage.json"}) {
+    const auto found = find_published(place.store, place.published / name);
+    require(found.has_value(), "the figure that the file is named after is found");
+  }
+  attempt<UsageError>([&] { read_accuracy_charts(place.published); });
+}
+
+// What derived.sqlite keeps of a checkpoint.
+void take_measures(Input input) {
+  attempt<AnalysisError>([&] {
+    const nlohmann::json result = decode_result(std::as_bytes(input));
+    attempt<AnalysisError>([&] { read_measures(result); });
+    attempt<AnalysisError>([&] { read_crystallite_map(result); });
+  });
+}
+
+// Bytes changed by patches: three say where, one how many follow.
+std::string patched(std::string bytes, std::string_view patches) {
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return static_cast<unsigned char>(patches[i]);
+  };
+  while (patches.size() > 4) {
+    const std::size_t at = (byte(0) | byte(1) << 8U | byte(2) << 16U) % bytes.size();
+    const std::size_t count =
+        std::min({std::size_t{1} + byte(3) % 16, patches.size() - 4, bytes.size() - at});
+    bytes.replace(at, count, patches.substr(4, count));
+    patches.remove_prefix(4 + count);
+  }
+  return bytes;
+}
+
+// Appends events under right hashes: what a forger who knows the format can write.
+void forge(const fs::path& log, std::string_view lines) {
+  sqlite::Database database(log, sqlite::Open::existing);
+  EventLog events(database);
+  const sqlite::WriteTransaction all(database);
+  for (const Event& event : forged_events(lines)) events.append_copy(all, event);
+  database.execute("COMMIT");
+}
+
+// JSON's own exceptions and bad_alloc are no runtime errors: nobody translated them.
+template <class Work>
+void attempt_store(Work&& work) {
+  attempt<std::runtime_error>(work);
+}
+
+void look_at_runs(const Store& store) {
+  for (const RunRecord& run : store.runs()) {
+    attempt_store([&] { store.checkpoints(run.id, true); });
+    attempt_store([&] {
+      const CrateFacts facts = crate_facts(store, run.id);
+      ro_crate_metadata(facts, prov_json(facts).dump());
+    });
+  }
+}
+
+void look_at_figures(const Store& store) {
+  for (const FigureRecord& record : figure_records(store)) {
+    attempt_store([&] {
+      const FigureLineage lineage = figure_lineage(store, record);
+      to_json(lineage);
+      check_inputs(store, lineage);
+    });
+  }
+}
+
+void look_at(const fs::path& folder) {
+  attempt_store([&] {
+    const Store store(folder, Access::read);
+    attempt_store([&] { look_at_runs(store); });
+    attempt_store([&] { look_at_figures(store); });
+    attempt_store([&] { store.leases(); });
+    attempt_store([&] { store.verify(); });
+  });
+  attempt_store([&] {
+    Store store(folder, Access::write);
+    attempt_store([&] { store.rebuild(); });
+    attempt_store([&] {
+      for (const RunRecord& run : store.runs()) store.newest_valid_checkpoint(run.id);
+    });
+    attempt_store([&] { store.verify(); });
+    attempt_store([&] { store.prunable({}); });
+  });
+}
+
+// A store with changed bytes or with forged events: the first byte chooses what the rest is.
+void take_store(Input input) {
+  static const TemporaryFolder folder;
+  static const fs::path store = make_store(folder.path() / "store"), log = store / "store.sqlite";
+  static const std::string sound = test::read_bytes(log);
+  if (input.empty()) return;
+  const std::string_view rest = text_of(input).substr(1);
+  for (const auto& entry : fs::directory_iterator(store)) {
+    if (entry.path().filename() != "objects") fs::remove_all(entry.path());
+  }
+  const bool forged = input.front() % 2 == 1;
+  test::write_bytes(log, forged ? sound : patched(sound, rest));
+  attempt_store([&] {
+    if (forged) forge(log, rest);
+  });
+  look_at(store);
+}
+
+}  // namespace
+
+const std::array<Target, 6> all_targets = {{{"checkpoint", take_checkpoint, checkpoint_seeds},
+                                            {"events", take_events, event_seeds},
+                                            {"manifest", take_manifest, manifest_seeds},
+                                            {"measures", take_measures, measure_seeds},
+                                            {"published", take_published, published_seeds},
+                                            {"store", take_store, store_seeds}}};
+
+}  // namespace shearcell::fuzz
