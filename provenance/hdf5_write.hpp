@@ -13,26 +13,15 @@
 
 namespace shearcell::hdf5 {
 
-/// To be held around all calls of the library: it may be built without thread safety.
-inline std::mutex& library_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-/// Stops HDF5 from printing errors to standard error; they are reported as exceptions.
-class Quiet {
+/// To be held around all calls of the library, which may be built without thread safety. From then
+/// on the library does not print errors; they are reported as exceptions.
+class Library {
  public:
-  Quiet() {
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
+  Library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
  private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
+  static inline std::mutex mutex_;
+  const std::scoped_lock<std::mutex> lock_{mutex_};
 };
 
 /// Owns an HDF5 identifier; a negative one is the result of a failed call.
@@ -46,7 +35,6 @@ class Handle {
     if (id_ >= 0) close_(id_);
   }
   hid_t get() const { return id_; }
-  bool valid() const { return id_ >= 0; }
 
  private:
   hid_t id_;

@@ -19,30 +19,17 @@ std::string checkpoint_id(const std::string& sha256) {
   return "shearcell:checkpoint-" + sha256;
 }
 
-std::string attempt_id(const RunLineage& stage, std::size_t attempt) {
-  return fmt::format("shearcell:attempt-{}-{}", stage.run.id, attempt + 1);
-}
-
 class Document {
  public:
-  explicit Document(const CrateFacts& facts) : facts_(facts) {
-    for (const char* section : {"entity", "activity", "agent", "used", "wasGeneratedBy",
-                                "wasAssociatedWith", "wasDerivedFrom"}) {
-      document_[section] = json::object();
-    }
-    document_["prefix"] = {{"shearcell", "urn:x-shearcell:"}};
-  }
+  explicit Document(const CrateFacts& facts) : facts_(facts) {}
 
   json build() {
+    document_["prefix"] = {{"shearcell", "urn:x-shearcell:"}};
     for (const ManifestText& manifest : facts_.manifests) add_manifest(manifest);
     for (const RunLineage& stage : facts_.stages) {
       add_parameters(stage.run);
       for (const CheckpointHistory& checkpoint : stage.checkpoints) add_checkpoint(checkpoint);
       for (std::size_t a = 0; a < stage.attempts.size(); ++a) add_attempt(stage, a);
-    }
-    // Some readers fail on empty sections.
-    for (auto section = document_.begin(); section != document_.end();) {
-      section = section->empty() ? document_.erase(section) : std::next(section);
     }
     return std::move(document_);
   }
@@ -72,9 +59,7 @@ class Document {
                    {"shearcell:step", c.step}};
     if (checkpoint.rejected) entity["shearcell:rejected"] = true;
     if (checkpoint.pruned) entity["shearcell:pruned"] = true;
-    if (checkpoint.kept()) {
-      entity["prov:location"] = crate_path_of_checkpoint(c.sha256);
-    }
+    if (checkpoint.kept()) entity["prov:location"] = crate_path_of_checkpoint(c.sha256);
     document_["entity"][checkpoint_id(c.sha256)] = std::move(entity);
   }
 
@@ -91,7 +76,7 @@ class Document {
 
   void add_attempt(const RunLineage& stage, std::size_t a) {
     const Attempt& attempt = stage.attempts[a];
-    const std::string id = attempt_id(stage, a);
+    const std::string id = fmt::format("shearcell:attempt-{}-{}", stage.run.id, a + 1);
     json machine = attempt.host;
     machine.erase("build");
     machine.erase("libraries");

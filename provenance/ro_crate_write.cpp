@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <set>
 #include <stdexcept>
-#include <system_error>
 
 #include "provenance/io/plain_file.hpp"
+#include "provenance/io/temporary_folder.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/ro_crate.hpp"
@@ -52,8 +51,7 @@ void make_subfolder(const fs::path& crate, const char* name) {
 std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const fs::path& folder) {
   const ObjectStore objects(store.folder());
   std::vector<std::string> written;
-  make_subfolder(folder, "checkpoints");
-  make_subfolder(folder, "manifests");
+  for (const char* subfolder : {"checkpoints", "manifests"}) make_subfolder(folder, subfolder);
   std::set<std::string> done;
   for (const RunLineage& stage : facts.stages) {
     for (const CheckpointHistory& c : stage.checkpoints) {
@@ -77,20 +75,14 @@ std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const
   return written;
 }
 
-/// On the same file system as the folder, to be renamed to it.
-fs::path temporary_beside(const fs::path& folder) {
-  const fs::path parent = folder.parent_path();
-  if (!parent.empty()) fs::create_directories(parent);
-  return parent / fmt::format(".{}.tmp-{}", folder.filename().string(), getpid());
-}
-
 }  // namespace
 
 std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
                                         const fs::path& where, const std::string& licence) {
   const CrateFacts facts = crate_facts(store, run, licence);
   // "crate/" has no file name; "crate" is the same folder.
-  const fs::path folder = where.has_filename() ? where : where.parent_path();
+  const fs::path given = fs::absolute(where);
+  const fs::path folder = given.has_filename() ? given : given.parent_path();
   const fs::file_status status = fs::symlink_status(folder);
   if (fs::exists(status) && !fs::is_directory(status)) {
     throw std::invalid_argument(folder.string() +
@@ -103,19 +95,15 @@ std::vector<std::string> write_ro_crate(const Store& store, const std::string& r
     }
     return fill(store, facts, folder);
   }
-  const fs::path temporary = temporary_beside(folder);
-  if (!fs::create_directory(temporary)) {
-    throw std::invalid_argument(temporary.string() + ": left behind by another export; remove it");
-  }
-  try {
-    std::vector<std::string> written = fill(store, facts, temporary);
-    fs::rename(temporary, folder);
-    return written;
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(temporary, ignored);
-    throw;
-  }
+  // On the same file system as the folder, to be renamed to it.
+  fs::create_directories(folder.parent_path());
+  const TemporaryFolder beside(folder.parent_path() /
+                               fmt::format(".{}.tmp-", folder.filename().string()));
+  const fs::path staged = beside.path() / "crate";
+  fs::create_directory(staged);
+  std::vector<std::string> written = fill(store, facts, staged);
+  fs::rename(staged, folder);
+  return written;
 }
 
 }  // namespace shearcell

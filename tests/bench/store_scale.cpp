@@ -19,7 +19,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "provenance/schema.hpp"
+#include "provenance/event_log.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/store.hpp"
 

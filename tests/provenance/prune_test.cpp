@@ -8,8 +8,8 @@ namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
+using test::expect_refused;
 using test::kCycle;
-using test::message_of;
 using test::run_id;
 using test::sample_checkpoint;
 using test::sample_run;
@@ -83,11 +83,9 @@ TEST_F(PruneTest, FreesTheFilesAndKeepsTheRecords) {
   store_.rebuild();
   EXPECT_TRUE(store_.verify().ok());
 
-  const std::string message = message_of<CheckpointPruned>(
-      [&] { store_.load_checkpoint(store_.find_checkpoint(chosen[0].sha256)); });
-  EXPECT_NE(message.find("shearcell regenerate " + chosen[0].sha256.substr(0, 12)),
-            std::string::npos)
-      << message;
+  expect_refused<CheckpointPruned>(
+      [&] { store_.load_checkpoint(store_.find_checkpoint(chosen[0].sha256)); },
+      {"shearcell regenerate " + chosen[0].sha256.substr(0, 12)});
   EXPECT_THROW(store_.load_checkpoint(chosen[0]), CheckpointPruned) << "an older record of it";
 }
 
