@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes a checkpoint; checkpoint_read.cpp reads it.
 #include "provenance/checkpoint.hpp"
 
 #include <bit>
@@ -20,13 +19,33 @@ namespace {
 using hdf5::creation_list;
 using hdf5::Handle;
 using hdf5::make_group;
+using hdf5::Object;
 using hdf5::put_attribute;
 using hdf5::put_dataset;
 using hdf5::put_strings;
+using hdf5::refuse;
 using hdf5::require;
 using hdf5::Shape;
 
 static_assert(std::endian::native == std::endian::little, "hashes and files use native numbers");
+
+/// The numbers of /restart and then those of /restart/cell, in the order of the file.
+void restart_numbers(auto& checkpoint, auto field) {
+  field("time_s", checkpoint.time_s);
+  field("cycle", checkpoint.cycle);
+  field("theta", checkpoint.theta);
+  field("wall_height", checkpoint.state.wall_height);
+  field("wall_velocity", checkpoint.state.wall_velocity);
+  field("diameter_m", checkpoint.units.diameter_m);
+  field("mass_kg", checkpoint.units.mass_kg);
+}
+
+void cell_numbers(auto& cell, auto field) {
+  field("width", cell.width);
+  field("depth", cell.depth);
+  field("bottom", cell.bottom);
+  field("top", cell.top);
+}
 
 /// An H5MD element with one time step: {step, time, value}.
 void put_element(const Handle& parent, const std::string& name, const Checkpoint& checkpoint,
@@ -109,10 +128,7 @@ void put_observables(const Handle& file, const Checkpoint& checkpoint) {
 
 void put_cell(const Handle& restart, const Cell& cell) {
   const Handle group = make_group(restart, "cell");
-  put_attribute(group, "width", cell.width);
-  put_attribute(group, "depth", cell.depth);
-  put_attribute(group, "bottom", cell.bottom);
-  put_attribute(group, "top", cell.top);
+  cell_numbers(cell, [&](const char* name, double value) { put_attribute(group, name, value); });
   put_attribute(group, "moving", static_cast<std::uint64_t>(cell.moving));
   std::vector<std::uint8_t> side;
   std::vector<double> position;
@@ -131,13 +147,8 @@ void put_restart(const Handle& file, const Checkpoint& checkpoint) {
   put_attribute(restart, "format", hdf5::kRestartFormat);
   put_attribute(restart, "run", checkpoint.run);
   put_attribute(restart, "step", state.step);
-  put_attribute(restart, "time_s", checkpoint.time_s);
-  put_attribute(restart, "cycle", checkpoint.cycle);
-  put_attribute(restart, "theta", checkpoint.theta);
-  put_attribute(restart, "wall_height", state.wall_height);
-  put_attribute(restart, "wall_velocity", state.wall_velocity);
-  put_attribute(restart, "diameter_m", checkpoint.units.diameter_m);
-  put_attribute(restart, "mass_kg", checkpoint.units.mass_kg);
+  restart_numbers(checkpoint,
+                  [&](const char* name, double value) { put_attribute(restart, name, value); });
   const auto grains = static_cast<hsize_t>(state.position.cols());
   put_dataset(restart, "position", H5T_IEEE_F64LE, state.position.data(), {grains, 3});
   put_dataset(restart, "velocity", H5T_IEEE_F64LE, state.velocity.data(), {grains, 3});
@@ -145,32 +156,32 @@ void put_restart(const Handle& file, const Checkpoint& checkpoint) {
 }
 
 void require_sound(const Checkpoint& c) {
-  const auto refuse = [](const std::string& why) {
+  const auto reject = [](const std::string& why) {
     throw std::invalid_argument("a checkpoint cannot be written: " + why);
   };
   if (c.run.size() > StoreLimits::text || c.run.find('\0') != std::string::npos)
-    refuse("bad run id");
+    reject("bad run id");
   if (c.state.position.cols() != c.state.velocity.cols()) {
-    refuse("the numbers of velocities and positions differ");
+    reject("the numbers of velocities and positions differ");
   }
   if (!c.state.position.allFinite() || !c.state.velocity.allFinite()) {
-    refuse("a position or velocity is not finite");
+    reject("a position or velocity is not finite");
   }
   for (const WallGrain& grain : c.cell.wall_grains) {
-    if (!grain.position.allFinite()) refuse("the position of a wall grain is not finite");
+    if (!grain.position.allFinite()) reject("the position of a wall grain is not finite");
   }
-  for (const double value :
-       {c.time_s, c.cycle, c.theta, c.units.diameter_m, c.units.mass_kg, c.cell.width, c.cell.depth,
-        c.cell.bottom, c.cell.top, c.state.wall_height, c.state.wall_velocity}) {
-    if (!std::isfinite(value)) refuse("a number of the cell, wall or clock is not finite");
-  }
-  if (c.observables.size() > StoreLimits::observables) refuse("there are too many observables");
+  const auto require_finite = [&](const std::string& name, double value) {
+    if (!std::isfinite(value)) reject(name + " is not finite");
+  };
+  restart_numbers(c, require_finite);
+  cell_numbers(c.cell, require_finite);
+  if (c.observables.size() > StoreLimits::observables) reject("there are too many observables");
   for (const auto& [name, value] : c.observables) {
-    if (name.size() > StoreLimits::text) refuse("the name of an observable is too long");
+    if (name.size() > StoreLimits::text) reject("the name of an observable is too long");
     if (name.empty() || name == "." || name.find_first_of(std::string("/\0", 2)) != name.npos) {
-      refuse("'" + name + "' cannot name an observable");
+      reject("'" + name + "' cannot name an observable");
     }
-    if (!std::isfinite(value)) refuse("observable " + name + " is not finite");
+    require_finite("observable " + name, value);
   }
 }
 
@@ -186,14 +197,66 @@ std::vector<std::byte> framed_image(const Handle& file) {
   return image;
 }
 
+Eigen::Matrix3Xd vectors(const Object& group, const std::string& name) {
+  const std::vector<double> data = group.numbers(name, 3);
+  return Eigen::Map<const Eigen::Matrix3Xd>(data.data(), 3,
+                                            static_cast<Eigen::Index>(data.size() / 3));
+}
+
+void require_frame(std::span<const std::byte> image) {
+  if (image.size() <= hdf5::kFrameSize) refuse("file", "it is truncated");
+  const std::string_view frame(reinterpret_cast<const char*>(image.data()), hdf5::kFrameSize);
+  if (!frame.starts_with(hdf5::kFrameTitle)) {
+    refuse("file", "it is not a checkpoint of a known version");
+  }
+  std::string expected = hdf5::frame_text(sha256_hex(image.subspan(hdf5::kFrameSize)));
+  expected.resize(hdf5::kFrameSize, '\0');
+  if (frame != expected) refuse("file", "it is truncated or changed: its SHA-256 does not match");
+}
+
+Cell read_cell(const Object& group) {
+  Cell cell;
+  cell_numbers(cell, [&](const char* name, double& value) { value = group.number(name); });
+  const std::uint64_t moving = group.count("moving");
+  if (moving > 1) refuse("/restart/cell/moving", "is not a wall");
+  cell.moving = static_cast<MovingWall>(moving);
+  const auto side = group.bytes("wall_grain_side");
+  const Eigen::Matrix3Xd position = vectors(group, "wall_grain_position");
+  if (static_cast<std::size_t>(position.cols()) != side.size()) {
+    refuse("/restart/cell/wall_grain_position", "does not have the length of wall_grain_side");
+  }
+  for (std::size_t i = 0; i < side.size(); ++i) {
+    if (side[i] > 3) refuse("/restart/cell/wall_grain_side", "is not a wall");
+    cell.wall_grains.push_back(
+        {static_cast<WallSide>(side[i]), position.col(static_cast<Eigen::Index>(i))});
+  }
+  return cell;
+}
+
+void read_restart(const Object& restart, Checkpoint& checkpoint) {
+  if (restart.count("format") != hdf5::kRestartFormat) {
+    refuse("/restart/format", "unknown format; use the program version that wrote it");
+  }
+  State& state = checkpoint.state;
+  checkpoint.run = restart.text("run");
+  state.step = restart.count("step");
+  restart_numbers(checkpoint,
+                  [&](const char* name, double& value) { value = restart.number(name); });
+  state.position = vectors(restart, "position");
+  state.velocity = vectors(restart, "velocity");
+  if (state.position.cols() != state.velocity.cols()) {
+    refuse("/restart/velocity", "does not have the length of position");
+  }
+  checkpoint.cell = read_cell(restart.child("cell"));
+}
+
 }  // namespace
 
 std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
   require_sound(checkpoint);
   std::vector<std::byte> image;
   {
-    const std::scoped_lock lock(hdf5::library_mutex());
-    const hdf5::Quiet quiet;
+    const hdf5::Library library;
     const Handle access(require(H5Pcreate(H5P_FILE_ACCESS), "a property list"), H5Pclose);
     require(H5Pset_fapl_core(access.get(), 1 << 20, false), "a memory file");
     // The oldest superblock has no checksum; HDF5 1.10 writes wrong checksums into file images.
@@ -213,6 +276,40 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
       hdf5::frame_text(sha256_hex(std::span(image).subspan(hdf5::kFrameSize)));
   std::memcpy(image.data(), frame.data(), frame.size());
   return image;
+}
+
+Checkpoint decode_checkpoint(std::span<const std::byte> image) {
+  require_frame(image);
+  const Object top = Object::root(image.subspan(hdf5::kFrameSize), hdf5::kFrameSize);
+  Checkpoint checkpoint;
+  read_restart(top.child("restart"), checkpoint);
+  const Object observables = top.child("observables");
+  for (const std::string& name : observables.names()) {
+    const std::vector<double> value = observables.child(name).numbers("value", 0);
+    if (value.size() != 1) refuse("/observables/" + name + "/value", "is not one number");
+    checkpoint.observables[name] = value[0];
+  }
+  return checkpoint;
+}
+
+void require_plausible(const Checkpoint& checkpoint) {
+  constexpr double kFarthest = 1e9;  // [d]; grains may drift along the period
+  constexpr double kSteepest = 1.5;  // [rad]
+  const Cell& cell = checkpoint.cell;
+  if (!(cell.width > 0 && cell.depth > 0)) refuse("/restart/cell", "has no width or no depth");
+  for (const double length :
+       {cell.width, cell.depth, cell.bottom, cell.top, checkpoint.state.wall_height}) {
+    if (std::abs(length) > kFarthest) refuse("/restart/cell", "is larger than any cell");
+  }
+  if (std::abs(checkpoint.theta) > kSteepest) refuse("/restart/theta", "is not a tilt of a cell");
+  if (!(checkpoint.state.position.array().abs() <= kFarthest).all()) {
+    refuse("/restart/position", "has a grain far outside of any cell");
+  }
+  for (const WallGrain& grain : cell.wall_grains) {
+    if (grain.position.cwiseAbs().maxCoeff() > kFarthest) {
+      refuse("/restart/cell/wall_grain_position", "has a grain far outside of any cell");
+    }
+  }
 }
 
 std::string state_hash(const Checkpoint& checkpoint) {

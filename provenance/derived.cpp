@@ -31,28 +31,23 @@ CREATE TABLE derived(
 
 /// Hash of key and content, so that an object cannot be stored under another key.
 std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
-  Sha256 sha;
-  sha.add_field("shearcell derived 1").add_field(key.checkpoint).add_field(key.measure);
-  return sha.add_field(std::to_string(key.version)).add(content).hex();
+  return Sha256()
+      .add_fields("shearcell derived 1", key.checkpoint, key.measure, key.version)
+      .add(content)
+      .hex();
 }
 
 }  // namespace
 
 DerivedCache::DerivedCache(const fs::path& store_folder, bool read_only)
     : file_(store_folder / kFile), read_only_(read_only) {
-  try {
-    open();
-  } catch (const StoreDamaged&) {
-    start_over();
-  } catch (const std::exception& problem) {
-    give_up(problem.what());
-  }
+  attempt([](sqlite::Database&) {});
 }
 
 void DerivedCache::open() {
   const auto type = fs::symlink_status(file_).type();
   if (type != fs::file_type::regular && type != fs::file_type::not_found) {
-    return give_up(
+    throw MachineError(
         file_.string() +
         ": measures are cached in this file, but it is a folder, link or device; remove it");
   }
@@ -72,7 +67,7 @@ void DerivedCache::open() {
     lock.commit();
   }
   if (database.integer("PRAGMA application_id") != kApplicationId) {
-    return give_up(file_.string() + ": this database belongs to another program; remove it");
+    throw MachineError(file_.string() + ": this database belongs to another program; remove it");
   }
   if (database.integer("PRAGMA user_version") != kLayout) {
     throw StoreDamaged(file_.string() + ": another layout");
@@ -83,34 +78,26 @@ void DerivedCache::open() {
   if (odd.step()) throw StoreDamaged(file_.string() + ": another schema");
 }
 
-void DerivedCache::start_over() {
-  if (read_only_) return give_up(file_.string() + ": it is not a database of measures");
-  database_.reset();
-  std::error_code ignored;
-  // A journal left behind would be played back into the new database.
-  fs::remove(file_.string() + "-journal", ignored);
-  fs::remove(file_, ignored);
-  try {
-    open();
-  } catch (const std::exception& problem) {
-    give_up(problem.what());
-  }
-}
-
-void DerivedCache::give_up(const std::string& why) {
-  database_.reset();
-  trouble_ = why;
-}
-
 template <typename Work>
 void DerivedCache::attempt(Work&& work) {
+  const auto give_up = [this](const std::string& why) {
+    database_.reset();
+    trouble_ = why;
+  };
   for (const bool first : {true, false}) {
-    if (!database_) return;
+    if (!trouble_.empty()) return;
     try {
-      return work(*database_);
+      if (!database_) open();
+      if (database_) work(*database_);
+      return;
     } catch (const StoreDamaged& damage) {
+      if (read_only_) return give_up(file_.string() + ": it is not a database of measures");
       if (!first) return give_up(damage.what());
-      start_over();
+      database_.reset();
+      std::error_code ignored;
+      // A journal left behind would be played back into the new database.
+      fs::remove(file_.string() + "-journal", ignored);
+      fs::remove(file_, ignored);
     } catch (const std::exception& problem) {
       return give_up(problem.what());
     }

@@ -49,11 +49,11 @@ class DerivedCache {
   static constexpr const char* kFile = "derived.sqlite";
 
  private:
+  /// Opens the file if it is not open and does the work; once more with a new file if this one is
+  /// damaged.
   template <typename Work>
   void attempt(Work&& work);
   void open();
-  void start_over();
-  void give_up(const std::string& why);
 
   std::filesystem::path file_;
   bool read_only_;

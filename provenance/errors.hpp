@@ -8,64 +8,45 @@
 namespace shearcell {
 
 /// The user's input is wrong: an option, a manifest, an input file. Exit code 2.
-class UsageError : public std::runtime_error {
- public:
+struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// The named store, run, checkpoint or figure does not exist, or the name is ambiguous.
-class NotFound : public UsageError {
- public:
+struct NotFound : UsageError {
   using UsageError::UsageError;
 };
 
 /// The checkpoint was pruned: its record is kept and its file was deleted on purpose.
-class CheckpointPruned : public NotFound {
- public:
+struct CheckpointPruned : NotFound {
   using NotFound::NotFound;
 };
 
-/// The machine cannot do it. Exit code 1, like errors of the operating system (std::system_error).
-class MachineError : public std::runtime_error {
- public:
+/// The machine cannot do it, or another program is in the way. Exit code 1, like errors of the
+/// operating system (std::system_error).
+struct MachineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// The data do not fit into the memory of this machine.
-class TooLittleMemory : public MachineError {
- public:
-  using MachineError::MachineError;
-};
-
-/// Another process held the store's write lock for longer than the waiting time.
-class StoreBusy : public MachineError {
- public:
+struct TooLittleMemory : MachineError {
   using MachineError::MachineError;
 };
 
 /// An append expected another version of its stream: another writer was faster.
-class ConcurrencyConflict : public std::runtime_error {
- public:
+struct ConcurrencyConflict : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// Another program holds the lease of the run (lease.hpp).
-class RunHeld : public ConcurrencyConflict {
- public:
+struct RunHeld : ConcurrencyConflict {
   using ConcurrencyConflict::ConcurrencyConflict;
 };
 
 /// The bytes of the store are not what was once written: not a store, a newer schema, a truncated
-/// or altered checkpoint, a broken chain. Exit code 4.
-class StoreDamaged : public std::runtime_error {
- public:
+/// or altered checkpoint, a broken chain, two results for one run. Exit code 4.
+struct StoreDamaged : std::runtime_error {
   using std::runtime_error::runtime_error;
-};
-
-/// Two stores hold different results for the same run, so they cannot be merged.
-class MergeConflict : public StoreDamaged {
- public:
-  using StoreDamaged::StoreDamaged;
 };
 
 }  // namespace shearcell

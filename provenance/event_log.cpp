@@ -4,18 +4,108 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
+#include <string>
 
 #include "provenance/errors.hpp"
 #include "provenance/events.hpp"
 #include "provenance/io/clock.hpp"
+#include "provenance/lease.hpp"
+#include "provenance/projections.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
 
 namespace {
 
-constexpr std::string_view kColumns =
-    "SELECT seq, stream, version, type, schema, recorded_at, payload, prev_hash, hash FROM events ";
+/// "shcl" in ASCII: identifies a store.
+constexpr std::int64_t kStoreApplicationId = 0x7368636c;
+
+constexpr const char* kEvents = R"sql(
+CREATE TABLE events(
+  seq INTEGER PRIMARY KEY,
+  stream TEXT NOT NULL,
+  version INTEGER NOT NULL CHECK (version > 0),
+  type TEXT NOT NULL,
+  schema INTEGER NOT NULL CHECK (schema > 0),
+  recorded_at TEXT NOT NULL,
+  payload TEXT NOT NULL,
+  prev_hash TEXT NOT NULL,
+  hash TEXT NOT NULL,
+  UNIQUE (stream, version)
+) STRICT;
+CREATE TRIGGER events_are_never_updated BEFORE UPDATE ON events
+BEGIN SELECT RAISE(ABORT, 'events are never updated'); END;
+CREATE TRIGGER events_are_never_deleted BEFORE DELETE ON events
+BEGIN SELECT RAISE(ABORT, 'events are never deleted'); END;
+)sql";
+
+void create_tables(sqlite::Database& database) {
+  sqlite::WriteTransaction lock(database);
+  // Another process may have created them while this one waited for the lock.
+  if (database.integer("SELECT count(*) FROM sqlite_schema") == 0) {
+    database.execute(kEvents);
+    create_projections(database);
+    create_leases(database);
+    database.execute(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};",
+                                 kStoreApplicationId, kSchemaVersion));
+  }
+  lock.commit();
+}
+
+/// A forged schema could run its own statements whenever a table is read or written, so all schema
+/// statements must be ones that this program writes. Missing tables fail when they are used.
+void require_own_schema(const sqlite::Database& database) {
+  sqlite::Database own = sqlite::Database::in_memory();
+  create_tables(own);
+  own.execute("ANALYZE");  // its tables are allowed; they hold only estimates
+  constexpr const char* statements = "SELECT sql, name FROM sqlite_schema WHERE sql IS NOT NULL";
+  std::set<std::string> known;
+  for (sqlite::Statement row(own, statements); row.step();) known.insert(row.text(0));
+  for (sqlite::Statement row(database, statements); row.step();) {
+    if (known.contains(row.text(0))) continue;
+    throw StoreDamaged(fmt::format(
+        "{}: the database holds '{}', which no store of schema {} has; restore it from a backup",
+        database.name(), row.text(1), kSchemaVersion));
+  }
+}
+
+void require_known_schema(sqlite::Database& database) {
+  const auto refuse = [&](const std::string& why) {
+    throw StoreDamaged(fmt::format("{}: {}", database.name(), why));
+  };
+  if (database.integer("PRAGMA application_id") != kStoreApplicationId) {
+    refuse("this SQLite database belongs to another program; name another store folder");
+  }
+  const std::int64_t version = database.integer("PRAGMA user_version");
+  if (version > kSchemaVersion) {
+    refuse(
+        fmt::format("the store has schema {}, and this program knows schemas up to {}; use the "
+                    "newer shearcell that wrote it",
+                    version, kSchemaVersion));
+  }
+  if (version < 1) {
+    refuse(
+        fmt::format("the store has schema {}, which never existed; restore the file from a "
+                    "backup",
+                    version));
+  }
+}
+
+/// Brings an older schema to the newest, without changing the table `events`, in one transaction:
+/// an interrupted migration leaves the older version.
+void migrate(sqlite::Database& database) {
+  if (database.integer("PRAGMA user_version") == kSchemaVersion) return;
+  sqlite::WriteTransaction lock(database);
+  // Another process may have migrated it while this one waited for the lock.
+  if (database.integer("PRAGMA user_version") == 1) {
+    create_leases(database);
+    database.execute("PRAGMA user_version=2");
+  }
+  lock.commit();
+}
+
+constexpr const char* kSelect = "SELECT * FROM events ";
 
 std::string zeros() {
   return std::string(64, '0');
@@ -28,79 +118,83 @@ Event read_event(const sqlite::Statement& row) {
   return e;
 }
 
-void insert_event(const sqlite::Database& database, const Event& e) {
-  sqlite::Statement(database,
-                    "INSERT INTO events(seq, stream, version, type, schema, recorded_at, payload, "
-                    "prev_hash, hash) VALUES(?,?,?,?,?,?,?,?,?)",
-                    e.seq, e.stream, e.version, e.type, e.schema, e.recorded_at, e.payload,
-                    e.prev_hash, e.hash)
-      .run();
-}
-
-/// The field whose value in the neighbouring events makes the hash valid again.
-std::string changed_field(const Event& event, const std::string& prev_hash, std::uint64_t version,
-                          const std::optional<Event>& next) {
+/// What was changed: the field whose value in the neighbouring events makes the hash valid again.
+std::string change_of(const Event& event, const std::string& prev_hash, std::uint64_t version,
+                      const std::optional<Event>& next) {
   Event repaired = event;
   repaired.prev_hash = prev_hash;
-  if (event_hash(repaired) == event.hash) return "prev_hash";
+  if (event_hash(repaired) == event.hash) return "prev_hash was changed";
   repaired = event;
   repaired.version = version;
-  if (event_hash(repaired) == event.hash) return "version";
-  if (next && next->prev_hash == event_hash(event)) return "hash";
-  return "content";
+  if (event_hash(repaired) == event.hash) return "version was changed";
+  if (next && next->prev_hash == event_hash(event)) return "hash was changed";
+  return "its hash does not match its content: stream, type, schema, recorded_at or payload was "
+         "changed";
 }
 
 }  // namespace
 
+sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open mode,
+                               bool read_only) {
+  sqlite::Database database(file, mode);
+  // Rollback journal instead of WAL: SQLite before 3.51.3 can lose committed transactions when
+  // several connections checkpoint a WAL at once. EXTRA also syncs the folder after the journal is
+  // deleted, so that a committed event survives a power cut.
+  database.execute(
+      "PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
+      "PRAGMA synchronous=EXTRA;");
+  if (database.integer("PRAGMA page_count") == 0) {
+    // A new store starts with an empty file; with objects beside it, the log was lost.
+    if (mode != sqlite::Open::create || std::filesystem::exists(file.parent_path() / "objects")) {
+      throw StoreDamaged(file.string() +
+                         ": the log is empty; restore it from a backup, or name another store");
+    }
+    create_tables(database);
+  }
+  require_known_schema(database);
+  require_own_schema(database);
+  database.execute(read_only ? "PRAGMA query_only=ON" : "PRAGMA journal_mode=DELETE");
+  if (!read_only) migrate(database);
+  return database;
+}
+
 std::string event_hash(const Event& event) {
-  Sha256 sha;
-  sha.add_field("shearcell event 1").add_field(event.prev_hash);
-  sha.add_field(std::to_string(event.seq)).add_field(event.stream);
-  sha.add_field(std::to_string(event.version)).add_field(event.type);
-  sha.add_field(std::to_string(event.schema)).add_field(event.recorded_at);
-  return sha.add_field(event.payload).hex();
+  return Sha256()
+      .add_fields("shearcell event 1", event.prev_hash, event.seq, event.stream, event.version,
+                  event.type, event.schema, event.recorded_at, event.payload)
+      .hex();
 }
 
 EventLog::EventLog(sqlite::Database& database) : database_(database) {}
 
-std::vector<Event> EventLog::append(const sqlite::WriteTransaction&, std::string_view stream,
-                                    std::uint64_t expected_version,
-                                    std::span<const NewEvent> events) {
+Event EventLog::append(const sqlite::WriteTransaction& lock, std::string_view stream,
+                       const NewEvent& event, std::optional<std::uint64_t> expected_version) {
   const std::uint64_t found = version(stream);
-  if (found != expected_version) {
+  if (expected_version.value_or(found) != found) {
     throw ConcurrencyConflict(fmt::format(
-        "{}: stream {} has version {} instead of {}: another process wrote to it; read it "
-        "again",
-        database_.name(), stream, found, expected_version));
+        "{}: stream {} has version {} instead of {}: another process wrote to it; read it again",
+        database_.name(), stream, found, *expected_version));
   }
-  Head last = head();
-  std::vector<Event> appended;
-  for (const NewEvent& fresh : events) {
-    Event event;
-    event.seq = ++last.seq;
-    event.stream = stream;
-    event.version = ++expected_version;
-    event.type = fresh.type;
-    event.schema = events::newest_schema(fresh.type);
-    event.recorded_at = utc_now();
-    // Bytes that are not UTF-8, as in a path, become U+FFFD.
-    event.payload = fresh.payload.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-    event.prev_hash = last.hash;
-    event.hash = last.hash = event_hash(event);
-    insert_event(database_, event);
-    appended.push_back(std::move(event));
-  }
-  return appended;
+  Event complete;
+  complete.stream = stream;
+  complete.type = event.type;
+  complete.schema = events::newest_schema(event.type);
+  complete.recorded_at = utc_now();
+  // Bytes that are not UTF-8, as in a path, become U+FFFD.
+  complete.payload = event.payload.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return append_copy(lock, std::move(complete));
 }
 
-Event EventLog::append_copy(const sqlite::WriteTransaction&, const Event& original) {
+Event EventLog::append_copy(const sqlite::WriteTransaction&, Event event) {
   const Head last = head();
-  Event event = original;
   event.seq = last.seq + 1;
-  event.version = version(original.stream) + 1;
+  event.version = version(event.stream) + 1;
   event.prev_hash = last.hash;
   event.hash = event_hash(event);
-  insert_event(database_, event);
+  sqlite::Statement(database_, "INSERT INTO events VALUES(?,?,?,?,?,?,?,?,?)", event.seq,
+                    event.stream, event.version, event.type, event.schema, event.recorded_at,
+                    event.payload, event.prev_hash, event.hash)
+      .run();
   return event;
 }
 
@@ -124,7 +218,7 @@ std::string EventLog::hash_at(std::uint64_t seq) const {
 std::vector<Event> EventLog::events(std::string_view stream, std::uint64_t after_version) const {
   const std::string where =
       stream.empty() ? "ORDER BY seq" : "WHERE stream = ? AND version > ? ORDER BY version";
-  sqlite::Statement query(database_, std::string(kColumns) + where);
+  sqlite::Statement query(database_, std::string(kSelect) + where);
   if (!stream.empty()) query.bind_all(stream, after_version);
   std::vector<Event> found;
   while (query.step()) found.push_back(read_event(query));
@@ -132,12 +226,12 @@ std::vector<Event> EventLog::events(std::string_view stream, std::uint64_t after
 }
 
 void EventLog::for_each(const std::function<void(const Event&)>& visit) const {
-  sqlite::Statement query(database_, std::string(kColumns) + "ORDER BY seq");
+  sqlite::Statement query(database_, std::string(kSelect) + "ORDER BY seq");
   while (query.step()) visit(read_event(query));
 }
 
 std::optional<ChainFault> EventLog::verify_chain() const {
-  sqlite::Statement query(database_, std::string(kColumns) + "ORDER BY seq");
+  sqlite::Statement query(database_, std::string(kSelect) + "ORDER BY seq");
   const auto read_next = [&query]() -> std::optional<Event> {
     if (!query.step()) return std::nullopt;
     return read_event(query);
@@ -145,28 +239,21 @@ std::optional<ChainFault> EventLog::verify_chain() const {
   std::map<std::string, std::uint64_t> versions;
   Head last{.seq = 0, .hash = zeros()};
   for (std::optional<Event> event = read_next(); event;) {
-    const auto fault = [&](const std::string& field, const std::string& message) {
-      return ChainFault{
-          event->seq, field,
-          fmt::format("event {} ({} of {}): {}", event->seq, event->type, event->stream, message)};
+    const auto fault = [&](const std::string& message) {
+      return ChainFault{event->seq, fmt::format("event {} ({} of {}): {}", event->seq, event->type,
+                                                event->stream, message)};
     };
     if (event->seq != last.seq + 1) {
-      return fault("seq", fmt::format("event {} is missing here", last.seq + 1));
+      return fault(fmt::format("event {} is missing here", last.seq + 1));
     }
     const std::uint64_t version = ++versions[event->stream];
     std::optional<Event> next = read_next();
     if (event_hash(*event) != event->hash) {
-      const std::string field = changed_field(*event, last.hash, version, next);
-      return fault(field, field == "content" ? "its hash does not match its content: stream, type, "
-                                               "schema, recorded_at or payload was changed"
-                                             : field + " was changed");
+      return fault(change_of(*event, last.hash, version, next));
     }
-    if (event->prev_hash != last.hash) {
-      return fault("prev_hash", "it does not follow the event before it");
-    }
+    if (event->prev_hash != last.hash) return fault("it does not follow the event before it");
     if (event->version != version) {
-      return fault("version",
-                   fmt::format("its version is {} and should be {}", event->version, version));
+      return fault(fmt::format("its version is {} and should be {}", event->version, version));
     }
     last = {.seq = event->seq, .hash = event->hash};
     event = std::move(next);

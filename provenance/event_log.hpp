@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The append-only log: events in streams, chained by SHA-256 so that any later change is detected.
+// The append-only log store.sqlite: events in streams, chained by SHA-256 so that any later change
+// is detected.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,16 @@
 #include "provenance/sqlite.hpp"
 
 namespace shearcell {
+
+/// Version of the table layout, stored as user_version.
+inline constexpr std::int64_t kSchemaVersion = 2;
+
+/// Opens the log, creates its tables when it is new or empty, and migrates an older schema without
+/// changing events. With `read_only` an older schema is not migrated; the file is still opened for
+/// writing if possible, so that SQLite can roll back the transaction of a crashed program. Throws
+/// StoreDamaged when the file is not a store or has a newer schema.
+sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open mode,
+                               bool read_only);
 
 /// One row of the log.
 struct Event {
@@ -46,10 +57,7 @@ struct Head {
 /// The first event at which the chain is broken.
 struct ChainFault {
   std::uint64_t seq = 0;
-  /// "seq", "version", "prev_hash", "hash", or "content" (stream, type, schema, recorded_at or
-  /// payload).
-  std::string field;
-  std::string message;
+  std::string message;  ///< which field was changed, as far as that can be told
 };
 
 /// The hash of an event: SHA-256 over the domain tag, prev_hash and the other fields, each written
@@ -61,15 +69,16 @@ class EventLog {
  public:
   explicit EventLog(sqlite::Database& database);
 
-  /// Appends all events to one stream, or none. Throws ConcurrencyConflict when the stream's
-  /// version is not `expected_version` (0 for a new stream). The parameter `lock` requires the
-  /// caller to hold the write lock, so that no seq or version is assigned twice.
-  std::vector<Event> append(const sqlite::WriteTransaction& lock, std::string_view stream,
-                            std::uint64_t expected_version, std::span<const NewEvent> events);
+  /// Appends an event to a stream, in the newest layout of its type. Throws ConcurrencyConflict
+  /// when the stream's version is not `expected_version` (0 for a new stream); without it, appends
+  /// at the end. The parameter `lock` requires the caller to hold the write lock, so that no seq or
+  /// version is assigned twice.
+  Event append(const sqlite::WriteTransaction& lock, std::string_view stream, const NewEvent& event,
+               std::optional<std::uint64_t> expected_version = std::nullopt);
 
   /// Appends an event of another log to its stream, with type, layout, time and payload unchanged
   /// and a new place in the chain.
-  Event append_copy(const sqlite::WriteTransaction& lock, const Event& original);
+  Event append_copy(const sqlite::WriteTransaction& lock, Event event);
 
   /// Number of events in the stream.
   std::uint64_t version(std::string_view stream) const;

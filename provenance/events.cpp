@@ -16,21 +16,6 @@ namespace shearcell {
 
 using nlohmann::json;
 
-json Event::body() const {
-  json body = parse_json(payload);
-  if (!body.is_object()) {
-    throw StoreDamaged(fmt::format(
-        "event {} ({} of {}): its payload is not a JSON object, or is nested too deeply; run "
-        "`verify`",
-        seq, type, stream));
-  }
-  try {
-    return events::upcast(type, schema, std::move(body));
-  } catch (const StoreDamaged& newer) {
-    throw StoreDamaged(fmt::format("event {} ({}): {}", seq, type, newer.what()));
-  }
-}
-
 namespace events {
 namespace {
 
@@ -58,18 +43,26 @@ constexpr bool is_optional = requires(T& value) {
   value.has_value();
 };
 
+template <class T>
+void read_fields(const json& from, T& value);
+
 /// Throws json::exception when a required value is missing or of another type.
 template <class T>
 void read(const json& from, const char* key, T& value) {
   if constexpr (std::is_same_v<T, std::uint64_t>) {
     value = count_at(from, key);
   } else if constexpr (has_fields<T>) {
-    T::fields(value, [&inner = from.at(key)](const char* name, auto& v) { read(inner, name, v); });
+    read_fields(from.at(key), value);
   } else if constexpr (is_optional<T>) {
     if (!from.at(key).is_null()) read(from, key, value.emplace());
   } else {
     from.at(key).get_to(value);
   }
+}
+
+template <class T>
+void read_fields(const json& from, T& value) {
+  T::fields(value, [&from](const char* name, auto& v) { read(from, name, v); });
 }
 
 template <class T>
@@ -88,17 +81,16 @@ json written(const T& value) {
 /// Fills `result` when the event is of type E.
 template <class E>
 bool decode_as(const Event& event, json& body, Any& result) {
-  if constexpr (std::is_same_v<E, Unknown>) {
+  if constexpr (std::is_same_v<E, Other>) {
     return false;
   } else {
     if (event.type != E::kType) return false;
-    E decoded;
+    E& decoded = result.emplace<E>();
     if constexpr (has_fields<E>) {
-      E::fields(decoded, [&body](const char* name, auto& v) { read(body, name, v); });
+      read_fields(body, decoded);
     } else {
       decoded.facts = std::move(body);
     }
-    result = std::move(decoded);
     return true;
   }
 }
@@ -124,12 +116,12 @@ Any decode(const Event& event) {
 NewEvent encode(const Any& event) {
   const auto encoded = [](const auto& e) -> NewEvent {
     using E = std::decay_t<decltype(e)>;
-    if constexpr (std::is_same_v<E, Unknown>) {
+    if constexpr (std::is_same_v<E, Other>) {
       throw std::logic_error("an event of unknown type cannot be written");
     } else if constexpr (has_fields<E>) {
       json payload = written(e);
       if constexpr (std::is_same_v<E, RunDeclared>) {
-        const Membership& m = e.membership;
+        const Membership& m = e.run.membership;
         json& place = payload["membership"];
         if (!m.until.is_null()) place["until"] = m.until;
         if (!m.checkpoint_phases.empty()) place["checkpoint_phases"] = m.checkpoint_phases;
@@ -150,18 +142,27 @@ std::uint64_t newest_schema(std::string_view type) {
   return newest;
 }
 
-json upcast(std::string_view type, std::uint64_t schema, json payload) {
-  if (schema > newest_schema(type)) {
+}  // namespace events
+
+json Event::body() const {
+  json body = parse_json(payload);
+  if (!body.is_object()) {
+    throw StoreDamaged(fmt::format(
+        "event {} ({} of {}): its payload is not a JSON object, or is nested too deeply; run "
+        "`verify`",
+        seq, type, stream));
+  }
+  const std::uint64_t newest = events::newest_schema(type);
+  if (schema > newest) {
     throw StoreDamaged(
-        fmt::format("its payload has layout {}, and this program knows layouts up to {}; use the "
-                    "newer shearcell that wrote it",
-                    schema, newest_schema(type)));
+        fmt::format("event {} ({}): its payload has layout {}, and this program knows layouts up "
+                    "to {}; use the newer shearcell that wrote it",
+                    seq, type, schema, newest));
   }
-  for (const Step& step : kSteps) {
-    if (step.type == type && step.from >= schema) step.convert(payload);
+  for (const events::Step& step : events::kSteps) {
+    if (step.type == type && step.from >= schema) step.convert(body);
   }
-  return payload;
+  return body;
 }
 
-}  // namespace events
 }  // namespace shearcell

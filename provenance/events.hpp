@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The payloads of the events, one struct each, and their JSON. provenance/README.md lists the
-// events with the streams that hold them.
+// The payloads of the events that this program reads, one struct each, and their JSON.
+// provenance/README.md lists all events with the streams that hold them.
 #pragma once
 
 #include <cstdint>
@@ -30,14 +30,11 @@ struct ManifestRegistered {
 
 struct RunDeclared {
   static constexpr std::string_view kType = "RunDeclared";
-  std::string parent, kind;
-  nlohmann::json resolved;
-  std::uint64_t grains = 0, target_cycles = 0;
-  Membership membership;  ///< without its target_cycles
+  RunDeclaration run;  ///< without its id and its membership's target_cycles
   static void fields(auto& e, auto field) {
-    field("parent", e.parent), field("kind", e.kind), field("resolved", e.resolved);
-    field("grains", e.grains), field("target_cycles", e.target_cycles);
-    field("membership", e.membership);
+    field("parent", e.run.parent), field("kind", e.run.kind), field("resolved", e.run.resolved);
+    field("grains", e.run.grains), field("target_cycles", e.run.target_cycles);
+    field("membership", e.run.membership);
   }
 };
 
@@ -72,20 +69,31 @@ struct RunResumed {
   }
 };
 
-struct CheckpointRecorded {
-  static constexpr std::string_view kType = "CheckpointRecorded";
-  std::uint64_t step = 0;
-  double cycle = 0, time_s = 0;
-  std::string file;
-  std::uint64_t size = 0;
-  std::string sha256, state_hash;
-  nlohmann::json observables;
-  double wall_seconds = 0, particle_steps = 0;
+/// A checkpoint whose file was deleted or written again.
+struct CheckpointFile {
+  CheckpointRecord checkpoint;
   static void fields(auto& e, auto field) {
-    field("step", e.step), field("cycle", e.cycle), field("time_s", e.time_s);
-    field("file", e.file), field("size", e.size), field("sha256", e.sha256);
-    field("state_hash", e.state_hash), field("observables", e.observables);
-    field("wall_seconds", e.wall_seconds), field("particle_steps", e.particle_steps);
+    auto& c = e.checkpoint;
+    field("sha256", c.sha256), field("step", c.step), field("cycle", c.cycle);
+    field("file", c.file), field("size", c.size), field("state_hash", c.state_hash);
+  }
+};
+
+struct CheckpointPruned : CheckpointFile {
+  static constexpr std::string_view kType = "CheckpointPruned";
+};
+
+struct CheckpointRegenerated : CheckpointFile {
+  static constexpr std::string_view kType = "CheckpointRegenerated";
+};
+
+struct CheckpointRecorded : CheckpointFile {
+  static constexpr std::string_view kType = "CheckpointRecorded";
+  Effort effort;
+  static void fields(auto& e, auto field) {
+    CheckpointFile::fields(e, field);
+    field("time_s", e.checkpoint.time_s), field("observables", e.checkpoint.observables);
+    field("wall_seconds", e.effort.wall_seconds), field("particle_steps", e.effort.particle_steps);
   }
 };
 
@@ -97,34 +105,6 @@ struct CheckpointRejected {
   static void fields(auto& e, auto field) {
     field("sha256", e.sha256), field("step", e.step), field("why", e.why);
   }
-};
-
-/// A checkpoint whose file was deleted or written again.
-struct CheckpointFile {
-  std::string sha256, file, state_hash;
-  std::uint64_t step = 0, size = 0;
-  double cycle = 0;
-  explicit CheckpointFile(const CheckpointRecord& r = {})
-      : sha256(r.sha256),
-        file(r.file),
-        state_hash(r.state_hash),
-        step(r.step),
-        size(r.size),
-        cycle(r.cycle) {}
-  static void fields(auto& e, auto field) {
-    field("sha256", e.sha256), field("step", e.step), field("cycle", e.cycle);
-    field("file", e.file), field("size", e.size), field("state_hash", e.state_hash);
-  }
-};
-
-struct CheckpointPruned : CheckpointFile {
-  static constexpr std::string_view kType = "CheckpointPruned";
-  using CheckpointFile::CheckpointFile;
-};
-
-struct CheckpointRegenerated : CheckpointFile {
-  static constexpr std::string_view kType = "CheckpointRegenerated";
-  using CheckpointFile::CheckpointFile;
 };
 
 struct RunInterrupted {
@@ -160,36 +140,19 @@ struct StoreMerged {
   }
 };
 
-// The store keeps these payloads as their writers compose them.
-struct ReplayVerified {
-  static constexpr std::string_view kType = "ReplayVerified";
-  nlohmann::json facts;
-};
-struct ReplayDiverged {
-  static constexpr std::string_view kType = "ReplayDiverged";
-  nlohmann::json facts;
-};
+/// Kept as its writer composed it.
 struct FigureGenerated {
   static constexpr std::string_view kType = "FigureGenerated";
   nlohmann::json facts;
 };
-struct CampaignSubmitted {
-  static constexpr std::string_view kType = "CampaignSubmitted";
-  nlohmann::json facts;
-};
-struct JobQueued {
-  static constexpr std::string_view kType = "JobQueued";
-  nlohmann::json facts;
-};
 
-/// An event of a type that this program does not know.
-struct Unknown {};
+/// An event that changes no table, or of a type that this program does not know.
+struct Other {};
 
 using Any =
-    std::variant<Unknown, ManifestRegistered, RunDeclared, RunStarted, RunResumed,
-                 CheckpointRecorded, CheckpointRejected, RunInterrupted, RunFailed, RunCompleted,
-                 CheckpointPruned, CheckpointRegenerated, ReplayVerified, ReplayDiverged,
-                 FigureGenerated, CampaignSubmitted, JobQueued, StoreMerged>;
+    std::variant<Other, ManifestRegistered, RunDeclared, RunStarted, RunResumed, CheckpointRecorded,
+                 CheckpointRejected, RunInterrupted, RunFailed, RunCompleted, CheckpointPruned,
+                 CheckpointRegenerated, FigureGenerated, StoreMerged>;
 
 /// Throws StoreDamaged, naming the event, when its payload lacks what its type requires.
 Any decode(const Event& event);
@@ -197,9 +160,6 @@ NewEvent encode(const Any& event);
 
 /// The layout in which payloads of this type are written: 1 for a type that never changed.
 std::uint64_t newest_schema(std::string_view type);
-/// Converts a payload of layout `schema` to the newest layout of its type. Stored events are never
-/// rewritten. Throws StoreDamaged when the layout is newer than this program knows.
-nlohmann::json upcast(std::string_view type, std::uint64_t schema, nlohmann::json payload);
 
 inline bool begins_attempt(const Event& event) {
   return event.type == RunStarted::kType || event.type == RunResumed::kType;
@@ -208,13 +168,5 @@ inline bool ends_attempt(const Event& event) {
   return event.type == RunInterrupted::kType || event.type == RunFailed::kType ||
          event.type == RunCompleted::kType;
 }
-
-/// Selects the handler by the type of the event, for std::visit.
-template <class... Handlers>
-struct Overloaded : Handlers... {
-  using Handlers::operator()...;
-};
-template <class... Handlers>
-Overloaded(Handlers...) -> Overloaded<Handlers...>;  // clang 14 does not deduce it
 
 }  // namespace shearcell::events

@@ -22,7 +22,7 @@ constexpr std::uint64_t kNowhere = ~std::uint64_t{0};  // HDF5's undefined addre
 constexpr std::uint64_t kMostMessages = 4096;          // of one object
 
 /// Messages of an object header (section IV.A.2 of the format).
-enum Message : unsigned {
+enum Message : std::uint64_t {
   kNil = 0,
   kSpace = 1,
   kLinkInfo = 2,
@@ -44,8 +44,8 @@ constexpr std::string_view kUnsigned64 = "\x10\0\0\0\x08\0\0\0\0\0\x40\0"sv;
 constexpr std::string_view kUnsigned8 = "\x10\0\0\0\x01\0\0\0\0\0\x08\0"sv;
 constexpr std::byte kFixedText{0x13};
 
-[[noreturn]] void refuse(const std::string& where, const std::string& why) {
-  throw StoreDamaged("checkpoint: " + where + ": " + why);
+std::string text_in(Bytes bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// The bytes end too early.
@@ -72,10 +72,6 @@ class Cursor {
     take((8 - size % 8) % 8);
     return front;
   }
-  std::string text(std::uint64_t size) {
-    const Bytes bytes = take(size);
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-  }
   Bytes rest() const { return rest_; }
 
  private:
@@ -100,7 +96,18 @@ std::optional<std::vector<std::uint64_t>> shape_of(Bytes space) {
   return shape;
 }
 
+template <class T>
+std::vector<T> values_in(Bytes block) {
+  std::vector<T> values(block.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), block.data(), block.size());
+  return values;
+}
+
 }  // namespace
+
+void refuse(const std::string& where, const std::string& why) {
+  throw StoreDamaged("checkpoint: " + where + ": " + why);
+}
 
 void Object::fail(const std::string& why) const {
   refuse(path_.empty() ? "/" : path_, why);
@@ -115,7 +122,7 @@ Object Object::root(Bytes file, std::size_t user_block) {
   constexpr std::size_t superblock_size = 96;
   if (file.size() < superblock_size) refuse("file", "it is truncated");
   Cursor cursor(file);
-  if (cursor.text(8) != "\x89HDF\r\n\x1a\n") refuse("file", "it is not HDF5");
+  if (text_in(cursor.take(8)) != "\x89HDF\r\n\x1a\n") refuse("file", "it is not HDF5");
   const bool known =
       cursor.number(5) == 0 && cursor.number(2) == 0x0808;  // versions, address sizes
   cursor.take(9);
@@ -139,36 +146,30 @@ Object::Object(Bytes file, std::uint64_t address, std::string path)
     if (messages > kMostMessages) fail("has too many messages");
     prefix.take(4);
     std::vector<Bytes> blocks = {at(address + 16, prefix.number(4))};
-    // read_block may append to the vector.
-    for (std::size_t b = 0; b < blocks.size(); ++b) read_block(blocks[b], blocks, messages);
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      for (Cursor cursor(blocks[b]); cursor.rest().size() >= 8;) {
+        // Counted down, so that blocks that point at each other cannot loop forever.
+        if (messages-- == 0) fail("has more messages than stated");
+        const std::uint64_t type = cursor.number(2), size = cursor.number(2);
+        const std::uint64_t flags = cursor.number(1);
+        cursor.take(3);
+        Cursor body(cursor.take(size));
+        if ((flags & 2) != 0) fail("shares a message with another object");
+        if (type == kContinuation) {
+          const std::uint64_t next = body.number(8);
+          blocks.push_back(at(next, body.number(8)));
+        } else {
+          read_message(type, body.rest());
+        }
+      }
+    }
     if (messages != 0) fail("has fewer messages than stated");
   } catch (const Short&) {
     fail("is truncated");
   }
 }
 
-/// `messages` counts down, so blocks that point at each other cannot loop forever.
-void Object::read_block(Bytes block, std::vector<Bytes>& blocks, std::uint64_t& messages) {
-  for (Cursor cursor(block); cursor.rest().size() >= 8;) {
-    if (messages == 0) fail("has more messages than stated");
-    --messages;
-    const auto type = static_cast<unsigned>(cursor.number(2));
-    const std::uint64_t size = cursor.number(2);
-    const std::uint64_t flags = cursor.number(1);
-    cursor.take(3);
-    const Bytes body = cursor.take(size);
-    if ((flags & 2) != 0) fail("shares a message with another object");
-    if (type == kContinuation) {
-      Cursor where(body);
-      const std::uint64_t address = where.number(8);
-      blocks.push_back(at(address, where.number(8)));
-    } else {
-      read_message(type, body);
-    }
-  }
-}
-
-void Object::read_message(unsigned type, Bytes body) {
+void Object::read_message(std::uint64_t type, Bytes body) {
   const auto once = [this](std::optional<Bytes>& place, Bytes found) {
     if (place) fail("has two shapes or two types");
     place = found;
@@ -205,15 +206,14 @@ void Object::read_link(Bytes body) {
   Cursor cursor(body);
   if (cursor.number(1) != 1) fail("has a link of another version");
   const std::uint64_t flags = cursor.number(1);
-  Link link;
-  if ((flags & 8) != 0) link.hard = cursor.number(1) == 0;
+  const bool hard = (flags & 8) == 0 || cursor.number(1) == 0;
   if ((flags & 4) != 0) cursor.take(8);   // creation order
   if ((flags & 16) != 0) cursor.take(1);  // character set
   const std::uint64_t length = cursor.number(std::size_t{1} << (flags & 3));
   if (length == 0 || length > StoreLimits::text) fail("holds a bad name");
-  const std::string name = cursor.text(length);
-  if (link.hard) link.address = cursor.number(8);
-  if (!links_.emplace(name, link).second) fail("holds a name twice");
+  const std::string name = text_in(cursor.take(length));
+  const auto address = hard ? std::optional(cursor.number(8)) : std::nullopt;
+  if (!links_.emplace(name, address).second) fail("holds a name twice");
   if (links_.size() > StoreLimits::observables) fail("holds too many entries");
 }
 
@@ -224,26 +224,23 @@ void Object::read_attribute(Bytes body) {
   const std::uint64_t name_size = cursor.number(2);
   const std::uint64_t type_size = cursor.number(2);
   const std::uint64_t space_size = cursor.number(2);
-  std::string name = cursor.text(name_size);
-  cursor.take((8 - name_size % 8) % 8);
-  name.resize(std::min(name.size(), name.find('\0')));
-  Attribute attribute;
-  attribute.type = cursor.take_padded(type_size);
-  attribute.space = cursor.take_padded(space_size);
-  attribute.data = cursor.rest();
-  if (!attributes_.emplace(std::move(name), attribute).second) fail("has an attribute twice");
+  const std::string name = text_in(cursor.take_padded(name_size));
+  const Bytes type = cursor.take_padded(type_size), space = cursor.take_padded(space_size);
+  if (!attributes_.emplace(name.substr(0, name.find('\0')), Attribute{type, space, cursor.rest()})
+           .second) {
+    fail("has an attribute twice");
+  }
 }
 
 void Object::read_layout(Bytes body) {
   Cursor cursor(body);
   if (layout_) fail("has two layouts");
-  const bool contiguous = cursor.number(1) == 3 && cursor.number(1) == 1;
-  if (!contiguous) {
+  if (cursor.number(1) == 3 && cursor.number(1) == 1) {  // contiguous
+    const std::uint64_t address = cursor.number(8);
+    layout_ = Layout{address, cursor.number(8)};
+  } else {
     plain_ = false;
-    return;
   }
-  const std::uint64_t address = cursor.number(8);
-  layout_ = Layout{address, cursor.number(8)};
 }
 
 Object Object::child(const std::string& name) const {
@@ -252,14 +249,14 @@ Object Object::child(const std::string& name) const {
     refuse(below(name),
            plain_ ? "is missing" : "is missing, or its group has an unsupported layout");
   }
-  if (!found->second.hard) refuse(below(name), "is not a hard link");
-  return {file_, found->second.address, below(name)};
+  if (!found->second) refuse(below(name), "is not a hard link");
+  return {file_, *found->second, below(name)};
 }
 
 std::vector<std::string> Object::names() const {
   if (!plain_ || layout_) fail("is not a group of a supported layout");
   std::vector<std::string> found;
-  for (const auto& [name, link] : links_) found.push_back(name);
+  for (const auto& [name, address] : links_) found.push_back(name);
   return found;
 }
 
@@ -278,16 +275,13 @@ Object::Bytes Object::attribute(const std::string& name, std::string_view type,
 }
 
 double Object::number(const std::string& name) const {
-  double value = 0;
-  std::memcpy(&value, attribute(name, kFloat64, sizeof value).data(), sizeof value);
+  const double value = values_in<double>(attribute(name, kFloat64, 8))[0];
   if (!std::isfinite(value)) refuse(below(name), "is not finite");
   return value;
 }
 
 std::uint64_t Object::count(const std::string& name) const {
-  std::uint64_t value = 0;
-  std::memcpy(&value, attribute(name, kUnsigned64, sizeof value).data(), sizeof value);
-  return value;
+  return values_in<std::uint64_t>(attribute(name, kUnsigned64, 8))[0];
 }
 
 std::string Object::text(const std::string& name) const {
@@ -299,8 +293,7 @@ std::string Object::text(const std::string& name) const {
   type.take(3);
   const std::uint64_t length = type.number(4);
   if (length == 0 || length > StoreLimits::text) refuse(below(name), "is too long");
-  const Bytes bytes = attribute(name, "", static_cast<std::size_t>(length));
-  const std::string value(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string value = text_in(attribute(name, "", static_cast<std::size_t>(length)));
   return value.substr(0, value.find('\0'));
 }
 
@@ -325,17 +318,15 @@ Object::Bytes Object::values(const std::string& name, std::string_view type, std
 }
 
 std::vector<double> Object::numbers(const std::string& name, std::uint64_t columns) const {
-  const Bytes block = values(name, kFloat64, columns, sizeof(double));
-  std::vector<double> data(block.size() / sizeof(double));
-  if (!data.empty()) std::memcpy(data.data(), block.data(), block.size());
+  auto data = values_in<double>(values(name, kFloat64, columns, sizeof(double)));
+  if (!std::ranges::all_of(data, [](double x) { return std::isfinite(x); })) {
+    refuse(below(name), "holds a number that is not finite");
+  }
   return data;
 }
 
 std::vector<std::uint8_t> Object::bytes(const std::string& name) const {
-  const Bytes block = values(name, kUnsigned8, 0, 1);
-  std::vector<std::uint8_t> data(block.size());
-  if (!data.empty()) std::memcpy(data.data(), block.data(), block.size());
-  return data;
+  return values_in<std::uint8_t>(values(name, kUnsigned8, 0, 1));
 }
 
 }  // namespace shearcell::hdf5

@@ -32,6 +32,9 @@ inline std::string frame_text(const std::string& sha256) {
   return kFrameTitle + ("sha256 of all bytes after the first 512: " + sha256 + "\n");
 }
 
+/// Throws StoreDamaged, naming the place in the checkpoint.
+[[noreturn]] void refuse(const std::string& where, const std::string& why);
+
 /// A group or a dataset. It refers to the file's bytes, which must outlive it. All functions throw
 /// StoreDamaged, which names the path within the file.
 class Object {
@@ -50,14 +53,10 @@ class Object {
   std::string text(const std::string& name) const;     ///< of fixed length, at most 4096 bytes
 
   // All values of a dataset with this number of columns (0: one-dimensional), row by row.
-  std::vector<double> numbers(const std::string& name, std::uint64_t columns) const;
+  std::vector<double> numbers(const std::string& name, std::uint64_t columns) const;  ///< finite
   std::vector<std::uint8_t> bytes(const std::string& name) const;
 
  private:
-  struct Link {
-    std::uint64_t address = 0;
-    bool hard = true;
-  };
   struct Attribute {
     Bytes type, space, data;
   };
@@ -69,8 +68,7 @@ class Object {
   [[noreturn]] void fail(const std::string& why) const;
   std::string below(const std::string& name) const { return path_ + "/" + name; }
   Bytes at(std::uint64_t address, std::uint64_t size) const;
-  void read_block(Bytes block, std::vector<Bytes>& blocks, std::uint64_t& messages);
-  void read_message(unsigned type, Bytes body);
+  void read_message(std::uint64_t type, Bytes body);
   void read_link(Bytes body);
   void read_attribute(Bytes body);
   void read_layout(Bytes body);
@@ -80,7 +78,7 @@ class Object {
 
   Bytes file_;
   std::string path_;
-  std::map<std::string, Link> links_;
+  std::map<std::string, std::optional<std::uint64_t>> links_;  ///< addresses of hard links
   std::map<std::string, Attribute> attributes_;
   std::optional<Bytes> type_, space_;  ///< of a dataset
   std::optional<Layout> layout_;

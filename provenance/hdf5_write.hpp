@@ -7,32 +7,22 @@
 
 #include <cstdint>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace shearcell::hdf5 {
 
-/// To be held around all calls of the library: it may be built without thread safety.
-inline std::mutex& library_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-/// Stops HDF5 from printing errors to standard error; they are reported as exceptions.
-class Quiet {
+/// To be held around all calls of the library, which may be built without thread safety. From then
+/// on the library does not print errors; they are reported as exceptions.
+class Library {
  public:
-  Quiet() {
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
+  Library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
  private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
+  static inline std::mutex mutex_;
+  const std::scoped_lock<std::mutex> lock_{mutex_};
 };
 
 /// Owns an HDF5 identifier; a negative one is the result of a failed call.
@@ -46,7 +36,6 @@ class Handle {
     if (id_ >= 0) close_(id_);
   }
   hid_t get() const { return id_; }
-  bool valid() const { return id_ >= 0; }
 
  private:
   hid_t id_;
@@ -56,31 +45,89 @@ class Handle {
 using Shape = std::vector<hsize_t>;
 
 /// Returns the result of a call; throws if it failed.
-hid_t require(hid_t result, const std::string& what);
+inline hid_t require(hid_t result, const std::string& what) {
+  if (result < 0) throw std::runtime_error("HDF5 cannot write " + what);
+  return result;
+}
 
 /// Property list for creating files, groups or datasets without modification times.
-Handle creation_list(hid_t kind);
+inline Handle creation_list(hid_t kind) {
+  Handle list(require(H5Pcreate(kind), "a property list"), H5Pclose);
+  H5Pset_obj_track_times(list.get(), false);
+  if (kind != H5P_DATASET_CREATE) H5Pset_link_creation_order(list.get(), H5P_CRT_ORDER_TRACKED);
+  return list;
+}
 
 /// `links` and `attributes`: how many it will have, if more than 8.
-Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0,
-                  std::size_t attributes = 0);
+inline Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0,
+                         std::size_t attributes = 0) {
+  const Handle list = creation_list(H5P_GROUP_CREATE);
+  // By default more than eight are stored in a heap, which hdf5_read.cpp does not read, and of
+  // which HDF5 1.10 writes bytes that it did not set.
+  if (links > 8) H5Pset_link_phase_change(list.get(), 65535, 0);
+  if (attributes > 8) H5Pset_attr_phase_change(list.get(), 65535, 0);
+  return {require(H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
+                  "group " + name),
+          H5Gclose};
+}
 
 /// A scalar when the shape is empty.
-Handle make_space(const Shape& shape);
+inline Handle make_space(const Shape& shape) {
+  if (shape.empty()) return {require(H5Screate(H5S_SCALAR), "a scalar"), H5Sclose};
+  return {require(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                  "a data space"),
+          H5Sclose};
+}
 
-void put_attribute(const Handle& object, const std::string& name, hid_t type, const void* data,
-                   const Shape& shape = {});
-void put_attribute(const Handle& object, const std::string& name, double value);
-void put_attribute(const Handle& object, const std::string& name, std::uint64_t value);
-void put_attribute(const Handle& object, const std::string& name, const std::string& text);
+inline void put_attribute(const Handle& object, const std::string& name, hid_t type,
+                          const void* data, const Shape& shape = {}) {
+  const Handle space = make_space(shape);
+  const Handle attribute(
+      require(H5Acreate2(object.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+              "attribute " + name),
+      H5Aclose);
+  require(H5Awrite(attribute.get(), type, data), "attribute " + name);
+}
+
+inline void put_attribute(const Handle& object, const std::string& name, double value) {
+  put_attribute(object, name, H5T_IEEE_F64LE, &value);
+}
+
+inline void put_attribute(const Handle& object, const std::string& name, std::uint64_t value) {
+  put_attribute(object, name, H5T_STD_U64LE, &value);
+}
 
 /// Strings of one fixed length, cells.size() / length of them.
-void put_strings(const Handle& object, const std::string& name, const std::string& cells,
-                 std::size_t length, const Shape& shape);
+inline void put_strings(const Handle& object, const std::string& name, const std::string& cells,
+                        std::size_t length, const Shape& shape) {
+  const Handle type(require(H5Tcopy(H5T_C_S1), "a text type"), H5Tclose);
+  require(H5Tset_size(type.get(), length), "a text type");
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  put_attribute(object, name, type.get(), cells.data(), shape);
+}
+
+inline void put_attribute(const Handle& object, const std::string& name, const std::string& text) {
+  const std::string cell = text.empty() ? std::string(1, '\0') : text;
+  put_strings(object, name, cell, cell.size(), {});
+}
 
 /// Contiguous; `unit` becomes its attribute of that name unless empty. Without `data` it is left to
 /// be written later.
-Handle put_dataset(const Handle& parent, const std::string& name, hid_t type, const void* data,
-                   const Shape& shape, const std::string& unit = "");
+inline Handle put_dataset(const Handle& parent, const std::string& name, hid_t type,
+                          const void* data, const Shape& shape, const std::string& unit = "") {
+  const Handle space = make_space(shape);
+  const Handle list = creation_list(H5P_DATASET_CREATE);
+  H5Pset_layout(list.get(), H5D_CONTIGUOUS);
+  H5Pset_fill_time(list.get(), H5D_FILL_TIME_NEVER);
+  Handle dataset(require(H5Dcreate2(parent.get(), name.c_str(), type, space.get(), H5P_DEFAULT,
+                                    list.get(), H5P_DEFAULT),
+                         "dataset " + name),
+                 H5Dclose);
+  if (data != nullptr) {
+    require(H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "dataset " + name);
+  }
+  if (!unit.empty()) put_attribute(dataset, "unit", unit);
+  return dataset;
+}
 
 }  // namespace shearcell::hdf5

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <fstream>
+#include <iterator>
 #include <random>
 #include <sstream>
 #include <system_error>
@@ -31,9 +32,7 @@ CREATE TABLE leases(
 ) STRICT;
 )sql";
 
-constexpr std::string_view kLeaseColumns =
-    "SELECT run, host, place, pid, started, token, attempt, renewed_at_ms, expires_at_ms FROM "
-    "leases ";
+constexpr const char* kSelectLeases = "SELECT * FROM leases ";
 
 // Small corrections of the clock must not end a lease.
 constexpr std::uint64_t kClockSlackMs = 5000;
@@ -69,20 +68,18 @@ std::optional<std::uint64_t> start_of(std::uint64_t pid) {
   // The second field is the program's name in brackets and may contain any character.
   const auto end_of_name = line.rfind(')');
   if (end_of_name == std::string::npos) return std::nullopt;
-  std::istringstream fields(line.substr(end_of_name + 1));
-  std::string state, skipped;
-  fields >> state;
-  if (state == "Z" || state == "X") return std::nullopt;  // dead, not yet reaped
-  constexpr int kBetween = 18;  // fields 4 to 21; field 22 is the start time
-  for (int i = 0; i < kBetween; ++i) fields >> skipped;
-  std::uint64_t started = 0;
-  if (!(fields >> started)) return std::nullopt;
-  return started;
+  std::istringstream rest(line.substr(end_of_name + 1));
+  const std::vector<std::string> fields{std::istream_iterator<std::string>(rest), {}};
+  constexpr std::size_t kState = 0, kStart = 19;  // fields 3 and 22 of the line
+  if (fields.size() <= kStart || fields[kState] == "Z" || fields[kState] == "X") {
+    return std::nullopt;  // dead, maybe not yet reaped
+  }
+  return std::stoull(fields[kStart]);
 }
 
 bool known_dead(const Holder& holder) {
-  if (holder.place.empty() || holder.place != this_place()) return false;
-  return start_of(holder.pid) != holder.started;
+  return !holder.place.empty() && holder.place == this_place() &&
+         start_of(holder.pid) != holder.started;
 }
 
 }  // namespace
@@ -97,11 +94,9 @@ Holder this_process() {
                 .started = 0,
                 .token = {}};
   for (int word = 0; word < 4; ++word) holder.token += fmt::format("{:08x}", random());
-  if (const auto started = start_of(holder.pid)) {
-    holder.started = *started;
-  } else {
-    holder.place.clear();
-  }
+  const auto started = start_of(holder.pid);
+  holder.started = started.value_or(0);
+  if (!started) holder.place.clear();
   return holder;
 }
 
@@ -120,7 +115,7 @@ void create_leases(Database& database) {
 
 std::optional<Lease> query_lease(const Database& database, std::string_view run) {
   if (!has_table(database)) return std::nullopt;
-  Statement query(database, std::string(kLeaseColumns) + "WHERE run = ?", run);
+  Statement query(database, std::string(kSelectLeases) + "WHERE run = ?", run);
   if (!query.step()) return std::nullopt;
   return read_lease(query);
 }
@@ -128,7 +123,7 @@ std::optional<Lease> query_lease(const Database& database, std::string_view run)
 std::vector<Lease> query_leases(const Database& database) {
   std::vector<Lease> found;
   if (!has_table(database)) return found;
-  Statement query(database, std::string(kLeaseColumns) + "ORDER BY run");
+  Statement query(database, std::string(kSelectLeases) + "ORDER BY run");
   while (query.step()) found.push_back(read_lease(query));
   return found;
 }

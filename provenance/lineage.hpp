@@ -44,6 +44,7 @@ struct CheckpointHistory {
   bool pruned = false;
   /// Its file should exist and be valid.
   bool kept() const { return !rejected && !pruned; }
+  const std::string& sha256() const { return record.sha256; }
 };
 
 struct RunLineage {

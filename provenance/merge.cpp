@@ -5,28 +5,38 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
+#include <optional>
 #include <utility>
 
 #include "provenance/errors.hpp"
 #include "provenance/events.hpp"
-#include "provenance/merge_run.hpp"
+#include "provenance/lease.hpp"
 #include "provenance/projections.hpp"
-#include "provenance/queries.hpp"
-#include "provenance/schema.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
 
 namespace {
 
+using events::CheckpointRecorded;
 using sqlite::Database;
+using sqlite::Statement;
+
+/// A snapshot of a store to merge from, whose chain and events were checked. The store itself is
+/// not changed.
+struct Source {
+  std::filesystem::path folder;
+  Head head;
+  std::vector<Event> events;
+  Database tables;  ///< derived from the events alone, in memory
+  ObjectStore objects;
+};
 
 /// Equal for events of different logs that are the same event.
 std::string content_key(const Event& event) {
-  Sha256 sha;
-  sha.add_field(event.stream).add_field(event.type).add_field(std::to_string(event.schema));
-  return sha.add_field(event.recorded_at).add_field(event.payload).hex();
+  return Sha256()
+      .add_fields(event.stream, event.type, event.schema, event.recorded_at, event.payload)
+      .hex();
 }
 
 std::set<std::string> content_keys(const EventLog& log) {
@@ -56,7 +66,7 @@ void require_equal_states(const Database& a, const std::string& a_name, const Da
   for (const auto& [step, states] : states_of(b)) {
     const auto same_step = known.find(step);
     if (same_step == known.end() || share(same_step->second, states)) continue;
-    throw MergeConflict(fmt::format(
+    throw StoreDamaged(fmt::format(
         "run {} at step {}: {} has state {:.12} and {} has state {:.12}; one of them is wrong: "
         "run `shearcell verify --replay` in each. Nothing was merged",
         step.first, step.second, a_name, *same_step->second.begin(), b_name, *states.begin()));
@@ -69,37 +79,138 @@ void require_equal_runs(const Database& a, const std::string& a_name, const Data
   for (RunRecord& run : query_runs(a)) known.emplace(run.id, std::move(run));
   for (const RunRecord& run : query_runs(b)) {
     const auto same = known.find(run.id);
-    if (same == known.end()) continue;
-    const RunRecord& other = same->second;
-    if (other.resolved == run.resolved && other.parent == run.parent && other.kind == run.kind &&
-        other.grains == run.grains) {
-      continue;
-    }
-    throw MergeConflict(fmt::format(
+    if (same == known.end() || same_computation(same->second, run)) continue;
+    throw StoreDamaged(fmt::format(
         "run {}: {} and {} have different parameters for it; one of them was changed by "
         "hand. Nothing was merged",
         run.id, a_name, b_name));
   }
 }
 
-/// Checkpoints of the source whose files must be copied.
-std::vector<CheckpointRecord> needed_objects(const Database& into, const Database& tables) {
-  std::vector<CheckpointRecord> needed;
-  for (CheckpointRecord& record : query_checkpoints(tables)) {
-    if (record.state == CheckpointState::recorded && is_news(into, record)) {
-      needed.push_back(std::move(record));
-    }
+/// Whether the store lacks the checkpoint, or has only a damaged file of it. The same state in
+/// other bytes (written by another HDF5 library) is not news.
+bool is_news(const Database& into, const CheckpointRecord& record) {
+  Statement same(into,
+                 "SELECT state, sha256 FROM checkpoints WHERE run = ? AND (sha256 = ? OR (step = ? "
+                 "AND state_hash = ? AND state <> 'rejected'))",
+                 record.run, record.sha256, record.step, record.state_hash);
+  bool damaged_here = false;
+  while (same.step()) {
+    if (same.text(0) != "rejected") return false;
+    damaged_here = true;
   }
+  return !damaged_here || record.state == CheckpointState::recorded;
+}
+
+/// Checkpoints of the source whose files must be copied.
+std::vector<CheckpointRecord> needed_objects(const Database& into, const Source& source) {
+  auto needed = query_checkpoints(source.tables);
+  std::erase_if(needed, [&](const CheckpointRecord& record) {
+    return record.state != CheckpointState::recorded || !is_news(into, record);
+  });
   return needed;
 }
 
-std::vector<std::byte> read_object(const MergeSource& source, const CheckpointRecord& record) {
+std::vector<std::byte> read_object(const Source& source, const CheckpointRecord& record) {
   try {
     return source.objects.get(record.sha256, record.size);
   } catch (const StoreDamaged& damage) {
     throw StoreDamaged(
         fmt::format("{}. Nothing was merged from {}", damage.what(), source.folder.string()));
   }
+}
+
+/// Whether the event adds a place in an experiment, or raises its target.
+bool declares_news(const Database& into, const Event& event) {
+  const RunDeclaration declared = std::get<events::RunDeclared>(events::decode(event)).run;
+  const Membership& m = declared.membership;
+  Statement same(into,
+                 "SELECT target_cycles FROM memberships WHERE run = ? AND experiment = ? AND "
+                 "scale = ? AND variant = ? AND seed = ? AND manifest = ?",
+                 event.stream.substr(4), m.experiment, m.scale, m.variant, m.seed, m.manifest);
+  return !same.step() || same.u64(0) < declared.target_cycles;
+}
+
+using Stream = std::vector<const Event*>;  // in the order of the log
+
+/// An attempt is copied when it recorded a checkpoint that is news, or when it ended the run in a
+/// further state than the store's.
+struct RunMerge {
+  std::optional<RunRecord> before;   ///< the run in the store before the merge
+  std::optional<Event> last_claim;   ///< the event that set its state
+  std::set<std::string> known;       ///< checkpoints that are not news
+  std::set<std::uint64_t> attempts;  ///< seq, in the source, of the events of attempts to copy
+  bool source_wins = false;          ///< the source's state is the further one
+
+  bool wants(const Database& into, const Event& event) const;
+  /// A copy of `last_claim` when the copied events changed the state of the run; appending it again
+  /// restores the store's own state.
+  std::optional<Event> closing_event(const Database& into) const;
+};
+
+/// The events (by seq) of the attempts to copy.
+std::set<std::uint64_t> attempts_to_take(const Stream& stream, const RunMerge& plan) {
+  std::set<std::uint64_t> taken, attempt;
+  bool news = false;
+  const auto close = [&](bool last) {
+    if (news || !plan.before || (last && plan.source_wins)) {
+      taken.insert(attempt.begin(), attempt.end());
+    }
+    attempt.clear();
+    news = false;
+  };
+  for (const Event* event : stream) {
+    if (events::begins_attempt(*event)) {
+      close(false);
+      attempt.insert(event->seq);
+    } else if (event->type == CheckpointRecorded::kType) {
+      const auto recorded = std::get<CheckpointRecorded>(events::decode(*event));
+      if (plan.known.contains(recorded.checkpoint.sha256)) continue;
+      attempt.insert(event->seq);
+      news = true;
+    } else if (events::ends_attempt(*event)) {
+      attempt.insert(event->seq);
+    }
+  }
+  close(true);
+  return taken;
+}
+
+bool RunMerge::wants(const Database& into, const Event& event) const {
+  if (event.type == events::RunDeclared::kType) return !before || declares_news(into, event);
+  if (events::begins_attempt(event) || events::ends_attempt(event) ||
+      event.type == CheckpointRecorded::kType) {
+    return attempts.contains(event.seq);
+  }
+  // A checkpoint was rejected, pruned or regenerated; or something else happened to the run.
+  return !event.type.starts_with("Checkpoint") || !known.contains(event.body().value("sha256", ""));
+}
+
+std::optional<Event> RunMerge::closing_event(const Database& into) const {
+  if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
+  const RunState now = query_run(into, before->id).value().state;
+  const bool more_to_do =
+      before->state == RunState::completed && now == RunState::declared;  // a longer target
+  if (now == before->state || more_to_do) return std::nullopt;
+  return last_claim;
+}
+
+RunMerge plan_run(const Database& into, const EventLog& log, const Database& source_tables,
+                  const Stream& stream, const RunRecord& source_run) {
+  RunMerge plan;
+  plan.before = query_run(into, source_run.id);
+  for (Event& event : log.events(run_stream(source_run.id))) {
+    if (events::begins_attempt(event) || events::ends_attempt(event)) {
+      plan.last_claim = std::move(event);
+    }
+  }
+  plan.source_wins = !plan.before || std::pair(source_run.step, source_run.state) >
+                                         std::pair(plan.before->step, plan.before->state);
+  for (const CheckpointRecord& record : query_checkpoints(source_tables, source_run.id)) {
+    if (!is_news(into, record)) plan.known.insert(record.sha256);
+  }
+  plan.attempts = attempts_to_take(stream, plan);
+  return plan;
 }
 
 constexpr std::string_view kMergeStream = "store/merge";
@@ -116,21 +227,15 @@ bool merged_before(const EventLog& log, const Head& head) {
   return false;
 }
 
-}  // namespace
-
-MergeSource read_merge_source(const std::filesystem::path& folder,
-                              const std::set<std::string>& runs) {
+/// If `runs` is not empty, only these runs and the manifests.
+Source read_source(const std::filesystem::path& folder, const std::set<std::string>& runs) {
   const std::filesystem::path file = folder / "store.sqlite";
   if (!std::filesystem::exists(file)) {
     throw NotFound(fmt::format("{}: there is no store here to merge", folder.string()));
   }
   Database database = open_database(file, sqlite::Open::existing, true);
   const EventLog log(database);
-  MergeSource source{.folder = folder,
-                     .head = {},
-                     .events = {},
-                     .tables = std::make_unique<Database>(Database::in_memory()),
-                     .objects = ObjectStore(folder)};
+  Source source{folder, {}, {}, Database::in_memory(), ObjectStore(folder)};
   {
     const sqlite::ReadTransaction snapshot(database);
     if (const auto fault = log.verify_chain()) {
@@ -146,68 +251,62 @@ MergeSource read_merge_source(const std::filesystem::path& folder,
              !(event.stream.starts_with("run/") && runs.contains(event.stream.substr(4)));
     });
   }
-  create_projections(*source.tables);
-  for (const Event& event : source.events) apply(*source.tables, event);
+  create_projections(source.tables);
+  for (const Event& event : source.events) apply(source.tables, event);
   return source;
 }
 
+/// Throws StoreDamaged, naming both stores, when two of them hold different states of the same run
+/// at the same step, or different runs under one id.
 void require_agreement(const Database& into, const std::string& name,
-                       const std::vector<MergeSource>& sources) {
-  for (std::size_t s = 0; s < sources.size(); ++s) {
-    const std::string source = sources[s].folder.string();
-    require_equal_runs(into, name, *sources[s].tables, source);
-    require_equal_states(into, name, *sources[s].tables, source);
-    for (std::size_t t = 0; t < s; ++t) {
-      const std::string other = sources[t].folder.string();
-      require_equal_runs(*sources[t].tables, other, *sources[s].tables, source);
-      require_equal_states(*sources[t].tables, other, *sources[s].tables, source);
+                       const std::vector<Source>& sources) {
+  std::vector<std::pair<std::string, const Database*>> stores = {{name, &into}};
+  for (const Source& source : sources) {
+    for (const auto& [other, tables] : stores) {
+      require_equal_runs(*tables, other, source.tables, source.folder.string());
+      require_equal_states(*tables, other, source.tables, source.folder.string());
     }
+    stores.emplace_back(source.folder.string(), &source.tables);
   }
 }
 
-void check_objects(const Database& into, const MergeSource& source) {
-  for (const CheckpointRecord& record : needed_objects(into, *source.tables)) {
-    read_object(source, record);
+void require_idle(const Database& into, const std::string& name) {
+  for (const Lease& lease : query_leases(into)) {
+    if (lapsed(lease, now_ms())) continue;
+    throw MachineError(
+        fmt::format("{}: a program computes run {:.12} ({}); merge when it has ended", name,
+                    lease.run, describe(lease.holder)));
   }
 }
 
-void copy_objects(const Database& into, ObjectStore& objects, const MergeSource& source,
-                  MergeReport& report) {
-  for (const CheckpointRecord& record : needed_objects(into, *source.tables)) {
-    objects.put(read_object(source, record));
-    ++report.checkpoints;
-    report.bytes += record.size;
-  }
-}
-
+/// Appends the events that the store lacks, then StoreMerged, and applies them.
 void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction& lock,
-                  const MergeSource& source, MergeReport& report) {
+                  const Source& source, MergeReport& report) {
   const std::set<std::string> known = content_keys(log);
   const std::vector<FigureRecord> figures = query_figures(into);
-  std::map<std::string, RunMerge> runs;
-  for (const RunRecord& run : query_runs(*source.tables)) {
-    runs.emplace(run.id, plan_run(into, log, *source.tables, source.events, run));
+  std::map<std::string, Stream> streams;
+  for (const Event& event : source.events) streams[event.stream].push_back(&event);
+  std::map<std::string, RunMerge> runs;  // by stream
+  for (const RunRecord& run : query_runs(source.tables)) {
+    const std::string stream = run_stream(run.id);
+    runs.emplace(stream, plan_run(into, log, source.tables, streams.at(stream), run));
   }
-  std::set<std::string> new_streams;
-  for (const Event& event : source.events) {
-    if (event.stream.starts_with("manifest/") && log.version(event.stream) == 0) {
-      new_streams.insert(event.stream);
-    }
-  }
+  std::erase_if(streams, [&log](const auto& entry) {  // manifests that are known
+    return entry.first.starts_with("manifest/") && log.version(entry.first) > 0;
+  });
   const auto take = [&](const Event& event) {
     apply(into, log.append_copy(lock, event));
     ++report.events;
   };
   for (const Event& event : source.events) {
-    if (known.contains(content_key(event))) continue;
-    if (event.stream.starts_with("manifest/") && !new_streams.contains(event.stream)) continue;
+    if (known.contains(content_key(event)) || !streams.contains(event.stream)) continue;
     if (event.stream.starts_with("run/")) {
-      const auto run = runs.find(event.stream.substr(4));
+      const auto run = runs.find(event.stream);
       if (run == runs.end() || !run->second.wants(into, event)) continue;
     }
     take(event);
   }
-  for (const auto& [id, run] : runs) {
+  for (const auto& [stream, run] : runs) {
     if (const auto closing = run.closing_event(into)) take(*closing);
   }
   // A copied figure follows the store's own in the log; the one that was made later stays the
@@ -220,12 +319,51 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
     }
   }
   if (merged_before(log, source.head)) return;
-  const NewEvent merged = events::encode(
-      events::StoreMerged{.source = source.folder.string(),
-                          .head = {{"seq", source.head.seq}, {"hash", source.head.hash}},
-                          .events = report.events,
-                          .checkpoints = report.checkpoints});
-  log.append(lock, kMergeStream, log.version(kMergeStream), std::span(&merged, 1));
+  log.append(lock, kMergeStream,
+             events::encode(
+                 events::StoreMerged{.source = source.folder.string(),
+                                     .head = {{"seq", source.head.seq}, {"hash", source.head.hash}},
+                                     .events = report.events,
+                                     .checkpoints = report.checkpoints}));
+}
+
+}  // namespace
+
+std::vector<MergeReport> merge_stores(Database& into, EventLog& log, ObjectStore& objects,
+                                      const std::filesystem::path& into_folder,
+                                      const std::vector<std::filesystem::path>& folders,
+                                      const std::set<std::string>& runs) {
+  const std::string name = into_folder.string();
+  std::vector<Source> sources;
+  for (const std::filesystem::path& folder : folders) {
+    std::error_code ignored;
+    if (std::filesystem::equivalent(folder, into_folder, ignored)) {
+      throw NotFound(folder.string() + ": a store cannot be merged into itself; name another one");
+    }
+    sources.push_back(read_source(folder, runs));
+  }
+  // All checks are made before the first byte is written.
+  require_idle(into, name);
+  require_agreement(into, name, sources);
+  for (const Source& source : sources) {
+    for (const CheckpointRecord& record : needed_objects(into, source)) read_object(source, record);
+  }
+  std::vector<MergeReport> reports;
+  for (const Source& source : sources) {
+    MergeReport& report = reports.emplace_back();
+    report.source = source.folder.string();
+    report.head = source.head;
+    for (const CheckpointRecord& record : needed_objects(into, source)) {
+      objects.put(read_object(source, record));
+      ++report.checkpoints;
+      report.bytes += record.size;
+    }
+    sqlite::WriteTransaction lock(into);
+    require_idle(into, name);
+    merge_events(into, log, lock, source, report);
+    lock.commit();
+  }
+  return reports;
 }
 
 }  // namespace shearcell

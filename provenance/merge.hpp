@@ -10,7 +10,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -29,36 +28,14 @@ struct MergeReport {
   std::uint64_t bytes = 0;        ///< size of these files
 };
 
-/// A snapshot of a store to merge from, whose chain and events were checked. The store itself is
-/// not changed.
-struct MergeSource {
-  std::filesystem::path folder;
-  Head head;
-  std::vector<Event> events;
-  std::unique_ptr<sqlite::Database> tables;  ///< derived from the events alone, in memory
-  ObjectStore objects;
-};
-
-/// If `runs` is not empty, only these runs and the manifests. Throws NotFound when there is no
-/// store and StoreDamaged when its chain does not hold.
-MergeSource read_merge_source(const std::filesystem::path& folder,
-                              const std::set<std::string>& runs = {});
-
-/// Throws MergeConflict, naming both stores, when two of them hold different states of the same run
-/// at the same step, or different runs under one id.
-void require_agreement(const sqlite::Database& into, const std::string& name,
-                       const std::vector<MergeSource>& sources);
-
-/// Reads and hashes every file that `copy_objects` would copy. Throws StoreDamaged.
-void check_objects(const sqlite::Database& into, const MergeSource& source);
-
-/// Copies the files of checkpoints that the store lacks.
-void copy_objects(const sqlite::Database& into, ObjectStore& objects, const MergeSource& source,
-                  MergeReport& report);
-
-/// Appends the events that the store lacks, then StoreMerged, and applies them. The files must have
-/// been copied.
-void merge_events(sqlite::Database& into, EventLog& log, const sqlite::WriteTransaction& lock,
-                  const MergeSource& source, MergeReport& report);
+/// Merges the stores in `sources` into the one in `folder`, whose database, log and objects are
+/// given; if `runs` is not empty, only these runs and the manifests. Throws NotFound when there is
+/// no store, MachineError while a program computes a run of `folder`, and StoreDamaged, before
+/// anything is written, when a source is damaged, or when two stores hold different states of the
+/// same run at the same step or different runs under one id.
+std::vector<MergeReport> merge_stores(sqlite::Database& into, EventLog& log, ObjectStore& objects,
+                                      const std::filesystem::path& folder,
+                                      const std::vector<std::filesystem::path>& sources,
+                                      const std::set<std::string>& runs);
 
 }  // namespace shearcell

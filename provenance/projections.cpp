@@ -8,12 +8,14 @@
 #include <string_view>
 
 #include "provenance/events.hpp"
-#include "provenance/queries.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell {
 
 namespace {
 
+using nlohmann::json;
 using sqlite::Database;
 using sqlite::Statement;
 
@@ -75,6 +77,20 @@ CREATE TABLE figures(
 constexpr std::array<std::string_view, 4> kTableNames = {"runs", "memberships", "checkpoints",
                                                          "figures"};
 
+/// Throws StoreDamaged when a run is to be longer, or its checkpoints further apart, than any run
+/// of this program. Step counts could overflow.
+void require_cycles(std::uint64_t target_cycles, std::uint64_t checkpoint_every) {
+  const auto require = [](const char* name, std::uint64_t value, std::uint64_t low) {
+    if (value >= low && value <= StoreLimits::cycles) return;
+    throw StoreDamaged(
+        fmt::format("the record of a run has {} = {}, outside {} to {}; run "
+                    "`verify`, and restore the store from a backup",
+                    name, value, low, StoreLimits::cycles));
+  };
+  require("target_cycles", target_cycles, 0);
+  require("checkpoint_every", checkpoint_every, 1);
+}
+
 /// Applies the events of one stream to the tables.
 class Projector {
  public:
@@ -82,26 +98,26 @@ class Projector {
       : database_(database), event_(event), id_(event.stream.substr(event.stream.find('/') + 1)) {}
 
   void operator()(const events::RunDeclared& e) const {
-    require_cycles(e.target_cycles, e.membership.checkpoint_every);
+    const RunDeclaration& d = e.run;
+    const Membership& m = d.membership;
+    require_cycles(d.target_cycles, m.checkpoint_every);
     // An upsert would also count as an insert of a second ordinal.
     if (Statement(database_, "SELECT 1 FROM runs WHERE id = ?", id_).step()) {
       // A completed run may also have ended early, as other experiments asked for.
       run("UPDATE runs SET state = CASE WHEN state = 'completed' AND (target_cycles < ?2 OR "
           "(step > 0 AND cycle < ?2)) THEN 'declared' ELSE state END, target_cycles = "
           "max(target_cycles, ?2) WHERE id = ?1",
-          id_, e.target_cycles);
+          id_, d.target_cycles);
     } else {
       run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
           "updated_at) VALUES(?,?,?,?,?,'declared',?,?,?)",
-          id_, event_.seq, sqlite::OrNull{e.parent}, e.kind, e.resolved.dump(), e.grains,
-          e.target_cycles, event_.recorded_at);
+          id_, event_.seq, sqlite::OrNull{d.parent}, d.kind, d.resolved.dump(), d.grains,
+          d.target_cycles, event_.recorded_at);
     }
-    const Membership& m = e.membership;
-    run("INSERT INTO memberships(run, experiment, scale, variant, seed, manifest, labels, "
-        "target_cycles, checkpoint_every, ordinal) VALUES(?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO "
-        "UPDATE SET target_cycles = max(target_cycles, excluded.target_cycles), "
+    run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
+        "target_cycles = max(target_cycles, excluded.target_cycles), "
         "checkpoint_every = excluded.checkpoint_every",
-        id_, m.experiment, m.scale, m.variant, m.seed, m.manifest, m.labels.dump(), e.target_cycles,
+        id_, m.experiment, m.scale, m.variant, m.seed, m.manifest, m.labels.dump(), d.target_cycles,
         m.checkpoint_every, event_.seq);
   }
 
@@ -113,9 +129,8 @@ class Projector {
   void operator()(const events::RunCompleted& e) const {
     // Work is left when the target was raised while the run was computed, or when the run ended
     // early (`until`) without considering all its experiments.
-    const auto asked = e.summary.is_object()
-                           ? e.summary.value("/ended/memberships"_json_pointer, nlohmann::json())
-                           : nlohmann::json();
+    const auto asked =
+        e.summary.is_object() ? e.summary.value("/ended/memberships"_json_pointer, json()) : json();
     run("UPDATE runs SET error = '', state = CASE WHEN (?2 AND target_cycles > ?3) OR "
         "?4 < (SELECT count(*) FROM memberships WHERE run = ?1) THEN 'declared' ELSE 'completed' "
         "END WHERE id = ?1",
@@ -124,14 +139,14 @@ class Projector {
   }
 
   void operator()(const events::CheckpointRecorded& e) const {
-    run("INSERT INTO checkpoints(run, sha256, step, cycle, time_s, file, size, state_hash, "
-        "observables, state, seq) VALUES(?,?,?,?,?,?,?,?,?,'recorded',?) ON CONFLICT DO UPDATE "
+    const CheckpointRecord& c = e.checkpoint;
+    run("INSERT INTO checkpoints VALUES(?,?,?,?,?,?,?,?,?,'recorded',?) ON CONFLICT DO UPDATE "
         "SET state = 'recorded', seq = excluded.seq",
-        id_, e.sha256, e.step, e.cycle, e.time_s, e.file, e.size, e.state_hash,
-        e.observables.dump(), event_.seq);
+        id_, c.sha256, c.step, c.cycle, c.time_s, c.file, c.size, c.state_hash,
+        json(c.observables).dump(), event_.seq);
     run("UPDATE runs SET wall_seconds = wall_seconds + ?2, particle_steps = particle_steps + ?3 "
         "WHERE id = ?1",
-        id_, e.wall_seconds, e.particle_steps);
+        id_, e.effort.wall_seconds, e.effort.particle_steps);
     move_to_furthest_checkpoint();
   }
 
@@ -143,9 +158,11 @@ class Projector {
     move_checkpoint(e.sha256, "rejected");
   }
 
-  void operator()(const events::CheckpointPruned& e) const { move_checkpoint(e.sha256, "pruned"); }
+  void operator()(const events::CheckpointPruned& e) const {
+    move_checkpoint(e.checkpoint.sha256, "pruned");
+  }
   void operator()(const events::CheckpointRegenerated& e) const {
-    move_checkpoint(e.sha256, "recorded");
+    move_checkpoint(e.checkpoint.sha256, "recorded");
   }
 
   void operator()(const events::FigureGenerated& e) const {
@@ -192,6 +209,78 @@ class Projector {
   std::string id_;
 };
 
+json parse(const Database& database, const std::string& text) {
+  json value = parse_json(text);
+  if (value.is_discarded()) {
+    throw StoreDamaged(
+        fmt::format("{}: a derived table holds broken JSON; run `rebuild`", database.name()));
+  }
+  return value;
+}
+
+template <class State>
+State state_of(const Database& database, const std::string& name) {
+  if (const auto state = value_of<State>(name)) return *state;
+  throw StoreDamaged(fmt::format("{}: a derived table has the unknown state '{}'; run `rebuild`",
+                                 database.name(), name));
+}
+
+std::vector<Membership> query_memberships(const Database& database, const std::string& id) {
+  Statement query(database, "SELECT * FROM memberships WHERE run = ? ORDER BY ordinal", id);
+  std::vector<Membership> found;
+  while (query.step()) {
+    Membership& m = found.emplace_back();
+    std::string run, labels;
+    query.get(run, m.experiment, m.scale, m.variant, m.seed, m.manifest, labels, m.target_cycles,
+              m.checkpoint_every);
+    m.labels = parse(database, labels);
+    require_cycles(m.target_cycles, m.checkpoint_every);
+  }
+  return found;
+}
+
+/// `rest` follows FROM.
+template <class... Values>
+std::vector<RunRecord> select_runs(const Database& database, const std::string& rest,
+                                   const Values&... values) {
+  Statement query(database, "SELECT * FROM runs " + rest, values...);
+  std::vector<RunRecord> found;
+  while (query.step()) {
+    RunRecord& run = found.emplace_back();
+    std::uint64_t ordinal = 0;
+    std::string resolved, state;
+    query.get(run.id, ordinal, run.parent, run.kind, resolved, state, run.grains, run.target_cycles,
+              run.attempts, run.cycle, run.step, run.state_hash, run.wall_seconds,
+              run.particle_steps, run.error, run.updated_at);
+    run.resolved = parse(database, resolved);
+    require_cycles(run.target_cycles, 1);
+    run.state = state_of<RunState>(database, state);
+    run.memberships = query_memberships(database, run.id);
+  }
+  return found;
+}
+
+template <class... Values>
+std::vector<CheckpointRecord> select_checkpoints(const Database& database, const std::string& rest,
+                                                 const Values&... values) {
+  Statement query(database, "SELECT * FROM checkpoints " + rest, values...);
+  std::vector<CheckpointRecord> found;
+  while (query.step()) {
+    CheckpointRecord& c = found.emplace_back();
+    std::string observables, state;
+    query.get(c.run, c.sha256, c.step, c.cycle, c.time_s, c.file, c.size, c.state_hash, observables,
+              state, c.seq);
+    c.state = state_of<CheckpointState>(database, state);
+    const json values_by_name = parse(database, observables);
+    for (const auto& [name, value] : values_by_name.items()) {
+      if (value.is_number()) c.observables[name] = value.template get<double>();
+    }
+  }
+  return found;
+}
+
+constexpr const char* kByStep = "ORDER BY step, seq";
+
 }  // namespace
 
 void create_projections(Database& database) {
@@ -223,16 +312,74 @@ std::map<std::string, std::vector<std::string>> projection_rows(const Database& 
   for (const std::string_view table : kTableNames) {
     std::vector<std::string>& rows = tables[std::string(table)];
     Statement query(database, fmt::format("SELECT * FROM {}", table));
-    while (query.step()) {
-      std::string row;
-      for (int column = 0; column < query.columns(); ++column) {
-        row += (column == 0 ? "" : ", ") + query.literal(column);
-      }
-      rows.push_back(std::move(row));
-    }
+    while (query.step()) rows.push_back(query.row());
     std::sort(rows.begin(), rows.end());
   }
   return tables;
+}
+
+NotFound unknown_run(std::string_view id) {
+  return NotFound(fmt::format("the store has no run '{}'; `shearcell status` lists its runs", id));
+}
+
+NotFound unknown_checkpoint(std::string_view run, std::string_view sha256) {
+  return NotFound(fmt::format("run {}: it has no checkpoint {}", run, sha256));
+}
+
+std::string run_stream(std::string_view id) {
+  return fmt::format("run/{}", id);
+}
+
+std::vector<RunRecord> query_runs(const Database& database) {
+  return select_runs(database, "ORDER BY ordinal");
+}
+
+std::optional<RunRecord> query_run(const Database& database, std::string_view id) {
+  auto found = select_runs(database, "WHERE id = ?", id);
+  if (found.empty()) return std::nullopt;
+  return std::move(found.front());
+}
+
+std::vector<std::string> query_run_ids(const Database& database, std::string_view prefix,
+                                       std::size_t limit) {
+  Statement query(database,
+                  "SELECT id FROM runs WHERE substr(id, 1, length(?1)) = ?1 ORDER BY id LIMIT ?2",
+                  prefix, std::uint64_t{limit});
+  std::vector<std::string> found;
+  while (query.step()) found.push_back(query.text(0));
+  return found;
+}
+
+std::vector<CheckpointRecord> query_checkpoints(const Database& database, std::string_view run) {
+  if (run.empty()) return select_checkpoints(database, kByStep);
+  return select_checkpoints(database, std::string("WHERE run = ? ") + kByStep, run);
+}
+
+std::optional<CheckpointRecord> query_checkpoint(const Database& database, std::string_view run,
+                                                 std::string_view sha256) {
+  auto found = select_checkpoints(database, "WHERE run = ? AND sha256 = ?", run, sha256);
+  if (found.empty()) return std::nullopt;
+  return std::move(found.front());
+}
+
+std::vector<CheckpointRecord> query_checkpoints_by_prefix(const Database& database,
+                                                          std::string_view prefix,
+                                                          std::size_t limit) {
+  return select_checkpoints(
+      database, std::string("WHERE substr(sha256, 1, length(?1)) = ?1 ") + kByStep + " LIMIT ?2",
+      prefix, std::uint64_t{limit});
+}
+
+std::vector<FigureRecord> query_figures(const Database& database) {
+  Statement query(database, "SELECT name, seq, recorded_at, provenance FROM figures ORDER BY name");
+  std::vector<FigureRecord> found;
+  while (query.step()) {
+    FigureRecord& figure = found.emplace_back();
+    std::string provenance;
+    query.get(figure.name, figure.seq, figure.recorded_at, provenance);
+    figure.provenance = parse(database, provenance);
+  }
+  return found;
 }
 
 }  // namespace shearcell

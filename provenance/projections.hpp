@@ -3,10 +3,14 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "provenance/errors.hpp"
 #include "provenance/event_log.hpp"
+#include "provenance/records.hpp"
 #include "provenance/sqlite.hpp"
 
 namespace shearcell {
@@ -23,5 +27,28 @@ void rebuild_projections(sqlite::Database& database, const EventLog& log);
 
 /// Every row of every table as text, to compare two derivations.
 std::map<std::string, std::vector<std::string>> projection_rows(const sqlite::Database& database);
+
+// Queries. All throw StoreDamaged when a table holds what no event gives.
+
+NotFound unknown_run(std::string_view id);
+NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
+std::string run_stream(std::string_view id);  ///< "run/<id>"
+
+/// In the order of their declaration.
+std::vector<RunRecord> query_runs(const sqlite::Database& database);
+std::optional<RunRecord> query_run(const sqlite::Database& database, std::string_view id);
+/// Ids with this prefix, at most `limit`.
+std::vector<std::string> query_run_ids(const sqlite::Database& database, std::string_view prefix,
+                                       std::size_t limit);
+/// Checkpoints of one run, or of all (""), in ascending order of step.
+std::vector<CheckpointRecord> query_checkpoints(const sqlite::Database& database,
+                                                std::string_view run = "");
+std::optional<CheckpointRecord> query_checkpoint(const sqlite::Database& database,
+                                                 std::string_view run, std::string_view sha256);
+/// Checkpoints whose SHA-256 has this prefix, at most `limit`.
+std::vector<CheckpointRecord> query_checkpoints_by_prefix(const sqlite::Database& database,
+                                                          std::string_view prefix,
+                                                          std::size_t limit);
+std::vector<FigureRecord> query_figures(const sqlite::Database& database);
 
 }  // namespace shearcell

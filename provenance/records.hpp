@@ -77,6 +77,12 @@ struct RunRecord {
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
+/// Whether two declarations or records of one id compute the same.
+bool same_computation(const auto& a, const auto& b) {
+  return a.parent == b.parent && a.kind == b.kind && a.resolved == b.resolved &&
+         a.grains == b.grains;
+}
+
 /// Selects checkpoints to prune; all conditions must hold.
 struct PruneChoice {
   std::vector<std::string> runs;  ///< ids; empty for all

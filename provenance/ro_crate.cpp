@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <set>
 
 #include "provenance/sha256.hpp"
 
@@ -32,14 +32,14 @@ class Graph {
   /// Returns a reference to the entity.
   json add(json entity) {
     const std::string id = entity.at("@id").get<std::string>();
-    if (known_.try_emplace(id, entities_.size()).second) entities_.push_back(std::move(entity));
+    if (known_.insert(id).second) entities_.push_back(std::move(entity));
     return reference(id);
   }
-  json take() { return std::move(entities_); }
+  const json& entities() const { return entities_; }
 
  private:
   json entities_ = json::array();
-  std::map<std::string, std::size_t> known_;
+  std::set<std::string> known_;
 };
 
 json file_entity(const std::string& path, const std::string& name, const std::string& format,
@@ -134,22 +134,17 @@ json add_parameters(Graph& graph, const RunRecord& run) {
   return given;
 }
 
-json status_of(const Attempt& attempt) {
-  switch (attempt.outcome) {
-    case AttemptOutcome::completed:
-      return reference("http://schema.org/CompletedActionStatus");
-    case AttemptOutcome::running:
-      return reference("http://schema.org/ActiveActionStatus");
-    default:
-      return reference("http://schema.org/FailedActionStatus");
-  }
+std::string status_of(const Attempt& attempt) {
+  const bool completed = attempt.outcome == AttemptOutcome::completed;
+  const bool running = attempt.outcome == AttemptOutcome::running;
+  return fmt::format("http://schema.org/{}ActionStatus", completed ? "Completed"
+                                                         : running ? "Active"
+                                                                   : "Failed");
 }
 
 std::string error_of(const Attempt& attempt) {
-  if (attempt.outcome == AttemptOutcome::lost) {
-    return "ended without a record (a kill or a power cut); a later attempt continued";
-  }
-  return attempt.why;
+  if (attempt.outcome != AttemptOutcome::lost) return attempt.why;
+  return "ended without a record (a kill or a power cut); a later attempt continued";
 }
 
 /// Inputs of every attempt of a run.
@@ -158,9 +153,8 @@ struct Given {
   json parameters = json::array();
 };
 
-json add_attempt(Graph& graph, const CrateFacts& facts, std::size_t stage_number, std::size_t a,
+json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage, std::size_t a,
                  const Given& given) {
-  const RunLineage& stage = facts.stages[stage_number];
   const Attempt& attempt = stage.attempts[a];
   json objects = given.manifests;
   if (const auto* from = facts.initial_state(attempt)) {
@@ -178,7 +172,7 @@ json add_attempt(Graph& graph, const CrateFacts& facts, std::size_t stage_number
       {"instrument", add_software(graph, attempt.host)},
       {"location", add_host(graph, attempt.host)},
       {"startTime", attempt.started_at},
-      {"actionStatus", status_of(attempt)},
+      {"actionStatus", reference(status_of(attempt))},
       {"object", objects},
       {"result", results}};
   if (!attempt.ended_at.empty()) action["endTime"] = attempt.ended_at;
@@ -187,18 +181,18 @@ json add_attempt(Graph& graph, const CrateFacts& facts, std::size_t stage_number
 }
 
 json add_licence(Graph& graph, const std::string& licence) {
-  if (!licence.empty()) {
-    return graph.add({{"@id", licence},
+  if (licence.empty()) {
+    return graph.add({{"@id", "#licence"},
                       {"@type", "CreativeWork"},
-                      {"name", licence},
-                      {"description", "The licence of the data in this crate"}});
+                      {"name", "No licence was chosen"},
+                      {"description",
+                       "The exporter of these data chose no licence; ask them before you use the "
+                       "data."}});
   }
-  return graph.add({{"@id", "#licence"},
+  return graph.add({{"@id", licence},
                     {"@type", "CreativeWork"},
-                    {"name", "No licence was chosen"},
-                    {"description",
-                     "The exporter of these data chose no licence; ask them before you use the "
-                     "data."}});
+                    {"name", licence},
+                    {"description", "The licence of the data in this crate"}});
 }
 
 std::string title_of(const RunRecord& run) {
@@ -228,10 +222,7 @@ CrateFacts crate_facts(const Store& store, const std::string& run, std::string l
   CrateFacts facts{run_lineage(store, run), {}, std::move(licence)};
   for (const RunLineage& stage : facts.stages) {
     for (const Membership& member : stage.run.memberships) {
-      const bool known =
-          std::any_of(facts.manifests.begin(), facts.manifests.end(),
-                      [&](const ManifestText& m) { return m.sha256 == member.manifest; });
-      if (known) continue;
+      if (std::ranges::count(facts.manifests, member.manifest, &ManifestText::sha256) > 0) continue;
       if (auto manifest = find_manifest(store, member.manifest)) {
         facts.manifests.push_back(std::move(*manifest));
       }
@@ -268,19 +259,16 @@ std::string crate_identifier(const std::string& run) {
 json ro_crate_metadata(const CrateFacts& facts, const std::string& prov) {
   Graph graph;
   json actions = json::array();
-  for (std::size_t s = 0; s < facts.stages.size(); ++s) {
-    const RunLineage& stage = facts.stages[s];
+  for (const RunLineage& stage : facts.stages) {
     Given given;
     for (const ManifestText& manifest : facts.manifests) {
-      const auto& members = stage.run.memberships;
-      const bool asks = std::any_of(members.begin(), members.end(), [&](const Membership& m) {
-        return m.manifest == manifest.sha256;
-      });
-      if (asks) given.manifests.push_back(add_manifest(graph, manifest));
+      if (std::ranges::count(stage.run.memberships, manifest.sha256, &Membership::manifest) > 0) {
+        given.manifests.push_back(add_manifest(graph, manifest));
+      }
     }
     given.parameters = add_parameters(graph, stage.run);
     for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
-      actions.push_back(add_attempt(graph, facts, s, a, given));
+      actions.push_back(add_attempt(graph, facts, stage, a, given));
     }
   }
   graph.add(file_entity(kCrateProv, "The same provenance as W3C PROV-JSON", "application/json",
@@ -290,7 +278,7 @@ json ro_crate_metadata(const CrateFacts& facts, const std::string& prov) {
              {"@type", "CreativeWork"},
              {"name", "Process Run Crate"},
              {"version", "0.5"}});
-  const json entities = graph.take();
+  const json& entities = graph.entities();
 
   const RunRecord& run = facts.stages.back().run;
   json all = json::array();

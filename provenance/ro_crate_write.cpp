@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The folder of a crate, and prov.json in it.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <set>
 #include <stdexcept>
-#include <system_error>
 
 #include "provenance/io/plain_file.hpp"
+#include "provenance/io/temporary_folder.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/ro_crate.hpp"
@@ -18,6 +18,126 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+
+json qualified(const char* name) {
+  return {{"$", name}, {"type", "prov:QUALIFIED_NAME"}};
+}
+
+std::string checkpoint_id(const std::string& sha256) {
+  return "shearcell:checkpoint-" + sha256;
+}
+
+class Document {
+ public:
+  explicit Document(const CrateFacts& facts) : facts_(facts) {}
+
+  json build() {
+    document_["prefix"] = {{"shearcell", "urn:x-shearcell:"}};
+    for (const ManifestText& manifest : facts_.manifests) add_manifest(manifest);
+    for (const RunLineage& stage : facts_.stages) {
+      add_parameters(stage.run);
+      for (const CheckpointHistory& checkpoint : stage.checkpoints) add_checkpoint(checkpoint);
+      for (std::size_t a = 0; a < stage.attempts.size(); ++a) add_attempt(stage, a);
+    }
+    return std::move(document_);
+  }
+
+ private:
+  void add_manifest(const ManifestText& manifest) {
+    document_["entity"]["shearcell:manifest-" + manifest.sha256] = {
+        {"prov:type", qualified("prov:Plan")},
+        {"prov:location", crate_path_of_manifest(manifest.sha256)},
+        {"shearcell:sha256", manifest.sha256}};
+  }
+
+  void add_parameters(const RunRecord& run) {
+    document_["entity"]["shearcell:parameters-" + run.id] = {
+        {"prov:label", "Resolved parameters and seed of a run"},
+        {"shearcell:run", run.id},
+        {"shearcell:resolved", run.resolved.dump()}};
+  }
+
+  void add_checkpoint(const CheckpointHistory& checkpoint) {
+    const CheckpointRecord& c = checkpoint.record;
+    json entity = {{"prov:type", qualified("shearcell:Checkpoint")},
+                   {"shearcell:sha256", c.sha256},
+                   {"shearcell:state", c.state_hash},
+                   {"shearcell:run", c.run},
+                   {"shearcell:cycle", c.cycle},
+                   {"shearcell:step", c.step}};
+    if (checkpoint.rejected) entity["shearcell:rejected"] = true;
+    if (checkpoint.pruned) entity["shearcell:pruned"] = true;
+    if (checkpoint.kept()) entity["prov:location"] = crate_path_of_checkpoint(c.sha256);
+    document_["entity"][checkpoint_id(c.sha256)] = std::move(entity);
+  }
+
+  std::string add_agent(const json& host) {
+    const json build = host.value("build", json::object());
+    const json libraries = host.value("libraries", json::object());
+    std::string id = "shearcell:build-" + build_digest(host);
+    document_["agent"][id] = {{"prov:type", qualified("prov:SoftwareAgent")},
+                              {"prov:label", "shearcell"},
+                              {"shearcell:build", build.dump()},
+                              {"shearcell:libraries", libraries.dump()}};
+    return id;
+  }
+
+  void add_attempt(const RunLineage& stage, std::size_t a) {
+    const Attempt& attempt = stage.attempts[a];
+    const std::string id = fmt::format("shearcell:attempt-{}-{}", stage.run.id, a + 1);
+    json machine = attempt.host;
+    machine.erase("build");
+    machine.erase("libraries");
+    json activity = {{"prov:startTime", attempt.started_at},
+                     {"prov:type", qualified("shearcell:Attempt")},
+                     {"shearcell:run", stage.run.id},
+                     {"shearcell:outcome", name_of(attempt.outcome)},
+                     {"shearcell:host", machine.dump()}};
+    if (!attempt.ended_at.empty()) activity["prov:endTime"] = attempt.ended_at;
+    if (!attempt.why.empty()) activity["shearcell:why"] = attempt.why;
+    document_["activity"][id] = std::move(activity);
+
+    json association = {{"prov:activity", id}, {"prov:agent", add_agent(attempt.host)}};
+    for (const Membership& member : stage.run.memberships) {
+      const std::string plan = "shearcell:manifest-" + member.manifest;
+      if (document_["entity"].contains(plan)) association["prov:plan"] = plan;
+    }
+    relate("wasAssociatedWith", std::move(association));
+    relate("used",
+           {{"prov:activity", id}, {"prov:entity", "shearcell:parameters-" + stage.run.id}});
+    std::string before;
+    if (facts_.initial_state(attempt) != nullptr) {
+      before = checkpoint_id(attempt.from_checkpoint);
+      relate("used", {{"prov:activity", id}, {"prov:entity", before}});
+    }
+    for (const std::string& sha256 : attempt.checkpoints) {
+      const CheckpointHistory& checkpoint = *stage.find(sha256);
+      const std::string made = checkpoint_id(sha256);
+      if (checkpoint.attempt == a) add_generation(checkpoint, id, before);
+      before = made;
+    }
+  }
+
+  void add_generation(const CheckpointHistory& checkpoint, const std::string& activity,
+                      const std::string& before) {
+    const std::string made = checkpoint_id(checkpoint.record.sha256);
+    relate("wasGeneratedBy", {{"prov:entity", made},
+                              {"prov:activity", activity},
+                              {"prov:time", checkpoint.recorded_at}});
+    if (before.empty() || before == made) return;
+    relate(
+        "wasDerivedFrom",
+        {{"prov:generatedEntity", made}, {"prov:usedEntity", before}, {"prov:activity", activity}});
+  }
+
+  void relate(const char* kind, json relation) {
+    document_[kind][fmt::format("_:r{}", ++relations_)] = std::move(relation);
+  }
+
+  const CrateFacts& facts_;
+  json document_;
+  std::size_t relations_ = 0;
+};
 
 /// Bytes that are not UTF-8 are replaced.
 std::string dump(const json& value) {
@@ -52,8 +172,7 @@ void make_subfolder(const fs::path& crate, const char* name) {
 std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const fs::path& folder) {
   const ObjectStore objects(store.folder());
   std::vector<std::string> written;
-  make_subfolder(folder, "checkpoints");
-  make_subfolder(folder, "manifests");
+  for (const char* subfolder : {"checkpoints", "manifests"}) make_subfolder(folder, subfolder);
   std::set<std::string> done;
   for (const RunLineage& stage : facts.stages) {
     for (const CheckpointHistory& c : stage.checkpoints) {
@@ -77,20 +196,18 @@ std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const
   return written;
 }
 
-/// On the same file system as the folder, to be renamed to it.
-fs::path temporary_beside(const fs::path& folder) {
-  const fs::path parent = folder.parent_path();
-  if (!parent.empty()) fs::create_directories(parent);
-  return parent / fmt::format(".{}.tmp-{}", folder.filename().string(), getpid());
-}
-
 }  // namespace
+
+json prov_json(const CrateFacts& facts) {
+  return Document(facts).build();
+}
 
 std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
                                         const fs::path& where, const std::string& licence) {
   const CrateFacts facts = crate_facts(store, run, licence);
   // "crate/" has no file name; "crate" is the same folder.
-  const fs::path folder = where.has_filename() ? where : where.parent_path();
+  const fs::path given = fs::absolute(where);
+  const fs::path folder = given.has_filename() ? given : given.parent_path();
   const fs::file_status status = fs::symlink_status(folder);
   if (fs::exists(status) && !fs::is_directory(status)) {
     throw std::invalid_argument(folder.string() +
@@ -103,19 +220,15 @@ std::vector<std::string> write_ro_crate(const Store& store, const std::string& r
     }
     return fill(store, facts, folder);
   }
-  const fs::path temporary = temporary_beside(folder);
-  if (!fs::create_directory(temporary)) {
-    throw std::invalid_argument(temporary.string() + ": left behind by another export; remove it");
-  }
-  try {
-    std::vector<std::string> written = fill(store, facts, temporary);
-    fs::rename(temporary, folder);
-    return written;
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(temporary, ignored);
-    throw;
-  }
+  // On the same file system as the folder, to be renamed to it.
+  fs::create_directories(folder.parent_path());
+  const TemporaryFolder beside(folder.parent_path() /
+                               fmt::format(".{}.tmp-", folder.filename().string()));
+  const fs::path staged = beside.path() / "crate";
+  fs::create_directory(staged);
+  std::vector<std::string> written = fill(store, facts, staged);
+  fs::rename(staged, folder);
+  return written;
 }
 
 }  // namespace shearcell

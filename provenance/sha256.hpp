@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+struct evp_md_ctx_st;  // OpenSSL's EVP_MD_CTX
+
 namespace shearcell {
 
 /// Hashes data given in parts. Throws std::runtime_error when OpenSSL has no SHA-256.
@@ -17,9 +19,14 @@ class Sha256 {
  public:
   Sha256();
   Sha256& add(std::span<const std::byte> data);
-  Sha256& add(std::string_view text);
-  /// As a netstring, "<length in bytes>:<text>,", so that fields cannot run into each other.
-  Sha256& add_field(std::string_view text);
+  Sha256& add(std::string_view text) { return add(std::as_bytes(std::span(text))); }
+  /// As netstrings, "<length in bytes>:<text>,", so that fields cannot run into each other; numbers
+  /// in decimal.
+  template <class... Fields>
+  Sha256& add_fields(const Fields&... fields) {
+    (add_field(fields), ...);
+    return *this;
+  }
   /// Eight bytes, least significant first.
   Sha256& add_u64(std::uint64_t value);
   /// The bits of the number: -0.0 and 0.0 differ.
@@ -28,10 +35,10 @@ class Sha256 {
   std::string hex();
 
  private:
-  struct Free {
-    void operator()(void* context) const;
-  };
-  std::unique_ptr<void, Free> context_;
+  void add_field(std::string_view text);
+  void add_field(std::uint64_t number) { add_field(std::to_string(number)); }
+
+  std::unique_ptr<evp_md_ctx_st, void (*)(evp_md_ctx_st*)> context_;
 };
 
 std::string sha256_hex(std::span<const std::byte> data);

@@ -20,16 +20,6 @@ constexpr int kBusyTimeoutMs = 30'000;
 constexpr std::size_t kLongestName = 504;
 constexpr const char* kInMemory = ":memory:";
 
-void require_same_file(const std::string& file, std::uint64_t device, std::uint64_t inode,
-                       const std::string& name) {
-  struct stat now {};
-  if (stat(file.c_str(), &now) == 0 && now.st_dev == device && now.st_ino == inode) return;
-  throw Moved(
-      fmt::format("{}: it was moved, replaced or deleted while this program used it, so nothing "
-                  "more is written; name its new place with --store and run again",
-                  name));
-}
-
 void require_plain_files(const std::string& name) {
   for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
     const std::string file = name + suffix;
@@ -60,11 +50,8 @@ std::string full_name(const std::filesystem::path& file) {
                   file.string(), name.size(), kLongestName));
 }
 
-void Database::Close::operator()(sqlite3* handle) const {
-  sqlite3_close_v2(handle);
-}
-
-Database::Database(const std::filesystem::path& file, Open mode) : name_(file.string()) {
+Database::Database(const std::filesystem::path& file, Open mode)
+    : name_(file.string()), handle_(nullptr, sqlite3_close_v2) {
   if (name_ != kInMemory) {
     full_name_ = sqlite::full_name(file);
     require_plain_files(full_name_);
@@ -94,15 +81,24 @@ Database Database::in_memory() {
   return Database(kInMemory, Open::create);
 }
 
+void Database::require_same_file() const {
+  if (inode_ == 0) return;
+  struct stat now {};
+  if (stat(full_name_.c_str(), &now) == 0 && now.st_dev == device_ && now.st_ino == inode_) return;
+  throw MachineError(
+      fmt::format("{}: it was moved, replaced or deleted while this program used it, so nothing "
+                  "more is written; name its new place with --store and run again",
+                  name_));
+}
+
 void Database::require_in_place() const {
   if (inode_ == 0 || sqlite3_get_autocommit(handle_.get()) == 0) return;
-  require_same_file(full_name_, device_, inode_, name_);
+  require_same_file();
   require_plain_files(full_name_);
 }
 
 void Database::fail(int code, std::string_view doing) const {
-  // SQLite would call it an I/O error.
-  if (inode_ != 0) require_same_file(full_name_, device_, inode_, name_);
+  require_same_file();  // SQLite would call it an I/O error
   const char* reason = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(code);
   switch (code & 0xff) {
     case SQLITE_NOTADB:
@@ -112,7 +108,7 @@ void Database::fail(int code, std::string_view doing) const {
           name_));
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      throw StoreBusy(fmt::format(
+      throw MachineError(fmt::format(
           "{}: another process kept the store locked for {} s; run again when it has ended", name_,
           kBusyTimeoutMs / 1000));
     case SQLITE_TOOBIG:
@@ -144,26 +140,18 @@ std::int64_t Database::integer(const std::string& sql) {
   return static_cast<std::int64_t>(query.u64(0));
 }
 
-void Database::Finalize::operator()(sqlite3_stmt* handle) const {
-  sqlite3_finalize(handle);
-}
-
-Statement::Statement(const Database& database, std::string_view sql)
-    : database_(&database), sql_(sql) {
-  database.require_in_place();
-  if (auto idle = database.idle_.extract(sql_)) {
-    handle_ = std::move(idle.mapped());
-    return;
-  }
+Database::Prepared Statement::prepared() const {
+  database_->require_in_place();
+  if (auto idle = database_->idle_.extract(sql_)) return std::move(idle.mapped());
   sqlite3_stmt* handle = nullptr;
-  check(sqlite3_prepare_v2(database.handle(), sql.data(), static_cast<int>(sql.size()), &handle,
+  check(sqlite3_prepare_v2(database_->handle(), sql_.data(), static_cast<int>(sql_.size()), &handle,
                            nullptr));
-  handle_.reset(handle);
+  return {handle, sqlite3_finalize};
 }
 
 Statement::~Statement() {
   constexpr std::size_t kMostIdle = 64;
-  if (!handle_ || database_->idle_.size() >= kMostIdle) return;
+  if (database_->idle_.size() >= kMostIdle) return;
   // An unfinished statement holds a lock on the file.
   sqlite3_reset(handle_.get());
   sqlite3_clear_bindings(handle_.get());
@@ -242,43 +230,39 @@ std::vector<std::byte> Statement::blob(int column) const {
   return {bytes, bytes + sqlite3_column_bytes(handle_.get(), column)};
 }
 
-int Statement::columns() const {
-  return sqlite3_column_count(handle_.get());
-}
-
-std::string Statement::literal(int column) const {
-  switch (sqlite3_column_type(handle_.get(), column)) {
-    case SQLITE_NULL:
-      return "NULL";
-    case SQLITE_INTEGER:
-      return fmt::format("{}", sqlite3_column_int64(handle_.get(), column));
-    case SQLITE_FLOAT:
-      return fmt::format("{:a}", f64(column));  // hexadecimal: every bit counts
-    default:
-      return fmt::format("'{}'", text(column));
+std::string Statement::row() const {
+  std::string row;
+  for (int column = 0; column < sqlite3_column_count(handle_.get()); ++column) {
+    if (column > 0) row += ", ";
+    switch (sqlite3_column_type(handle_.get(), column)) {
+      case SQLITE_NULL:
+        row += "NULL";
+        break;
+      case SQLITE_INTEGER:
+        row += std::to_string(sqlite3_column_int64(handle_.get(), column));
+        break;
+      case SQLITE_FLOAT:
+        row += fmt::format("{:a}", f64(column));  // hexadecimal: every bit counts
+        break;
+      default:
+        row += fmt::format("'{}'", text(column));
+    }
   }
+  return row;
 }
 
-WriteTransaction::WriteTransaction(Database& database) : database_(database) {
-  database_.execute("BEGIN IMMEDIATE");
+Transaction::Transaction(Database& database, const std::string& begin) : database_(database) {
+  database_.execute(begin);
 }
 
-WriteTransaction::~WriteTransaction() {
+Transaction::~Transaction() {
   // After a failed statement SQLite may have rolled back already; then this does nothing.
   if (open_) sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
 }
 
-void WriteTransaction::commit() {
+void Transaction::commit() {
   database_.execute("COMMIT");
   open_ = false;
-}
-
-ReadTransaction::ReadTransaction(Database& database) : database_(database) {
-  database_.execute("BEGIN DEFERRED");
-}
-
-ReadTransaction::~ReadTransaction() {
-  sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
 }
 
 }  // namespace shearcell::sqlite

@@ -21,19 +21,13 @@ namespace shearcell::sqlite {
 
 enum class Open { existing, create };
 
-/// The database was moved, replaced or deleted while this program used it.
-class Moved : public MachineError {
- public:
-  using MachineError::MachineError;
-};
-
 /// The absolute name under which a database is opened. Throws UsageError when it is longer than
 /// SQLite's own limit.
 std::string full_name(const std::filesystem::path& file);
 
 /// One connection, for one thread at a time. All functions throw StoreDamaged when the file is not
-/// a valid database, StoreBusy when another process kept it locked, Moved when its name has
-/// come to stand for another file, and std::runtime_error when the machine fails (disk full, no
+/// a valid database, MachineError when another process kept it locked or when its name has come to
+/// stand for another file, and std::runtime_error when the machine fails (disk full, no
 /// permission). Messages name the file.
 ///
 /// The file and SQLite's own files beside it must be regular files without hard links: SQLite finds
@@ -50,25 +44,20 @@ class Database {
   std::int64_t integer(const std::string& sql);
   const std::string& name() const { return name_; }
   sqlite3* handle() const { return handle_.get(); }
-  /// Throws Moved. Called before each transaction, which may play back a journal.
+  /// Throws MachineError when the file was moved, replaced or deleted. Called before each
+  /// transaction, which may play back a journal.
   void require_in_place() const;
   /// Throws the exception for an SQLite result code.
   [[noreturn]] void fail(int code, std::string_view doing) const;
 
  private:
   friend class Statement;
-  Database() = default;
-  struct Close {
-    void operator()(sqlite3* handle) const;
-  };
-  struct Finalize {
-    void operator()(sqlite3_stmt* handle) const;
-  };
-  using Prepared = std::unique_ptr<sqlite3_stmt, Finalize>;
+  void require_same_file() const;
+  using Prepared = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
   std::string name_;
   std::string full_name_;  ///< "" in memory
   std::uint64_t device_ = 0, inode_ = 0;
-  std::unique_ptr<sqlite3, Close> handle_;
+  std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle_;
   /// Prepared statements that are not in use, by their text: preparing takes longer than running.
   mutable std::unordered_map<std::string, Prepared> idle_;
 };
@@ -81,11 +70,10 @@ struct OrNull {
 /// A prepared statement; the database must outlive it. Parameters count from 1, columns from 0.
 class Statement {
  public:
-  Statement(const Database& database, std::string_view sql);
   /// Binds the values to parameters 1, 2, ...
   template <class... Values>
   Statement(const Database& database, std::string_view sql, const Values&... values)
-      : Statement(database, sql) {
+      : database_(&database), sql_(sql), handle_(prepared()) {
     bind_all(values...);
   }
   ~Statement();
@@ -122,11 +110,11 @@ class Statement {
     int column = 0;
     (get_one(column++, values), ...);
   }
-  int columns() const;
-  /// The value as an SQL literal with all digits, to compare rows.
-  std::string literal(int column) const;
+  /// The whole row as SQL literals with all digits, to compare rows.
+  std::string row() const;
 
  private:
+  Database::Prepared prepared() const;
   void check(int code) const;
   void get_one(int column, std::string& value) const { value = text(column); }
   void get_one(int column, std::uint64_t& value) const { value = u64(column); }
@@ -136,30 +124,30 @@ class Statement {
   Database::Prepared handle_;
 };
 
-/// Holds the write lock from its construction (BEGIN IMMEDIATE); rolled back unless committed.
-class WriteTransaction {
+/// Rolled back at the end of its life unless it was committed.
+class Transaction {
  public:
-  explicit WriteTransaction(Database& database);
-  ~WriteTransaction();
-  WriteTransaction(const WriteTransaction&) = delete;
-  WriteTransaction& operator=(const WriteTransaction&) = delete;
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
   void commit();
+
+ protected:
+  Transaction(Database& database, const std::string& begin);
 
  private:
   Database& database_;
   bool open_ = true;
 };
 
-/// All reads during its life see the same state of the database.
-class ReadTransaction {
- public:
-  explicit ReadTransaction(Database& database);
-  ~ReadTransaction();
-  ReadTransaction(const ReadTransaction&) = delete;
-  ReadTransaction& operator=(const ReadTransaction&) = delete;
+/// Holds the write lock from its construction.
+struct WriteTransaction : Transaction {
+  explicit WriteTransaction(Database& database) : Transaction(database, "BEGIN IMMEDIATE") {}
+};
 
- private:
-  Database& database_;
+/// All reads during its life see the same state of the database.
+struct ReadTransaction : Transaction {
+  explicit ReadTransaction(Database& database) : Transaction(database, "BEGIN DEFERRED") {}
 };
 
 }  // namespace shearcell::sqlite

@@ -8,8 +8,6 @@
 
 #include "provenance/events.hpp"
 #include "provenance/projections.hpp"
-#include "provenance/queries.hpp"
-#include "provenance/schema.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -106,10 +104,9 @@ void Store::must_write() const {
 std::uint64_t Store::append(std::string_view stream, const NewEvent& event,
                             const sqlite::WriteTransaction& lock,
                             std::optional<std::uint64_t> expected_version) {
-  const std::vector<Event> appended = log_.append(
-      lock, stream, expected_version.value_or(log_.version(stream)), std::span(&event, 1));
-  apply(database_, appended.front());
-  return appended.front().version;
+  const Event appended = log_.append(lock, stream, event, expected_version);
+  apply(database_, appended);
+  return appended.version;
 }
 
 void Store::record(std::string_view stream, const NewEvent& event,
@@ -122,39 +119,39 @@ void Store::record(std::string_view stream, const NewEvent& event,
 }
 
 void Store::append_held(const std::string& id, const NewEvent& event, bool release) {
+  must_write();
+  const std::scoped_lock guard(mutex_);
   const auto held = held_.find(id);
   if (held == held_.end()) {
     throw ConcurrencyConflict(
         fmt::format("run {}: this program does not hold the run; start it first", id));
   }
   sqlite::WriteTransaction lock(database_);
+  const auto lose = [&](const std::string& why) {
+    held_.erase(held);
+    throw ConcurrencyConflict(fmt::format("run {}: {}", id, why));
+  };
   const auto lease = query_lease(database_, id);
   if (lease && lease->holder.token != self_.token) {
-    held_.erase(held);
-    throw ConcurrencyConflict(
-        fmt::format("run {}: its lease expired and another program took the run ({})", id,
-                    describe(lease->holder)));
+    lose(fmt::format("its lease expired and another program took the run ({})",
+                     describe(lease->holder)));
   }
   std::uint64_t version = held->second.version;
   for (const Event& e : log_.events(run_stream(id), version)) {
     if (claims_run(e)) {
-      held_.erase(held);
-      throw ConcurrencyConflict(fmt::format("run {}: another process continued it ({} at {})", id,
-                                            e.type, e.recorded_at));
+      lose(fmt::format("another process continued it ({} at {})", e.type, e.recorded_at));
     }
     version = e.version;
   }
   version = append(run_stream(id), event, lock, version);
-  if (release) {
-    drop_lease(database_, id, self_.token);
-  } else {
+  if (!release) {
     hold(id, held->second.attempt);
-  }
-  lock.commit();
-  if (release) {
-    held_.erase(held);
-  } else {
+    lock.commit();
     held->second.version = version;
+  } else {
+    drop_lease(database_, id, self_.token);
+    lock.commit();
+    held_.erase(held);
   }
 }
 
@@ -172,13 +169,11 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
       "AND json_valid(payload) AND json_extract(payload, '$.info.experiment') = ? "
       "ORDER BY seq DESC LIMIT 1",
       experiment);
-  const bool known = log_.version(stream) > 0;
-  if (!known || (newest.step() && newest.text(0) != stream)) {
-    append(stream,
-           encode(events::ManifestRegistered{sha256, std::string(path), std::string(text), info}),
-           lock);
-    lock.commit();
-  }
+  if (log_.version(stream) > 0 && (!newest.step() || newest.text(0) == stream)) return sha256;
+  append(stream,
+         encode(events::ManifestRegistered{sha256, std::string(path), std::string(text), info}),
+         lock);
+  lock.commit();
   return sha256;
 }
 
@@ -189,25 +184,17 @@ void Store::declare_run(const RunDeclaration& declared) {
   }
   const std::scoped_lock guard(mutex_);
   sqlite::WriteTransaction lock(database_);
-  const std::vector<RunRecord> known = query_runs(database_, declared.id);
-  if (known.empty()) {
-    if (!declared.parent.empty() && query_runs(database_, declared.parent).empty()) {
-      throw std::invalid_argument(
-          fmt::format("run {}: its parent {} was never declared", declared.id, declared.parent));
-    }
-  } else {
-    const RunRecord& old = known.front();
-    if (old.parent != declared.parent || old.kind != declared.kind ||
-        old.resolved != declared.resolved || old.grains != declared.grains) {
-      throw std::invalid_argument(
-          fmt::format("run {}: the store has this id with other parameters", declared.id));
-    }
-    if (!adds_something(old, declared)) return;
+  const auto known = query_run(database_, declared.id);
+  if (!known && !declared.parent.empty() && !query_run(database_, declared.parent)) {
+    throw std::invalid_argument(
+        fmt::format("run {}: its parent {} was never declared", declared.id, declared.parent));
   }
-  append(run_stream(declared.id),
-         encode(events::RunDeclared{declared.parent, declared.kind, declared.resolved,
-                                    declared.grains, declared.target_cycles, declared.membership}),
-         lock);
+  if (known && !same_computation(*known, declared)) {
+    throw std::invalid_argument(
+        fmt::format("run {}: the store has this id with other parameters", declared.id));
+  }
+  if (known && !adds_something(*known, declared)) return;
+  append(run_stream(declared.id), encode(events::RunDeclared{declared}), lock);
   lock.commit();
 }
 
@@ -220,34 +207,31 @@ std::uint64_t Store::start_run(const std::string& id, const json& host,
     throw ConcurrencyConflict(fmt::format("run {}: this program computes it already", id));
   }
   sqlite::WriteTransaction lock(database_);
-  const std::vector<RunRecord> known = query_runs(database_, id);
-  if (known.empty()) throw unknown_run(id);
+  const auto known = query_run(database_, id);
+  if (!known) throw unknown_run(id);
   const auto lease = query_lease(database_, id);
   if (lease && lease->holder.token != self_.token && !lapsed(*lease, now_ms())) {
     throw RunHeld(
         fmt::format("run {}: another program computes it ({})", id, describe(lease->holder)));
   }
-  if ((known.front().state == RunState::completed) != fill) {
+  if ((known->state == RunState::completed) != fill) {
     throw ConcurrencyConflict(fmt::format("run {}: it is {}completed", id, fill ? "not " : ""));
   }
-  const std::uint64_t attempt = known.front().attempts + 1;
+  const std::uint64_t attempt = known->attempts + 1;
   const json process = {{"host", self_.host}, {"pid", self_.pid}, {"token", self_.token}};
-  events::Any begun;
+  events::RunStarted started{attempt, host, process, std::nullopt};
+  if (!parent_checkpoint.empty()) started.parent_checkpoint = parent_checkpoint;
+  events::Any begun = std::move(started);
   std::uint64_t from_step = 0;
   if (from_sha256) {
     const auto from = query_checkpoint(database_, id, *from_sha256);
     if (!from) throw unknown_checkpoint(id, *from_sha256);
     from_step = from->step;
     begun = events::RunResumed{attempt, host, process, {from->sha256, from->step, from->cycle}};
-  } else {
-    events::RunStarted started{attempt, host, process, std::nullopt};
-    if (!parent_checkpoint.empty()) started.parent_checkpoint = parent_checkpoint;
-    begun = std::move(started);
   }
-  if (known.front().step > from_step && !fill) {
-    throw ConcurrencyConflict(
-        fmt::format("run {}: another program has recorded step {}; continue from there", id,
-                    known.front().step));
+  if (known->step > from_step && !fill) {
+    throw ConcurrencyConflict(fmt::format(
+        "run {}: another program has recorded step {}; continue from there", id, known->step));
   }
   const std::uint64_t version = append(run_stream(id), encode(begun), lock);
   hold(id, attempt);
@@ -294,40 +278,32 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
   const std::scoped_lock guard(mutex_);
   const auto old = query_checkpoint(database_, id, object.sha256);
   if (old && old->state == CheckpointState::recorded && held_.contains(id)) return *old;
-  append_held(id,
-              encode(events::CheckpointRecorded{.step = checkpoint.state.step,
-                                                .cycle = checkpoint.cycle,
-                                                .time_s = checkpoint.time_s,
-                                                .file = object.file,
-                                                .size = object.size,
-                                                .sha256 = object.sha256,
-                                                .state_hash = state,
-                                                .observables = checkpoint.observables,
-                                                .wall_seconds = effort.wall_seconds,
-                                                .particle_steps = effort.particle_steps}),
-              false);
+  const CheckpointRecord record{.run = id,
+                                .step = checkpoint.state.step,
+                                .cycle = checkpoint.cycle,
+                                .time_s = checkpoint.time_s,
+                                .file = object.file,
+                                .size = object.size,
+                                .sha256 = object.sha256,
+                                .state_hash = state,
+                                .observables = checkpoint.observables};
+  append_held(id, encode(events::CheckpointRecorded{{record}, effort}), false);
   // A concurrent `prune` may have deleted the file before this event.
   if (old && !objects_.contains(object.sha256)) objects_.put(bytes);
   return query_checkpoint(database_, id, object.sha256).value();
 }
 
 void Store::interrupt_run(const std::string& id, const std::string& why) {
-  end_run(id, encode(events::RunInterrupted{why}));
+  append_held(id, encode(events::RunInterrupted{why}), true);
 }
 
 void Store::fail_run(const std::string& id, const std::string& why, const json& numbers) {
-  end_run(id, encode(events::RunFailed{why, numbers}));
+  append_held(id, encode(events::RunFailed{why, numbers}), true);
 }
 
 void Store::complete_run(const std::string& id, const json& summary,
                          std::optional<std::uint64_t> target_cycles) {
-  end_run(id, encode(events::RunCompleted{summary, target_cycles}));
-}
-
-void Store::end_run(const std::string& id, const NewEvent& event) {
-  must_write();
-  const std::scoped_lock guard(mutex_);
-  append_held(id, event, true);
+  append_held(id, encode(events::RunCompleted{summary, target_cycles}), true);
 }
 
 void Store::reject_checkpoint(const std::string& id, const std::string& sha256,
@@ -348,10 +324,7 @@ void Store::record_figure(const std::string& name, const json& provenance) {
 
 void Store::record_submission(const std::string& type, const json& facts,
                               std::optional<std::uint64_t> seen) {
-  const bool queued = type == events::JobQueued::kType;
-  record(kSubmissions,
-         queued ? encode(events::JobQueued{facts}) : encode(events::CampaignSubmitted{facts}),
-         seen);
+  record(kSubmissions, {type, facts}, seen);
 }
 
 }  // namespace shearcell

@@ -43,7 +43,8 @@ struct LoadedCheckpoint {
 };
 
 /// Thread-safe. Several processes may open one store on a local disk; the log decides who was
-/// first. Every function may throw StoreDamaged, StoreBusy and std::runtime_error (disk full, ...).
+/// first. Every function may throw StoreDamaged, and std::runtime_error when the machine fails or
+/// another process keeps the store locked.
 ///
 /// Between `start_run` and the end of the attempt this object holds the run by a lease, which every
 /// record and `renew_leases` renew. Another program may take the run when the lease has expired, or
@@ -156,7 +157,7 @@ class Store {
   void record_replay(const std::string& id, bool same, const nlohmann::json& facts);
 
   /// Merges other stores (merge.hpp); with `runs`, only these runs, which must include the parents
-  /// of each. Throws StoreDamaged or MergeConflict before anything is changed.
+  /// of each.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 
@@ -171,14 +172,13 @@ class Store {
               std::optional<std::uint64_t> expected_version = std::nullopt);
   /// Appends an event that only the holder may write; with `release`, ends the lease.
   void append_held(const std::string& id, const NewEvent& event, bool release);
-  void end_run(const std::string& id, const NewEvent& event);
   void hold(const std::string& id, std::uint64_t attempt);
   void must_write() const;
 
   std::filesystem::path folder_;
   Access access_;
   ObjectStore objects_;
-  mutable std::mutex mutex_;  ///< guards all members below
+  mutable std::recursive_mutex mutex_;  ///< guards all members below
   mutable sqlite::Database database_;
   EventLog log_;
   struct Held {

@@ -8,7 +8,6 @@
 
 #include "provenance/events.hpp"
 #include "provenance/projections.hpp"
-#include "provenance/queries.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/store.hpp"
 
@@ -28,8 +27,8 @@ std::set<std::string> initial_states(const EventLog& log) {
 }
 
 bool chosen(const PruneChoice& choice, const RunRecord& run) {
-  const bool named = std::find(choice.runs.begin(), choice.runs.end(), run.id) != choice.runs.end();
-  return (choice.runs.empty() || named) && (!choice.state || run.state == *choice.state);
+  return (choice.runs.empty() || std::ranges::count(choice.runs, run.id) > 0) &&
+         (!choice.state || run.state == *choice.state);
 }
 
 bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) {
@@ -51,26 +50,25 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
 }
 
 std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
-  std::set<std::string> needed;
-  {
-    const std::scoped_lock guard(mutex_);
-    needed = initial_states(log_);
-  }
+  const std::scoped_lock guard(mutex_);
+  const std::set<std::string> needed = initial_states(log_);
+  const auto readable = [this](const CheckpointRecord& record) {
+    try {
+      load_checkpoint(record);
+      return true;
+    } catch (const StoreDamaged&) {
+      return false;  // kept as well: `resume` reports it
+    }
+  };
   std::vector<CheckpointRecord> found;
   for (const RunRecord& run : runs()) {
     if (!chosen(choice, run)) continue;
-    std::vector<CheckpointRecord> records = checkpoints(run.id);
-    if (records.empty()) continue;
     // The newest is kept, and all back to the newest that can be read.
-    while (!records.empty()) {
-      const CheckpointRecord newest = std::move(records.back());
+    std::vector<CheckpointRecord> records = checkpoints(run.id);
+    bool kept = false;
+    while (!records.empty() && !kept) {
+      kept = readable(records.back());
       records.pop_back();
-      try {
-        load_checkpoint(newest);
-        break;
-      } catch (const StoreDamaged&) {
-        // Kept as well: `resume` reports it.
-      }
     }
     for (CheckpointRecord& record : records) {
       if (needed.contains(record.sha256) || kept_by_cadence(choice, record)) continue;
@@ -81,11 +79,8 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
 }
 
 std::vector<CheckpointRecord> Store::prune_leftovers() const {
-  std::vector<CheckpointRecord> found;
-  {
-    const std::scoped_lock guard(mutex_);
-    found = query_checkpoints(database_);
-  }
+  const std::scoped_lock guard(mutex_);
+  std::vector<CheckpointRecord> found = query_checkpoints(database_);
   std::erase_if(found, [this](const CheckpointRecord& record) {
     return record.state != CheckpointState::pruned || !objects_.contains(record.sha256);
   });
@@ -100,9 +95,10 @@ std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records) {
     sqlite::WriteTransaction lock(database_);
     for (const CheckpointRecord& record : records) {
       const auto now = query_checkpoint(database_, record.run, record.sha256);
-      const RunRecord run = query_runs(database_, record.run).at(0);
-      if (!now || now->state != CheckpointState::recorded || now->step >= run.step) continue;
-      append(run_stream(record.run), events::encode(events::CheckpointPruned(*now)), lock);
+      const auto run = query_run(database_, record.run);
+      if (!now || now->state != CheckpointState::recorded || !run || now->step >= run->step)
+        continue;
+      append(run_stream(record.run), events::encode(events::CheckpointPruned{{*now}}), lock);
     }
     lock.commit();
   }
@@ -136,7 +132,7 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
     const auto now = query_checkpoint(database_, record.run, sha256);
     if (!now) throw unknown_checkpoint(record.run, sha256);
     if (now->state == CheckpointState::recorded) return;
-    append(run_stream(record.run), events::encode(events::CheckpointRegenerated(*now)), lock);
+    append(run_stream(record.run), events::encode(events::CheckpointRegenerated{{*now}}), lock);
     lock.commit();
     return;
   }
@@ -144,45 +140,14 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
 
 void Store::record_replay(const std::string& id, bool same, const nlohmann::json& facts) {
   run(id);  // throws when it is unknown
-  record(run_stream(id), same ? events::encode(events::ReplayVerified{facts})
-                              : events::encode(events::ReplayDiverged{facts}));
+  record(run_stream(id), {same ? "ReplayVerified" : "ReplayDiverged", facts});
 }
 
-std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& folders,
+std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& sources,
                                       const std::set<std::string>& runs) {
   must_write();
-  const auto require_idle = [this] {
-    for (const Lease& lease : query_leases(database_)) {
-      if (lapsed(lease, now_ms())) continue;
-      throw StoreBusy(fmt::format("{}: a program computes run {:.12} ({}); merge when it has ended",
-                                  folder_.string(), lease.run, describe(lease.holder)));
-    }
-  };
-  std::vector<MergeSource> sources;
-  for (const std::filesystem::path& folder : folders) {
-    std::error_code ignored;
-    if (std::filesystem::equivalent(folder, folder_, ignored)) {
-      throw NotFound(folder.string() + ": a store cannot be merged into itself; name another one");
-    }
-    sources.push_back(read_merge_source(folder, runs));
-  }
   const std::scoped_lock guard(mutex_);
-  require_idle();
-  // All checks are made before the first byte is written.
-  require_agreement(database_, folder_.string(), sources);
-  for (const MergeSource& source : sources) check_objects(database_, source);
-  std::vector<MergeReport> reports;
-  for (const MergeSource& source : sources) {
-    MergeReport& report = reports.emplace_back();
-    report.source = source.folder.string();
-    report.head = source.head;
-    copy_objects(database_, objects_, source, report);
-    sqlite::WriteTransaction lock(database_);
-    require_idle();
-    merge_events(database_, log_, lock, source, report);
-    lock.commit();
-  }
-  return reports;
+  return merge_stores(database_, log_, objects_, folder_, sources, runs);
 }
 
 }  // namespace shearcell

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "provenance/queries.hpp"
+#include "provenance/projections.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -13,13 +13,12 @@ namespace {
 
 constexpr std::size_t kListed = 10;  // candidates of an ambiguous prefix
 
-NotFound ambiguous(const char* what, std::string_view prefix,
-                   const std::vector<std::string>& candidates) {
-  std::string list;
-  for (const std::string& candidate : candidates) list += "\n  " + candidate;
-  if (candidates.size() == kListed) list += "\n  ...";
-  return NotFound(
-      fmt::format("several {} begin with '{}'; give more digits of one of{}", what, prefix, list));
+void require_one(const char* what, std::string_view prefix,
+                 const std::vector<std::string>& candidates) {
+  if (candidates.size() < 2) return;
+  const bool more = candidates.size() == kListed;
+  throw NotFound(fmt::format("several {} begin with '{}'; give more digits of one of\n  {}{}", what,
+                             prefix, fmt::join(candidates, "\n  "), more ? "\n  ..." : ""));
 }
 
 }  // namespace
@@ -50,10 +49,9 @@ std::vector<RunRecord> Store::runs() const {
 RunRecord Store::run(const std::string& id) const {
   const std::scoped_lock guard(mutex_);
   const sqlite::ReadTransaction snapshot(database_);
-  const std::vector<RunRecord> found =
-      id.empty() ? std::vector<RunRecord>() : query_runs(database_, id);
-  if (found.empty()) throw unknown_run(id);
-  return found.front();
+  auto found = query_run(database_, id);
+  if (!found) throw unknown_run(id);
+  return std::move(*found);
 }
 
 std::vector<Lease> Store::leases() const {
@@ -65,41 +63,30 @@ std::vector<Lease> Store::leases() const {
 }
 
 RunRecord Store::find_run(std::string_view prefix) const {
-  std::vector<std::string> ids;
-  {
-    const std::scoped_lock guard(mutex_);
-    ids = query_run_ids(database_, prefix, kListed);
-  }
+  const std::scoped_lock guard(mutex_);
+  const std::vector<std::string> ids = query_run_ids(database_, prefix, kListed);
   if (ids.empty()) throw unknown_run(prefix);
-  if (ids.size() > 1) throw ambiguous("runs", prefix, ids);
+  require_one("runs", prefix, ids);
   return run(ids.front());
 }
 
 CheckpointRecord Store::find_checkpoint(std::string_view prefix) const {
-  std::vector<CheckpointRecord> found;
-  {
-    const std::scoped_lock guard(mutex_);
-    found = query_checkpoints_by_prefix(database_, prefix, kListed);
-  }
+  const std::scoped_lock guard(mutex_);
+  const auto found = query_checkpoints_by_prefix(database_, prefix, kListed);
   if (found.empty()) {
     throw NotFound(fmt::format(
         "the store has no checkpoint '{}'; `shearcell show RUN` lists those of a run", prefix));
   }
-  if (found.size() > 1) {
-    std::vector<std::string> names;
-    for (const CheckpointRecord& record : found) names.push_back(record.sha256);
-    throw ambiguous("checkpoints", prefix, names);
-  }
+  std::vector<std::string> names;
+  for (const CheckpointRecord& record : found) names.push_back(record.sha256);
+  require_one("checkpoints", prefix, names);
   return found.front();
 }
 
 std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, bool all) const {
-  std::vector<CheckpointRecord> found;
-  {
-    const std::scoped_lock guard(mutex_);
-    if (query_run_ids(database_, id, 1) != std::vector{id}) throw unknown_run(id);
-    found = query_checkpoints(database_, id);
-  }
+  const std::scoped_lock guard(mutex_);
+  if (query_run_ids(database_, id, 1) != std::vector{id}) throw unknown_run(id);
+  auto found = query_checkpoints(database_, id);
   if (!all) {
     std::erase_if(found, [](const CheckpointRecord& record) {
       return record.state != CheckpointState::recorded;

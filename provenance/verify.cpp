@@ -8,11 +8,9 @@
 #include <map>
 #include <set>
 
-#include "provenance/checkpoint.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/events.hpp"
 #include "provenance/projections.hpp"
-#include "provenance/queries.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -24,13 +22,6 @@ void require_same(std::string_view what, const auto& in_file, const auto& in_log
   throw StoreDamaged(
       fmt::format("its {} is {}, and the log says {}; `resume` continues from an older checkpoint",
                   what, in_file, in_log));
-}
-
-using Observables = std::map<std::string, double>;
-
-std::string value_of(const Observables& observables, const std::string& name) {
-  const auto found = observables.find(name);
-  return found == observables.end() ? "absent" : fmt::format("{}", found->second);
 }
 
 void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const RunRecord& run) {
@@ -47,11 +38,14 @@ void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const
     const nlohmann::json& parameter = run.resolved.at(place);
     require_same(name, unit, parameter.is_number() ? parameter.get<double>() : std::nan(""));
   }
-  Observables all = c.observables;
+  auto all = c.observables;
   all.insert(record.observables.begin(), record.observables.end());
   for (const auto& [name, value] : all) {
-    require_same("observable " + name, value_of(c.observables, name),
-                 value_of(record.observables, name));
+    const auto value_in = [&key = name](const std::map<std::string, double>& observables) {
+      const auto found = observables.find(key);
+      return found == observables.end() ? "absent" : fmt::format("{}", found->second);
+    };
+    require_same("observable " + name, value_in(c.observables), value_in(record.observables));
   }
   require_same("state", state_hash(c), record.state_hash);
 }
@@ -59,42 +53,45 @@ void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const
 using Severity = Finding::Severity;
 using Rows = std::map<std::string, std::vector<std::string>>;
 
+void add_error(VerifyReport& report, const std::string& subject, const std::string& message,
+               const std::string& run = "") {
+  report.findings.push_back({Severity::error, subject, run, message});
+}
+
 void check_file(sqlite::Database& database, VerifyReport& report) {
   sqlite::Statement query(database, "PRAGMA integrity_check(1)");
-  if (query.step() && query.text(0) != "ok") {
-    report.findings.push_back(
-        {Severity::error, database.name(), "",
-         "SQLite finds the database damaged: " + query.text(0) + "; restore it from a backup"});
-  }
+  if (!query.step() || query.text(0) == "ok") return;
+  add_error(report, database.name(),
+            "SQLite finds the database damaged: " + query.text(0) + "; restore it from a backup");
+}
+
+std::string event_name(std::uint64_t seq) {
+  return fmt::format("event {}", seq);
 }
 
 void check_chain(const EventLog& log, VerifyReport& report) {
   report.head = log.head();
   log.for_each([&report](const Event&) { ++report.events; });
   if (const auto fault = log.verify_chain()) {
-    report.findings.push_back({Severity::error, fmt::format("event {}", fault->seq), "",
-                               fault->message + "; restore the log from a backup"});
+    add_error(report, event_name(fault->seq), fault->message + "; restore the log from a backup");
   }
 }
 
 /// An unchanged head proves that no event before it was changed.
 void check_extends(const EventLog& log, const Head& earlier, VerifyReport& report) {
-  const auto damaged = [&](const std::string& message) {
-    report.findings.push_back({Severity::error, fmt::format("event {}", earlier.seq), "", message});
-  };
+  const std::string event = event_name(earlier.seq);
   if (report.head.seq < earlier.seq) {
-    return damaged(
-        fmt::format("the log was cut off: it ends at event {}, but the given head is event {}; "
-                    "restore the log from a backup",
-                    report.head.seq, earlier.seq));
+    return add_error(report, event,
+                     fmt::format("the log was cut off: it ends at event {}, but the given head is "
+                                 "{}; restore the log from a backup",
+                                 report.head.seq, event));
   }
   const std::string found = log.hash_at(earlier.seq);
   if (found == earlier.hash) return;
-  damaged(
-      fmt::format("the log was rewritten: event {} has hash {}, but the given head has {}; restore "
-                  "the log from "
-                  "a backup",
-                  earlier.seq, found, earlier.hash));
+  add_error(report, event,
+            fmt::format("the log was rewritten: {} has hash {}, but the given head has {}; "
+                        "restore the log from a backup",
+                        event, found, earlier.hash));
 }
 
 /// The tables derived from the events alone. Events that cannot be applied are reported and
@@ -113,9 +110,9 @@ sqlite::Database derive(const EventLog& log, VerifyReport& report) {
       }
     } catch (const StoreDamaged& damage) {
       const bool of_run = event.stream.starts_with("run/");
-      report.findings.push_back({Severity::error, fmt::format("event {}", event.seq),
-                                 of_run ? event.stream.substr(4) : "",
-                                 fmt::format("it cannot be applied: {}", damage.what())});
+      add_error(report, event_name(event.seq),
+                fmt::format("it cannot be applied: {}", damage.what()),
+                of_run ? event.stream.substr(4) : "");
     }
   });
   return fresh;
@@ -126,12 +123,11 @@ void compare_tables(const Rows& stored, const Rows& derived, VerifyReport& repor
     const std::vector<std::string>& found = stored.at(table);
     const auto [a, b] = std::mismatch(rows.begin(), rows.end(), found.begin(), found.end());
     if (a == rows.end() && b == found.end()) continue;
-    report.findings.push_back(
-        {Severity::error, "table " + table, "",
-         fmt::format("it is not what the events give: row {} should be ({}) but is ({}); run "
-                     "`rebuild`",
-                     a - rows.begin() + 1, a == rows.end() ? "absent" : *a,
-                     b == found.end() ? "absent" : *b)});
+    add_error(report, "table " + table,
+              fmt::format("it is not what the events give: row {} should be ({}) but is ({}); run "
+                          "`rebuild`",
+                          a - rows.begin() + 1, a == rows.end() ? "absent" : *a,
+                          b == found.end() ? "absent" : *b));
   }
 }
 
@@ -208,8 +204,7 @@ Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRec
 }
 
 bool VerifyReport::ok() const {
-  return std::none_of(findings.begin(), findings.end(),
-                      [](const Finding& finding) { return finding.severity == Severity::error; });
+  return std::ranges::count(findings, Severity::error, &Finding::severity) == 0;
 }
 
 VerifyReport verify(sqlite::Database& database, const EventLog& log, const ObjectStore& objects,
@@ -228,7 +223,7 @@ VerifyReport verify(sqlite::Database& database, const EventLog& log, const Objec
     for (RunRecord& run : query_runs(fresh)) runs.emplace(run.id, std::move(run));
     records = query_checkpoints(fresh);
   } catch (const StoreDamaged& damage) {
-    report.findings.push_back({Severity::error, database.name(), "", damage.what()});
+    add_error(report, database.name(), damage.what());
   }
   check_reproduced(records, report);
   check_objects(records, runs, database, objects, report);

@@ -37,7 +37,7 @@ class Trajectory {
       : path_(path), frames_(frames), file_(create(path)) {}
 
   void add(const Frame& frame) {
-    const std::lock_guard lock(hdf5::library_mutex());
+    const hdf5::Library library;
     if (next_ == 0) begin(frame);
     if (frame.particles() != particles_) {
       throw std::runtime_error("the number of particles changes between checkpoints of one run");
@@ -68,8 +68,7 @@ class Trajectory {
 
  private:
   static Handle create(const std::filesystem::path& path) {
-    const std::lock_guard lock(hdf5::library_mutex());
-    const hdf5::Quiet quiet;
+    const hdf5::Library library;
     const Handle creation = hdf5::creation_list(H5P_FILE_CREATE);
     return {
         require(H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.get(), H5P_DEFAULT), path.string()),
@@ -189,7 +188,6 @@ class Trajectory {
     require(H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, data), name);
   }
 
-  const hdf5::Quiet quiet_;  // until all below is closed, which may fail on a full disk
   std::filesystem::path path_;
   std::size_t frames_;
   std::size_t particles_ = 0;

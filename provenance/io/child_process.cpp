@@ -28,17 +28,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string_view name_of_variable(std::string_view text) {
-  return text.substr(0, text.find('='));
-}
-
 std::vector<std::string> environment_with(const std::vector<std::string>& variables) {
+  const auto name_of = [](std::string_view variable) {
+    return variable.substr(0, variable.find('='));
+  };
   std::vector<std::string> all = variables;
   for (char** variable = environ; *variable != nullptr; ++variable) {
-    const bool replaced = std::any_of(variables.begin(), variables.end(), [&](const auto& other) {
-      return name_of_variable(other) == name_of_variable(*variable);
-    });
-    if (!replaced) all.emplace_back(*variable);
+    if (std::ranges::count(variables, name_of(*variable), name_of) == 0) {
+      all.emplace_back(*variable);
+    }
   }
   return all;
 }
@@ -49,33 +47,6 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   for (std::string& text : texts) pointers.push_back(text.data());
   pointers.push_back(nullptr);
   return pointers;
-}
-
-// Everything the child needs is prepared before the fork; after it only async-signal-safe calls are
-// allowed.
-struct Prepared {
-  const char* program;
-  char* const* words;
-  char* const* variables;
-  const char* folder;
-  int output, messages;
-  pid_t parent;
-};
-
-[[noreturn]] void become(const Prepared& p, int errors) {
-  setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != p.parent) _exit(127);
-  // What this program ignores, its children would ignore too.
-  for (const int number : {SIGCHLD, SIGPIPE}) signal(number, SIG_DFL);
-  const int in = open("/dev/null", O_RDONLY);
-  if (in >= 0 && dup2(in, STDIN_FILENO) >= 0 && dup2(p.output, STDOUT_FILENO) >= 0 &&
-      dup2(p.messages, STDERR_FILENO) >= 0 && chdir(p.folder) == 0) {
-    execve(p.program, p.words, p.variables);
-  }
-  const int why = errno;
-  (void)!write(errors, &why, sizeof why);
-  _exit(127);
 }
 
 // Collects output of any length.
@@ -100,13 +71,7 @@ std::string text_of(const Descriptor& file) {
 
 std::string shell_quoted(std::string_view text) {
   std::string quoted = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      quoted += "'\\''";
-    } else {
-      quoted += c;
-    }
-  }
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
 }
 
@@ -133,21 +98,28 @@ ChildProcess::ChildProcess(const Command& command) {
   if (!program) throw ProgramError("the program " + name + " is not on PATH");
   std::vector<std::string> words = command.words;
   std::vector<std::string> variables = environment_with(command.variables);
-  const std::vector<char*> word_pointers = pointers_to(words);
-  const std::vector<char*> variable_pointers = pointers_to(variables);
-  const Prepared prepared = {program->c_str(),
-                             word_pointers.data(),
-                             variable_pointers.data(),
-                             command.folder.c_str(),
-                             command.output,
-                             command.messages,
-                             getpid()};
+  const std::vector<char*> arguments = pointers_to(words), environment = pointers_to(variables);
+  const pid_t parent = getpid();
   std::array<int, 2> errors{};
   if (pipe2(errors.data(), O_CLOEXEC) != 0) {
     throw ProgramError("cannot start " + name + ": " + std::strerror(errno));
   }
   pid_ = fork();
-  if (pid_ == 0) become(prepared, errors[1]);
+  if (pid_ == 0) {  // from here on, only async-signal-safe calls are allowed
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent) _exit(127);
+    // What this program ignores, its children would ignore too.
+    for (const int number : {SIGCHLD, SIGPIPE}) signal(number, SIG_DFL);
+    const int in = open("/dev/null", O_RDONLY);
+    if (in >= 0 && dup2(in, STDIN_FILENO) >= 0 && dup2(command.output, STDOUT_FILENO) >= 0 &&
+        dup2(command.messages, STDERR_FILENO) >= 0 && chdir(command.folder.c_str()) == 0) {
+      execve(program->c_str(), arguments.data(), environment.data());
+    }
+    const int why = errno;
+    (void)!write(errors[1], &why, sizeof why);
+    _exit(127);
+  }
   int why = errno;
   close(errors[1]);
   const bool failed =

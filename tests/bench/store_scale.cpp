@@ -16,8 +16,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "provenance/event_log.hpp"
 #include "provenance/io/clock.hpp"
-#include "provenance/schema.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {

@@ -42,37 +42,30 @@ std::string small_manifest(const std::string& more) {
          more;
 }
 
-pid_t start_program(const fs::path& folder, Words words, const Fault& fault) {
+pid_t start_program(const fs::path& folder, const Words& words, const Fault& fault) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   constexpr int flags = O_WRONLY | O_CREAT | O_APPEND;
   for (int fd : {1, 2}) {
     posix_spawn_file_actions_addopen(&actions, fd, (folder / "said").c_str(), flags, 0600);
   }
-  words.insert(words.begin(), SHEARCELL_PROGRAM);
-  words.insert(words.end(), {"--store", (folder / "store").string()});
-  std::vector<std::string> variables;
-  for (char** variable = environ; *variable != nullptr; ++variable) {
-    if (std::strncmp(*variable, "SHEARCELL_STORE=", 16) != 0) variables.emplace_back(*variable);
-  }
+  Words all = {"env", "-u", "SHEARCELL_STORE"};
   if (!fault.kind.empty()) {
-    variables.push_back("LD_PRELOAD=" SHEARCELL_FAULT_LAYER);
-    variables.push_back("FAULT_FOLDER=" + (folder / "store").string());
-    variables.push_back("FAULT_KIND=" + fault.kind);
-    variables.push_back("FAULT_AT=" + std::to_string(fault.at));
-    if (fault.at == 0) variables.push_back("FAULT_COUNT=" + (folder / "operations").string());
+    all.insert(all.end(),
+               {"LD_PRELOAD=" SHEARCELL_FAULT_LAYER, "FAULT_FOLDER=" + (folder / "store").string(),
+                "FAULT_KIND=" + fault.kind, "FAULT_AT=" + std::to_string(fault.at)});
+    if (fault.at == 0) all.push_back("FAULT_COUNT=" + (folder / "operations").string());
   }
-  const auto pointers = [](std::vector<std::string>& texts) {
-    std::vector<char*> found;
-    for (std::string& text : texts) found.push_back(text.data());
-    found.push_back(nullptr);
-    return found;
-  };
+  all.emplace_back(SHEARCELL_PROGRAM);
+  all.insert(all.end(), words.begin(), words.end());
+  all.insert(all.end(), {"--store", (folder / "store").string()});
+  std::vector<char*> pointers;
+  for (std::string& word : all) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
   pid_t child = 0;
-  const int error = posix_spawn(&child, SHEARCELL_PROGRAM, &actions, nullptr,
-                                pointers(words).data(), pointers(variables).data());
+  const int error = posix_spawnp(&child, "env", &actions, nullptr, pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error(std::string("posix_spawn: ") + std::strerror(error));
+  if (error != 0) throw std::runtime_error(std::string("posix_spawnp: ") + std::strerror(error));
   return child;
 }
 

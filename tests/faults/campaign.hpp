@@ -23,7 +23,7 @@ struct Fault {
 using Words = std::vector<std::string>;
 
 /// Starts `shearcell WORDS --store FOLDER/store`, with the fault layer if `fault` has a kind.
-pid_t start_program(const std::filesystem::path& folder, Words words, const Fault& fault);
+pid_t start_program(const std::filesystem::path& folder, const Words& words, const Fault& fault);
 
 /// `run` of the manifest in the folder.
 pid_t start_campaign(const std::filesystem::path& folder, const Fault& fault);

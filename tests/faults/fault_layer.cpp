@@ -17,19 +17,21 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <climits>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
+#include <iterator>
 #include <string_view>
 
 namespace {
 
-template <typename Function>
-Function* next(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+/// The C library's own function of this name.
+template <typename Result, typename... Args>
+Result real(const char* name, Args... args) {
+  return reinterpret_cast<Result (*)(Args...)>(dlsym(RTLD_NEXT, name))(args...);
 }
 
 enum class Kind { none, kill, enospc, eio, torn, lost };
@@ -43,13 +45,9 @@ struct Settings {
 };
 
 Kind kind_of(const char* name) {
-  const std::string_view text = name ? name : "";
-  if (text == "kill") return Kind::kill;
-  if (text == "enospc") return Kind::enospc;
-  if (text == "eio") return Kind::eio;
-  if (text == "torn") return Kind::torn;
-  if (text == "lost") return Kind::lost;
-  return Kind::none;
+  constexpr std::string_view names[] = {"none", "kill", "enospc", "eio", "torn", "lost"};
+  const auto* found = std::find(std::begin(names), std::end(names), name ? name : "none");
+  return found == std::end(names) ? Kind::none : static_cast<Kind>(found - names);
 }
 
 Settings& settings() {
@@ -57,8 +55,7 @@ Settings& settings() {
     Settings fresh;
     fresh.kind = kind_of(std::getenv("FAULT_KIND"));
     if (fresh.count) {
-      fresh.log = next<int(const char*, int, ...)>("open")(
-          fresh.count, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+      fresh.log = open(fresh.count, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
     }
     return fresh;
   }();
@@ -100,8 +97,9 @@ bool chosen(const char* call, const char* path) {
   if (s.log >= 0) {
     char line[PATH_MAX + 64];
     const int length = std::snprintf(line, sizeof line, "%ld %s %s\n", number, call, path);
-    static auto* write_out = next<ssize_t(int, const void*, size_t)>("write");
-    if (length > 0) write_out(s.log, line, static_cast<size_t>(length));
+    if (length > 0) {
+      real<ssize_t, int, const void*, size_t>("write", s.log, line, static_cast<size_t>(length));
+    }
   }
   return number == s.at;
 }
@@ -128,56 +126,63 @@ bool goes_wrong(const char* call, const char* path) {
   }
 }
 
-// Bytes to report, -1 to fail with errno, or -2 to let the call pass.
+// `write_some` writes so many of the bytes.
 template <typename Write>
-ssize_t wrong_write(const char* call, int fd, size_t size, Write&& write_some) {
+ssize_t faulty_write(const char* call, int fd, size_t size, Write&& write_some) {
   const OpenFile file(fd);
-  if (!file) return -2;
+  if (!file) return write_some(size);
   const bool now = chosen(call, file.path);
-  if (disk_full && settings().kind == Kind::enospc) {
-    errno = ENOSPC;
+  const Kind kind = settings().kind;
+  if (disk_full || (now && (kind == Kind::enospc || kind == Kind::eio))) {
+    disk_full = kind == Kind::enospc;
+    errno = kind == Kind::enospc ? ENOSPC : EIO;
     return -1;
   }
-  if (!now) return -2;
-  switch (settings().kind) {
-    case Kind::none:
-      return -2;
-    case Kind::kill:
-      die();
-    case Kind::enospc:
-      disk_full = true;
-      errno = ENOSPC;
-      return -1;
-    case Kind::eio:
-      errno = EIO;
-      return -1;
-    case Kind::torn:
-      write_some(size / 2);
-      die();
-    case Kind::lost:
-      lost_file = inode(fd);
-      return static_cast<ssize_t>(size);
+  if (!now || kind == Kind::none) return write_some(size);
+  if (kind == Kind::lost) {
+    lost_file = inode(fd);
+    return static_cast<ssize_t>(size);
   }
-  return -2;
+  if (kind == Kind::torn) write_some(size / 2);
+  die();
 }
 
-int wrong_sync(const char* call, int fd, int (*real)(int)) {
+template <typename Offset>
+ssize_t faulty_pwrite(const char* call, int fd, const void* bytes, size_t size, Offset at) {
+  return faulty_write(call, fd, size, [&](size_t part) {
+    return real<ssize_t, int, const void*, size_t, Offset>(call, fd, bytes, part, at);
+  });
+}
+
+int faulty_sync(const char* call, int fd) {
   const OpenFile file(fd);
   if (file) {
     if (lost_file != 0 && inode(fd) == lost_file) die();
     if (goes_wrong(call, file.path)) return -1;
   }
-  return real(fd);
+  return real<int, int>(call, fd);
 }
 
-bool wrong_path(const char* call, const char* path) {
-  return path && is_ours(path) && goes_wrong(call, path);
+template <typename Offset>
+int faulty_truncate(const char* call, int fd, Offset size) {
+  const OpenFile file(fd);
+  return file && goes_wrong(call, file.path) ? -1 : real<int, int, Offset>(call, fd, size);
 }
 
-bool wrong_at(const char* call, int folder, const char* name) {
-  if (name && name[0] == '/') return wrong_path(call, name);
+// A call whose first argument is a path.
+template <typename... Args>
+int faulty_path(const char* call, const char* path, Args... rest) {
+  if (path && is_ours(path) && goes_wrong(call, path)) return -1;
+  return real<int, const char*, Args...>(call, path, rest...);
+}
+
+// A call whose first arguments are an open folder and a name in it.
+template <typename... Args>
+int faulty_at(const char* call, int folder, const char* name, Args... rest) {
+  const bool absolute = name && name[0] == '/';
   const OpenFile parent(folder);
-  return parent && goes_wrong(call, name);
+  if ((absolute ? is_ours(name) : bool(parent)) && goes_wrong(call, name)) return -1;
+  return real<int, int, const char*, Args...>(call, folder, name, rest...);
 }
 
 }  // namespace
@@ -185,86 +190,66 @@ bool wrong_at(const char* call, int folder, const char* name) {
 extern "C" {
 
 ssize_t write(int fd, const void* bytes, size_t size) {
-  static auto* real = next<ssize_t(int, const void*, size_t)>("write");
-  const ssize_t wrong =
-      wrong_write("write", fd, size, [&](size_t part) { return real(fd, bytes, part); });
-  return wrong == -2 ? real(fd, bytes, size) : wrong;
+  return faulty_write("write", fd, size, [&](size_t part) {
+    return real<ssize_t, int, const void*, size_t>("write", fd, bytes, part);
+  });
 }
 
 ssize_t pwrite(int fd, const void* bytes, size_t size, off_t at) {
-  static auto* real = next<ssize_t(int, const void*, size_t, off_t)>("pwrite");
-  const ssize_t wrong =
-      wrong_write("pwrite", fd, size, [&](size_t part) { return real(fd, bytes, part, at); });
-  return wrong == -2 ? real(fd, bytes, size, at) : wrong;
+  return faulty_pwrite("pwrite", fd, bytes, size, at);
 }
 
 ssize_t pwrite64(int fd, const void* bytes, size_t size, off64_t at) {
-  static auto* real = next<ssize_t(int, const void*, size_t, off64_t)>("pwrite64");
-  const ssize_t wrong =
-      wrong_write("pwrite64", fd, size, [&](size_t part) { return real(fd, bytes, part, at); });
-  return wrong == -2 ? real(fd, bytes, size, at) : wrong;
+  return faulty_pwrite("pwrite64", fd, bytes, size, at);
 }
 
 int fsync(int fd) {
-  static auto* real = next<int(int)>("fsync");
-  return wrong_sync("fsync", fd, real);
+  return faulty_sync("fsync", fd);
 }
 
 int fdatasync(int fd) {
-  static auto* real = next<int(int)>("fdatasync");
-  return wrong_sync("fdatasync", fd, real);
+  return faulty_sync("fdatasync", fd);
 }
 
 int ftruncate(int fd, off_t size) noexcept {
-  static auto* real = next<int(int, off_t)>("ftruncate");
-  const OpenFile file(fd);
-  return file && goes_wrong("ftruncate", file.path) ? -1 : real(fd, size);
+  return faulty_truncate("ftruncate", fd, size);
 }
 
 int ftruncate64(int fd, off64_t size) noexcept {
-  static auto* real = next<int(int, off64_t)>("ftruncate64");
-  const OpenFile file(fd);
-  return file && goes_wrong("ftruncate64", file.path) ? -1 : real(fd, size);
+  return faulty_truncate("ftruncate64", fd, size);
 }
 
 int close(int fd) {
-  static auto* real = next<int(int)>("close");
   const OpenFile file(fd);
-  if (!file || !goes_wrong("close", file.path)) return real(fd);
+  const bool wrong = file && goes_wrong("close", file.path);
   const int error = errno;
-  real(fd);  // Linux closes the descriptor even when it reports an error
-  errno = error;
-  return -1;
+  const int result = real<int, int>("close", fd);  // Linux closes it even when it reports an error
+  if (wrong) errno = error;
+  return wrong ? -1 : result;
 }
 
 int unlink(const char* path) noexcept {
-  static auto* real = next<int(const char*)>("unlink");
-  return wrong_path("unlink", path) ? -1 : real(path);
+  return faulty_path("unlink", path);
 }
 
 int unlinkat(int folder, const char* name, int flags) noexcept {
-  static auto* real = next<int(int, const char*, int)>("unlinkat");
-  return wrong_at("unlinkat", folder, name) ? -1 : real(folder, name, flags);
+  return faulty_at("unlinkat", folder, name, flags);
 }
 
 int rename(const char* from, const char* to) noexcept {
-  static auto* real = next<int(const char*, const char*)>("rename");
-  return wrong_path("rename", from) ? -1 : real(from, to);
+  return faulty_path("rename", from, to);
 }
 
 int renameat(int from_folder, const char* from, int to_folder, const char* to) noexcept {
-  static auto* real = next<int(int, const char*, int, const char*)>("renameat");
-  return wrong_at("renameat", from_folder, from) ? -1 : real(from_folder, from, to_folder, to);
+  return faulty_at("renameat", from_folder, from, to_folder, to);
 }
 
 int mkdir(const char* path, mode_t mode) noexcept {
-  static auto* real = next<int(const char*, mode_t)>("mkdir");
-  return wrong_path("mkdir", path) ? -1 : real(path, mode);
+  return faulty_path("mkdir", path, mode);
 }
 
 int mkdirat(int folder, const char* name, mode_t mode) noexcept {
-  static auto* real = next<int(int, const char*, mode_t)>("mkdirat");
-  return wrong_at("mkdirat", folder, name) ? -1 : real(folder, name, mode);
+  return faulty_at("mkdirat", folder, name, mode);
 }
 
 }  // extern "C"

@@ -145,7 +145,7 @@ std::vector<std::string> event_seeds() {
   CheckpointRecord checkpoint;
   checkpoint.sha256 = std::string(64, 'a');
   add(events::RunFailed{"x", nlohmann::json::object()});
-  add(events::CheckpointPruned(checkpoint));
+  add(events::CheckpointPruned{{checkpoint}});
   add(events::CheckpointRejected{checkpoint.sha256, 1, "x"});
   add(events::RunResumed{2, nlohmann::json::object(), {}, {checkpoint.sha256, 1, 1}});
   seeds.push_back(seeds[1] + text_of_events(later, ""));

@@ -15,7 +15,6 @@
 #include "experiments/report/report_data.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/projections.hpp"
-#include "provenance/queries.hpp"
 #include "provenance/ro_crate.hpp"
 #include "tests/provenance/samples.hpp"
 

@@ -1,36 +1,101 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads an exported RO-Crate with other code than wrote it: python3 check_crate.py FOLDER
+"""Checks an exported RO-Crate with other code than wrote it: python3 check_crate.py FOLDER
 
-Finds the root as the specification of RO-Crate 1.1 says, checks every file's size and SHA-256 and,
-where the module prov (Debian: python3-prov) is installed, reads prov.json with it.
+The root is where the specification of RO-Crate 1.1 says; every entity has a type and terms of the
+crate's contexts; every reference leads somewhere; every file is there as described, and no other.
+prov.json declares what it relates and, where the module prov (Debian: python3-prov) is installed,
+is read with it.
 """
+import collections
 import hashlib
 import json
 import pathlib
+import re
 import sys
 
+# Of schema.org 10.0, the context of RO-Crate 1.1; sha256 is from the workflow-run context.
+TERMS = set(
+    "@id @type about actionStatus conformsTo contentSize dateCreated datePublished description "
+    "encodingFormat endTime error hasPart identifier instrument license location mentions name "
+    "object result sha256 softwareRequirements softwareVersion startTime value version".split())
+TYPES = set("CreateAction CreativeWork Dataset File PropertyValue SoftwareApplication Place".split())
+RELATIONS = {
+    "used": {"prov:activity": "activity", "prov:entity": "entity"},
+    "wasGeneratedBy": {"prov:activity": "activity", "prov:entity": "entity"},
+    "wasAssociatedWith": {"prov:activity": "activity", "prov:agent": "agent", "prov:plan": "entity"},
+    "wasDerivedFrom": {"prov:generatedEntity": "entity", "prov:usedEntity": "entity",
+                       "prov:activity": "activity"},
+}
+MOMENT = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z")
+
 folder = pathlib.Path(sys.argv[1])
-graph = json.loads((folder / "ro-crate-metadata.json").read_text())["@graph"]
+metadata = json.loads((folder / "ro-crate-metadata.json").read_text())
+assert metadata["@context"] == ["https://w3id.org/ro/crate/1.1/context",
+                                "https://w3id.org/ro/terms/workflow-run/context"]
+graph = metadata["@graph"]
 entities = {entity["@id"]: entity for entity in graph}
 assert len(entities) == len(graph), "an id occurs twice"
 
-roots = [
-    entities[entity["about"]["@id"]]
-    for entity in graph
-    if isinstance(entity.get("conformsTo"), dict)
-    and entity["conformsTo"]["@id"].startswith("https://w3id.org/ro/crate/")
-]
-assert len(roots) == 1 and roots[0]["@type"] == "Dataset", roots
 
-files = [entity for entity in graph if entity["@type"] == "File"]
-assert {file["@id"] for file in files} == {part["@id"] for part in roots[0]["hasPart"]}
+def of_type(kind):
+    return [entity for entity in graph if entity["@type"] == kind]
+
+
+for entity in graph:
+    assert entity["@type"] in TYPES, entity
+    for key, value in entity.items():
+        assert key in TERMS, key
+        for inner in value if isinstance(value, list) else [value]:
+            if isinstance(inner, dict):
+                assert list(inner) == ["@id"], f"{entity['@id']}.{key} is nested"
+                to = inner["@id"]
+                assert to in entities or to.startswith("http"), f"{entity['@id']} -> {to}"
+
+descriptor = entities["ro-crate-metadata.json"]
+assert descriptor["@type"] == "CreativeWork"
+assert descriptor["conformsTo"]["@id"] == "https://w3id.org/ro/crate/1.1"
+root = entities[descriptor["about"]["@id"]]
+assert root["@id"] == "./" and root["@type"] == "Dataset" and root["name"] and root["description"]
+assert MOMENT.fullmatch(root["datePublished"])
+licence = entities[root["license"]["@id"]]
+assert licence["name"] and licence["description"]
+profile = entities[root["conformsTo"][0]["@id"]]
+assert (profile["@id"], profile["version"]) == ("https://w3id.org/ro/wfrun/process/0.5", "0.5")
+
+files = of_type("File")
+assert {file["@id"] for file in files} == {part["@id"] for part in root["hasPart"]}
 for file in files:
+    assert not file["@id"].startswith("/") and ".." not in file["@id"]
     data = (folder / file["@id"]).read_bytes()
-    assert len(data) == int(file["contentSize"]), file["@id"]
-    assert hashlib.sha256(data).hexdigest() == file["sha256"], file["@id"]
-actions = [entity for entity in graph if entity["@type"] == "CreateAction"]
-assert actions and {a["@id"] for a in actions} == {m["@id"] for m in roots[0]["mentions"]}
+    assert file["contentSize"] == str(len(data)), file["@id"]
+    assert file["sha256"] == hashlib.sha256(data).hexdigest(), file["@id"]
+    assert isinstance(file["encodingFormat"], str)
+present = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+assert present == {file["@id"] for file in files} | {"ro-crate-metadata.json"}
+
+actions = of_type("CreateAction")
+assert actions and {a["@id"] for a in actions} == {m["@id"] for m in root["mentions"]}
+for action in actions:
+    assert MOMENT.fullmatch(action["startTime"])
+    failed = action["actionStatus"]["@id"] == "http://schema.org/FailedActionStatus"
+    assert failed == ("error" in action)
+    assert all("sha256" in entities[result["@id"]] for result in action["result"])
+
+prov = json.loads((folder / "prov.json").read_text())
+assert "shearcell" in prov.pop("prefix")
+for section, content in prov.items():
+    assert section in RELATIONS or section in ("entity", "activity", "agent"), section
+    for name, facts in content.items():
+        assert name.split(":")[0] in ("prov", "shearcell", "_"), name
+        for key, value in facts.items():
+            assert key.split(":")[0] in ("prov", "shearcell"), key
+            target = RELATIONS.get(section, {}).get(key)
+            assert target is None or value in prov[target], value
+generations = collections.Counter(g["prov:entity"] for g in prov["wasGeneratedBy"].values())
+assert set(generations.values()) == {1}, "PROV allows one generation for each entity"
+assert len(prov["activity"]) == len(prov["wasAssociatedWith"]) == len(actions)
+assert len(prov["agent"]) == len(of_type("SoftwareApplication"))
 print(f"{len(graph)} entities, {len(files)} files, {len(actions)} actions")
 
 try:

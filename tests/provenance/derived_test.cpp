@@ -12,11 +12,7 @@ namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::byte> bytes(const std::string& text) {
-  const auto view = std::as_bytes(std::span(text));
-  return {view.begin(), view.end()};
-}
+using test::bytes_of;
 
 class DerivedCacheTest : public testing::Test {
  protected:
@@ -28,10 +24,13 @@ class DerivedCacheTest : public testing::Test {
     DerivedCache cache(folder_.path());
     return cache.get(std::span(&wanted, 1)).at(0);
   }
-  void put(const DerivedKey& name, const std::string& content) {
-    DerivedCache cache(folder_.path());
-    const DerivedObject object{name, bytes(content)};
+  static void put(DerivedCache& cache, const DerivedKey& key, const std::string& content) {
+    const DerivedObject object{key, bytes_of(content)};
     cache.put(std::span(&object, 1));
+  }
+  void put(const DerivedKey& key, const std::string& content) {
+    DerivedCache cache(folder_.path());
+    put(cache, key, content);
     EXPECT_EQ(cache.trouble(), "");
   }
   void sql(const std::string& statement) {
@@ -45,11 +44,11 @@ class DerivedCacheTest : public testing::Test {
 TEST_F(DerivedCacheTest, GivesBackWhatWasKept) {
   const std::string content("\0\xff CBOR \0", 9);
   put(key(1), content);
-  EXPECT_EQ(get(key(1)), bytes(content));
+  EXPECT_EQ(get(key(1)), bytes_of(content));
   put(key(1), "newer");
-  EXPECT_EQ(get(key(1)), bytes("newer"));
+  EXPECT_EQ(get(key(1)), bytes_of("newer"));
   put(key(2), "");
-  EXPECT_EQ(get(key(2)), bytes(""));
+  EXPECT_EQ(get(key(2)), bytes_of(""));
 }
 
 TEST_F(DerivedCacheTest, EveryPartOfTheKeyCounts) {
@@ -64,13 +63,13 @@ TEST_F(DerivedCacheTest, ADamagedOrMisplacedObjectIsNotGiven) {
   put(key(2), "content");
   sql("UPDATE derived SET content = x'00' WHERE checkpoint = '" + test::run_id(1) + "'");
   EXPECT_EQ(get(key(1)), std::nullopt);
-  EXPECT_EQ(get(key(2)), bytes("content"));
+  EXPECT_EQ(get(key(2)), bytes_of("content"));
   // A sound object under the key of another.
   sql("UPDATE derived SET checkpoint = '" + test::run_id(3) + "' WHERE checkpoint = '" +
       test::run_id(2) + "'");
   EXPECT_EQ(get(key(3)), std::nullopt);
   put(key(1), "content");
-  EXPECT_EQ(get(key(1)), bytes("content"));
+  EXPECT_EQ(get(key(1)), bytes_of("content"));
 }
 
 TEST_F(DerivedCacheTest, BeginsAnewWhereTheFileIsNoDatabase) {
@@ -82,7 +81,7 @@ TEST_F(DerivedCacheTest, BeginsAnewWhereTheFileIsNoDatabase) {
     test::write_bytes(file(), damaged);
     EXPECT_EQ(get(key(1)), std::nullopt) << damaged.size() << " bytes";
     put(key(1), "content");
-    EXPECT_EQ(get(key(1)), bytes("content")) << damaged.size() << " bytes";
+    EXPECT_EQ(get(key(1)), bytes_of("content")) << damaged.size() << " bytes";
   }
 }
 
@@ -95,7 +94,7 @@ TEST_F(DerivedCacheTest, NoFlippedByteGivesAnotherContent) {
     flipped[at] = static_cast<char>(flipped[at] ^ 0x10);
     test::write_bytes(file(), flipped);
     const auto content = get(key(1));
-    EXPECT_EQ(content.value_or(bytes("content")), bytes("content")) << "byte " << at;
+    EXPECT_EQ(content.value_or(bytes_of("content")), bytes_of("content")) << "byte " << at;
     ++(content ? given : lost);
   }
   std::printf("%d flipped bytes: %d times given right, %d times not given\n", given + lost, given,
@@ -106,10 +105,9 @@ TEST_F(DerivedCacheTest, NoFlippedByteGivesAnotherContent) {
 TEST_F(DerivedCacheTest, MayBeDeletedWhileItIsUsed) {
   DerivedCache cache(folder_.path());
   fs::remove(file());
-  const DerivedObject object{key(1), bytes("content")};
-  cache.put(std::span(&object, 1));
+  put(cache, key(1), "content");
   put(key(2), "content");
-  EXPECT_EQ(get(key(2)), bytes("content"));
+  EXPECT_EQ(get(key(2)), bytes_of("content"));
 }
 
 TEST_F(DerivedCacheTest, TouchesNoForeignFile) {
@@ -119,8 +117,7 @@ TEST_F(DerivedCacheTest, TouchesNoForeignFile) {
   {
     DerivedCache cache(folder_.path());
     EXPECT_NE(cache.trouble().find("link"), std::string::npos) << cache.trouble();
-    const DerivedObject object{key(1), bytes("content")};
-    cache.put(std::span(&object, 1));
+    put(cache, key(1), "content");
   }
   EXPECT_EQ(test::read_bytes(elsewhere), "mine");
   fs::remove(file());
@@ -136,15 +133,12 @@ TEST_F(DerivedCacheTest, SeveralMayKeepAtOnce) {
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([this, t] {
       DerivedCache cache(folder_.path());  // a connection of its own, as another process has
-      for (int i = 0; i < 50; ++i) {
-        const DerivedObject object{key(i), bytes("content " + std::to_string(i))};
-        cache.put(std::span(&object, 1));
-      }
+      for (int i = 0; i < 50; ++i) put(cache, key(i), "content " + std::to_string(i));
       EXPECT_EQ(cache.trouble(), "") << t;
     });
   }
   for (std::thread& thread : threads) thread.join();
-  for (int i = 0; i < 50; ++i) EXPECT_EQ(get(key(i)), bytes("content " + std::to_string(i)));
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(get(key(i)), bytes_of("content " + std::to_string(i)));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "provenance/projections.hpp"
-#include "provenance/schema.hpp"
 #include "tests/property.hpp"
 #include "tests/provenance/samples.hpp"
 
@@ -42,49 +41,30 @@ void declare(Store& store, const Act& act) {
   store.declare_run(d);
 }
 
-void change_checkpoint(Store& store, const Act& act) {
-  const std::string id = run_id(act.run);
-  if (std::string(kActs[act.what]) == "prune") {
+void perform(Store& store, const Act& act) {
+  const std::string what = kActs[act.what], id = run_id(act.run);
+  const auto known = store.checkpoints(id);
+  const auto some = act.amount % 2 == 0 ? std::nullopt : std::optional(act.amount);
+  const auto last = known.empty() ? std::nullopt : std::optional(known.back().sha256);
+  if (what == "declare") declare(store, act);
+  if (what == "start") store.start_run(id, {}, last);
+  if (what == "record") store.record_checkpoint(id, sample(id, act.amount), {0.5, 100});
+  if (what == "interrupt") store.interrupt_run(id, "SIGTERM");
+  if (what == "fail") store.fail_run(id, "an overlap");
+  if (what == "complete") store.complete_run(id, {}, some);
+  if (what == "figure")
+    store.record_figure("S" + std::to_string(act.run), {{"inputs", {act.amount}}});
+  if (what == "replay") store.record_replay(id, true, {{"step", act.amount}});
+  if (what == "manifest") store.register_manifest("a: " + std::to_string(act.amount), "a.yaml", {});
+  if (what == "prune") {
     store.prune(store.prunable({.runs = {id}, .state = {}, .keep_every = act.amount}));
   }
   for (const CheckpointRecord& record : store.checkpoints(id, true)) {
     if (record.step != act.amount) continue;
-    if (std::string(kActs[act.what]) == "reject") store.reject_checkpoint(id, record.sha256, "why");
-    if (std::string(kActs[act.what]) == "restore" && record.state == CheckpointState::pruned) {
+    if (what == "reject") store.reject_checkpoint(id, record.sha256, "why");
+    if (what == "restore" && record.state == CheckpointState::pruned) {
       store.restore_checkpoint(record, sample(id, record.step));
     }
-  }
-}
-
-void perform(Store& store, const Act& act) {
-  const std::string id = run_id(act.run);
-  const auto known = store.checkpoints(id);
-  switch (act.what) {
-    case 0:
-      return declare(store, act);
-    case 1:
-      store.start_run(id, {}, known.empty() ? std::nullopt : std::optional(known.back().sha256));
-      return;
-    case 2:
-      store.record_checkpoint(id, sample(id, act.amount),
-                              {.wall_seconds = 0.5, .particle_steps = 100});
-      return;
-    case 3:
-      return store.interrupt_run(id, "SIGTERM");
-    case 4:
-      return store.fail_run(id, "an overlap");
-    case 5:
-      return store.complete_run(id, {},
-                                act.amount % 2 == 0 ? std::nullopt : std::optional(act.amount));
-    case 9:
-      return store.record_figure("S" + std::to_string(act.run), {{"inputs", {act.amount}}});
-    case 10:
-      return store.record_replay(id, true, {{"step", act.amount}});
-    case 11:
-      store.register_manifest("a: " + std::to_string(act.amount), "a.yaml", {});
-      return;
-    default:
-      return change_checkpoint(store, act);
   }
 }
 

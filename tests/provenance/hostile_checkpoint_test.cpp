@@ -10,54 +10,42 @@
 
 #include "provenance/checkpoint.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/limits.hpp"
+#include "provenance/hdf5_write.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {
 namespace {
 
+using hdf5::Handle;
 using test::kFrame;
 using test::seal;
 
 /// A file image opened by the HDF5 library.
-class Library {
- public:
-  explicit Library(std::vector<std::byte> image, unsigned flags = H5F_ACC_RDONLY) {
-    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_fapl_core(access, 1 << 20, false);
-    H5Pset_file_image(access, image.data(), image.size());
-    file_ = H5Fopen("image", flags, access);
-    H5Pclose(access);
-    EXPECT_GE(file_, 0);
-  }
-  ~Library() { H5Fclose(file_); }
-  Library(const Library&) = delete;
-  Library& operator=(const Library&) = delete;
+Handle open_image(std::vector<std::byte> image, unsigned flags = H5F_ACC_RDONLY) {
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_core(access.get(), 1 << 20, false);
+  H5Pset_file_image(access.get(), image.data(), image.size());
+  Handle file(H5Fopen("image", flags, access.get()), H5Fclose);
+  EXPECT_GE(file.get(), 0);
+  return file;
+}
 
-  hid_t file() const { return file_; }
-  std::vector<double> numbers(const std::string& path) const {
-    const hid_t set = H5Dopen2(file_, path.c_str(), H5P_DEFAULT);
-    EXPECT_GE(set, 0) << path;
-    const hid_t space = H5Dget_space(set);
-    std::vector<double> data(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-    if (!data.empty()) {
-      EXPECT_GE(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()), 0);
-    }
-    H5Sclose(space);
-    H5Dclose(set);
-    return data;
-  }
-  double attribute(const char* group, const char* name) const {
-    double value = 0;
-    const hid_t read = H5Aopen_by_name(file_, group, name, H5P_DEFAULT, H5P_DEFAULT);
-    EXPECT_GE(H5Aread(read, H5T_NATIVE_DOUBLE, &value), 0) << name;
-    H5Aclose(read);
-    return value;
-  }
+std::vector<double> numbers(const Handle& file, const std::string& path) {
+  const Handle set(H5Dopen2(file.get(), path.c_str(), H5P_DEFAULT), H5Dclose);
+  EXPECT_GE(set.get(), 0) << path;
+  const Handle space(H5Dget_space(set.get()), H5Sclose);
+  std::vector<double> data(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get())));
+  if (data.empty()) return data;
+  EXPECT_GE(H5Dread(set.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()), 0);
+  return data;
+}
 
- private:
-  hid_t file_ = -1;
-};
+double attribute(const Handle& file, const char* group, const char* name) {
+  double value = 0;
+  const Handle read(H5Aopen_by_name(file.get(), group, name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  EXPECT_GE(H5Aread(read.get(), H5T_NATIVE_DOUBLE, &value), 0) << name;
+  return value;
+}
 
 std::vector<double> columns(const Eigen::Matrix3Xd& m) {
   return {m.data(), m.data() + m.size()};
@@ -73,17 +61,17 @@ TEST(Hdf5Read, AgreesWithTheLibrary) {
       }
       const std::vector<std::byte> image = encode_checkpoint(written);
       const Checkpoint read = decode_checkpoint(image);
-      const Library library(image);
-      EXPECT_EQ(columns(read.state.position), library.numbers("/restart/position"));
-      EXPECT_EQ(columns(read.state.velocity), library.numbers("/restart/velocity"));
+      const Handle file = open_image(image);
+      EXPECT_EQ(columns(read.state.position), numbers(file, "/restart/position"));
+      EXPECT_EQ(columns(read.state.velocity), numbers(file, "/restart/velocity"));
       EXPECT_EQ(read.cell.wall_grains.size() * 3,
-                library.numbers("/restart/cell/wall_grain_position").size());
-      EXPECT_EQ(read.theta, library.attribute("/restart", "theta"));
-      EXPECT_EQ(static_cast<double>(read.state.step), library.attribute("/restart", "step"));
-      EXPECT_EQ(read.cell.width, library.attribute("/restart/cell", "width"));
+                numbers(file, "/restart/cell/wall_grain_position").size());
+      EXPECT_EQ(read.theta, attribute(file, "/restart", "theta"));
+      EXPECT_EQ(static_cast<double>(read.state.step), attribute(file, "/restart", "step"));
+      EXPECT_EQ(read.cell.width, attribute(file, "/restart/cell", "width"));
       EXPECT_EQ(read.observables, written.observables);
       for (const auto& [name, value] : read.observables) {
-        EXPECT_EQ(library.numbers("/observables/" + name + "/value"), std::vector{value});
+        EXPECT_EQ(numbers(file, "/observables/" + name + "/value"), std::vector{value});
       }
       EXPECT_EQ(state_hash(read), state_hash(written));
     }
@@ -96,12 +84,12 @@ using Change = std::function<void(hid_t file)>;
 
 std::vector<std::byte> forge(const Change& change) {
   std::vector<std::byte> image = encode_checkpoint(test::sample_checkpoint("a", 1, 5));
-  const Library opened(image, H5F_ACC_RDWR);
-  change(opened.file());
-  H5Fflush(opened.file(), H5F_SCOPE_GLOBAL);
-  const ssize_t size = H5Fget_file_image(opened.file(), nullptr, 0);
+  const Handle file = open_image(image, H5F_ACC_RDWR);
+  change(file.get());
+  H5Fflush(file.get(), H5F_SCOPE_GLOBAL);
+  const ssize_t size = H5Fget_file_image(file.get(), nullptr, 0);
   image.resize(kFrame + static_cast<std::size_t>(size));
-  H5Fget_file_image(opened.file(), image.data() + kFrame, static_cast<std::size_t>(size));
+  H5Fget_file_image(file.get(), image.data() + kFrame, static_cast<std::size_t>(size));
   seal(image);
   return image;
 }
@@ -128,36 +116,29 @@ Change dataset(
     const char* path, hid_t type, const std::vector<hsize_t>& shape,
     const std::function<void(hid_t list)>& storage = [](hid_t) {}) {
   return instead(path, [=](hid_t file) {
-    const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
-    storage(list);
-    const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
-    const hid_t set = H5Dcreate2(file, path, type, space, H5P_DEFAULT, list, H5P_DEFAULT);
-    EXPECT_GE(set, 0);
-    H5Dclose(set);
-    H5Sclose(space);
-    H5Pclose(list);
+    const Handle list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    storage(list.get());
+    const Handle space = hdf5::make_space(shape);
+    const Handle set(
+        H5Dcreate2(file, path, type, space.get(), H5P_DEFAULT, list.get(), H5P_DEFAULT), H5Dclose);
+    EXPECT_GE(set.get(), 0);
   });
 }
 
 template <class T>
 Change values(const char* path, hid_t type, const std::vector<T>& data) {
   return [=](hid_t file) {
-    const hid_t set = H5Dopen2(file, path, H5P_DEFAULT);
-    EXPECT_GE(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()), 0);
-    H5Dclose(set);
+    const Handle set(H5Dopen2(file, path, H5P_DEFAULT), H5Dclose);
+    EXPECT_GE(H5Dwrite(set.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()), 0);
   };
 }
 
 template <class T>
 Change attribute(const char* group, const char* name, hid_t type, T value) {
   return [=](hid_t file) {
-    H5Adelete_by_name(file, group, name, H5P_DEFAULT);
-    const hid_t space = H5Screate(H5S_SCALAR);
-    const hid_t made =
-        H5Acreate_by_name(file, group, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    EXPECT_GE(H5Awrite(made, type, &value), 0);
-    H5Aclose(made);
-    H5Sclose(space);
+    const Handle object(H5Oopen(file, group, H5P_DEFAULT), H5Oclose);
+    H5Adelete(object.get(), name);
+    hdf5::put_attribute(object, name, type, &value);
   };
 }
 
@@ -236,9 +217,7 @@ TEST(HostileCheckpoint, AForgedObjectIsRefusedByName) {
   for (const Forgery& forgery : forgeries()) {
     SCOPED_TRACE(forgery.what);
     const std::vector<std::byte> image = forge(forgery.change);
-    const std::string message =
-        test::message_of<StoreDamaged>([&image] { decode_checkpoint(image); });
-    EXPECT_NE(message.find(forgery.named), std::string::npos) << message;
+    test::expect_refused<StoreDamaged>([&image] { decode_checkpoint(image); }, {forgery.named});
   }
 }
 

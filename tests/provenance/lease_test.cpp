@@ -12,14 +12,13 @@
 #include <cstdio>
 #include <thread>
 
-#include "provenance/schema.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {
 namespace {
 
 using namespace std::chrono_literals;
-using test::message_of;
+using test::expect_refused;
 using test::run_id;
 using test::sample_checkpoint;
 using test::sample_run;
@@ -44,8 +43,8 @@ TEST_F(LeaseTest, KeepsOthersFromARunThatIsHeld) {
   Store first = open();
   Store second = open();
   first.start_run(id_, {});
-  const std::string message = message_of<RunHeld>([&] { second.start_run(id_, {}); });
-  EXPECT_NE(message.find("process " + std::to_string(getpid())), std::string::npos) << message;
+  expect_refused<RunHeld>([&] { second.start_run(id_, {}); },
+                          {"process " + std::to_string(getpid())});
   const std::vector<Lease> leases = second.leases();
   ASSERT_EQ(leases.size(), 1u);
   EXPECT_EQ(leases[0].run, id_);

@@ -2,7 +2,6 @@
 // A small history with every way an attempt can end, for the tests of lineage and its exports.
 #pragma once
 
-#include <span>
 #include <string>
 
 #include "provenance/events.hpp"
@@ -77,8 +76,7 @@ inline void append_to_run(const Store& store, const std::string& run, const NewE
   sqlite::Database database(store.folder() / "store.sqlite", sqlite::Open::existing);
   EventLog log(database);
   sqlite::WriteTransaction lock(database);
-  const std::string stream = "run/" + run;
-  log.append(lock, stream, log.version(stream), std::span(&event, 1));
+  log.append(lock, "run/" + run, event);
   lock.commit();
 }
 

@@ -69,6 +69,12 @@ TEST_F(Lineage, ARejectedCheckpointIsKnownAsSuchUntilItIsMadeAgain) {
   EXPECT_TRUE(run.attempts.back().host.empty()) << "none was recorded";
 }
 
+TEST_F(Lineage, ARejectedCheckpointThatIsRegeneratedIsSoundAgain) {
+  store_.restore_checkpoint(store_.find_checkpoint(history_.rejected),
+                            test::sample_checkpoint(history_.sheared, 45600));
+  EXPECT_TRUE(run_lineage(store_, history_.sheared).back().find(history_.rejected)->kept());
+}
+
 TEST_F(Lineage, AStartMayNameTheStateItBeganWith) {
   const std::string packing = store_.checkpoints(history_.packing).at(0).sha256;
   test::append_to_run(store_, history_.sheared,
@@ -78,10 +84,8 @@ TEST_F(Lineage, AStartMayNameTheStateItBeganWith) {
   EXPECT_EQ(named.from_checkpoint, packing);
   // A payload that is not what it must be is damage and names its event.
   test::append_to_run(store_, history_.sheared, {"CheckpointRecorded", {{"sha256", "../../x"}}});
-  const std::string message =
-      test::message_of<StoreDamaged>([this] { run_lineage(store_, history_.sheared); });
-  EXPECT_NE(message.find("event " + std::to_string(store_.head().seq)), std::string::npos)
-      << message;
+  test::expect_refused<StoreDamaged>([this] { run_lineage(store_, history_.sheared); },
+                                     {"event " + std::to_string(store_.head().seq)});
 }
 
 TEST_F(Lineage, TheManifestIsFoundByItsHash) {

@@ -4,7 +4,6 @@
 
 #include "provenance/events.hpp"
 #include "provenance/projections.hpp"
-#include "provenance/schema.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {
@@ -27,9 +26,9 @@ class MigrationTest : public ::testing::Test {
     }
   }
 
-  std::int64_t integer(const std::string& sql) {
-    return sqlite::Database(path_ / "store.sqlite", sqlite::Open::existing).integer(sql);
-  }
+  sqlite::Database database() const { return {path_ / "store.sqlite", sqlite::Open::existing}; }
+  void execute(const std::string& sql) const { database().execute(sql); }
+  std::int64_t integer(const std::string& sql) const { return database().integer(sql); }
   std::int64_t version() { return integer("PRAGMA user_version"); }
 
   TemporaryFolder folder_;
@@ -61,36 +60,23 @@ TEST_F(MigrationTest, AReaderLeavesTheOldSchemaAlone) {
 }
 
 TEST_F(MigrationTest, AWriterMigratesAndChangesNoEvent) {
-  {
-    const Store store(path_, Access::write);
-    expect_what_was_stored(store);
-  }
+  expect_what_was_stored(Store(path_, Access::write));
   EXPECT_EQ(version(), kSchemaVersion);
   EXPECT_EQ(integer("SELECT count(*) FROM leases"), 0);
   expect_what_was_stored(Store(path_, Access::write));  // once is enough
 }
 
 TEST_F(MigrationTest, RebuildGivesTheTablesOfThatTime) {
-  const auto rows = [this] {
-    return projection_rows(sqlite::Database(path_ / "store.sqlite", sqlite::Open::existing));
-  };
-  const auto before = rows();
+  const auto before = projection_rows(database());
   Store(path_, Access::write).rebuild();
-  EXPECT_EQ(rows(), before);
+  EXPECT_EQ(projection_rows(database()), before);
 }
 
 TEST_F(MigrationTest, GoesOnFromThere) {
   Store store(path_, Access::write);
-  RunDeclaration longer;
   const RunRecord run = store.run(kSheared);
-  longer.id = run.id;
-  longer.parent = run.parent;
-  longer.kind = run.kind;
-  longer.resolved = run.resolved;
-  longer.grains = run.grains;
-  longer.target_cycles = 3;
-  longer.membership = run.memberships.at(0);
-  store.declare_run(longer);
+  store.declare_run(
+      {run.id, run.parent, run.kind, run.resolved, run.grains, 3, run.memberships.at(0)});
   store.start_run(run.id, {}, store.checkpoints(run.id).back().sha256);
   EXPECT_EQ(store.events("run/" + run.id).back().schema, 2u);
   store.complete_run(run.id, {}, 3);
@@ -98,13 +84,10 @@ TEST_F(MigrationTest, GoesOnFromThere) {
 }
 
 TEST_F(MigrationTest, WhenItIsCutShortTheOldVersionStays) {
-  {
-    sqlite::Database database(path_ / "store.sqlite", sqlite::Open::existing);
-    database.execute("CREATE TABLE leases(in_the_way)");  // so that the step fails
-  }
+  execute("CREATE TABLE leases(in_the_way)");  // so that the migration fails
   EXPECT_THROW(Store(path_, Access::write), StoreDamaged);
   EXPECT_EQ(version(), 1);
-  sqlite::Database(path_ / "store.sqlite", sqlite::Open::existing).execute("DROP TABLE leases");
+  execute("DROP TABLE leases");
   expect_what_was_stored(Store(path_, Access::write));
   EXPECT_EQ(version(), kSchemaVersion);
 }
@@ -140,9 +123,7 @@ TEST_F(MigrationTest, NewerPayloadsAreRefusedByName) {
   event.type = "RunStarted";
   event.schema = 3;
   event.payload = "{}";
-  const std::string message = test::message_of<StoreDamaged>([&] { event.body(); });
-  EXPECT_NE(message.find("event 7 (RunStarted)"), std::string::npos) << message;
-  EXPECT_NE(message.find("layout 3"), std::string::npos) << message;
+  test::expect_refused<StoreDamaged>([&] { event.body(); }, {"event 7 (RunStarted)", "layout 3"});
 }
 
 }  // namespace

@@ -5,11 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <iterator>
+#include <cstdlib>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "tests/provenance/lineage_samples.hpp"
 
@@ -46,92 +44,14 @@ class Crate : public testing::Test {
   std::map<std::string, json> entities_;
 };
 
-/// ISO 8601 in UTC with milliseconds.
-bool is_moment(const json& value) {
-  const std::string text = value.get<std::string>(), pattern = "0000-00-00T00:00:00.000Z";
-  return std::equal(text.begin(), text.end(), pattern.begin(), pattern.end(),
-                    [](char c, char p) { return p == '0' ? c >= '0' && c <= '9' : c == p; });
-}
-
-void for_each_reference(const json& value, const std::function<void(const std::string&)>& visit) {
-  if (value.is_object() && value.size() == 1 && value.contains("@id")) visit(value.at("@id"));
-  if (!value.is_structured()) return;
-  for (const json& inner : value) for_each_reference(inner, visit);
-}
-
-TEST_F(Crate, TheDescriptorLeadsToTheRoot) {
-  EXPECT_EQ(metadata_.at("@context"),
-            json::array({"https://w3id.org/ro/crate/1.1/context",
-                         "https://w3id.org/ro/terms/workflow-run/context"}));
-  const json& descriptor = entities_.at("ro-crate-metadata.json");
-  EXPECT_EQ(descriptor.at("@type"), "CreativeWork");
-  EXPECT_EQ(descriptor.at("conformsTo").at("@id"), "https://w3id.org/ro/crate/1.1");
-  const json& root = at(descriptor.at("about"));
-  EXPECT_EQ(root.at("@id"), "./");
-  EXPECT_EQ(root.at("@type"), "Dataset");
-  EXPECT_FALSE(root.at("name").get<std::string>().empty());
-  EXPECT_FALSE(root.at("description").get<std::string>().empty());
-  EXPECT_TRUE(is_moment(root.at("datePublished")));
-  EXPECT_EQ(root.at("datePublished"), store_.run(history_.sheared).updated_at);
-  EXPECT_TRUE(at(root.at("license")).contains("name"));
-  EXPECT_TRUE(at(root.at("license")).contains("description"));
-  const json& profile = at(root.at("conformsTo").at(0));
-  EXPECT_EQ(profile.at("@id"), "https://w3id.org/ro/wfrun/process/0.5");
-  EXPECT_EQ(profile.at("version"), "0.5");
-}
-
-TEST_F(Crate, EveryEntityHasATypeAndEveryReferenceLeadsSomewhere) {
-  for (const auto& [id, entity] : entities_) {
-    EXPECT_TRUE(entity.at("@type").is_string()) << id;
-    for (const auto& [key, value] : entity.items()) {
-      EXPECT_FALSE(value.is_object() && !value.contains("@id")) << id << "." << key << " is nested";
-    }
-    for_each_reference(entity, [&, &from = id](const std::string& to) {
-      EXPECT_TRUE(entities_.contains(to) || to.starts_with("http")) << from << " -> " << to;
-    });
-  }
-}
-
-std::set<std::string> words(const std::string& text) {
-  std::istringstream in(text);
-  return {std::istream_iterator<std::string>(in), {}};
-}
-
-// Of schema.org 10.0, the context of RO-Crate 1.1; sha256 is from the workflow-run context.
-TEST_F(Crate, UsesOnlyTermsOfItsContexts) {
-  const auto terms = words(
-      "@id @type about actionStatus conformsTo contentSize dateCreated datePublished description "
-      "encodingFormat endTime error hasPart identifier instrument license location mentions name "
-      "object result sha256 softwareRequirements softwareVersion startTime value version");
-  const auto types =
-      words("CreateAction CreativeWork Dataset File PropertyValue SoftwareApplication Place");
-  for (const auto& [id, entity] : entities_) {
-    EXPECT_TRUE(types.contains(entity.at("@type"))) << entity.at("@type");
-    for (const auto& [key, value] : entity.items()) EXPECT_TRUE(terms.contains(key)) << key;
-  }
-}
-
-TEST_F(Crate, EveryFileIsThereAsDescribedAndNoOther) {
-  std::set<std::string> parts, present;
-  for (const json& part : entities_.at("./").at("hasPart")) parts.insert(part.at("@id"));
-  for (const json& file : of_type("File")) {
-    const std::string id = file.at("@id");
-    EXPECT_TRUE(parts.erase(id) == 1) << id << " is no part of the crate";
-    EXPECT_TRUE(fs::path(id).is_relative() && id.find("..") == std::string::npos) << id;
-    const std::string bytes = test::read_bytes(crate_ / id);
-    EXPECT_EQ(file.at("contentSize"), std::to_string(bytes.size())) << id;
-    EXPECT_EQ(file.at("sha256"), sha256_hex(bytes)) << id;
-    EXPECT_TRUE(file.at("encodingFormat").is_string());
-    present.insert(id);
-  }
-  EXPECT_TRUE(parts.empty()) << *parts.begin() << " is no File";
-  present.insert("ro-crate-metadata.json");
-  for (const auto& entry : fs::recursive_directory_iterator(crate_)) {
-    if (entry.is_directory()) continue;
-    EXPECT_EQ(present.erase(entry.path().lexically_relative(crate_).string()), 1U) << entry.path();
-  }
-  EXPECT_TRUE(present.empty());
+// Python is a second reader. Debian's modules belong to the Python in /usr/bin.
+TEST_F(Crate, MeetsItsSpecificationsAndHoldsTheFilesThatItDescribes) {
+  const std::string command = "PATH=/usr/bin:$PATH python3 " SHEARCELL_TEST_DATA
+                              "/../provenance/check_crate.py '" +
+                              crate_.string() + "'";
+  EXPECT_EQ(std::system(command.c_str()), 0);
   EXPECT_EQ(files_.size(), of_type("File").size() + 1);
+  EXPECT_EQ(entities_.at("./").at("datePublished"), store_.run(history_.sheared).updated_at);
   // One packing and three states; the rejected one is told of and not copied.
   EXPECT_EQ(test::read_bytes(crate_ / "manifests" / (sha256_hex("manifest") + ".yaml")),
             "manifest");
@@ -142,18 +62,13 @@ TEST_F(Crate, EveryFileIsThereAsDescribedAndNoOther) {
 TEST_F(Crate, OneActionForEachAttempt) {
   const std::vector<json> actions = of_type("CreateAction");
   EXPECT_EQ(actions.size(), 5U);
-  EXPECT_EQ(entities_.at("./").at("mentions").size(), actions.size());
   std::map<std::string, int> statuses;
   for (const json& action : actions) {
     const json& tool = at(action.at("instrument"));
     EXPECT_EQ(tool.at("@type"), "SoftwareApplication");
     EXPECT_EQ(tool.at("name"), "shearcell");
     EXPECT_TRUE(tool.at("softwareVersion").get<std::string>().starts_with("0.1.0 ("));
-    EXPECT_TRUE(is_moment(action.at("startTime")));
-    const std::string status = action.at("actionStatus").at("@id");
-    ++statuses[status];
-    EXPECT_EQ(status == "http://schema.org/FailedActionStatus", action.contains("error"));
-    for (const json& result : action.at("result")) EXPECT_TRUE(at(result).contains("sha256"));
+    ++statuses[action.at("actionStatus").at("@id")];
   }
   EXPECT_EQ(statuses["http://schema.org/CompletedActionStatus"], 2);
   EXPECT_EQ(statuses["http://schema.org/FailedActionStatus"], 3);
@@ -177,42 +92,11 @@ TEST_F(Crate, AnActionIsGivenManifestPackingSeedAndParameters) {
                         {"fluid", "cell"}, {"mass_kg", 2e-5}, {"seed", 7}, {"stage", "shear"}}));
 }
 
-TEST_F(Crate, ProvJsonDeclaresWhatItRelates) {
+TEST_F(Crate, ProvJsonTellsOfEachCheckpointOnce) {
   const json prov = json::parse(test::read_bytes(crate_ / "prov.json"));
-  const std::map<std::string, std::map<std::string, std::string>> relations = {
-      {"used", {{"prov:activity", "activity"}, {"prov:entity", "entity"}}},
-      {"wasGeneratedBy", {{"prov:activity", "activity"}, {"prov:entity", "entity"}}},
-      {"wasAssociatedWith",
-       {{"prov:activity", "activity"}, {"prov:agent", "agent"}, {"prov:plan", "entity"}}},
-      {"wasDerivedFrom",
-       {{"prov:generatedEntity", "entity"},
-        {"prov:usedEntity", "entity"},
-        {"prov:activity", "activity"}}}};
-  const std::set<std::string> prefixes = {"prov", "xsd", "shearcell"};
-  ASSERT_TRUE(prov.at("prefix").contains("shearcell"));
-  for (const auto& [section, content] : prov.items()) {
-    if (section == "prefix") continue;
-    const bool relates = relations.contains(section);
-    EXPECT_TRUE(relates || section == "entity" || section == "activity" || section == "agent");
-    for (const auto& [id, facts] : content.items()) {
-      EXPECT_TRUE(prefixes.contains(id.substr(0, id.find(':'))) || id.starts_with("_:")) << id;
-      for (const auto& [key, value] : facts.items()) {
-        EXPECT_TRUE(prefixes.contains(key.substr(0, key.find(':')))) << key;
-        const auto target = relates ? relations.at(section).find(key)
-                                    : std::map<std::string, std::string>::const_iterator{};
-        if (relates && target != relations.at(section).end()) {
-          EXPECT_TRUE(prov.at(target->second).contains(value.get<std::string>())) << value;
-        }
-      }
-    }
-  }
   EXPECT_EQ(prov.at("activity").size(), 5U);
   EXPECT_EQ(prov.at("agent").size(), 2U);
-  EXPECT_EQ(prov.at("wasAssociatedWith").size(), 5U);
-  std::map<std::string, int> generated;
-  for (const json& g : prov.at("wasGeneratedBy")) ++generated[g.at("prov:entity")];
-  EXPECT_EQ(generated.size(), 5U);
-  for (const auto& [id, count] : generated) EXPECT_EQ(count, 1) << id;
+  EXPECT_EQ(prov.at("wasGeneratedBy").size(), 5U);
 }
 
 TEST_F(Crate, EqualStoresGiveEqualBytes) {
@@ -263,13 +147,13 @@ TEST_F(Crate, APrunedCheckpointIsToldOfAndNotCopied) {
   fs::remove(store_.folder() / record.file);
   const fs::path pruned = folder_.path() / "pruned";
   EXPECT_THROW(write_ro_crate(store_, history_.sheared, pruned), StoreDamaged);
-  test::append_to_run(store_, history_.sheared, events::encode(events::CheckpointPruned(record)));
+  test::append_to_run(store_, history_.sheared, events::encode(events::CheckpointPruned{{record}}));
   write_ro_crate(store_, history_.sheared, pruned);
   EXPECT_FALSE(fs::exists(pruned / crate_path_of_checkpoint(record.sha256)));
   const std::string metadata = test::read_bytes(pruned / "ro-crate-metadata.json");
   EXPECT_NE(metadata.find("#checkpoint-" + record.sha256), std::string::npos);
   test::append_to_run(store_, history_.sheared,
-                      events::encode(events::CheckpointRegenerated(record)));
+                      events::encode(events::CheckpointRegenerated{{record}}));
   EXPECT_FALSE(run_lineage(store_, history_.sheared).back().find(record.sha256)->pruned);
 }
 
@@ -277,24 +161,13 @@ TEST_F(Crate, ADamagedCheckpointLeavesNoCrate) {
   const CheckpointRecord record = store_.checkpoints(history_.sheared).back();
   fs::resize_file(store_.folder() / record.file, 100);
   const fs::path fresh = folder_.path() / "fresh";
-  const std::string message =
-      test::message_of<StoreDamaged>([&] { write_ro_crate(store_, history_.sheared, fresh); });
-  EXPECT_NE(message.find(record.file), std::string::npos) << message;
+  test::expect_refused<StoreDamaged>([&] { write_ro_crate(store_, history_.sheared, fresh); },
+                                     {record.file});
   std::size_t left = 0;
   for (const auto& entry : fs::directory_iterator(folder_.path())) {
     left += entry.path().filename().string().find("fresh") != std::string::npos ? 1 : 0;
   }
   EXPECT_EQ(left, 0U);
-}
-
-// A second reader, when there is one: Python's JSON, and its prov module.
-TEST_F(Crate, PythonReadsIt) {
-  // Debian's modules belong to the Python in /usr/bin.
-  const std::string python = "PATH=/usr/bin:$PATH python3 ";
-  if (std::system((python + "-c '' > /dev/null 2>&1").c_str()) != 0) GTEST_SKIP() << "no python3";
-  const std::string command =
-      python + SHEARCELL_TEST_DATA "/../provenance/check_crate.py '" + crate_.string() + "'";
-  EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
 }  // namespace

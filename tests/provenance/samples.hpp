@@ -19,6 +19,11 @@ namespace shearcell::test {
 constexpr std::uint64_t kCycle = 45600;  ///< steps
 constexpr std::size_t kFrame = 512;      ///< bytes before a checkpoint's HDF5
 
+inline std::vector<std::byte> bytes_of(const std::string& text) {
+  const auto view = std::as_bytes(std::span(text));
+  return {view.begin(), view.end()};
+}
+
 /// Writes the matching digest into the frame.
 inline void seal(std::vector<std::byte>& image) {
   const std::string title = "shearcell checkpoint 1\nsha256 of all bytes after the first 512: ";
@@ -84,6 +89,15 @@ std::string message_of(Statement&& statement) {
   }
   ADD_FAILURE() << "the expected exception was not thrown";
   return {};
+}
+
+/// The statement throws an exception whose message holds each of the parts.
+template <typename Exception, typename Statement>
+void expect_refused(Statement&& statement, const std::vector<std::string>& parts) {
+  const std::string message = message_of<Exception>(statement);
+  for (const std::string& part : parts) {
+    EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks: " << part;
+  }
 }
 
 }  // namespace shearcell::test

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <thread>
 
 #include "tests/provenance/samples.hpp"
@@ -12,42 +13,43 @@ namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
-using test::message_of;
+using test::expect_refused;
 using test::run_id;
 using test::sample_checkpoint;
 using test::sample_run;
 
 class StoreTest : public ::testing::Test {
  protected:
-  Store open(Access access = Access::create) { return Store(path_, access); }
+  StoreTest() { store_.declare_run(sample_run(1)); }
 
-  std::vector<std::string> types(const Store& store, const std::string& stream) const {
+  Store open(Access access = Access::create) const { return Store(path_, access); }
+
+  std::vector<std::string> types(const std::string& stream) const {
     std::vector<std::string> found;
-    for (const Event& event : store.events(stream)) found.push_back(event.type);
+    for (const Event& event : store_.events(stream)) found.push_back(event.type);
     return found;
   }
 
   TemporaryFolder folder_;
-  fs::path path_ = folder_.path() / "store";
+  const fs::path path_ = folder_.path() / "store";
   const std::string id_ = run_id(1);
+  Store store_{path_, Access::create};  ///< with run 1 declared
 };
 
 TEST_F(StoreTest, FollowsARunFromItsDeclarationToItsEnd) {
-  Store store = open();
-  store.declare_run(sample_run(1));
-  EXPECT_EQ(store.run(id_).state, RunState::declared);
-  EXPECT_EQ(store.start_run(id_, {{"cpu", "test"}}), 1u);
-  EXPECT_EQ(store.run(id_).state, RunState::running);
+  EXPECT_EQ(store_.run(id_).state, RunState::declared);
+  EXPECT_EQ(store_.start_run(id_, {{"cpu", "test"}}), 1u);
+  EXPECT_EQ(store_.run(id_).state, RunState::running);
   const Checkpoint c = sample_checkpoint(id_, 45600);
   const CheckpointRecord record =
-      store.record_checkpoint(id_, c, {.wall_seconds = 2.5, .particle_steps = 912000});
+      store_.record_checkpoint(id_, c, {.wall_seconds = 2.5, .particle_steps = 912000});
   EXPECT_EQ(record.state_hash, state_hash(c));
   EXPECT_EQ(record.step, 45600u);
   EXPECT_EQ(record.observables, c.observables);
   EXPECT_EQ(fs::file_size(path_ / record.file), record.size);
-  store.complete_run(id_);
+  store_.complete_run(id_);
 
-  const RunRecord run = store.run(id_);
+  const RunRecord run = store_.run(id_);
   EXPECT_EQ(run.state, RunState::completed);
   EXPECT_EQ(run.cycle, 1);
   EXPECT_EQ(run.step, 45600u);
@@ -59,190 +61,169 @@ TEST_F(StoreTest, FollowsARunFromItsDeclarationToItsEnd) {
   ASSERT_EQ(run.memberships.size(), 1u);
   EXPECT_EQ(run.memberships[0].seed, sample_run(1).membership.seed);
   EXPECT_EQ(run.memberships[0].target_cycles, 5u);
-  EXPECT_EQ(types(store, "run/" + id_),
-            (std::vector<std::string>{"RunDeclared", "RunStarted", "CheckpointRecorded",
-                                      "RunCompleted"}));
-  EXPECT_TRUE(store.verify().ok());
+  EXPECT_EQ(types("run/" + id_), (std::vector<std::string>{"RunDeclared", "RunStarted",
+                                                           "CheckpointRecorded", "RunCompleted"}));
+  EXPECT_TRUE(store_.verify().ok());
 }
 
 TEST_F(StoreTest, IsTheSameWhenOpenedAgain) {
   {
-    Store store = open();
-    store.declare_run(sample_run(1));
-    store.start_run(id_, {});
-    store.record_checkpoint(id_, sample_checkpoint(id_));
-  }  // as a kill would leave it
-  Store store = open(Access::write);
-  EXPECT_EQ(store.run(id_).state, RunState::running);
-  const auto newest = store.newest_valid_checkpoint(id_);
+    Store killed = open();
+    killed.start_run(id_, {});
+    killed.record_checkpoint(id_, sample_checkpoint(id_));
+  }
+  EXPECT_EQ(store_.run(id_).state, RunState::running);
+  const auto newest = store_.newest_valid_checkpoint(id_);
   ASSERT_TRUE(newest.has_value());
   EXPECT_EQ(state_hash(newest->checkpoint), state_hash(sample_checkpoint(id_)));
-  EXPECT_EQ(store.start_run(id_, {}, newest->record.sha256), 2u);
-  const Event resumed = store.events("run/" + id_).back();
+  EXPECT_EQ(store_.start_run(id_, {}, newest->record.sha256), 2u);
+  const Event resumed = store_.events("run/" + id_).back();
   EXPECT_EQ(resumed.type, "RunResumed");
   EXPECT_EQ(resumed.body()["from"]["sha256"], newest->record.sha256);
   EXPECT_EQ(resumed.body()["attempt"], 2);
 }
 
 TEST_F(StoreTest, KeepsAManifestOnce) {
-  Store store = open();
-  const std::string sha256 = store.register_manifest("a: 1\n", "a.yaml", {{"name", "a"}});
-  EXPECT_EQ(store.register_manifest("a: 1\n", "b.yaml", {}), sha256);
-  const std::vector<Event> events = store.events("manifest/" + sha256);
+  const std::string sha256 = store_.register_manifest("a: 1\n", "a.yaml", {{"name", "a"}});
+  EXPECT_EQ(store_.register_manifest("a: 1\n", "b.yaml", {}), sha256);
+  const std::vector<Event> events = store_.events("manifest/" + sha256);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].body()["text"], "a: 1\n");
 }
 
 TEST_F(StoreTest, RecordsADeclarationOnlyWhenItSaysSomethingNew) {
-  Store store = open();
   RunDeclaration d = sample_run(1);
-  store.declare_run(d);
-  store.declare_run(d);
-  EXPECT_EQ(store.events().size(), 1u);
+  store_.declare_run(d);
+  EXPECT_EQ(store_.events().size(), 1u);
   d.target_cycles = 3;  // less than what is declared
-  store.declare_run(d);
-  EXPECT_EQ(store.events().size(), 1u);
+  store_.declare_run(d);
+  EXPECT_EQ(store_.events().size(), 1u);
   d.membership.experiment = "other";
-  store.declare_run(d);
-  EXPECT_EQ(store.run(id_).memberships.size(), 2u);
-  EXPECT_EQ(store.run(id_).memberships[1].target_cycles, 3u);
-  EXPECT_EQ(store.run(id_).target_cycles, 5u);
+  store_.declare_run(d);
+  EXPECT_EQ(store_.run(id_).memberships.size(), 2u);
+  EXPECT_EQ(store_.run(id_).memberships[1].target_cycles, 3u);
+  EXPECT_EQ(store_.run(id_).target_cycles, 5u);
   d.resolved["drag"] = "cell";
-  EXPECT_THROW(store.declare_run(d), std::invalid_argument);
+  EXPECT_THROW(store_.declare_run(d), std::invalid_argument);
   d.id = "run 1";
-  EXPECT_THROW(store.declare_run(d), std::invalid_argument);
+  EXPECT_THROW(store_.declare_run(d), std::invalid_argument);
   RunDeclaration orphan = sample_run(2);
   orphan.parent = run_id(99);
-  EXPECT_THROW(store.declare_run(orphan), std::invalid_argument);
+  EXPECT_THROW(store_.declare_run(orphan), std::invalid_argument);
 }
 
 TEST_F(StoreTest, ALongerTargetReopensACompletedRun) {
-  Store store = open();
-  store.declare_run(sample_run(1, 5));
-  store.start_run(id_, {});
-  store.complete_run(id_);
-  EXPECT_THROW(store.start_run(id_, {}), ConcurrencyConflict);
-  store.declare_run(sample_run(1, 8));
-  EXPECT_EQ(store.run(id_).state, RunState::declared);
-  EXPECT_EQ(store.run(id_).target_cycles, 8u);
-  EXPECT_EQ(store.run(id_).memberships.size(), 1u);
-  EXPECT_EQ(store.run(id_).memberships[0].target_cycles, 8u);
-  EXPECT_EQ(store.start_run(id_, {}), 2u);
+  store_.start_run(id_, {});
+  store_.complete_run(id_);
+  EXPECT_THROW(store_.start_run(id_, {}), ConcurrencyConflict);
+  store_.declare_run(sample_run(1, 8));
+  EXPECT_EQ(store_.run(id_).state, RunState::declared);
+  EXPECT_EQ(store_.run(id_).target_cycles, 8u);
+  EXPECT_EQ(store_.run(id_).memberships.size(), 1u);
+  EXPECT_EQ(store_.run(id_).memberships[0].target_cycles, 8u);
+  EXPECT_EQ(store_.start_run(id_, {}), 2u);
 }
 
 TEST_F(StoreTest, TellsWhyARunStopped) {
-  Store store = open();
-  store.declare_run(sample_run(1));
-  store.start_run(id_, {});
-  store.interrupt_run(id_, "SIGINT");
-  EXPECT_EQ(store.run(id_).state, RunState::interrupted);
-  EXPECT_EQ(store.run(id_).error, "SIGINT");
-  store.start_run(id_, {});
-  EXPECT_EQ(store.run(id_).error, "");
-  store.fail_run(id_, "an overlap of 0.3 d", {{"overlap_d", 0.3}});
-  EXPECT_EQ(store.run(id_).state, RunState::failed);
-  EXPECT_EQ(store.run(id_).error, "an overlap of 0.3 d");
+  store_.start_run(id_, {});
+  store_.interrupt_run(id_, "SIGINT");
+  EXPECT_EQ(store_.run(id_).state, RunState::interrupted);
+  EXPECT_EQ(store_.run(id_).error, "SIGINT");
+  store_.start_run(id_, {});
+  EXPECT_EQ(store_.run(id_).error, "");
+  store_.fail_run(id_, "an overlap of 0.3 d", {{"overlap_d", 0.3}});
+  EXPECT_EQ(store_.run(id_).state, RunState::failed);
+  EXPECT_EQ(store_.run(id_).error, "an overlap of 0.3 d");
 }
 
 TEST_F(StoreTest, TwoWritersOfOneRunConflict) {
   Store first(path_, Access::create, {.lease_seconds = 0});  // others may take its runs at once
-  first.declare_run(sample_run(1));
   first.start_run(id_, {});
   EXPECT_THROW(first.start_run(id_, {}), ConcurrencyConflict);
-  Store second = open();
-  second.start_run(id_, {});
+  store_.start_run(id_, {});
   EXPECT_THROW(first.record_checkpoint(id_, sample_checkpoint(id_)), ConcurrencyConflict);
   EXPECT_THROW(first.interrupt_run(id_, "late"), ConcurrencyConflict);
-  second.record_checkpoint(id_, sample_checkpoint(id_));
-  second.complete_run(id_);
+  store_.record_checkpoint(id_, sample_checkpoint(id_));
+  store_.complete_run(id_);
   EXPECT_EQ(first.run(id_).state, RunState::completed);
 }
 
 TEST_F(StoreTest, ANewMembershipDisturbsNoRunner) {
-  Store first = open();
-  first.declare_run(sample_run(1));
-  first.start_run(id_, {});
-  Store second = open();
+  store_.start_run(id_, {});
   RunDeclaration shared = sample_run(1);
   shared.membership.experiment = "other";
-  second.declare_run(shared);
-  first.record_checkpoint(id_, sample_checkpoint(id_));
-  first.complete_run(id_);
-  EXPECT_TRUE(first.verify().ok());
+  open().declare_run(shared);
+  store_.record_checkpoint(id_, sample_checkpoint(id_));
+  store_.complete_run(id_);
+  EXPECT_TRUE(store_.verify().ok());
 }
 
 TEST_F(StoreTest, RecordsTheSameCheckpointOnce) {
-  Store store = open();
-  store.declare_run(sample_run(1));
   const Checkpoint c = sample_checkpoint(id_);
-  EXPECT_THROW(store.record_checkpoint(id_, c), ConcurrencyConflict);  // nobody holds the run
-  store.start_run(id_, {});
-  const CheckpointRecord once = store.record_checkpoint(id_, c);
-  EXPECT_EQ(store.record_checkpoint(id_, c).seq, once.seq);
-  EXPECT_EQ(store.checkpoints(id_).size(), 1u);
-  EXPECT_THROW(store.record_checkpoint(id_, sample_checkpoint(run_id(2))), std::invalid_argument);
+  EXPECT_THROW(store_.record_checkpoint(id_, c), ConcurrencyConflict);  // nobody holds the run
+  store_.start_run(id_, {});
+  const CheckpointRecord once = store_.record_checkpoint(id_, c);
+  EXPECT_EQ(store_.record_checkpoint(id_, c).seq, once.seq);
+  EXPECT_EQ(store_.checkpoints(id_).size(), 1u);
+  EXPECT_THROW(store_.record_checkpoint(id_, sample_checkpoint(run_id(2))), std::invalid_argument);
 }
 
 TEST_F(StoreTest, PassesOverADamagedNewestCheckpoint) {
-  Store store = open();
-  store.declare_run(sample_run(1));
-  store.start_run(id_, {});
-  const auto first = store.record_checkpoint(id_, sample_checkpoint(id_, 45600));
-  const auto second = store.record_checkpoint(id_, sample_checkpoint(id_, 91200));
-  const auto third = store.record_checkpoint(id_, sample_checkpoint(id_, 136800));
-  store.interrupt_run(id_, "SIGTERM");
+  store_.start_run(id_, {});
+  const auto first = store_.record_checkpoint(id_, sample_checkpoint(id_, 45600));
+  const auto second = store_.record_checkpoint(id_, sample_checkpoint(id_, 91200));
+  const auto third = store_.record_checkpoint(id_, sample_checkpoint(id_, 136800));
+  store_.interrupt_run(id_, "SIGTERM");
   fs::resize_file(path_ / third.file, third.size / 2);
   fs::remove(path_ / second.file);
 
-  const Store reader = open(Access::read);
-  EXPECT_EQ(Store(path_, Access::read).newest_valid_checkpoint(id_)->record.sha256, first.sha256);
+  Store reader = open(Access::read);
+  EXPECT_EQ(reader.newest_valid_checkpoint(id_)->record.sha256, first.sha256);
   EXPECT_EQ(reader.checkpoints(id_).size(), 3u);
 
-  const auto newest = store.newest_valid_checkpoint(id_);
-  ASSERT_TRUE(newest.has_value());
-  EXPECT_EQ(newest->record.sha256, first.sha256);
-  EXPECT_EQ(store.checkpoints(id_).size(), 1u);
-  EXPECT_EQ(store.checkpoints(id_, true).size(), 3u);
-  EXPECT_EQ(store.run(id_).step, 45600u);
-  EXPECT_EQ(types(store, "run/" + id_).back(), "CheckpointRejected");
+  EXPECT_EQ(store_.newest_valid_checkpoint(id_).value().record.sha256, first.sha256);
+  EXPECT_EQ(store_.checkpoints(id_).size(), 1u);
+  EXPECT_EQ(store_.checkpoints(id_, true).size(), 3u);
+  EXPECT_EQ(store_.run(id_).step, 45600u);
+  EXPECT_EQ(types("run/" + id_).back(), "CheckpointRejected");
 
-  store.start_run(id_, {}, first.sha256);
-  store.record_checkpoint(id_, sample_checkpoint(id_, 91200));  // computed again
-  EXPECT_EQ(store.newest_valid_checkpoint(id_)->record.sha256, second.sha256);
-  EXPECT_EQ(store.run(id_).step, 91200u);
+  store_.start_run(id_, {}, first.sha256);
+  store_.record_checkpoint(id_, sample_checkpoint(id_, 91200));  // computed again
+  EXPECT_EQ(store_.newest_valid_checkpoint(id_)->record.sha256, second.sha256);
+  EXPECT_EQ(store_.run(id_).step, 91200u);
 }
 
 TEST_F(StoreTest, FindsARunByItsPrefix) {
-  Store store = open();
-  for (int i = 0; i < 40; ++i) store.declare_run(sample_run(i));
-  EXPECT_EQ(store.find_run(run_id(7).substr(0, 12)).id, run_id(7));
-  EXPECT_NE(message_of<NotFound>([&] { store.find_run(""); }).find("several"), std::string::npos);
-  EXPECT_THROW(store.find_run("xyz"), NotFound);
-  EXPECT_THROW(store.find_run("%"), NotFound);
-  EXPECT_THROW(store.run(run_id(7).substr(0, 12)), NotFound);
-  EXPECT_EQ(store.runs().size(), 40u);
-  EXPECT_EQ(store.runs()[7].id, run_id(7));
+  for (int i = 0; i < 40; ++i) store_.declare_run(sample_run(i));
+  EXPECT_EQ(store_.find_run(run_id(7).substr(0, 12)).id, run_id(7));
+  expect_refused<NotFound>([&] { store_.find_run(""); }, {"several runs", "\n  ..."});
+  EXPECT_THROW(store_.find_run("xyz"), NotFound);
+  EXPECT_THROW(store_.find_run("%"), NotFound);
+  EXPECT_THROW(store_.run(run_id(7).substr(0, 12)), NotFound);
+  EXPECT_EQ(store_.runs().size(), 40u);
+  EXPECT_EQ(store_.runs()[7].id, run_id(7));
 }
 
 TEST_F(StoreTest, KeepsTheNewestRecordOfEachFigure) {
-  Store store = open();
-  store.record_figure("S2a", {{"inputs", {1}}});
-  store.record_figure("S2b", {{"inputs", {2}}});
-  store.record_figure("S2a", {{"inputs", {3}}});
-  const std::vector<FigureRecord> figures = store.figures();
+  store_.record_figure("S2a", {{"inputs", {1}}});
+  store_.record_figure("S2b", {{"inputs", {2}}});
+  store_.record_figure("S2a", {{"inputs", {3}}});
+  const std::vector<FigureRecord> figures = store_.figures();
   ASSERT_EQ(figures.size(), 2u);
   EXPECT_EQ(figures[0].name, "S2a");
   EXPECT_EQ(figures[0].provenance["inputs"][0], 3);
-  EXPECT_EQ(store.events("figure/S2a").size(), 2u);
+  EXPECT_EQ(store_.events("figure/S2a").size(), 2u);
 }
 
-TEST_F(StoreTest, TakesRecordsFromManyThreads) {
-  Store store = open();
-  constexpr int kRuns = 6;
-  for (int i = 0; i < kRuns; ++i) store.declare_run(sample_run(i));
+TEST_F(StoreTest, TakesRecordsFromManyThreadsAndProcesses) {
+  constexpr int kRuns = 8;
   std::vector<std::thread> threads;
-  for (int i = 0; i < kRuns; ++i) {
-    threads.emplace_back([&store, i] {
+  for (int i = 2; i < 2 + kRuns; ++i) {
+    threads.emplace_back([this, i] {
+      std::optional<Store> own;  // a connection of its own, as another process has
+      if (i % 2 == 0) own.emplace(path_, Access::write);
+      Store& store = own ? *own : store_;
+      store.declare_run(sample_run(i));
       store.start_run(run_id(i), {});
       for (std::uint64_t step = 0; step < 5; ++step) {
         store.record_checkpoint(run_id(i), sample_checkpoint(run_id(i), step));
@@ -252,48 +233,30 @@ TEST_F(StoreTest, TakesRecordsFromManyThreads) {
     });
   }
   for (std::thread& thread : threads) thread.join();
-  for (const RunRecord& run : store.runs()) EXPECT_EQ(run.state, RunState::completed);
-  const VerifyReport report = store.verify();
+  for (int i = 2; i < 2 + kRuns; ++i) {
+    EXPECT_EQ(store_.run(run_id(i)).state, RunState::completed);
+  }
+  const VerifyReport report = store_.verify();
   EXPECT_TRUE(report.ok());
   EXPECT_EQ(report.checkpoints, 5u * kRuns);
 }
 
-TEST_F(StoreTest, TwoProcessesMayShareIt) {
-  std::vector<std::thread> threads;
-  open();
-  for (int i = 0; i < 3; ++i) {
-    threads.emplace_back([this, i] {
-      Store own = open();  // a connection of its own, as another process has
-      own.declare_run(sample_run(i));
-      own.start_run(run_id(i), {});
-      for (std::uint64_t step = 0; step < 4; ++step) {
-        own.record_checkpoint(run_id(i), sample_checkpoint(run_id(i), step));
-      }
-      own.complete_run(run_id(i));
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  Store store = open(Access::read);
-  EXPECT_EQ(store.runs().size(), 3u);
-  EXPECT_TRUE(store.verify().ok());
-}
-
 TEST_F(StoreTest, AReaderChangesNothing) {
-  { open().declare_run(sample_run(1)); }
   const std::string before = test::read_bytes(path_ / "store.sqlite");
-  Store store = open(Access::read);
-  EXPECT_THROW(store.declare_run(sample_run(2)), std::logic_error);
-  EXPECT_THROW(store.start_run(id_, {}), std::logic_error);
-  EXPECT_THROW(store.rebuild(), std::logic_error);
-  EXPECT_EQ(store.runs().size(), 1u);
-  EXPECT_TRUE(store.verify().ok());
+  Store reader = open(Access::read);
+  EXPECT_THROW(reader.declare_run(sample_run(2)), std::logic_error);
+  EXPECT_THROW(reader.start_run(id_, {}), std::logic_error);
+  EXPECT_THROW(reader.rebuild(), std::logic_error);
+  EXPECT_EQ(reader.runs().size(), 1u);
+  EXPECT_TRUE(reader.verify().ok());
   EXPECT_EQ(test::read_bytes(path_ / "store.sqlite"), before);
 }
 
 TEST_F(StoreTest, StartsOverWhereItsCreationWasCutShort) {
-  fs::create_directories(path_);
-  test::write_bytes(path_ / "store.sqlite", "");
-  Store store = open(Access::create);
+  const fs::path other = folder_.path() / "other";
+  fs::create_directories(other);
+  test::write_bytes(other / "store.sqlite", "");
+  Store store(other, Access::create);
   store.declare_run(sample_run(1));
   EXPECT_TRUE(store.verify().ok());
 }

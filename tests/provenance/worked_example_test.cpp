@@ -13,22 +13,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The indented blocks of the section, except those that show a prompt and its output.
+/// The indented blocks of the section.
 std::string commands_of_the_readme() {
   std::istringstream readme(
       test::read_bytes(fs::path(SHEARCELL_TEST_DATA) / "../../provenance/README.md"));
   std::string commands;
-  bool inside = false, shown = false, code = false;
+  bool inside = false;
   for (std::string line; std::getline(readme, line);) {
     if (line.starts_with("## ")) inside = line == "## Reading it by hand";
-    const bool indented = line.starts_with("    ");
-    if (!inside || !indented) {
-      code = false;
-      continue;
-    }
-    if (!code) shown = line.starts_with("    $ ");
-    code = true;
-    if (!shown) commands += line.substr(4) + "\n";
+    if (inside && line.starts_with("    ")) commands += line.substr(4) + "\n";
   }
   return commands;
 }
