@@ -10,7 +10,7 @@
 #include "analysis/estimate.hpp"
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/lammps/lammps_settle.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "provenance/io/clock.hpp"
 
 namespace shearcell::bench {

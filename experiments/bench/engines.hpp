@@ -71,7 +71,7 @@ struct Settling {
 };
 
 /// Throw NumericalFailure, for example when a packing is not settled after the time limit, and
-/// EngineError. `seen` gets the state of LAMMPS every 0.1 s of simulated time.
+/// ProgramError. `seen` gets the state of LAMMPS every 0.1 s of simulated time.
 Settling settling_by_us(const Packing& loose, const SettleParameters& settle);
 Settling settling_by_lammps(const Packing& loose, const SettleParameters& settle,
                             const LammpsProgram& program, std::size_t ranks,
@@ -90,7 +90,7 @@ struct EngineCheck {
   bool agree() const;
 };
 
-/// Table I in a rough cell. Throws EngineError if LAMMPS is missing or fails, NumericalFailure if a
+/// Table I in a rough cell. Throws ProgramError if LAMMPS is missing or fails, NumericalFailure if a
 /// packing does not settle.
 EngineCheck check_engines(const EngineCheckOptions& options);
 

@@ -9,7 +9,6 @@
 #include "experiments/bench/accuracy/closed_forms.hpp"
 #include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/manifest/numerics.hpp"
 
 namespace shearcell::accuracy {
 namespace {
