@@ -135,12 +135,6 @@ TEST_F(CampaignTest, ResumesWhatIsAskedForWithItsPacking) {
   EXPECT_THROW(unfinished(store_, {""}), NotFound) << "an empty prefix fits every run";
 }
 
-TEST_F(CampaignTest, RecordsAtTheCadenceThatWasAskedFor) {
-  compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 2}\n"), {.cycles = 5});
-  const RunRecord run = sheared(store_);
-  EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0, 2, 4, 5}));
-}
-
 TEST_F(CampaignTest, TakesZeroCyclesAsThePackingAlone) {
   compute(store_, tiny_manifest(), {.cycles = 0});
   const RunRecord run = sheared(store_);

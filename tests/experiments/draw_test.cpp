@@ -262,14 +262,6 @@ TEST_F(DrawFigure, LeavesOutADamagedCheckpointAndNamesIt) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 3 - 1);
 }
 
-TEST_F(DrawFigure, ALongerRunMakesANewFigure) {
-  compute(store_, tiny_manifest("", kBothFluids));
-  draw("short");
-  compute(store_, tiny_manifest("", kBothFluids), {.cycles = 3});
-  EXPECT_EQ(draw("long").checkpoints, 2U * 4U);
-  EXPECT_EQ(count_events(store_, "FigureGenerated"), 2U);
-}
-
 TEST_F(DrawFigure, TakesTheScaleThatIsAskedFor) {
   const std::string text = tiny_manifest(
       "", kBothFluids + "scales: {desk: {cycles: 1}, smoke: {grains: 250, cycles: 2}}\n");
