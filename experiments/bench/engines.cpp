@@ -9,7 +9,7 @@
 #include "analysis/statistics.hpp"
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/lammps/lammps_settle.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "provenance/io/clock.hpp"
 
 namespace shearcell::bench {

@@ -66,7 +66,7 @@ struct Settling : EngineSpeed {
 
 /// Settles the grains in LAMMPS with so many processes, or in our engine if that is 0. Throws
 /// NumericalFailure, for example when a packing is not settled after the time limit, and
-/// EngineError. `seen` gets the state of LAMMPS every 0.1 s of simulated time.
+/// ProgramError. `seen` gets the state of LAMMPS every 0.1 s of simulated time.
 Settling settle_by(std::size_t ranks, const LammpsProgram& program, const Packing& loose,
                    const SettleParameters& parameters,
                    const std::function<void(const State&)>& seen = {});
@@ -84,7 +84,7 @@ struct EngineCheck {
   bool agree() const;
 };
 
-/// Table I in a rough cell. Throws EngineError if LAMMPS is missing or fails, NumericalFailure if a
+/// Table I in a rough cell. Throws ProgramError if LAMMPS is missing or fails, NumericalFailure if a
 /// packing does not settle.
 EngineCheck check_engines(const EngineCheckOptions& options);
 

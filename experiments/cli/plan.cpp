@@ -13,7 +13,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/expand.hpp"
-#include "experiments/manifest/numerics.hpp"
+#include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/asks.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/engine.hpp"
@@ -125,7 +125,7 @@ std::vector<std::string> notes_of(const Plan& plan) {
   std::vector<std::string> notes = lammps_caveats();
   try {
     notes.push_back("LAMMPS here: " + find_lammps().version);
-  } catch (const EngineError& missing) {
+  } catch (const ProgramError& missing) {
     notes.emplace_back(missing.what());
   }
   return notes;

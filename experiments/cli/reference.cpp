@@ -8,7 +8,7 @@
 
 #include "analysis/figure.hpp"
 #include "experiments/figures/run_table.hpp"
-#include "experiments/manifest/problems.hpp"
+#include "experiments/manifest/read_parts.hpp"
 #include "experiments/manifest/schema.hpp"
 
 namespace shearcell::cli {

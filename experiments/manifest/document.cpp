@@ -26,31 +26,26 @@ Position position(const YAML::Mark& mark) {
       {{std::string(file), at, std::move(key), std::move(problem), "", std::move(remedy)}});
 }
 
-// Length of the UTF-8 sequence at the start of `text`; 0 when it is not one. Overlong forms,
-// surrogates and code points beyond U+10FFFF are not allowed.
-std::size_t utf8_length(string_view text) {
+struct Character {
+  std::size_t length = 0;  // [bytes]; 0 when the bytes are not UTF-8
+  char32_t code_point = 0;
+};
+
+// At the start of `text`. Overlong forms, surrogates and code points beyond U+10FFFF are not UTF-8.
+Character decode(string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);
-  if (first < 0x80) return 1;
+  if (first < 0x80) return {1, first};
   const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || text.size() < length) return 0;
+  if (first < 0xC2 || first > 0xF4 || text.size() < length) return {};
+  char32_t c = first & (0x7FU >> length);
   for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return 0;
+    if ((byte(i) & 0xC0) != 0x80) return {};
+    c = c << 6 | (byte(i) & 0x3FU);
   }
-  const unsigned second = byte(1);
-  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool beyond = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
-  return overlong || beyond ? 0 : length;
-}
-
-// Of a valid sequence.
-char32_t code_point(string_view text) {
-  const std::size_t length = utf8_length(text);
-  char32_t c = static_cast<unsigned char>(text.front()) & (length == 1 ? 0x7FU : 0x7FU >> length);
-  for (std::size_t i = 1; i < length; ++i) {
-    c = c << 6 | (static_cast<unsigned char>(text[i]) & 0x3FU);
-  }
-  return c;
+  constexpr char32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
+  const bool surrogate = c >= 0xD800 && c < 0xE000;
+  return c < smallest[length] || surrogate || c > 0x10FFFF ? Character{} : Character{length, c};
 }
 
 // Control characters, ends of lines, and those that change the direction of the text around them
@@ -64,7 +59,7 @@ bool is_control(char32_t c) {
 void check_characters(string_view text, string_view file) {
   Position at{1, 1};
   while (!text.empty()) {
-    const std::size_t length = utf8_length(text);
+    const std::size_t length = decode(text).length;
     const char c = text.front();
     if (length == 0) refuse(file, at, "is not valid UTF-8", "Save the file as UTF-8 text.");
     if ((c >= 0 && c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7F) {
@@ -251,8 +246,8 @@ std::string printable(string_view text, std::size_t longest) {
   std::string result;
   while (!text.empty()) {
     if (result.size() >= longest) return result + "...";
-    const std::size_t length = utf8_length(text);
-    const char32_t c = length == 0 ? static_cast<unsigned char>(text.front()) : code_point(text);
+    auto [length, c] = decode(text);
+    if (length == 0) c = static_cast<unsigned char>(text.front());
     if (length == 0 || is_control(c)) {
       result += c < 0x100 ? fmt::format("\\x{:02x}", static_cast<unsigned>(c))
                           : fmt::format("\\u{:04x}", static_cast<unsigned>(c));

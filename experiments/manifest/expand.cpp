@@ -2,6 +2,7 @@
 #include "experiments/manifest/expand.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -9,8 +10,6 @@
 
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
-#include "experiments/manifest/names.hpp"
-#include "experiments/manifest/numerics.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -21,36 +20,34 @@ namespace {
 
 constexpr std::string_view kDefaultScale = "desk";
 
-[[noreturn]] void refuse(const Manifest& manifest, std::string option, std::string problem,
-                         std::string got, std::string remedy) {
-  throw ManifestError({{manifest.file,
-                        {},
-                        std::move(option),
-                        std::move(problem),
-                        std::move(got),
-                        std::move(remedy)}});
+[[noreturn]] void refuse(const Manifest& manifest, const std::string& option,
+                         const std::string& problem, const std::string& got,
+                         const std::string& remedy) {
+  throw ManifestError({{manifest.file, {}, option, problem, got, remedy}});
 }
 
-// The scale to run, or null for a manifest without scales.
-const Scale* choose_scale(const Manifest& manifest, const std::optional<std::string>& wanted) {
+Scale choose_scale(const Manifest& manifest, const std::optional<std::string>& wanted) {
   if (manifest.scales.empty()) {
-    if (!wanted) return nullptr;
+    if (!wanted) return manifest.base;
     refuse(manifest, "scale", "the manifest has no scales", printable(*wanted), "Leave it out.");
   }
   const std::string name = wanted.value_or(std::string(kDefaultScale));
   const auto found = std::ranges::find(manifest.scales, name, &Scale::name);
-  if (found != manifest.scales.end()) return &*found;
-  std::vector<std::string_view> names;
-  for (const Scale& scale : manifest.scales) names.push_back(scale.name);
+  if (found != manifest.scales.end()) return whole_scale(manifest, *found);
+  const std::vector<std::string_view> names = names_of(manifest.scales);
   const std::string known = fmt::format("It has {}.", fmt::join(names, ", "));
   if (!wanted) {
     refuse(manifest, "scale", fmt::format("there is no scale {} to take by default", name), "",
            fmt::format("Name one. {}", known));
   }
-  const Suggestion near = suggest_name(name, names);
-  refuse(manifest, "scale",
-         near.name.empty() ? "is unknown" : fmt::format("is unknown, the nearest is {}", near.name),
-         printable(name), known);
+  refuse(manifest, "scale", with_nearest("is unknown", name, names), printable(name), known);
+}
+
+// Of a parameter.
+void check_option(const Manifest& manifest, const char* key, const nlohmann::json& value) {
+  if (const auto wrong = check_value(*find_field(key), value)) {
+    refuse(manifest, key, wrong->problem, printable(value_text(value)), wrong->remedy);
+  }
 }
 
 std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& stated,
@@ -74,23 +71,16 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
 }
 
 // As one more swept key, so that runs of two engines are never taken for one curve.
-void set_engine(const Manifest& manifest, const AtScale& scale, const std::string& engine,
-                Sweep& sweep) {
-  const Field& field = *find_field("engine");
-  if (const auto wrong = check_value(field, engine)) {
-    refuse(manifest, "engine", wrong->problem, printable(engine), wrong->remedy);
-  }
-  for (const auto* axes : {&sweep.grid, &sweep.zip}) {
-    if (std::ranges::find(*axes, field.name, &SweepAxis::key) == axes->end()) continue;
+void set_engine(const Manifest& manifest, const std::string& engine, Scale& scale) {
+  check_option(manifest, "engine", engine);
+  std::vector<SweepAxis>& grid = scale.sweep->grid;
+  for (const auto* axes : {&grid, &scale.sweep->zip}) {
+    if (std::ranges::find(*axes, "engine", &SweepAxis::key) == axes->end()) continue;
     refuse(manifest, "engine", "the manifest sweeps this key itself", engine,
            "Leave the option out.");
   }
-  const auto stated = scale.settings.find(field.name);
-  const nlohmann::json own =
-      stated == scale.settings.end() ? get_value(field, Parameters{}) : stated->second.value;
-  if (own == engine) return;
-  const Setting value{engine, {}};
-  sweep.grid.insert(sweep.grid.begin(), SweepAxis{std::string(field.name), {}, {value}});
+  if (value_at(scale, "engine") == engine) return;
+  grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
 // Whether the variants are wanted; remembers what was found.
@@ -122,50 +112,52 @@ class WantedVariants {
   std::vector<std::string> known_;
 };
 
-void warn_of_time_steps(const Variant& variant, Plan& plan) {
+void warn_of_variant(const Variant& variant, const ExpandOptions& options, Plan& plan) {
   const Parameters& p = variant.parameters;
-  std::optional<std::string> of_shear;
-  if (p.protocol != ProtocolKind::stiffen)
-    of_shear = time_step_advice(shear_time_step(p), "steps_per_cycle");
-  for (const auto& advice :
-       {of_shear, time_step_advice(settle_time_step(p), "settle_time_step_s")}) {
-    if (!advice) continue;
+  const bool stiffens = p.protocol == ProtocolKind::stiffen;
+  const auto warn = [&](const std::string& warning) {
     plan.warnings.push_back(
-        fmt::format("{}: variant {}: {}", plan.experiment, variant.name(), *advice));
+        fmt::format("{}: variant {}: {}", plan.experiment, variant.name(), warning));
+  };
+  if (!pressure_lifts_column(p)) {
+    warn(fmt::format(
+        "the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = {}). Turn "
+        "gravity off, raise pressure_Pa, move the top wall, or choose a lower cell "
+        "(height_over_width).",
+        p.pressure_Pa, p.grains));
   }
-}
-
-void warn_of_pressure(const Variant& variant, Plan& plan) {
-  const Parameters& p = variant.parameters;
-  if (pressure_lifts_column(p)) return;
-  std::string warning = fmt::format(
-      "{}: variant {}: the pressure of {} Pa cannot lift the grains above the moving bottom wall "
-      "(N = {}). Turn gravity off, raise pressure_Pa, move the top wall, or choose a lower cell "
-      "(height_over_width).",
-      plan.experiment, variant.name(), p.pressure_Pa, p.grains);
-  plan.warnings.push_back(std::move(warning));
+  if (!stiffens) {
+    if (const auto advice = time_step_advice(shear_time_step(p), "steps_per_cycle")) warn(*advice);
+  }
+  if (const auto advice = time_step_advice(settle_time_step(p), "settle_time_step_s")) {
+    warn(*advice);
+  }
+  if (options.cycles && stiffens) {
+    warn("a number of cycles has no effect on stiffening, whose length is stiffness_decades");
+  }
 }
 
 // Stated keys that no variant feels, with the line where each was written.
 class WithoutEffect {
  public:
-  explicit WithoutEffect(const AtScale& scale) {
+  explicit WithoutEffect(const Scale& scale) {
     for (const auto& [key, setting] : scale.settings) unfelt_[key] = {setting.at, ""};
     for (const auto* axes : {&scale.sweep->grid, &scale.sweep->zip}) {
       for (const SweepAxis& axis : *axes) unfelt_[axis.key] = {axis.at, ""};
     }
+    if (scale.until->until) unfelt_["until"] = {scale.until->at, ""};
   }
   void visit(const Parameters& parameters) {
     for (auto stated = unfelt_.begin(); stated != unfelt_.end();) {
-      stated->second.when = without_effect(*find_field(stated->first), parameters);
+      stated->second.when = without_effect(stated->first, parameters);
       stated = stated->second.when.empty() ? unfelt_.erase(stated) : std::next(stated);
     }
   }
   void warn(const std::string& file, Plan& plan) const {
     for (const auto& [key, stated] : unfelt_) {
-      plan.warnings.push_back(ManifestProblem{
-          file, stated.at, key, fmt::format("has no effect: {}", stated.when), "", "Leave it out."}
-                                  .text());
+      const ManifestProblem problem{file, stated.at,      key, "has no effect: " + stated.when,
+                                    "",   "Leave it out."};
+      plan.warnings.push_back(problem.text());
     }
   }
 
@@ -176,15 +168,6 @@ class WithoutEffect {
   };
   std::map<std::string, Stated> unfelt_;
 };
-
-void warn_of_until(const Manifest& manifest, const AtScale& scale, Plan& plan) {
-  const auto ends = [](const PlannedRun& run) { return run.until.has_value(); };
-  if (!scale.until.until || std::ranges::any_of(plan.runs, ends)) return;
-  plan.warnings.push_back(ManifestProblem{manifest.file, scale.until.at, "until",
-                                          "has no effect: not under protocol stiffen", "",
-                                          "Leave it out."}
-                              .text());
-}
 
 void name_variants(const Manifest& manifest, Plan& plan) {
   std::vector<nlohmann::json> variants;
@@ -202,52 +185,37 @@ void name_variants(const Manifest& manifest, Plan& plan) {
 }  // namespace
 
 Plan expand(const Manifest& manifest, const ExpandOptions& options) {
-  const Scale* scale = choose_scale(manifest, options.scale);
-  AtScale resolved = at_scale(manifest, scale);
+  Scale scale = choose_scale(manifest, options.scale);
   if (options.cycles) {
-    const Setting cycles{*options.cycles, {}};
-    if (const auto wrong = check_value(*find_field("cycles"), cycles.value)) {
-      refuse(manifest, "cycles", wrong->problem, cycles.value.dump(), wrong->remedy);
-    }
-    resolved.settings["cycles"] = cycles;
+    check_option(manifest, "cycles", *options.cycles);
+    scale.settings["cycles"] = {*options.cycles, {}};
+    std::erase_if(scale.sweep->zip, [](const SweepAxis& axis) { return is_length(axis.key); });
   }
-  Sweep sweep = *resolved.sweep;
-  if (options.cycles) {
-    std::erase_if(sweep.zip, [](const SweepAxis& axis) { return is_length(axis.key); });
-  }
-  if (options.engine) set_engine(manifest, resolved, *options.engine, sweep);
-  resolved.sweep = &sweep;
-  const std::vector<std::uint64_t> seeds = choose_seeds(manifest, *resolved.seeds, options.seeds);
-  if (variant_count(*resolved.sweep) > ManifestLimits::runs / seeds.size()) {
+  if (options.engine) set_engine(manifest, *options.engine, scale);
+  const std::vector<std::uint64_t> seeds = choose_seeds(manifest, *scale.seeds, options.seeds);
+  if (variant_count(*scale.sweep) > ManifestLimits::runs / seeds.size()) {
     refuse(manifest, "seeds",
            fmt::format("the manifest expands to more than {} runs", ManifestLimits::runs), "",
            "Use fewer seeds.");
   }
 
-  Plan plan{manifest.experiment, scale == nullptr ? "" : scale->name, {}, {}};
+  Plan plan{manifest.experiment, scale.name, {}, {}};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
-  WithoutEffect without_effect(resolved);
+  WithoutEffect without_effect(scale);
   WantedVariants wanted(options.variants);
   const std::string manifest_sha = sha256_hex(manifest.text);
-  for_each_variant(resolved, [&](const Variant& variant) {
-    without_effect.visit(variant.parameters);
+  for_each_variant(scale, [&](const Variant& variant) {
+    const Parameters& p = variant.parameters;
+    without_effect.visit(p);
     if (!wanted.wants(variant.name())) return;
-    warn_of_pressure(variant, plan);
-    warn_of_time_steps(variant, plan);
-    if (options.engine && asks_lammps_to_stiffen(variant.parameters)) {
+    warn_of_variant(variant, options, plan);
+    if (options.engine && asks_lammps_to_stiffen(p)) {
       refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", *options.engine,
              "Leave the option out.");
     }
-    if (options.engine && variant.parameters.engine == EngineKind::lammps &&
-        !resolved.checkpoints.phases.empty()) {
+    if (options.engine && p.engine == EngineKind::lammps && !scale.checkpoints->phases.empty()) {
       refuse(manifest, "engine", "LAMMPS makes no checkpoints within a cycle", *options.engine,
              "Leave the option out, or checkpoints.phases.");
-    }
-    if (options.cycles && variant.parameters.protocol == ProtocolKind::stiffen) {
-      plan.warnings.push_back(fmt::format(
-          "{}: variant {}: a number of cycles has no effect on stiffening, whose length is "
-          "stiffness_decades",
-          plan.experiment, variant.name()));
     }
     for (const std::uint64_t seed : seeds) {
       PlannedRun run;
@@ -256,15 +224,15 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       run.variant = variant.name();
       run.labels = variant.labels();
       run.seed = seed;
-      run.prepare = prepare_stage(variant.parameters, seed);
-      run.last = last_stage(variant.parameters, seed, run.prepare);
-      run.cycles = target_cycles(variant.parameters);
+      run.prepare = prepare_stage(p, seed);
+      run.last = last_stage(p, seed, run.prepare);
+      run.cycles = target_cycles(p);
       run.manifest = manifest_sha;
-      run.checkpoint_every = resolved.checkpoints.every_cycles;
-      run.checkpoint_phases = resolved.checkpoints.phases;
-      if (run.last.stage == Stage::shear) run.until = resolved.until.until;
-      run.grains = static_cast<std::size_t>(variant.parameters.grains);
-      run.parameters = variant.parameters;
+      run.checkpoint_every = scale.checkpoints->every_cycles;
+      run.checkpoint_phases = scale.checkpoints->phases;
+      if (run.last.stage == Stage::shear) run.until = scale.until->until;
+      run.grains = static_cast<std::size_t>(p.grains);
+      run.parameters = p;
       const std::string& same = variant_of.emplace(run.last.key, run.variant).first->second;
       if (same != run.variant && seed == seeds.front()) {
         plan.warnings.push_back(
@@ -277,7 +245,6 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   wanted.require_found(manifest);
   name_variants(manifest, plan);
   without_effect.warn(manifest.file, plan);
-  warn_of_until(manifest, resolved, plan);
   return plan;
 }
 

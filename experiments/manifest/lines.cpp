@@ -7,7 +7,6 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/manifest.hpp"
-#include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/variants.hpp"
 
 namespace shearcell {
@@ -28,10 +27,9 @@ std::string text_of_line(std::string_view text, int line) {
 }
 
 const std::pair<Node, Node>* find(const Node& map, std::string_view key) {
-  for (const auto& entry : map.entries) {
-    if (entry.first.text == key) return &entry;
-  }
-  return nullptr;
+  const auto found =
+      std::ranges::find_if(map.entries, [&](const auto& entry) { return entry.first.text == key; });
+  return found == map.entries.end() ? nullptr : &*found;
 }
 
 class Lines {
@@ -41,18 +39,19 @@ class Lines {
   void add(std::string key, const Position& at) {
     found_.push_back({std::move(key), at.line, text_of_line(text_, at.line)});
   }
-  void add_key(const Node& map, std::string_view key, const std::string& path) {
-    if (const auto* entry = find(map, key)) add(path, entry->first.at);
+  /// False if the map is null or has no such key.
+  bool add_key(const std::pair<Node, Node>* map, const std::string& path, const std::string& key) {
+    const auto* entry = map == nullptr ? nullptr : find(map->second, key);
+    if (entry != nullptr) add(path + key, entry->first.at);
+    return entry != nullptr;
   }
   void add_labels(const std::vector<SweepAxis>& axes, const std::string& path,
                   const nlohmann::json& labels) {
     for (const SweepAxis& axis : axes) {
       const auto label = labels.find(axis.key);
       if (label == labels.end()) continue;
-      const auto value =
-          std::find_if(axis.values.begin(), axis.values.end(),
-                       [&](const Setting& setting) { return setting.value == *label; });
-      add(path + "." + axis.key, value == axis.values.end() ? axis.at : value->at);
+      const auto value = std::ranges::find(axis.values, *label, &Setting::value);
+      add(path + axis.key, value == axis.values.end() ? axis.at : value->at);
     }
   }
   std::vector<ManifestLine> take() { return std::move(found_); }
@@ -67,41 +66,25 @@ class Lines {
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& labels) {
   try {
-    const Node document = read_document(text, "manifest");
+    const std::pair<Node, Node> document{{}, read_document(text, "manifest")};
     const Manifest manifest = parse_manifest(text, "manifest");
+    const auto* scales = find(document.second, "scales");
+    const auto* own = scales == nullptr ? nullptr : find(scales->second, scale);
+    const std::string path = "scales." + std::string(scale);
+    const auto stated = std::ranges::find(manifest.scales, scale, &Scale::name);
+    const bool own_sweep = stated != manifest.scales.end() && stated->sweep;
+    const Sweep& sweep = own_sweep ? *stated->sweep : *manifest.base.sweep;
+    const std::string sweep_path = own_sweep ? path + ".sweep." : "sweep.";
+
     Lines lines(text);
-    lines.add_key(document, "experiment", "experiment");
-    const Node* scale_node = nullptr;
-    const Node* cycles_node = nullptr;
-    std::string cycles_path = "base";
-    if (const auto* base = find(document, "base")) cycles_node = &base->second;
-    const Sweep* sweep = &manifest.sweep;
-    std::string sweep_path = "sweep", seeds_path = "seeds";
-    if (const auto* scales = scale.empty() ? nullptr : find(document, "scales")) {
-      const std::string path = "scales." + std::string(scale);
-      if (const auto* entry = find(scales->second, scale)) {
-        lines.add(path, entry->first.at);
-        scale_node = &entry->second;
-        if (find(*scale_node, "cycles") != nullptr) {
-          cycles_node = scale_node;
-          cycles_path = path;
-        }
-      }
-      for (const Scale& known : manifest.scales) {
-        if (known.name != scale || !known.sweep) continue;
-        sweep = &*known.sweep;
-        sweep_path = path + ".sweep";
-      }
-      if (scale_node != nullptr && find(*scale_node, "seeds") != nullptr) {
-        seeds_path = path + ".seeds";
-      } else {
-        scale_node = nullptr;
-      }
+    lines.add_key(&document, "", "experiment");
+    if (own != nullptr) lines.add(path, own->first.at);
+    lines.add_labels(sweep.grid, sweep_path + "grid.", labels);
+    lines.add_labels(sweep.zip, sweep_path + "zip.", labels);
+    if (!lines.add_key(own, path + ".", "cycles")) {
+      lines.add_key(find(document.second, "base"), "base.", "cycles");
     }
-    lines.add_labels(sweep->grid, sweep_path + ".grid", labels);
-    lines.add_labels(sweep->zip, sweep_path + ".zip", labels);
-    if (cycles_node != nullptr) lines.add_key(*cycles_node, "cycles", cycles_path + ".cycles");
-    lines.add_key(scale_node != nullptr ? *scale_node : document, "seeds", seeds_path);
+    if (!lines.add_key(own, path + ".", "seeds")) lines.add_key(&document, "", "seeds");
     return lines.take();
   } catch (const ManifestError&) {
     return {};  // written for another version of the schema
@@ -113,12 +96,8 @@ std::vector<Override> overrides(std::string_view text, const Membership& members
   try {
     const Manifest manifest = parse_manifest(text, "manifest");
     const auto scale = std::ranges::find(manifest.scales, membership.scale, &Scale::name);
-    const AtScale stated = at_scale(manifest, scale == manifest.scales.end() ? nullptr : &*scale);
-    const auto value = [&](const char* key) {
-      const auto setting = stated.settings.find(key);
-      return setting == stated.settings.end() ? get_value(*find_field(key), Parameters{})
-                                              : setting->second.value;
-    };
+    const Scale stated =
+        scale == manifest.scales.end() ? manifest.base : whole_scale(manifest, *scale);
     const auto labelled = [&](const auto& swept) {
       const auto label = membership.labels.find(swept.first);
       return label != membership.labels.end() && *label == swept.second->value;
@@ -134,13 +113,13 @@ std::vector<Override> overrides(std::string_view text, const Membership& members
     if (std::ranges::find(seeds, membership.seed) == seeds.end()) {
       found.push_back({"seed", membership.seed, seeds});
     }
-    const auto swept = [&](const std::vector<SweepAxis>& axes) {
+    const auto swept = [](const std::vector<SweepAxis>& axes) {
       return std::ranges::find(axes, "engine", &SweepAxis::key) != axes.end();
     };
     const auto engine = membership.labels.find("engine");
     if (engine != membership.labels.end() && !swept(stated.sweep->grid) &&
         !swept(stated.sweep->zip)) {
-      found.push_back({"engine", *engine, value("engine")});
+      found.push_back({"engine", *engine, value_at(stated, "engine")});
     }
   } catch (const ManifestError&) {
     found.clear();

@@ -2,6 +2,7 @@
 #include "experiments/manifest/manifest.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <fstream>
@@ -9,8 +10,8 @@
 #include <tuple>
 
 #include "experiments/manifest/document.hpp"
-#include "experiments/manifest/reader.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell {
 namespace {
@@ -25,15 +26,14 @@ std::vector<ManifestProblem> in_text_order(std::vector<ManifestProblem> problems
 }
 
 std::string join(const std::vector<ManifestProblem>& problems) {
-  std::string text;
+  std::vector<std::string> lines;
   for (std::size_t i = 0; i < std::min(problems.size(), kMostReported); ++i) {
-    if (i > 0) text += '\n';
-    text += problems[i].text();
+    lines.push_back(problems[i].text());
   }
   if (problems.size() > kMostReported) {
-    text += fmt::format("\nand {} more problems", problems.size() - kMostReported);
+    lines.push_back(fmt::format("and {} more problems", problems.size() - kMostReported));
   }
-  return text;
+  return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
 [[noreturn]] void refuse_file(const std::string& file, std::string problem, std::string remedy) {
@@ -82,11 +82,33 @@ Manifest load_manifest(const std::filesystem::path& path) {
 }
 
 Manifest parse_manifest(std::string_view text, std::string_view file) {
-  Manifest manifest = read_manifest(read_document(text, file), file);
-  manifest.text = text;
-  std::vector<ManifestProblem> problems = check_variants(manifest);
-  if (!problems.empty()) throw ManifestError(std::move(problems));
+  Manifest manifest = read_manifest(text, file);
+  check_variants(manifest);
   return manifest;
+}
+
+nlohmann::json to_json(const Until& until) {
+  return {{std::string(name_of(until.measure)), until.value}, {"extra_cycles", until.extra_cycles}};
+}
+
+Until until_from_json(const nlohmann::json& json) {
+  for (const Named<StopMeasure>& entry : kNames<StopMeasure>) {
+    const std::string name(entry.name);
+    if (!json.is_object() || !json.contains(name)) continue;
+    const auto extra = json.find("extra_cycles");
+    if (json.size() != 2 || !json.at(name).is_number() || extra == json.end() ||
+        !extra->is_number_unsigned() || *extra > StoreLimits::cycles) {
+      break;
+    }
+    return {entry.value, json.at(name).get<double>(), extra->get<std::uint64_t>()};
+  }
+  throw std::runtime_error("until: is not {MEASURE: VALUE, extra_cycles: N}, N at most 1000000");
+}
+
+std::string describe(const Until& until) {
+  std::string text = fmt::format("{} >= {}", name_of(until.measure), until.value);
+  if (until.extra_cycles > 0) text += fmt::format(" and {} cycles more", until.extra_cycles);
+  return text;
 }
 
 }  // namespace shearcell

@@ -14,11 +14,21 @@
 #include <vector>
 
 #include "analysis/own_figure.hpp"
-#include "experiments/manifest/limits.hpp"
-#include "experiments/manifest/until.hpp"
+#include "core/named.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
+
+/// Limits of a manifest's text and of its expansion; experiments/README.md lists all limits of the
+/// program. The ranges of the parameters (N, cycles, ...) are in the schema.
+struct ManifestLimits {
+  static constexpr std::size_t bytes = 1 << 20;
+  static constexpr std::size_t nodes = 100'000;
+  static constexpr std::size_t depth = 16;
+  static constexpr std::size_t values_per_list = 1'000;
+  static constexpr std::size_t scales = 16;
+  static constexpr std::uint64_t runs = 10'000;  ///< of all scales together
+};
 
 /// Place in the manifest's text, counted from 1; line 0 means the file as a whole.
 struct Position {
@@ -66,7 +76,6 @@ struct SweepAxis {
 struct Sweep {
   std::vector<SweepAxis> grid;
   std::vector<SweepAxis> zip;
-  bool empty() const { return grid.empty() && zip.empty(); }
 };
 
 /// 1..n when a manifest states a count, or the seeds that it lists.
@@ -74,6 +83,32 @@ struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;
 };
+
+/// Measures of a checkpoint (analysis/measures.hpp) that can end a run.
+enum class StopMeasure : std::uint8_t { crystalline_percent, largest_crystallite, phi };
+template <>
+inline constexpr auto kNames<StopMeasure> = names_in_order<StopMeasure>("crystalline_percent",
+                                                                        "largest_crystallite",
+                                                                        "phi");
+
+/// `until`: a run ends `extra_cycles` after the first checkpoint where the measure is at least
+/// `value`. Like `cycles`, it is not part of the identity of a run.
+struct Until {
+  StopMeasure measure = StopMeasure::crystalline_percent;
+  double value = 0;
+  std::uint64_t extra_cycles = 0;
+
+  bool operator==(const Until&) const = default;
+};
+
+/// {"crystalline_percent": 10, "extra_cycles": 15}, as a manifest writes it.
+nlohmann::json to_json(const Until& until);
+
+/// The inverse. The JSON is not trusted: throws std::runtime_error.
+Until until_from_json(const nlohmann::json& json);
+
+/// "crystalline_percent >= 10 and 15 cycles more".
+std::string describe(const Until& until);
 
 /// `until`, or `until: none` in a scale, and where it was written.
 struct StatedUntil {
@@ -95,15 +130,15 @@ struct VariantLabel {
   Position at;
 };
 
-/// A named size of the experiment. What it does not state is as in the manifest itself.
+/// A named size of the experiment, or what the manifest states for all of them.
 struct Scale {
-  std::string name;
-  Position at;
-  Settings settings;
-  std::optional<Sweep> sweep;
-  std::optional<Seeds> seeds;
-  std::optional<Checkpoints> checkpoints;
-  std::optional<StatedUntil> until;
+  std::string name = {};  ///< "" for the manifest itself
+  Position at = {};
+  Settings settings = {};
+  std::optional<Sweep> sweep = {};
+  std::optional<Seeds> seeds = {};
+  std::optional<Checkpoints> checkpoints = {};
+  std::optional<StatedUntil> until = {};
 };
 
 struct Manifest {
@@ -115,13 +150,9 @@ struct Manifest {
   std::vector<VariantLabel> labels;
   std::vector<PlotSpec> plots;
   std::vector<ClaimSpec> claims;
-  Position base_at;
-  Settings base;
-  Sweep sweep;
-  Seeds seeds;
-  Checkpoints checkpoints;
-  StatedUntil until;
-  std::vector<Scale> scales;  ///< in the order of the text
+  Scale base = {
+      .sweep = Sweep(), .seeds = Seeds(), .checkpoints = Checkpoints(), .until = StatedUntil()};
+  std::vector<Scale> scales;  ///< in the order of the text; what one does not state is as in `base`
 };
 
 /// Letters, digits, '-' and '_', at most 64 of them and no '-' first: such a text can name an
@@ -134,5 +165,9 @@ Manifest load_manifest(const std::filesystem::path& path);
 /// Reads a text; `file` is its name in messages. Every scale is checked through to the time step of
 /// every variant. Throws ManifestError.
 Manifest parse_manifest(std::string_view text, std::string_view file);
+
+/// The same without the checks of the variants: every key is known, every value of its type and in
+/// its range. Throws ManifestError with everything that is wrong.
+Manifest read_manifest(std::string_view text, std::string_view file);
 
 }  // namespace shearcell

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,13 +18,8 @@ class ProblemList {
  public:
   explicit ProblemList(std::string_view file) : file_(file) {}
 
+  /// Many variants share one cause: what was reported already is not repeated.
   void add(Position at, std::string key, std::string problem, std::string got, std::string remedy);
-  /// The node is not what is `wanted`, as in "a list".
-  void add_type(const Node& node, std::string key, std::string_view wanted,
-                std::string remedy = {});
-  /// A key that is not `allowed` in the map at `path`; says which name is meant.
-  void add_unknown(const Node& key, std::string_view path,
-                   std::span<const std::string_view> allowed);
 
   std::size_t size() const { return problems_.size(); }
 
@@ -33,21 +29,33 @@ class ProblemList {
  private:
   std::string file_;
   std::vector<ManifestProblem> problems_;
+  std::set<std::string> texts_;
 };
 
-/// A key at the top level of a manifest.
-struct ManifestKey {
-  std::string_view name;
-  std::string_view example;  ///< a value, as YAML
-  std::string_view meaning;
+/// A value of the document while it is read.
+struct Entry {
+  const Node& key;   ///< of an item, that of its list; of the document, the document
+  const Node& node;  ///< the value
+  std::string path;  ///< to the key, as in "scales.smoke.grains"
+  ProblemList& problems;
+
+  bool is_scalar() const { return node.kind == Node::Kind::scalar; }
+  /// Whether it is a map with at least one key.
+  bool is_map() const { return node.kind == Node::Kind::map && !node.entries.empty(); }
+
+  std::vector<Entry> entries() const;  ///< of a map
+  std::vector<Entry> items() const;    ///< of a list
+
+  /// Something is wrong with the value, which the message quotes.
+  void reject_value(std::string problem, std::string remedy) const;
+  /// The value is not what is `wanted`, as in "a list".
+  void reject_type(std::string_view wanted, std::string remedy) const;
+  /// Something is wrong with a part of the value, or with its place.
+  void reject(std::string problem, std::string remedy) const;
+  void reject_key(std::string problem, std::string remedy) const;
+  /// The key is not one of those `allowed` in its map; says which name is meant.
+  void reject_unknown(std::span<const std::string_view> allowed) const;
 };
-std::span<const ManifestKey> manifest_keys();
-
-/// Their names.
-std::span<const std::string_view> manifest_sections();
-
-/// "scales.smoke" and "grains" -> "scales.smoke.grains".
-std::string join_path(std::string_view path, std::string_view key);
 
 /// A node as it is quoted in a message.
 std::string shown(const Node& node);

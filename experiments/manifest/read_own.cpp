@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <functional>
 #include <limits>
-#include <set>
 
 #include "analysis/figure.hpp"
 #include "experiments/manifest/read_parts.hpp"
@@ -17,182 +14,156 @@
 namespace shearcell {
 namespace {
 
-constexpr std::size_t kShownNames = 20;
-
 using nlohmann::json;
 using std::string;
 using std::string_view;
 
+constexpr std::size_t kShownNames = 20;
 constexpr std::size_t kLongestLabel = 60;  // [bytes]
 constexpr std::uint64_t kLastCycle = 1'000'000;
 
-bool is_plain(string_view text) {
-  return std::ranges::none_of(text, [](char c) { return (c >= 0 && c < 0x20) || c == 0x7F; });
+/// One parameter and its value.
+void read_where(const Entry& in, json& where) {
+  const Field* field = find_field(in.key.text);
+  if (field == nullptr) return in.reject_unknown(names_of(schema()));
+  if (auto read = read_parameter(*field, in)) where[in.key.text] = std::move(*read);
 }
 
-/// One parameter and its value; the value's text stands in `node`.
-void read_where(const Node& key, const Node& value, const string& path, json& where,
-                ProblemList& problems) {
-  const Field* field = find_field(key.text);
-  if (field == nullptr) return problems.add_unknown(key, path, field_names());
-  if (auto read = read_parameter(*field, value, join_path(path, key.text), problems)) {
-    where[key.text] = std::move(*read);
-  }
-}
-
-/// "fluid=still,amplitude_rad=0.05".
-json read_selector(const Node& node, const string& path, ProblemList& problems) {
-  json where = json::object();
-  string_view rest = node.text;
+/// The key "fluid=still,amplitude_rad=0.05" as the map that it stands for.
+json read_selector(const Entry& in) {
+  Node map{Node::Kind::map, in.key.at};
+  string_view rest = in.key.text;
   while (!rest.empty()) {
     const string_view part = rest.substr(0, rest.find(','));
     rest.remove_prefix(std::min(rest.size(), part.size() + 1));
     const std::size_t equal = part.find('=');
     if (equal == part.npos) {
-      problems.add(node.at, path, "does not select variants", shown(node),
-                   "It takes `\"fluid=still\"`, or several joined by commas.");
+      in.problems.add(in.key.at, in.path, "does not select variants", shown(in.key),
+                      "It takes `\"fluid=still\"`, or several joined by commas.");
       break;
     }
-    const Node key{Node::Kind::scalar, node.at, string(part.substr(0, equal))};
-    const Node value{Node::Kind::scalar, node.at, string(part.substr(equal + 1))};
-    read_where(key, value, path, where, problems);
+    map.entries.push_back({{Node::Kind::scalar, in.key.at, string(part.substr(0, equal))},
+                           {Node::Kind::scalar, in.key.at, string(part.substr(equal + 1))}});
+  }
+  json where = json::object();
+  for (const Entry& entry : Entry{in.key, map, in.path, in.problems}.entries()) {
+    read_where(entry, where);
   }
   return where;
 }
 
-/// The entries of a map with these keys, each handed to `take`. False, with a problem, if it is
-/// none or lacks one of the first `required` keys.
-bool read_entries(const Node& node, const string& path, std::span<const string_view> known,
-                  std::size_t required, const string& example, ProblemList& problems,
-                  const std::function<void(const Node& key, const Node& value)>& take) {
-  if (node.kind != Node::Kind::map) {
-    problems.add_type(node, path, "a map", fmt::format("It takes `{}`.", example));
+/// Reads a map with these keys. False, with a problem, if it is none or lacks one of the first
+/// `required` keys.
+bool read_whole(const Entry& in, std::span<const Key> keys, std::size_t required,
+                const string& example) {
+  const string remedy = fmt::format("It takes `{}`.", example);
+  if (in.node.kind != Node::Kind::map) {
+    in.reject_type("a map", remedy);
     return false;
   }
-  std::set<string_view> seen;
-  for (const auto& [key, value] : node.entries) {
-    if (std::ranges::find(known, key.text) == known.end()) {
-      problems.add_unknown(key, path, known);
-      continue;
-    }
-    seen.insert(key.text);
-    take(key, value);
-  }
-  for (const string_view key : known.first(required)) {
-    if (seen.contains(key)) continue;
-    problems.add(node.at, path, fmt::format("lacks {}", key), "",
-                 fmt::format("It takes `{}`.", example));
+  const std::set<string_view> found = read_keys(in, keys);
+  for (const Key& key : keys.first(required)) {
+    if (found.contains(key.name)) continue;
+    in.reject(fmt::format("lacks {}", key.name), remedy);
     return false;
   }
   return true;
 }
 
 /// The value, if it is one of `known`; else a problem with the nearest of them.
-string read_one_of(const Node& node, const string& path, const std::vector<string_view>& known,
-                   ProblemList& problems) {
-  if (node.kind == Node::Kind::scalar && std::ranges::find(known, node.text) != known.end()) {
-    return node.text;
-  }
-  const string near = node.kind == Node::Kind::scalar ? suggest_name(node.text, known).name : "";
-  problems.add(node.at, path,
-               near.empty() ? "is unknown" : fmt::format("is unknown, the nearest is {}", near),
-               shown(node),
-               known.size() > kShownNames ? "`shearcell manual --markdown` lists them."
-                                          : fmt::format("Known are {}.", fmt::join(known, ", ")));
+string read_one_of(const Entry& in, const std::vector<string_view>& known) {
+  const string text = in.is_scalar() ? in.node.text : "";
+  if (in.is_scalar() && std::ranges::find(known, text) != known.end()) return text;
+  in.reject_value(with_nearest("is unknown", text, known),
+                  known.size() > kShownNames
+                      ? "`shearcell manual --markdown` lists them."
+                      : fmt::format("Known are {}.", fmt::join(known, ", ")));
   return "";
 }
 
-std::vector<string_view> measure_names() {
-  std::vector<string_view> names;
-  for (const ScalarMeasure& measure : all_scalar_measures()) names.push_back(measure.name);
+std::vector<string_view> joined(std::vector<string_view> names,
+                                const std::vector<string_view>& more) {
+  names.insert(names.end(), more.begin(), more.end());
   return names;
 }
 
-std::vector<string_view> with_measures(std::vector<string_view> names) {
-  for (const string_view name : measure_names()) names.push_back(name);
-  return names;
-}
-
-/// A name for files, different from those of the supplement's figures and their panels.
-string read_own_name(const Node& node, const string& path, std::set<string>& taken,
-                     ProblemList& problems) {
+/// A name for files, different from those of the supplement's figures and their panels, and of
+/// other plots and claims.
+string read_own_name(const Entry& in, const Manifest& manifest) {
+  const string& name = in.node.text;
   const auto is_panel = [&](const Figure& figure) {
-    if (!node.text.starts_with(figure.name)) return false;
-    const string_view rest = string_view(node.text).substr(figure.name.size());
+    if (!name.starts_with(figure.name)) return false;
+    const string_view rest = string_view(name).substr(figure.name.size());
     return rest.size() < 2 || rest.front() == '_';
   };
-  if (node.kind != Node::Kind::scalar || !is_name(node.text)) {
-    problems.add_type(node, path, "a name", "It takes letters, digits, - and _.");
+  const auto is_taken = [&](const auto& others) {
+    return std::ranges::any_of(others, [&](const auto& other) { return other.name == name; });
+  };
+  if (!in.is_scalar() || !is_name(name)) {
+    in.reject_type("a name", "It takes letters, digits, - and _.");
   } else if (std::ranges::any_of(all_figures(), is_panel)) {
-    problems.add(node.at, path, "is the name of a figure of the supplement", shown(node),
-                 "Choose another one.");
-  } else if (!taken.insert(node.text).second) {
-    problems.add(node.at, path, "is the name of another plot or claim", shown(node),
-                 "Choose another one.");
+    in.reject_value("is the name of a figure of the supplement", "Choose another one.");
+  } else if (is_taken(manifest.plots) || is_taken(manifest.claims)) {
+    in.reject_value("is the name of another plot or claim", "Choose another one.");
   }
-  return node.text;
+  return name;
 }
 
 /// A first and a last cycle.
-std::array<std::uint64_t, 2> read_interval(const Node& node, const string& path,
-                                           const string& example, ProblemList& problems) {
-  const auto ends = read_list(node, path, example, problems);
+std::array<std::uint64_t, 2> read_interval(const Entry& in, const string& example) {
+  const std::vector<Entry> ends = read_list(in, example);
   std::array<std::uint64_t, 2> interval = {1, 1};
   if (ends.size() == 2) {
-    interval[0] = read_count(ends[0], path, kLastCycle, problems).value_or(1);
-    interval[1] = read_count(ends[1], path, kLastCycle, problems).value_or(interval[0]);
+    interval[0] = read_count(ends[0], kLastCycle).value_or(1);
+    interval[1] = read_count(ends[1], kLastCycle).value_or(interval[0]);
   }
   if (ends.size() != 2 || interval[1] < interval[0]) {
-    problems.add(node.at, path, "is not a first and a last cycle", "",
-                 fmt::format("It takes `{}`.", example));
+    in.reject("is not a first and a last cycle", fmt::format("It takes `{}`.", example));
   }
   return interval;
 }
 
-PlotSpec read_plot(const Node& node, std::set<string>& taken, ProblemList& problems) {
-  static constexpr std::array<string_view, 8> known = {"name", "y",   "x",        "by",
-                                                       "show", "log", "at_cycle", "cycles"};
-  const string example = "{name: compaction, y: phi, x: cycle}";
+PlotSpec read_plot(const Entry& in, const Manifest& manifest) {
   PlotSpec plot;
-  std::optional<Position> x_at;
-  Position cycles_at;
-  read_entries(node, "plots", known, 2, example, problems, [&](const Node& key, const Node& value) {
-    const string path = join_path("plots", key.text);
-    if (key.text == "name") {
-      plot.name = read_own_name(value, path, taken, problems);
-    } else if (key.text == "y") {
-      std::vector<string_view> names = measure_names();
-      for (const CurveMeasure& curve : all_curve_measures()) names.push_back(curve.name);
-      plot.y = read_one_of(value, path, names, problems);
-    } else if (key.text == "x") {
-      x_at = value.at;
-      std::vector<string_view> names = with_measures({"cycle"});
-      for (const string_view name : field_names()) names.push_back(name);
-      plot.x = read_one_of(value, path, names, problems);
-    } else if (key.text == "by") {
-      plot.by = read_one_of(value, path, field_names(), problems);
-    } else if (key.text == "show") {
-      plot.traces = read_one_of(value, path, {"mean", "traces"}, problems) == "traces";
-    } else if (key.text == "log") {
-      const string axes = read_one_of(value, path, {"none", "x", "y", "xy"}, problems);
-      plot.log_x = axes.starts_with('x');
-      plot.log_y = axes.ends_with('y');
-    } else if (key.text == "cycles") {
-      cycles_at = value.at;
-      plot.cycles = read_interval(value, path, "[20, 21]", problems);
-    } else {
-      plot.cycle = read_count(value, path, kLastCycle, problems);
-    }
-  });
-  const CurveMeasure* curve = find_curve_measure(plot.y);
-  if (curve != nullptr && x_at) {
-    problems.add(*x_at, "plots.x", fmt::format("does not go with {}", curve->name), plot.x,
-                 fmt::format("Leave it out: {} is drawn against {}.", curve->name, curve->x));
+  std::optional<Entry> x, cycles;
+  const auto measures = names_of(all_scalar_measures());
+  const auto parameters = names_of(schema());
+  const Key keys[] = {
+      {"name", [&](const Entry& of) { plot.name = read_own_name(of, manifest); }},
+      {"y",
+       [&](const Entry& of) {
+         plot.y = read_one_of(of, joined(measures, names_of(all_curve_measures())));
+       }},
+      {"x",
+       [&](const Entry& of) {
+         x.emplace(of);
+         plot.x = read_one_of(of, joined(joined({"cycle"}, measures), parameters));
+       }},
+      {"by", [&](const Entry& of) { plot.by = read_one_of(of, parameters); }},
+      {"show",
+       [&](const Entry& of) {
+         plot.traces = read_one_of(of, {"mean", "traces"}) == "traces";
+       }},
+      {"log",
+       [&](const Entry& of) {
+         const string axes = read_one_of(of, {"none", "x", "y", "xy"});
+         plot.log_x = axes.starts_with('x');
+         plot.log_y = axes.ends_with('y');
+       }},
+      {"at_cycle", [&](const Entry& of) { plot.cycle = read_count(of, kLastCycle); }},
+      {"cycles", [&](const Entry& of) {
+         cycles.emplace(of);
+         plot.cycles = read_interval(of, "[20, 21]");
+       }}};
+  read_whole(in, keys, 2, "{name: compaction, y: phi, x: cycle}");
+  if (const CurveMeasure* curve = find_curve_measure(plot.y); curve != nullptr && x) {
+    x->reject_value(fmt::format("does not go with {}", curve->name),
+                    fmt::format("Leave it out: {} is drawn against {}.", curve->name, curve->x));
   }
   const bool against_parameter = plot.x != "cycle" && !plot.x.empty() && !is_measure(plot.x);
-  if (plot.cycles && (!plot.traces || against_parameter)) {
-    problems.add(cycles_at, "plots.cycles", "draws each run along its cycles", "",
-                 "It takes `show: traces`, and `cycle` or a measure as x.");
+  if (cycles && (!plot.traces || against_parameter)) {
+    cycles->reject("draws each run along its cycles",
+                   "It takes `show: traces`, and `cycle` or a measure as x.");
   }
   if (const Field* field = is_measure(plot.x) ? nullptr : find_field(plot.x)) {
     plot.x_symbol = field->symbol;
@@ -201,94 +172,75 @@ PlotSpec read_plot(const Node& node, std::set<string>& taken, ProblemList& probl
   return plot;
 }
 
-double read_margin(const Node& node, ProblemList& problems) {
-  constexpr double Parameters::*none = nullptr;
-  static const Field field{"margin", "", "1", none, 0, std::numeric_limits<double>::max(),
-                           true,     {}, ""};
-  return read_parameter(field, node, "claims.margin", problems).value_or(0.0).get<double>();
+void read_between(const Entry& in, std::array<json, 2>& between) {
+  const std::string example = "[{fluid: still}, {fluid: cell}]";
+  const std::size_t problems_before = in.problems.size();
+  const std::vector<Entry> sides = read_list(in, example);
+  for (std::size_t k = 0; k < std::min<std::size_t>(sides.size(), 2); ++k) {
+    between[k] = json::object();
+    for (const Entry& entry : sides[k].entries()) read_where(entry, between[k]);
+  }
+  const bool two = sides.size() == 2 && !between[0].empty() && !between[1].empty();
+  if (!two && in.problems.size() == problems_before) {
+    in.reject("does not name two variants", fmt::format("It takes `{}`.", example));
+  }
 }
 
-ClaimSpec read_claim(const Node& node, std::set<string>& taken, ProblemList& problems) {
-  static constexpr std::array<string_view, 7> known = {"name",     "compare", "between", "margin",
-                                                       "at_cycle", "cycles",  "is"};
+ClaimSpec read_claim(const Entry& in, const Manifest& manifest) {
   const string example =
       "{name: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: cell}], "
       "margin: 0.001}";
+  const Field margin = real_number("margin", "1", {0, std::numeric_limits<double>::max(), true});
   ClaimSpec claim;
-  const bool whole = read_entries(
-      node, "claims", known, 4, example, problems, [&](const Node& key, const Node& value) {
-        const string path = join_path("claims", key.text);
-        if (key.text == "name") {
-          claim.name = read_own_name(value, path, taken, problems);
-        } else if (key.text == "compare") {
-          claim.compare = read_one_of(value, path, measure_names(), problems);
-        } else if (key.text == "margin") {
-          claim.margin = read_margin(value, problems);
-        } else if (key.text == "is") {
-          claim.higher = read_one_of(value, path, {"same", "higher"}, problems) == "higher";
-        } else if (key.text == "at_cycle") {
-          claim.first = claim.last = read_count(value, path, kLastCycle, problems).value_or(1);
-        } else if (key.text == "cycles") {
-          const auto [first, last] = read_interval(value, path, "[1, 15]", problems);
-          claim.first = first, claim.last = last;
-        } else {
-          const std::size_t problems_before = problems.size();
-          const auto sides = read_list(value, path, "[{fluid: still}, {fluid: cell}]", problems);
-          for (std::size_t k = 0; k < std::min<std::size_t>(sides.size(), 2); ++k) {
-            claim.between[k] = json::object();
-            for (const auto& [name, of] : sides[k].entries) {
-              read_where(name, of, path, claim.between[k], problems);
-            }
-          }
-          const bool two =
-              sides.size() == 2 && !claim.between[0].empty() && !claim.between[1].empty();
-          if (!two && problems.size() == problems_before) {
-            problems.add(value.at, path, "does not name two variants", "",
-                         "It takes `[{fluid: still}, {fluid: cell}]`.");
-          }
-        }
-      });
-  if (whole && claim.last == 0) {
-    problems.add(node.at, "claims", "lacks at_cycle or cycles", "",
-                 fmt::format("It takes `{}`.", example));
+  const Key keys[] = {
+      {"name", [&](const Entry& of) { claim.name = read_own_name(of, manifest); }},
+      {"compare",
+       [&](const Entry& of) { claim.compare = read_one_of(of, names_of(all_scalar_measures())); }},
+      {"between", [&](const Entry& of) { read_between(of, claim.between); }},
+      {"margin",
+       [&](const Entry& of) {
+         claim.margin = read_parameter(margin, of).value_or(0.0).get<double>();
+       }},
+      {"at_cycle",
+       [&](const Entry& of) { claim.first = claim.last = read_count(of, kLastCycle).value_or(1); }},
+      {"cycles",
+       [&](const Entry& of) {
+         const auto [first, last] = read_interval(of, "[1, 15]");
+         claim.first = first, claim.last = last;
+       }},
+      {"is", [&](const Entry& of) {
+         claim.higher = read_one_of(of, {"same", "higher"}) == "higher";
+       }}};
+  if (read_whole(in, keys, 4, example) && claim.last == 0) {
+    in.reject("lacks at_cycle or cycles", fmt::format("It takes `{}`.", example));
   }
   return claim;
 }
 
 }  // namespace
 
-std::vector<VariantLabel> read_labels(const Node& node, ProblemList& problems) {
-  std::vector<VariantLabel> labels;
-  if (node.kind != Node::Kind::map || node.entries.empty()) {
-    problems.add_type(node, "labels", "a map of names",
-                      "It takes `{\"fluid=still\": \"fluid at rest\"}`.");
-    return labels;
+void read_labels(const Entry& in, Manifest& manifest) {
+  if (!in.is_map()) {
+    in.reject_type("a map of names", "It takes `{\"fluid=still\": \"fluid at rest\"}`.");
   }
-  for (const auto& [key, value] : node.entries) {
-    const string path = join_path("labels", key.text);
-    if (value.kind != Node::Kind::scalar || value.text.empty() ||
-        value.text.size() > kLongestLabel || !is_plain(value.text)) {
-      problems.add_type(value, path, "a name",
+  for (const Entry& entry : in.entries()) {
+    if (!is_text(entry.node, kLongestLabel, false) || entry.node.text.empty()) {
+      entry.reject_type("a name",
                         fmt::format("It takes a text of at most {} bytes.", kLongestLabel));
     }
-    labels.push_back({read_selector(key, path, problems), value.text, key.at});
-  }
-  return labels;
-}
-
-void read_plots(const Node& node, Manifest& manifest, ProblemList& problems) {
-  std::set<string> taken;
-  for (const ClaimSpec& claim : manifest.claims) taken.insert(claim.name);
-  for (const Node& item : read_list(node, "plots", "[{name: compaction, y: phi}]", problems)) {
-    manifest.plots.push_back(read_plot(item, taken, problems));
+    manifest.labels.push_back({read_selector(entry), entry.node.text, entry.key.at});
   }
 }
 
-void read_claims(const Node& node, Manifest& manifest, ProblemList& problems) {
-  std::set<string> taken;
-  for (const PlotSpec& plot : manifest.plots) taken.insert(plot.name);
-  for (const Node& item : read_list(node, "claims", "[{name: same, compare: phi}]", problems)) {
-    manifest.claims.push_back(read_claim(item, taken, problems));
+void read_plots(const Entry& in, Manifest& manifest) {
+  for (const Entry& item : read_list(in, "[{name: compaction, y: phi}]")) {
+    manifest.plots.push_back(read_plot(item, manifest));
+  }
+}
+
+void read_claims(const Entry& in, Manifest& manifest) {
+  for (const Entry& item : read_list(in, "[{name: same, compare: phi}]")) {
+    manifest.claims.push_back(read_claim(item, manifest));
   }
 }
 

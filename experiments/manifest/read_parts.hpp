@@ -1,49 +1,65 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the parts of manifests: values, counts, lists, sweeps. Problems go to a ProblemList, and
-// reading continues.
+// Reads the parts of manifests: values, counts, lists, sweeps. Problems go to the entry's
+// ProblemList, and reading continues.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <span>
-#include <string>
 #include <string_view>
+#include <vector>
 
-#include "experiments/manifest/document.hpp"
-#include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/problems.hpp"
 #include "experiments/manifest/schema.hpp"
 
 namespace shearcell {
 
+/// A key at the top level of a manifest.
+struct ManifestKey {
+  std::string_view name;
+  std::string_view example;  ///< a value, as YAML
+  std::string_view meaning;
+  void (*read)(const Entry& in, Manifest& manifest);
+  void (*read_in_scale)(const Entry& in,
+                        Scale& scale) = nullptr;  ///< null: a scale has no such key
+};
+std::span<const ManifestKey> manifest_keys();
+
 /// The value of a parameter, of its type and in its range.
-std::optional<nlohmann::json> read_parameter(const Field& field, const Node& node,
-                                             const std::string& key, ProblemList& problems);
+std::optional<nlohmann::json> read_parameter(const Field& field, const Entry& in);
 
 /// Whether the node is the word `auto` where the parameter takes it.
 bool is_auto(const Field& field, const Node& node);
 
-/// A whole number from 1 to `largest`.
-std::optional<std::uint64_t> read_count(const Node& node, const std::string& key,
-                                        std::uint64_t largest, ProblemList& problems);
+/// A whole number from 1 to `largest`, which a double holds exactly.
+std::optional<std::uint64_t> read_count(const Entry& in, std::uint64_t largest);
+
+/// Whether the node is one text of at most so many bytes without control characters, except ends
+/// of lines if `lines`.
+bool is_text(const Node& node, std::size_t longest, bool lines);
 
 /// The items of a list that is neither empty nor over-long; none when it is.
-std::span<const Node> read_list(const Node& node, const std::string& key, std::string_view example,
-                                ProblemList& problems);
+std::vector<Entry> read_list(const Entry& in, std::string_view example);
 
-Sweep read_sweep(const Node& node, const std::string& path, ProblemList& problems);
+struct Key {
+  std::string_view name;
+  std::function<void(const Entry&)> read;
+};
 
-Checkpoints read_checkpoints(const Node& node, const std::string& path, ProblemList& problems);
+/// Reads the entries of a map; a key that is not listed is a problem. Returns the others.
+std::set<std::string_view> read_keys(const Entry& map, std::span<const Key> keys);
 
-StatedUntil read_until(const Node& node, const std::string& key, ProblemList& problems);
+Sweep read_sweep(const Entry& in);
+Seeds read_seeds(const Entry& in);
+Checkpoints read_checkpoints(const Entry& in);
+StatedUntil read_until(const Entry& in);
 
-std::vector<VariantLabel> read_labels(const Node& node, ProblemList& problems);
-
-/// Add to the manifest's plots or claims, whose names are all different.
-void read_plots(const Node& node, Manifest& manifest, ProblemList& problems);
-void read_claims(const Node& node, Manifest& manifest, ProblemList& problems);
-
-Seeds read_seeds(const Node& node, const std::string& key, ProblemList& problems);
+/// Set or add to what the manifest has; names of plots and claims are all different.
+void read_labels(const Entry& in, Manifest& manifest);
+void read_plots(const Entry& in, Manifest& manifest);
+void read_claims(const Entry& in, Manifest& manifest);
 
 }  // namespace shearcell

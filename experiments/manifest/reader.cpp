@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/manifest/reader.hpp"
+// Reads the keys at the top level of a manifest, and its scales.
+#include "experiments/manifest/read_parts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <set>
+#include <utility>
 
 #include "analysis/figure.hpp"
-#include "experiments/manifest/problems.hpp"
-#include "experiments/manifest/read_parts.hpp"
-#include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
 
 namespace shearcell {
@@ -19,183 +17,130 @@ namespace {
 using std::string;
 using std::string_view;
 
-// What a scale may state beside parameters.
-constexpr std::array<string_view, 4> kScaleSections = {"sweep", "seeds", "checkpoints", "until"};
 constexpr std::size_t kLongestName = 64;
 constexpr std::size_t kLongestQuestion = 2'000;
 
-bool contains(const auto& names, string_view name) {
-  return std::ranges::find(names, name) != names.end();
+string read_name(const Entry& in) {
+  if (in.is_scalar() && is_name(in.node.text)) return in.node.text;
+  in.reject_type("a name", fmt::format("It takes letters, digits, - and _, at most {} of them.",
+                                       kLongestName));
+  return {};
 }
 
-class Reader {
- public:
-  explicit Reader(string_view file) : problems_(file) { manifest_.file = file; }
-
-  Manifest read(const Node& root) {
-    if (root.kind == Node::Kind::map) {
-      read_sections(root);
-    } else {
-      problems_.add_type(root, "", "a map of keys", "Begin with `experiment: NAME`.");
-    }
-    problems_.raise();
-    return std::move(manifest_);
+void read_question(const Entry& in, Manifest& manifest) {
+  if (is_text(in.node, kLongestQuestion, true)) {
+    manifest.question = in.node.text;
+  } else {
+    in.reject_type("a plain text",
+                   fmt::format("It takes one text of at most {} bytes.", kLongestQuestion));
   }
+}
 
- private:
-  void read_sections(const Node& root) {
-    std::set<string_view> seen;
-    manifest_.base_at = root.at;
-    for (const auto& [key, value] : root.entries) {
-      if (contains(manifest_sections(), key.text)) {
-        seen.insert(key.text);
-        read_section(key, value);
-      } else {
-        problems_.add_unknown(key, "", manifest_sections());
-      }
+void read_figures(const Entry& in, Manifest& manifest) {
+  for (const Entry& item : read_list(in, "[S2]")) {
+    const string figure = read_name(item);
+    if (figure.empty()) continue;
+    if (std::ranges::find(manifest.figures, figure) != manifest.figures.end()) {
+      item.reject_value("names a figure twice", "Keep one of them.");
+    } else if (find_figure(figure) == nullptr) {
+      item.reject_value(with_nearest("names an unknown figure", figure, names_of(all_figures())),
+                        "`shearcell figures --help` lists them.");
     }
-    if (!seen.contains("experiment")) {
-      problems_.add(root.at, "experiment", "is missing", "", "Begin with `experiment: NAME`.");
-    }
+    manifest.figures.push_back(figure);
   }
+}
 
-  void read_section(const Node& key, const Node& value) {
-    if (key.text == "experiment") {
-      manifest_.experiment = read_name(value, key.text);
-    } else if (key.text == "question") {
-      manifest_.question = read_question(value);
-    } else if (key.text == "figures") {
-      read_figures(value);
-    } else if (key.text == "labels") {
-      manifest_.labels = read_labels(value, problems_);
-    } else if (key.text == "plots") {
-      read_plots(value, manifest_, problems_);
-    } else if (key.text == "claims") {
-      read_claims(value, manifest_, problems_);
-    } else if (key.text == "base") {
-      manifest_.base_at = key.at;
-      manifest_.base = read_settings(value, key.text, nullptr);
-    } else if (key.text == "sweep") {
-      manifest_.sweep = read_sweep(value, key.text, problems_);
-    } else if (key.text == "seeds") {
-      manifest_.seeds = read_seeds(value, key.text, problems_);
-    } else if (key.text == "checkpoints") {
-      manifest_.checkpoints = read_checkpoints(value, key.text, problems_);
-    } else if (key.text == "until") {
-      manifest_.until = read_until(value, key.text, problems_);
-    } else {
-      read_scales(value);
+// The parameters of `base`, or of a scale, which may have sections of its own.
+void read_settings(const Entry& in, Scale& scale, bool with_sections) {
+  if (in.node.kind != Node::Kind::map) {
+    in.reject_type("a map of parameters", "Indent `key: value` lines under it.");
+    return;
+  }
+  std::vector<string_view> allowed = names_of(schema());
+  for (const ManifestKey& key : manifest_keys()) {
+    if (with_sections && key.read_in_scale != nullptr) allowed.push_back(key.name);
+  }
+  for (const Entry& entry : in.entries()) {
+    const string& name = entry.key.text;
+    if (std::ranges::find(allowed, name) == allowed.end()) {
+      entry.reject_unknown(allowed);
+    } else if (const Field* field = find_field(name); field == nullptr) {
+      std::ranges::find(manifest_keys(), name, &ManifestKey::name)->read_in_scale(entry, scale);
+    } else if (is_auto(*field, entry.node)) {
+      scale.settings[name] = {entry.node.text, entry.node.at};
+    } else if (auto read = read_parameter(*field, entry)) {
+      scale.settings[name] = {std::move(*read), entry.node.at};
     }
   }
+}
 
-  string read_name(const Node& node, const string& key) {
-    if (node.kind == Node::Kind::scalar && is_name(node.text)) return node.text;
-    problems_.add_type(
-        node, key, "a name",
-        fmt::format("It takes letters, digits, - and _, at most {} of them.", kLongestName));
-    return {};
-  }
-
-  string read_question(const Node& node) {
-    const bool plain = std::ranges::none_of(
-        node.text, [](char c) { return (c >= 0 && c < 0x20 && c != '\n') || c == 0x7F; });
-    if (node.kind == Node::Kind::scalar && plain && node.text.size() <= kLongestQuestion) {
-      return node.text;
-    }
-    problems_.add_type(node, "question", "a plain text",
-                       fmt::format("It takes one text of at most {} bytes.", kLongestQuestion));
-    return {};
-  }
-
-  void read_figures(const Node& node) {
-    for (const Node& item : read_list(node, "figures", "[S2]", problems_)) {
-      const string figure = read_name(item, "figures");
-      if (figure.empty()) continue;
-      if (contains(manifest_.figures, figure)) {
-        problems_.add(item.at, "figures", "names a figure twice", figure, "Keep one of them.");
-      } else if (find_figure(figure) == nullptr) {
-        add_unknown_figure(item);
-      }
-      manifest_.figures.push_back(figure);
-    }
-  }
-
-  void add_unknown_figure(const Node& item) {
-    std::vector<string_view> known;
-    for (const Figure& figure : all_figures()) known.emplace_back(figure.name);
-    const string near = suggest_name(item.text, known).name;
-    problems_.add(item.at, "figures",
-                  near.empty() ? "names an unknown figure"
-                               : fmt::format("names an unknown figure, the nearest is {}", near),
-                  shown(item), "`shearcell figures --help` lists them.");
-  }
-
-  // The parameters of `base`, or of a scale, which may have sections of its own.
-  Settings read_settings(const Node& node, const string& path, Scale* scale) {
-    Settings settings;
-    if (node.kind != Node::Kind::map) {
-      problems_.add_type(node, path, "a map of parameters", "Indent `key: value` lines under it.");
-      return settings;
-    }
-    std::vector<string_view> allowed = field_names();
-    if (scale != nullptr) {
-      allowed.insert(allowed.end(), kScaleSections.begin(), kScaleSections.end());
-    }
-    for (const auto& [key, value] : node.entries) {
-      const string full = join_path(path, key.text);
-      if (const Field* field = find_field(key.text)) {
-        auto read = is_auto(*field, value) ? nlohmann::json(value.text)
-                                           : read_parameter(*field, value, full, problems_);
-        if (read) settings[key.text] = {std::move(*read), value.at};
-      } else if (scale != nullptr && contains(kScaleSections, key.text)) {
-        read_scale_section(key.text, value, full, *scale);
-      } else {
-        problems_.add_unknown(key, path, allowed);
-      }
-    }
-    return settings;
-  }
-
-  void read_scale_section(string_view name, const Node& value, const string& path, Scale& scale) {
-    if (name == "seeds") {
-      scale.seeds = read_seeds(value, path, problems_);
-    } else if (name == "sweep") {
-      scale.sweep = read_sweep(value, path, problems_);
-    } else if (name == "until") {
-      scale.until = read_until(value, path, problems_);
-    } else {
-      scale.checkpoints = read_checkpoints(value, path, problems_);
-    }
-  }
-
-  void read_scales(const Node& node) {
-    const string remedy = "It takes `NAME: {key: value}` entries, such as smoke, desk and paper.";
-    if (node.kind != Node::Kind::map || node.entries.empty()) {
-      problems_.add_type(node, "scales", "a map of scales", remedy);
-      return;
-    }
-    if (node.entries.size() > ManifestLimits::scales) {
-      problems_.add(node.at, "scales",
+void read_scales(const Entry& in, Manifest& manifest) {
+  const string remedy = "It takes `NAME: {key: value}` entries, such as smoke, desk and paper.";
+  if (!in.is_map()) return in.reject_type("a map of scales", remedy);
+  const std::size_t count = in.node.entries.size();
+  if (count > ManifestLimits::scales) {
+    in.problems.add(in.node.at, in.path,
                     fmt::format("has more than {} scales", ManifestLimits::scales),
-                    fmt::format("{} scales", node.entries.size()), "");
-      return;
-    }
-    for (const auto& [key, value] : node.entries) {
-      const string path = join_path("scales", key.text);
-      if (!is_name(key.text)) problems_.add_type(key, path, "a name for a scale", remedy);
-      Scale scale;
-      scale.name = key.text;
-      scale.at = key.at;
-      scale.settings = read_settings(value, path, &scale);
-      manifest_.scales.push_back(std::move(scale));
-    }
+                    fmt::format("{} scales", count), "");
+    return;
   }
+  for (const Entry& entry : in.entries()) {
+    if (!is_name(entry.key.text)) {
+      Entry{entry.key, entry.key, entry.path, in.problems}.reject_type("a name for a scale",
+                                                                       remedy);
+    }
+    Scale& scale = manifest.scales.emplace_back();
+    scale.name = entry.key.text;
+    scale.at = entry.key.at;
+    read_settings(entry, scale, true);
+  }
+}
 
-  Manifest manifest_;
-  ProblemList problems_;
-};
+// Of a key that a scale may have as well.
+template <auto Member, auto Read>
+constexpr ManifestKey part(string_view name, string_view example, string_view meaning) {
+  return {name, example, meaning,
+          [](const Entry& in, Manifest& manifest) { manifest.base.*Member = Read(in); },
+          [](const Entry& in, Scale& scale) { scale.*Member = Read(in); }};
+}
 
 }  // namespace
+
+std::span<const ManifestKey> manifest_keys() {
+  static constexpr std::array<ManifestKey, 12> keys = {{
+      {"experiment", "drag", "required; its name: letters, digits, - and _",
+       [](const Entry& in, Manifest& manifest) { manifest.experiment = read_name(in); }},
+      {"question", "Does the fluid matter?", "what the experiment is to find out, for people",
+       read_question},
+      {"figures", "[S2]", "figures of the supplement to draw", read_figures},
+      {"labels", "{\"fluid=still\": fluid at rest}", "names of variants in figures and tables",
+       read_labels},
+      {"plots", "[{name: compaction, y: phi, x: cycle}]", "figures of your own", read_plots},
+      {"claims",
+       "[{name: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: cell}], "
+       "margin: 0.001}]",
+       "claims of your own, decided like those of the supplement", read_claims},
+      {"base", "{grains: 7900}", "parameters of every run; others have their default",
+       [](const Entry& in, Manifest& manifest) {
+         manifest.base.at = in.key.at;
+         read_settings(in, manifest.base, false);
+       }},
+      part<&Scale::sweep, read_sweep>(
+          "sweep", "{grid: {fluid: [still, cell]}}",
+          "parameters that vary: `grid` takes every combination, keys of `zip` advance together"),
+      part<&Scale::seeds, read_seeds>("seeds", "6", "seeds 1 to 6, or a list; default 1"),
+      part<&Scale::checkpoints, read_checkpoints>(
+          "checkpoints", "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
+          "cycles between checkpoints, default 1; `phases` adds fractions of each cycle that "
+          "follows one, pause included, default none"),
+      part<&Scale::until, read_until>(
+          "until", "{crystalline_percent: 10, extra_cycles: 15}",
+          "ends a run so many cycles after the measure reaches the value; default: at `cycles`"),
+      {"scales", "{smoke: {grains: 600, seeds: 2, cycles: 5}}",
+       "named sizes, which override the keys above; default `desk`", read_scales},
+  }};
+  return keys;
+}
 
 bool is_name(string_view text) {
   const auto allowed = [](char c) {
@@ -206,8 +151,27 @@ bool is_name(string_view text) {
          std::ranges::all_of(text, allowed);
 }
 
-Manifest read_manifest(const Node& root, string_view file) {
-  return Reader(file).read(root);
+Manifest read_manifest(string_view text, string_view file) {
+  const Node root = read_document(text, file);
+  ProblemList problems(file);
+  Manifest manifest;
+  manifest.file = file;
+  manifest.text = text;
+  manifest.base.at = root.at;
+  const Entry document{root, root, "", problems};
+  if (root.kind != Node::Kind::map) {
+    document.reject_type("a map of keys", "Begin with `experiment: NAME`.");
+    problems.raise();
+  }
+  std::vector<Key> keys;
+  for (const ManifestKey& key : manifest_keys()) {
+    keys.push_back({key.name, [&](const Entry& in) { key.read(in, manifest); }});
+  }
+  if (!read_keys(document, keys).contains("experiment")) {
+    problems.add(root.at, "experiment", "is missing", "", "Begin with `experiment: NAME`.");
+  }
+  problems.raise();
+  return manifest;
 }
 
 }  // namespace shearcell

@@ -11,7 +11,6 @@
 #include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include "experiments/manifest/parameters.hpp"
 
@@ -40,17 +39,32 @@ struct ChoiceMember {
   void (*set)(Parameters&, std::string_view);
 };
 
+/// The numbers that are allowed.
+struct Range {
+  double min = 0;
+  double max = 0;
+  bool min_excluded = false;  ///< the value must be greater than `min`
+
+  bool contains(double value) const {
+    return (min_excluded ? value > min : value >= min) && value <= max;
+  }
+};
+
 struct Field {
   std::string_view name;
   std::string_view symbol;  ///< as the supplement writes it; empty when it has none
   std::string_view unit;    ///< "1" for a pure number, empty for a choice
   std::variant<double Parameters::*, std::uint64_t Parameters::*, ChoiceMember> member;
-  double min = 0;             ///< smallest value allowed, numbers only
-  double max = 0;             ///< largest value allowed
-  bool min_excluded = false;  ///< the value must be greater than `min`
+  Range range = {};  ///< of a number
   Identity identity = {};
-  std::string_view doc;
+  std::string_view doc = {};
+
+  bool is_whole() const { return std::holds_alternative<std::uint64_t Parameters::*>(member); }
 };
+
+/// A number that is read and checked like a parameter but is none.
+Field real_number(std::string_view name, std::string_view unit, const Range& range);
+Field whole_number(std::string_view name, const Range& range);
 
 /// Every parameter, in the order in which the reference lists them.
 std::span<const Field> schema();
@@ -70,8 +84,8 @@ struct ValueProblem {
   std::string remedy;
 };
 
-/// Reads one value from its text in a manifest; a real number is always a JSON float and an integer
-/// always unsigned, so that 1 and 1.0 are the same value. The range is not checked here.
+/// Reads and checks one value from its text in a manifest; a real number is always a JSON float and
+/// an integer always unsigned, so that 1 and 1.0 are the same value.
 std::variant<nlohmann::json, ValueProblem> read_value(const Field& field, std::string_view text,
                                                       bool quoted);
 
@@ -91,9 +105,6 @@ std::string value_text(const nlohmann::json& value);
 
 /// "a number > 0 and <= 1e+06", "one of still, cell".
 std::string expected_values(const Field& field);
-
-/// Names of all parameters, in schema order.
-std::vector<std::string_view> field_names();
 
 /// The table of parameters in experiments/REFERENCE.md.
 std::string schema_markdown();

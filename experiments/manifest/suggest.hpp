@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace shearcell {
 
@@ -16,5 +17,16 @@ struct Suggestion {
 /// The nearest of `candidates`: by the symbol of a parameter (`N`), by a name whose unit was left
 /// out (`mass`), or by spelling (up to about a third of the letters wrong).
 Suggestion suggest_name(std::string_view unknown, std::span<const std::string_view> candidates);
+
+/// "PROBLEM, the nearest is NAME"; only the problem when nothing is near.
+std::string with_nearest(std::string problem, std::string_view unknown,
+                         std::span<const std::string_view> candidates);
+
+/// The member `name` of each.
+std::vector<std::string_view> names_of(const auto& list) {
+  std::vector<std::string_view> names;
+  for (const auto& one : list) names.emplace_back(one.name);
+  return names;
+}
 
 }  // namespace shearcell

@@ -1,34 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The variants of an experiment at one scale: base, scale and sweep combined.
+// The variants of an experiment at one scale: base, scale and sweep combined, and their names.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "experiments/manifest/manifest.hpp"
-#include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/parameters.hpp"
 
 namespace shearcell {
 
-/// A manifest as one of its scales has it. Points into the manifest.
-struct AtScale {
-  Settings settings;  ///< base, overridden by the scale
-  const Sweep* sweep = nullptr;
-  const Seeds* seeds = nullptr;
-  Checkpoints checkpoints;
-  StatedUntil until;
-};
+/// The scale with what it takes from `base`, so that it states everything.
+Scale whole_scale(const Manifest& manifest, const Scale& scale);
+
+/// Every scale of the manifest, or the base of one without any; each states everything.
+std::vector<Scale> whole_scales(const Manifest& manifest);
+
+/// The value of a parameter that is not swept, or "auto".
+nlohmann::json value_at(const Scale& scale, std::string_view key);
 
 /// Whether the setting is `auto`, which for_each_variant() resolves.
 bool is_auto(const Setting& setting);
 
-/// `scale` may be null: the manifest without any.
-AtScale at_scale(const Manifest& manifest, const Scale* scale);
-
+/// Points into the scale.
 struct Variant {
   /// In the order of the manifest; without the length of the run.
   std::vector<std::pair<std::string, const Setting*>> swept;
@@ -42,18 +42,29 @@ struct Variant {
 /// "fluid=cell,amplitude_rad=0.1".
 bool has_values(const std::string& wanted, const std::string& variant);
 
+/// Whether the variant (swept keys and values) has all values of the label.
+bool selects(const VariantLabel& label, const nlohmann::json& variant);
+
+/// Names for people (identity and CSV files use Variant::name()) of variants, which are objects of
+/// swept keys and values. A label replaces the keys that it states, one with more keys before one
+/// with fewer; then come the other keys that distinguish the variants: "fluid at rest, A=0.05 rad".
+/// "base" where nothing is swept.
+std::vector<std::string> variant_names(const std::vector<nlohmann::json>& variants,
+                                       std::span<const VariantLabel> labels);
+
 /// How many there are; saturates at 2^64 - 1.
 std::uint64_t variant_count(const Sweep& sweep);
 
-/// In manifest order: the first grid axis varies slowest, the rows of the zip fastest.
-void for_each_variant(const AtScale& scale, const std::function<void(const Variant&)>& visit);
+/// In manifest order: the first grid axis varies slowest, the rows of the zip fastest. The scale
+/// states everything.
+void for_each_variant(const Scale& scale, const std::function<void(const Variant&)>& visit);
 
-/// When a variant feels the parameter, as "only under protocol paused", if this variant does not;
-/// else "".
-std::string without_effect(const Field& field, const Parameters& parameters);
+/// When a variant feels the parameter or `until`, as "only under protocol paused", if this variant
+/// does not; else "".
+std::string without_effect(std::string_view key, const Parameters& parameters);
 
 /// Time steps, units and geometry of every variant of every scale, and how many runs there are.
-/// Only for a manifest that is well formed otherwise.
-std::vector<ManifestProblem> check_variants(const Manifest& manifest);
+/// Only for a manifest that is well formed otherwise. Throws ManifestError.
+void check_variants(const Manifest& manifest);
 
 }  // namespace shearcell

@@ -16,7 +16,7 @@
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/manifest/limits.hpp"
+#include "experiments/manifest/manifest.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/limits.hpp"
 
@@ -28,23 +28,6 @@ using nlohmann::json;
 constexpr std::size_t kMostListed = 1'000'000;  // of one list; the store is not trusted
 
 using Place = std::array<json, 5>;  // of an experiment, as the store tells memberships apart
-
-std::vector<double> phases_in(const json& membership) {
-  const json list = membership.value("checkpoint_phases", json::array());
-  auto phases = list.get<std::vector<double>>();
-  if (phases.size() > ManifestLimits::values_per_list) {
-    throw std::runtime_error("checkpoint_phases: there are too many");
-  }
-  return phases;
-}
-
-std::uint64_t cadence_in(const json& membership) {
-  const auto every = membership.at("checkpoint_every").get<std::uint64_t>();
-  if (every < 1 || every > StoreLimits::cycles) {
-    throw std::runtime_error("checkpoint_every: is out of range");
-  }
-  return every;
-}
 
 std::map<Place, RunAsk> asks_by_place(const Store& store, const std::string& run) {
   std::map<Place, RunAsk> asks;
@@ -60,8 +43,14 @@ std::map<Place, RunAsk> asks_by_place(const Store& store, const std::string& run
           std::max(ask.target_cycles, body.at("target_cycles").get<std::uint64_t>());
       const json until = m.value("until", json());
       ask.until = until.is_null() ? std::nullopt : std::optional(until_from_json(until));
-      ask.checkpoint_every = cadence_in(m);
-      ask.phases = phases_in(m);
+      ask.checkpoint_every = m.at("checkpoint_every").get<std::uint64_t>();
+      if (ask.checkpoint_every < 1 || ask.checkpoint_every > StoreLimits::cycles) {
+        throw std::runtime_error("checkpoint_every: is out of range");
+      }
+      ask.phases = m.value("checkpoint_phases", std::vector<double>());
+      if (ask.phases.size() > ManifestLimits::values_per_list) {
+        throw std::runtime_error("checkpoint_phases: there are too many");
+      }
     } catch (const std::exception& problem) {
       throw StoreDamaged(fmt::format("event {} ({}): {}", event.seq, event.type, problem.what()));
     }

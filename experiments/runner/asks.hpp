@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/scene.hpp"
-#include "experiments/manifest/until.hpp"
+#include "experiments/manifest/manifest.hpp"
 #include "protocols/cyclic_shear.hpp"
 #include "provenance/store.hpp"
 

@@ -56,25 +56,23 @@ void check_run(const RunRecord& run) {
   }
 }
 
+bool nearly_equal(const json& kept, const json& computed) {
+  if (!kept.is_number() || !computed.is_number()) return kept == computed;
+  const auto a = kept.get<double>(), b = computed.get<double>();
+  return a == b || (std::isnan(a) && std::isnan(b)) ||
+         std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
+}
+
 /// The first place where two results differ, with both values; "" when they are equal.
-std::string difference(const json& kept, const json& computed, const std::string& place) {
-  if (kept.is_number() && computed.is_number()) {
-    const auto a = kept.get<double>(), b = computed.get<double>();
-    const bool same = a == b || (std::isnan(a) && std::isnan(b)) ||
-                      std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
-    return same ? "" : fmt::format("{}: {} is cached, {} is computed", place, a, b);
-  }
-  const bool nested = kept.is_structured() && kept.type() == computed.type();
-  if (!nested || kept.size() != computed.size()) {
-    return kept == computed ? "" : place + ": the cached value has another type";
-  }
+std::string difference(const json& kept, const json& computed, const std::string& measure) {
   const json a = kept.flatten(), b = computed.flatten();
-  if (a.size() != b.size()) return place + ": its structure is another one";
   for (const auto& [path, value] : b.items()) {
-    if (!a.contains(path)) return place + path + ": it is not cached";
-    if (auto found = difference(a.at(path), value, place + path); !found.empty()) return found;
+    if (!a.contains(path)) return measure + path + ": it is not cached";
+    if (nearly_equal(a.at(path), value)) continue;
+    return fmt::format("{}{}: {} is cached, {} is computed", measure, path, a.at(path).dump(),
+                       value.dump());
   }
-  return "";
+  return a.size() == b.size() ? "" : measure + ": its structure is another one";
 }
 
 /// Of one checkpoint, in the order of all_derived_measures().

@@ -16,11 +16,11 @@
 #include "core/filling.hpp"
 #include "core/threads.hpp"
 #include "experiments/manifest/variants.hpp"
-#include "experiments/runner/engine_error.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/io/child_process.hpp"
 
 namespace shearcell {
 namespace {
@@ -65,8 +65,7 @@ class Campaign {
         jobs_(jobs),
         progress_(progress),
         parallel_(parallel),
-        states_(jobs.size(), JobState::waiting),
-        holds_(jobs.size()) {}
+        states_(jobs.size()) {}
 
   CampaignResult run(std::size_t workers) {
     const Heartbeat heartbeat(store_);
@@ -81,9 +80,10 @@ class Campaign {
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-  // What is known of a job that another program holds, or took.
-  struct Hold {
-    Clock::time_point look_at;
+  struct Job {
+    JobState state = JobState::waiting;
+    // Of one that another program holds, or took; used by the one thread that runs the job.
+    Clock::time_point look_at = {};
     int losses = 0;
   };
 
@@ -92,14 +92,15 @@ class Campaign {
   std::size_t next_job() {
     std::size_t look = kNone;
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
-      const bool held = states_[j] == JobState::held;
-      if (states_[j] != JobState::waiting && !held) continue;
+      Job& job = states_[j];
+      const bool held = job.state == JobState::held;
+      if (job.state != JobState::waiting && !held) continue;
       const JobState before = parent_state(j);
       if (before == JobState::ended || error_ || stop_requested()) {
-        states_[j] = JobState::ended;
+        job.state = JobState::ended;
         ++result_.blocked;
       } else if (held) {
-        if (look == kNone && Clock::now() >= holds_[j].look_at) look = j;
+        if (look == kNone && Clock::now() >= job.look_at) look = j;
       } else if (before == JobState::done) {
         return j;
       }
@@ -109,13 +110,13 @@ class Campaign {
 
   JobState parent_state(std::size_t j) const {
     for (std::size_t k = 0; k < jobs_.size(); ++k) {
-      if (jobs_[k].id == jobs_[j].parent) return states_[k];
+      if (jobs_[k].id == jobs_[j].parent) return states_[k].state;
     }
     return JobState::done;  // a first stage, or one whose parent was not asked for
   }
 
   std::size_t count(JobState state) const {
-    return static_cast<std::size_t>(std::count(states_.begin(), states_.end(), state));
+    return static_cast<std::size_t>(std::ranges::count(states_, state, &Job::state));
   }
 
   void work() {
@@ -133,12 +134,12 @@ class Campaign {
         }
         continue;
       }
-      const bool was_held = states_[j] == JobState::held;
-      states_[j] = JobState::running;
+      const bool was_held = states_[j].state == JobState::held;
+      states_[j].state = JobState::running;
       lock.unlock();
       const JobState state = run_job(j, was_held);
       lock.lock();
-      states_[j] = state;
+      states_[j].state = state;
       changed_.notify_all();
     }
     changed_.notify_all();
@@ -163,7 +164,7 @@ class Campaign {
       note(job, &CampaignResult::damaged, damage.what());
     } catch (const GeometryError& error) {
       note(job, &CampaignResult::failed, error.what());
-    } catch (const EngineError& error) {
+    } catch (const ProgramError& error) {
       note(job, &CampaignResult::failed, error.what());
     } catch (const TooLittleMemory& error) {
       note(job, &CampaignResult::failed, error.what());
@@ -176,12 +177,11 @@ class Campaign {
 
   bool held_by_another(const std::string& run) const {
     const std::vector<Lease> leases = store_.leases();
-    return std::any_of(leases.begin(), leases.end(),
-                       [&run](const Lease& lease) { return lease.run == run; });
+    return std::ranges::find(leases, run, &Lease::run) != leases.end();
   }
 
   JobState put_off(std::size_t j) {
-    holds_[j].look_at = Clock::now() + kLook;
+    states_[j].look_at = Clock::now() + kLook;
     return JobState::held;
   }
 
@@ -218,7 +218,7 @@ class Campaign {
       case StageOutcome::held:
       case StageOutcome::lost:
         progress_.drop(job.name);
-        if (++holds_[j].losses > kMostLosses && !held_by_another(job.id)) {
+        if (++states_[j].losses > kMostLosses && !held_by_another(job.id)) {
           note(job, &CampaignResult::blocked,
                "it cannot be begun; `shearcell verify` may tell why");
           return JobState::ended;
@@ -230,8 +230,7 @@ class Campaign {
 
   StageOptions options_of(const StageJob& job) {
     StageOptions options;
-    options.threads = parallel_.threads;
-    options.ranks = parallel_.ranks;
+    options.parallel = parallel_;
     options.damaged = [&](const std::string& what) {
       note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
     };
@@ -267,8 +266,7 @@ class Campaign {
   Parallel parallel_;
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
-  std::vector<JobState> states_;
-  std::vector<Hold> holds_;  // each used by the one thread that runs its job
+  std::vector<Job> states_;
   std::size_t told_held_ = 0;
   CampaignResult result_;
   std::exception_ptr error_;
@@ -288,20 +286,13 @@ StageJob job_of(const RunRecord& run, const VariantNames& names) {
           job_name(run.memberships.front(), run.kind, names.of(run.memberships.front()))};
 }
 
-}  // namespace
-
-namespace {
-
 // By scale, where it is not the default.
 nlohmann::json overlap_limits(const Manifest& manifest) {
   nlohmann::json limits = nlohmann::json::object();
-  const auto add = [&](const Scale* scale) {
-    const auto settings = at_scale(manifest, scale).settings;
-    const auto found = settings.find("max_overlap_diameters");
-    if (found != settings.end()) limits[scale == nullptr ? "" : scale->name] = found->second.value;
-  };
-  if (manifest.scales.empty()) add(nullptr);
-  for (const Scale& scale : manifest.scales) add(&scale);
+  for (const Scale& scale : whole_scales(manifest)) {
+    const auto found = scale.settings.find("max_overlap_diameters");
+    if (found != scale.settings.end()) limits[scale.name] = found->second.value;
+  }
   return limits;
 }
 
@@ -320,26 +311,22 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   for (const PlannedRun& run : plan.runs) {
     for (const StageSpec* stage : {&run.prepare, &run.last}) {
       const bool prepare = stage->stage == Stage::prepare;
-      RunDeclaration declaration;
-      declaration.id = stage->key;
-      declaration.parent = stage->parent;
-      declaration.kind = name_of(stage->stage);
-      declaration.resolved = stage->resolved;
-      declaration.grains = run.grains;
-      declaration.target_cycles = prepare ? 0 : run.cycles;
-      declaration.membership.experiment = run.experiment;
-      declaration.membership.scale = run.scale;
-      declaration.membership.variant = prepare ? "packing" : run.variant;
-      declaration.membership.labels = prepare ? nlohmann::json::object() : run.labels;
-      declaration.membership.seed = run.seed;
-      declaration.membership.manifest = sha;
-      declaration.membership.checkpoint_every = run.checkpoint_every;
-      if (!prepare) declaration.membership.checkpoint_phases = run.checkpoint_phases;
-      if (!prepare && run.until) declaration.membership.until = to_json(*run.until);
       if (!known.insert(stage->key).second) continue;
-      store.declare_run(declaration);
-      jobs.push_back({stage->key, stage->parent,
-                      job_name(declaration.membership, declaration.kind, run.name)});
+      Membership membership{.experiment = run.experiment,
+                            .scale = run.scale,
+                            .variant = prepare ? "packing" : run.variant,
+                            .seed = run.seed,
+                            .manifest = sha,
+                            .checkpoint_every = run.checkpoint_every};
+      if (!prepare) {
+        membership.labels = run.labels;
+        membership.checkpoint_phases = run.checkpoint_phases;
+        if (run.until) membership.until = to_json(*run.until);
+      }
+      const std::string kind(name_of(stage->stage));
+      jobs.push_back({stage->key, stage->parent, job_name(membership, kind, run.name)});
+      store.declare_run({stage->key, stage->parent, kind, stage->resolved, run.grains,
+                         prepare ? 0 : run.cycles, std::move(membership)});
     }
   }
   return jobs;

@@ -19,12 +19,6 @@ struct StageJob {
   std::string name;    ///< for people
 };
 
-/// How much of the machine one stage takes.
-struct Parallel {
-  std::size_t threads = 1;  ///< of each simulation; it changes no bit
-  std::size_t ranks = 1;    ///< processes of LAMMPS, for stages of that engine
-};
-
 struct CampaignResult {
   std::size_t completed = 0;  ///< stages computed now
   std::size_t already = 0;    ///< stages that were done before

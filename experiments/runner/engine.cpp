@@ -31,7 +31,6 @@ class OwnEngine final : public Engine {
   Checkpoint checkpoint(double cycle) const override {
     return make_checkpoint(plan_, simulation_, cycle);
   }
-  std::size_t grains() const override { return simulation_.grains(); }
   std::uint64_t step() const override { return simulation_.step(); }
   std::uint64_t evaluations() const override { return simulation_.evaluations(); }
 
@@ -43,7 +42,7 @@ class OwnEngine final : public Engine {
 
 class LammpsEngine final : public Engine {
  public:
-  LammpsEngine(const StagePlan& plan, Beginning&& beginning, const EngineOptions& options)
+  LammpsEngine(const StagePlan& plan, Beginning&& beginning, const Parallel& parallel)
       : plan_(plan),
         stride_(plan.checkpoint_every * cycle_steps(plan.protocol->drive())),
         cell_(std::move(beginning.cell)),
@@ -52,15 +51,14 @@ class LammpsEngine final : public Engine {
         step_(first_) {
     const std::uint64_t end = plan.protocol->expected_steps();
     if (first_ >= end) return;
-    LammpsTask task;
-    task.cell = cell_;
-    task.scene = plan.scene;
-    task.drive = plan.protocol->drive();
-    task.state = state_;
-    task.end = end;
-    task.stride = stride_;
-    task.look = lammps_look_steps(grains(), options.ranks);
-    run_.emplace(find_lammps(), task, options.ranks);
+    const LammpsTask task{.cell = cell_,
+                          .scene = plan.scene,
+                          .drive = plan.protocol->drive(),
+                          .state = state_,
+                          .end = end,
+                          .stride = stride_,
+                          .look = lammps_look_steps(plan.run.grains, parallel.ranks)};
+    run_.emplace(find_lammps(), task, parallel.ranks);
   }
 
   StageProgress advance() override {
@@ -81,7 +79,6 @@ class LammpsEngine final : public Engine {
   Checkpoint checkpoint(double cycle) const override {
     return make_checkpoint(plan_, cell_, plan_.scene, state_, cycle);
   }
-  std::size_t grains() const override { return static_cast<std::size_t>(state_.position.cols()); }
   std::uint64_t step() const override { return step_; }
   std::uint64_t evaluations() const override { return step_ - first_; }
 
@@ -121,9 +118,9 @@ bool by_lammps(const StagePlan& plan) {
 }  // namespace
 
 std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,
-                                    const EngineOptions& options) {
-  if (by_lammps(plan)) return std::make_unique<LammpsEngine>(plan, std::move(beginning), options);
-  return std::make_unique<OwnEngine>(plan, std::move(beginning), options.threads);
+                                    const Parallel& parallel) {
+  if (by_lammps(plan)) return std::make_unique<LammpsEngine>(plan, std::move(beginning), parallel);
+  return std::make_unique<OwnEngine>(plan, std::move(beginning), parallel.threads);
 }
 
 std::vector<std::string> lammps_caveats() {
@@ -137,13 +134,13 @@ std::vector<std::string> lammps_caveats() {
       "wall's plane ends a run."};
 }
 
-nlohmann::json engine_facts(const StagePlan& plan, const EngineOptions& options) {
+nlohmann::json engine_facts(const StagePlan& plan, const Parallel& parallel) {
   if (!by_lammps(plan)) return nullptr;
   const LammpsProgram program = find_lammps();
   return {{"name", "LAMMPS"},
           {"version", program.version},
           {"program", program.path},
-          {"processes", options.ranks}};
+          {"processes", parallel.ranks}};
 }
 
 }  // namespace shearcell

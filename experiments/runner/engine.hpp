@@ -10,17 +10,12 @@
 
 namespace shearcell {
 
-struct EngineOptions {
-  std::size_t threads = 1;  ///< inside our own simulation
-  std::size_t ranks = 1;    ///< processes of LAMMPS, under mpirun when more than one
-};
-
 class Engine {
  public:
   virtual ~Engine() = default;
 
   /// Advances for about 50 ms and returns its progress, as Protocol::advance does. Throws
-  /// NumericalFailure, and EngineError when another program failed.
+  /// NumericalFailure, and ProgramError when another program failed.
   virtual StageProgress advance() = 0;
 
   /// Ends before the stage does. No checkpoint is due if another program did not answer, so that
@@ -31,19 +26,18 @@ class Engine {
   /// beginning. Throws NumericalFailure.
   virtual Checkpoint checkpoint(double cycle) const = 0;
 
-  virtual std::size_t grains() const = 0;
   virtual std::uint64_t step() const = 0;         ///< where it is
   virtual std::uint64_t evaluations() const = 0;  ///< of the forces since construction
 };
 
-/// Takes ownership of the beginning's cell and state. For a stage of LAMMPS throws EngineError when
-/// it is not installed.
+/// Takes ownership of the beginning's cell and state. For a stage of LAMMPS throws ProgramError
+/// when it is not installed.
 std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,
-                                    const EngineOptions& options);
+                                    const Parallel& parallel);
 
 /// What an attempt records of the engine beside the host: null for our own, else {name, version,
-/// program, processes}. Throws EngineError when it is not installed.
-nlohmann::json engine_facts(const StagePlan& plan, const EngineOptions& options);
+/// program, processes}. Throws ProgramError when it is not installed.
+nlohmann::json engine_facts(const StagePlan& plan, const Parallel& parallel);
 
 /// Features of our own simulation that LAMMPS lacks or has only approximately, one sentence each.
 std::vector<std::string> lammps_caveats();

@@ -36,23 +36,22 @@ std::vector<Difference> differences(const json& planned, const json& known) {
 KnownRuns::KnownRuns(const std::vector<RunRecord>& runs) {
   for (const RunRecord& run : runs) {
     by_id_.emplace(run.id, &run);
-    by_kind_[run.kind].push_back(&run);
+    kinds_[run.kind].runs.push_back(&run);
     const json values = values_of(run.resolved);
     for (const auto& [key, value] : values.items()) {
       columns_.try_emplace(key, columns_.size());
     }
   }
   numbers_.resize(columns_.size());
-  for (const auto& [kind, members] : by_kind_) {
-    std::vector<std::uint32_t>& rows = rows_[kind];
-    rows.resize(members.size() * columns_.size());
-    for (std::size_t r = 0; r < members.size(); ++r) {
-      const json values = values_of(members[r]->resolved);
+  for (auto& [name, kind] : kinds_) {
+    for (const RunRecord* run : kind.runs) {
+      const std::size_t row = kind.rows.size();
+      kind.rows.resize(row + columns_.size());
+      const json values = values_of(run->resolved);
       for (const auto& [key, value] : values.items()) {
         const std::size_t column = columns_.at(key);
         const auto next = static_cast<std::uint32_t>(numbers_[column].size() + 1);
-        rows[r * columns_.size() + column] =
-            numbers_[column].try_emplace(value.dump(), next).first->second;
+        kind.rows[row + column] = numbers_[column].try_emplace(value.dump(), next).first->second;
       }
     }
   }
@@ -64,8 +63,8 @@ const RunRecord* KnownRuns::find(const std::string& id) const {
 }
 
 std::optional<Novelty> KnownRuns::novelty(const StageSpec& stage) const {
-  const auto kind = by_kind_.find(name_of(stage.stage));
-  if (kind == by_kind_.end() || find(stage.key) != nullptr) return std::nullopt;
+  const auto found = kinds_.find(name_of(stage.stage));
+  if (found == kinds_.end() || find(stage.key) != nullptr) return std::nullopt;
   constexpr std::uint32_t kUnknown = UINT32_MAX;
   // Values that only the known runs have do not count.
   std::vector<std::uint32_t> planned(columns_.size(), 0), counts(columns_.size(), 0);
@@ -78,10 +77,10 @@ std::optional<Novelty> KnownRuns::novelty(const StageSpec& stage) const {
     planned[column->second] = number == numbers.end() ? kUnknown : number->second;
     counts[column->second] = 1;
   }
-  const std::vector<std::uint32_t>& rows = rows_.at(kind->first);
+  const auto& [runs, rows] = found->second;
   std::size_t nearest = 0;
   std::uint32_t fewest = kUnknown;
-  for (std::size_t r = 0; r < kind->second.size() && fewest > 1; ++r) {
+  for (std::size_t r = 0; r < runs.size() && fewest > 1; ++r) {
     const std::uint32_t* row = rows.data() + r * planned.size();
     std::uint32_t different = 0;
     for (std::size_t c = 0; c < planned.size(); ++c) {
@@ -92,7 +91,7 @@ std::optional<Novelty> KnownRuns::novelty(const StageSpec& stage) const {
       nearest = r;
     }
   }
-  const RunRecord& run = *kind->second[nearest];
+  const RunRecord& run = *runs[nearest];
   return Novelty{run.id, differences(values, values_of(run.resolved))};
 }
 

@@ -41,12 +41,14 @@ class KnownRuns {
 
  private:
   std::map<std::string_view, const RunRecord*> by_id_;
-  std::map<std::string_view, std::vector<const RunRecord*>> by_kind_;
+  struct Kind {
+    std::vector<const RunRecord*> runs;
+    std::vector<std::uint32_t> rows;  ///< numbers of each run, columns_.size() of them; 0 for none
+  };
+  std::map<std::string_view, Kind> kinds_;
   /// For each value that enters an identity: its column, and a number for each value in use.
   std::map<std::string, std::size_t> columns_;
   std::vector<std::map<std::string, std::uint32_t>> numbers_;
-  /// For each kind the numbers of its runs, one row of columns_.size() after the other; 0 for none.
-  std::map<std::string_view, std::vector<std::uint32_t>> rows_;
 };
 
 /// "steps_per_cycle 500 (store has 400), seed 2 (store has 1)".

@@ -4,17 +4,37 @@
 #include <algorithm>
 #include <utility>
 
-#include "experiments/manifest/document.hpp"
-#include "experiments/manifest/names.hpp"
-#include "experiments/manifest/reader.hpp"
+#include "experiments/manifest/variants.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
+namespace {
+
+// In the order of registration; a version that was run again after another one comes again.
+std::vector<RegisteredManifest> registered_manifests(const Store& store) {
+  std::vector<RegisteredManifest> found;
+  for (const Event& event : store.events()) {
+    if (event.type != "ManifestRegistered") continue;
+    try {
+      const nlohmann::json body = event.body();
+      const nlohmann::json& info = body.at("info");
+      found.push_back({body.at("sha256").get<std::string>(),
+                       info.at("experiment").get<std::string>(), info.value("question", ""),
+                       info.at("figures").get<std::vector<std::string>>(),
+                       body.at("text").get<std::string>()});
+    } catch (const nlohmann::json::exception& problem) {
+      throw damaged_payload(event, problem);
+    }
+  }
+  return found;
+}
+
+}  // namespace
 
 std::optional<Manifest> read(const RegisteredManifest& manifest) {
   try {
-    return read_manifest(read_document(manifest.text, "manifest"), "manifest");
+    return read_manifest(manifest.text, "manifest");
   } catch (const ManifestError&) {
     return std::nullopt;  // of another version of the schema
   }
@@ -55,24 +75,6 @@ VariantNames::VariantNames(const std::vector<RegisteredManifest>& manifests,
 std::string VariantNames::of(const Membership& membership) const {
   const auto found = names_.find(key_of(membership));
   return found == names_.end() ? membership.variant : found->second;
-}
-
-std::vector<RegisteredManifest> registered_manifests(const Store& store) {
-  std::vector<RegisteredManifest> found;
-  for (const Event& event : store.events()) {
-    if (event.type != "ManifestRegistered") continue;
-    try {
-      const nlohmann::json body = event.body();
-      const nlohmann::json& info = body.at("info");
-      found.push_back({body.at("sha256").get<std::string>(),
-                       info.at("experiment").get<std::string>(), info.value("question", ""),
-                       info.at("figures").get<std::vector<std::string>>(),
-                       body.at("text").get<std::string>()});
-    } catch (const nlohmann::json::exception& problem) {
-      throw damaged_payload(event, problem);
-    }
-  }
-  return found;
 }
 
 std::vector<RegisteredManifest> newest_manifests(const Store& store) {

@@ -26,7 +26,7 @@ struct RegisteredManifest {
 std::optional<Manifest> read(const RegisteredManifest& manifest);
 
 /// Names for people of all variants of the runs of a store, from the labels of each manifest and
-/// what varies in it (experiments/manifest/names.hpp).
+/// what varies in it (experiments/manifest/variants.hpp).
 class VariantNames {
  public:
   explicit VariantNames(const Store& store);
@@ -40,13 +40,8 @@ class VariantNames {
   std::map<Key, std::string> names_;
 };
 
-/// In the order of registration; an experiment may have several versions, and a version that was
-/// run again after another one comes again. Throws StoreDamaged for an event that does not hold
-/// them.
-std::vector<RegisteredManifest> registered_manifests(const Store& store);
-
 /// The version of each experiment that was registered last, in the order in which the experiments
-/// were first registered.
+/// were first registered. Throws StoreDamaged for an event that does not hold a manifest.
 std::vector<RegisteredManifest> newest_manifests(const Store& store);
 
 }  // namespace shearcell

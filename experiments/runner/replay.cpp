@@ -31,26 +31,20 @@ std::uint64_t ulp_distance(double a, double b) {
                : static_cast<std::uint64_t>(y) - static_cast<std::uint64_t>(x);
 }
 
+void compare(const char* field, double a, double b, Divergence& worst, Eigen::Index grain = -1) {
+  const std::uint64_t ulp = ulp_distance(a, b);
+  if (ulp <= worst.ulp) return;
+  worst.field = field;
+  worst.grain = grain;
+  worst.ulp = ulp;
+}
+
 void compare(const char* field, const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b,
              Divergence& worst) {
   if (a.cols() != b.cols()) return;
   for (Eigen::Index i = 0; i < a.cols(); ++i) {
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      const std::uint64_t ulp = ulp_distance(a(k, i), b(k, i));
-      if (ulp <= worst.ulp) continue;
-      worst.field = field;
-      worst.grain = i;
-      worst.ulp = ulp;
-    }
+    for (Eigen::Index k = 0; k < 3; ++k) compare(field, a(k, i), b(k, i), worst, i);
   }
-}
-
-void compare(const char* field, double a, double b, Divergence& worst) {
-  const std::uint64_t ulp = ulp_distance(a, b);
-  if (ulp <= worst.ulp) return;
-  worst.field = field;
-  worst.grain = -1;
-  worst.ulp = ulp;
 }
 
 // The recorded state, where its file can still be read.

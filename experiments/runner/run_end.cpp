@@ -17,21 +17,10 @@ namespace {
 using nlohmann::json;
 using namespace nlohmann::literals;
 
-double value_of(const Measures& measures, StopMeasure measure) {
-  switch (measure) {
-    case StopMeasure::crystalline_percent:
-      return measures.crystalline_percent;
-    case StopMeasure::largest_crystallite:
-      return static_cast<double>(measures.largest_crystallite);
-    case StopMeasure::phi:
-      return measures.phi;
-  }
-  return 0;
-}
-
 auto first_reached(std::span<const MeasuredCycle> measured, const std::optional<Until>& until) {
+  const ScalarMeasure* measure = until ? find_measure(name_of(until->measure)) : nullptr;
   return std::ranges::find_if(measured, [&](const MeasuredCycle& m) {
-    return until && value_of(m.measures, until->measure) >= until->value;
+    return measure != nullptr && measure->of(m.measures) >= until->value;
   });
 }
 
@@ -138,24 +127,20 @@ std::optional<json> RunEnd::ended() {
 }
 
 std::optional<Measures> RunEnd::measures_of(const CheckpointRecord& record) {
-  if (auto measures = kept(record)) return measures;
+  const DerivedKey key = key_of(record, scalar_measures());
+  try {
+    if (const auto kept = cache_.get(std::span(&key, 1)).front()) {
+      return read_measures(decode_result(*kept));
+    }
+  } catch (const AnalysisError&) {
+    // Measured again and replaced.
+  }
   try {
     return measure(record, store_.load_checkpoint(record));
   } catch (const StoreDamaged&) {
   } catch (const CheckpointPruned&) {
   }
   return std::nullopt;
-}
-
-std::optional<Measures> RunEnd::kept(const CheckpointRecord& record) {
-  const DerivedKey key = key_of(record, scalar_measures());
-  const auto found = cache_.get(std::span(&key, 1));
-  if (!found.front()) return std::nullopt;
-  try {
-    return read_measures(decode_result(*found.front()));
-  } catch (const AnalysisError&) {
-    return std::nullopt;  // measured again and replaced
-  }
 }
 
 Measures RunEnd::measure(const CheckpointRecord& record, const Checkpoint& checkpoint) {

@@ -58,7 +58,6 @@ class RunEnd {
 
  private:
   std::optional<Measures> measures_of(const CheckpointRecord& record);
-  std::optional<Measures> kept(const CheckpointRecord& record);
   Measures measure(const CheckpointRecord& record, const Checkpoint& checkpoint);
   bool on_cadence(double cycle) const;
 

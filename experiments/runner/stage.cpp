@@ -18,6 +18,7 @@
 #include "protocols/settle.hpp"
 #include "protocols/stiffen.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -75,7 +76,7 @@ double overlap_limit(const Store& store, const RunRecord& run, double otherwise)
         stated = info.value("max_overlap_diameters", nlohmann::json::object())
                      .value(membership.scale, stated);
       } catch (const nlohmann::json::exception& problem) {
-        throw StoreDamaged(fmt::format("event {} ({}): {}", event.seq, event.type, problem.what()));
+        throw damaged_payload(event, problem);
       }
     }
     limit = std::max(limit, stated);

@@ -17,6 +17,12 @@
 
 namespace shearcell {
 
+/// How much of the machine one stage takes.
+struct Parallel {
+  std::size_t threads = 1;  ///< of our own simulation; it changes no bit
+  std::size_t ranks = 1;    ///< processes of LAMMPS, under mpirun when more than one
+};
+
 /// What acts during the stage, and what is done to it.
 struct StagePlan {
   RunRecord run;

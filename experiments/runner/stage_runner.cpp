@@ -8,12 +8,11 @@
 #include <utility>
 
 #include "experiments/runner/engine.hpp"
-#include "experiments/runner/engine_error.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/run_end.hpp"
-#include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/io/child_process.hpp"
 #include "provenance/io/clock.hpp"
 
 namespace shearcell {
@@ -34,18 +33,16 @@ class Attempt {
       if (options_.damaged) options_.damaged(what);
     }
     const bool fresh = !beginning.from;
-    const EngineOptions engine_options{options_.threads, options_.ranks};
     nlohmann::json facts = host_facts();
-    if (auto engine = engine_facts(plan_, engine_options); !engine.is_null()) {
+    if (auto engine = engine_facts(plan_, options_.parallel); !engine.is_null()) {
       facts["engine"] = std::move(engine);
     }
-    store_.start_run(id(), facts, fresh ? std::nullopt : std::optional(beginning.from->sha256),
-                     beginning.parent_checkpoint);
+    start(beginning, facts);
     if (options_.begun) options_.begun();
     if (asks_for_early_end()) end_.emplace(store_, plan_.run, fresh ? 0 : beginning.from->step);
     if (ends_early()) return StageOutcome::completed;
     return guarded([&] {
-      const auto engine = make_engine(plan_, std::move(beginning), engine_options);
+      const auto engine = make_engine(plan_, std::move(beginning), options_.parallel);
       first_step_ = engine->step();
       // The settled packing is cycle 0 of what follows.
       if (fresh && plan_.stage.stage != Stage::prepare) record(*engine, 0);
@@ -60,11 +57,9 @@ class Attempt {
         store_, plan_, [&](const CheckpointRecord& kept) { return kept.step < steps.front(); });
     const bool fresh = !beginning.from;
     const nlohmann::json ended = last_end();
-    store_.start_run(id(), host_facts(),
-                     fresh ? std::nullopt : std::optional(beginning.from->sha256),
-                     beginning.parent_checkpoint, true);
+    start(beginning, host_facts(), true);
     return guarded([&] {
-      const auto engine = make_engine(plan_, std::move(beginning), {options_.threads, 1});
+      const auto engine = make_engine(plan_, std::move(beginning), options_.parallel);
       first_step_ = engine->step();
       auto next = steps.begin();
       if (fresh && *next == 0) {
@@ -92,7 +87,7 @@ class Attempt {
       return compute();
     } catch (const Interrupted&) {
       return interrupted();
-    } catch (const EngineError& error) {
+    } catch (const ProgramError& error) {
       store_.fail_run(id(), error.what(), nlohmann::json::object());
       return StageOutcome::failed;
     } catch (const NumericalFailure& failure) {
@@ -104,6 +99,11 @@ class Attempt {
                        {"step", failure.step}});
       return StageOutcome::failed;
     }
+  }
+
+  void start(const Beginning& beginning, const nlohmann::json& facts, bool filling = false) {
+    const auto from = beginning.from ? std::optional(beginning.from->sha256) : std::nullopt;
+    store_.start_run(id(), facts, from, beginning.parent_checkpoint, filling);
   }
 
   // Why the run ended when it was completed.
@@ -162,7 +162,7 @@ class Attempt {
     const Checkpoint checkpoint = engine.checkpoint(cycle);
     const auto steps = static_cast<double>(engine.evaluations() - recorded_evaluations_);
     const CheckpointRecord recorded = store_.record_checkpoint(
-        id(), checkpoint, {recorded_.seconds(), steps * static_cast<double>(engine.grains())});
+        id(), checkpoint, {recorded_.seconds(), steps * static_cast<double>(plan_.run.grains)});
     if (end_) end_->add(recorded, checkpoint);
     recorded_.restart();
     recorded_evaluations_ = engine.evaluations();
@@ -177,7 +177,7 @@ class Attempt {
         plan_.stage.stage != Stage::prepare ? static_cast<double>(plan_.run.target_cycles) : 0;
     status.steps_per_second =
         static_cast<double>(engine.evaluations() - reported_evaluations_) / since;
-    status.grains = engine.grains();
+    status.grains = plan_.run.grains;
     status.step = engine.step();
     const std::uint64_t end = plan_.protocol->expected_steps();
     const double mean_rate = static_cast<double>(engine.step() - first_step_) / started_.seconds();

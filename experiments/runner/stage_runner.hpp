@@ -6,8 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "experiments/manifest/identity.hpp"
-#include "provenance/store.hpp"
+#include "experiments/runner/stage.hpp"
 
 namespace shearcell {
 
@@ -26,8 +25,7 @@ struct StageStatus {
 };
 
 struct StageOptions {
-  std::size_t threads = 1;                          ///< inside this one simulation
-  std::size_t ranks = 1;                            ///< processes of another engine
+  Parallel parallel = {};
   std::function<void(const std::string&)> damaged;  ///< called for each skipped checkpoint
   std::function<void()> begun;                      ///< called when an attempt has been recorded
   std::function<void(const StageStatus&)> report;   ///< called a few times a second
@@ -37,7 +35,7 @@ struct StageOptions {
 /// newest checkpoint that verifies, or else begins from its parent's last state, or from a fresh
 /// filling. Checks for stop_requested(), and whether the store still holds the run, between chunks
 /// of steps of about 50 ms. Throws StoreDamaged when the parent's last state cannot be read,
-/// GeometryError for a cell that cannot be filled, and EngineError when the stage's engine is not
+/// GeometryError for a cell that cannot be filled, and ProgramError when the stage's engine is not
 /// installed, all before an attempt is recorded. A stage that is interrupted while its cell is
 /// filled records nothing.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);

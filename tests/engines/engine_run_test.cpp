@@ -5,31 +5,17 @@
 
 #include <algorithm>
 #include <csignal>
-#include <cstdlib>
 #include <set>
 
-#include "experiments/runner/engine_error.hpp"
+#include "provenance/io/child_process.hpp"
 #include "tests/experiments/program.hpp"
+#include "tests/support/text.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-/// A variable of the environment while it lives; none afterwards.
-struct Variable {
-  Variable(const char* variable, const std::string& value) : name(variable) {
-    setenv(name, value.c_str(), 1);
-  }
-  ~Variable() { unsetenv(name); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-  const char* name;
-};
 
 class EngineRun : public ProgramTest {
  protected:
@@ -71,7 +57,7 @@ TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
   const std::string manifest =
       write("m.yaml", tiny_manifest("", "sweep: {grid: {engine: [shearcell, lammps]}}\n"));
   const Outcome plan = run({"plan", manifest});
-  EXPECT_TRUE(contains(plan.out, "not the same bits")) << plan.out;
+  EXPECT_TRUE(has(plan.out, "not the same bits"));
   const Outcome outcome = run({"run", manifest, "--mpi", "1"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto ours = run_of("engine=shearcell"), theirs = run_of("engine=lammps");
@@ -87,11 +73,11 @@ TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
   EXPECT_EQ(b["engine"]["name"], "LAMMPS");
   EXPECT_EQ(b["engine"]["processes"], 1);
   EXPECT_TRUE(a["engine"].is_null());
-  EXPECT_TRUE(contains(run({"show", theirs["id"]}).out, "engine   LAMMPS "));
+  EXPECT_TRUE(has(run({"show", theirs["id"]}).out, "engine   LAMMPS "));
 
   ASSERT_EQ(run({"figures", "S2", "--out", "figures"}).code, 0);
   const std::string csv = read_bytes(path("figures/tiny/S2a.csv"));
-  EXPECT_TRUE(contains(csv, "engine=lammps")) << csv;
+  EXPECT_TRUE(has(csv, "engine=lammps"));
 
   // Ours alone are replayed, pruned and made again.
   const auto replayed = json({"verify", "--replay", "99", "--json"});
@@ -104,7 +90,7 @@ TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
   fs::remove(path("shearcell-store") / b["checkpoints"][1]["file"].get<std::string>());
   const Outcome refused = run({"regenerate", b["checkpoints"][1]["sha256"]});
   EXPECT_EQ(refused.code, 1);
-  EXPECT_TRUE(contains(refused.out, "LAMMPS made it")) << refused.out;
+  EXPECT_TRUE(has(refused.out, "LAMMPS made it"));
 }
 
 TEST_F(EngineRun, EndsWhereUntilSays) {
@@ -115,7 +101,7 @@ TEST_F(EngineRun, EndsWhereUntilSays) {
   EXPECT_EQ(done["state"], "completed");
   EXPECT_EQ(cycles(done["id"]), (std::vector<double>{0, 1}));
   EXPECT_EQ(done["ended"]["by"], "until");
-  EXPECT_TRUE(contains(run({"status"}).out, "ended at cycle 1: phi >= 0.1 at cycle 0"));
+  EXPECT_TRUE(has(run({"status"}).out, "ended at cycle 1: phi >= 0.1 at cycle 0"));
 }
 
 TEST_F(EngineRun, GoesOnWhereASignalStoppedIt) {
@@ -151,7 +137,7 @@ TEST_F(EngineRun, GoesOnAfterAKill) {
   const auto left = [&] {
     const fs::directory_iterator all(scratch.path());  // Open MPI has folders there too
     return std::count_if(begin(all), end(all), [](const fs::directory_entry& entry) {
-      return contains(entry.path().filename(), "shearcell-lammps-");
+      return entry.path().filename().string().starts_with("shearcell-lammps-");
     });
   };
   EXPECT_EQ(left(), 1) << "nothing could clear it away";
@@ -166,9 +152,9 @@ TEST_F(EngineRun, SaysThatLammpsIsMissing) {
   const std::string manifest = write("m.yaml", tiny_manifest());
   const Outcome outcome = run({"run", manifest, "--engine", "lammps"});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_TRUE(contains(outcome.err, "Debian package lammps")) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "Debian package lammps"));
   EXPECT_FALSE(fs::exists(path("shearcell-store"))) << "nothing was begun";
-  EXPECT_TRUE(contains(run({"plan", manifest, "--engine", "lammps"}).out, "Debian package lammps"));
+  EXPECT_TRUE(has(run({"plan", manifest, "--engine", "lammps"}).out, "Debian package lammps"));
 }
 
 TEST_F(EngineRun, TellsWhatLammpsSaidWhenItFails) {
@@ -181,7 +167,7 @@ TEST_F(EngineRun, TellsWhatLammpsSaidWhenItFails) {
     const Variable program("SHEARCELL_LAMMPS", fake(body));
     const Outcome outcome = run({"run", manifest, "--engine", "lammps", "-q"});
     EXPECT_EQ(outcome.code, 3) << body;
-    EXPECT_TRUE(contains(outcome.err, says)) << body << ": " << outcome.err;
+    EXPECT_TRUE(has(outcome.err, says)) << body;
   }
   EXPECT_EQ(run({"verify"}).code, 0);
 }
@@ -190,12 +176,12 @@ TEST_F(EngineRun, RefusesWhatLammpsCannotDo) {
   const std::string stiffen = write("s.yaml", tiny_manifest("  protocol: stiffen\n"));
   const Outcome option = run({"plan", stiffen, "--engine", "lammps"});
   EXPECT_EQ(option.code, 2);
-  EXPECT_TRUE(contains(option.err, "engine: LAMMPS cannot do the protocol stiffen")) << option.err;
+  EXPECT_TRUE(has(option.err, "engine: LAMMPS cannot do the protocol stiffen"));
   const std::string both =
       write("b.yaml", tiny_manifest("  protocol: stiffen\n  engine: lammps\n"));
   const Outcome manifest = run({"plan", both});
   EXPECT_EQ(manifest.code, 2);
-  EXPECT_TRUE(contains(manifest.err, "b.yaml:11:11: engine: LAMMPS")) << manifest.err;
+  EXPECT_TRUE(has(manifest.err, "b.yaml:11:11: engine: LAMMPS"));
   const std::string swept =
       write("w.yaml", tiny_manifest("", "sweep: {grid: {engine: [shearcell, lammps]}}\n"));
   EXPECT_EQ(run({"plan", swept, "--engine", "lammps"}).code, 2);

@@ -10,19 +10,18 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/lammps/lammps_deck.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell::test {
 namespace {
 
 LammpsTask loose_task(const Parameters& p) {
   const bench::Packing packing = bench::loose_packing(p, 1);
-  LammpsTask task;
-  task.cell = packing.cell;
-  task.scene = shear_scene(p);
-  task.drive = drive(p);
-  task.state = packing.state;
-  task.end = 100;
-  return task;
+  return {.cell = packing.cell,
+          .scene = shear_scene(p),
+          .drive = drive(p),
+          .state = packing.state,
+          .end = 100};
 }
 
 Parameters small() {
@@ -30,10 +29,6 @@ Parameters small() {
   p.grains = 100;
   p.pressure_at = PressureAt::moving_wall;
   return p;
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 // The number behind a piece of text.
@@ -69,7 +64,7 @@ TEST(LammpsDeck, HoldsNothingThatTheSceneLacks) {
   p.walls = WallTexture::smooth;
   const std::string deck = lammps_deck(loose_task(p));
   for (const char* part : {"gravity", "fix drag", "fix flow", "theta", "displace_atoms", "fcm"}) {
-    EXPECT_FALSE(contains(deck, part)) << part;
+    EXPECT_FALSE(has(deck, part)) << part;
   }
   EXPECT_EQ(number_after(deck, "set group grains mass "), 1);
 }
@@ -77,14 +72,14 @@ TEST(LammpsDeck, HoldsNothingThatTheSceneLacks) {
 TEST(LammpsDeck, FollowsTheMovingWall) {
   Parameters p = small();
   const std::string bottom = lammps_deck(loose_task(p));
-  EXPECT_TRUE(contains(bottom, "variable bottom equal y[101]\n"));
-  EXPECT_TRUE(contains(bottom, "f_bottom_plane[1]+fcm(bottom,y)\n"));
-  EXPECT_FALSE(contains(bottom, "fix top top move"));
+  EXPECT_TRUE(has(bottom, "variable bottom equal y[101]\n"));
+  EXPECT_TRUE(has(bottom, "f_bottom_plane[1]+fcm(bottom,y)\n"));
+  EXPECT_FALSE(has(bottom, "fix top top move"));
   p.moving_wall = MovingWall::top;
   const LammpsTask task = loose_task(p);
   const std::string top = lammps_deck(task);
-  EXPECT_TRUE(contains(top, "variable top equal y[101]\n"));
-  EXPECT_TRUE(contains(top, "fix top top move"));
+  EXPECT_TRUE(has(top, "variable top equal y[101]\n"));
+  EXPECT_TRUE(has(top, "fix top top move"));
   EXPECT_LT(number_after(top, "variable push equal "), 0) << "the pressure points inwards";
 }
 
@@ -146,7 +141,7 @@ TEST_F(LammpsFrame, IsRefusedWhenItIsNotWhole) {
       read(text);
       ADD_FAILURE() << "was read: " << text;
     } catch (const std::runtime_error& error) {
-      EXPECT_TRUE(contains(error.what(), "frame.7")) << error.what();
+      EXPECT_TRUE(has(error.what(), "frame.7"));
     }
   }
 }

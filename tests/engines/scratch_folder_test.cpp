@@ -5,12 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
-#include <optional>
 #include <string>
 
-#include "tests/experiments/temporary_store.hpp"
+#include "provenance/io/temporary_folder.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -19,15 +18,6 @@ namespace fs = std::filesystem;
 
 class Scratch : public testing::Test {
  protected:
-  Scratch() { setenv("TMPDIR", place_.path().c_str(), 1); }
-  ~Scratch() override {
-    if (before_) {
-      setenv("TMPDIR", before_->c_str(), 1);
-    } else {
-      unsetenv("TMPDIR");
-    }
-  }
-
   /// A folder of that name as a killed owner leaves it.
   fs::path left_behind(const std::string& name, const std::string& lock = "lock") {
     fs::path folder = place_.path() / name;
@@ -38,15 +28,8 @@ class Scratch : public testing::Test {
     return folder;
   }
 
- private:
-  static std::optional<std::string> tmpdir() {
-    const char* value = std::getenv("TMPDIR");
-    return value == nullptr ? std::nullopt : std::optional<std::string>(value);
-  }
-  std::optional<std::string> before_ = tmpdir();
-
- protected:
-  TemporaryFolder place_;  // where TMPDIR was
+  const TemporaryFolder place_;
+  const Variable tmpdir_{"TMPDIR", place_.path()};
 };
 
 TEST_F(Scratch, GoesWithItsOwner) {

@@ -7,8 +7,9 @@
 
 #include "experiments/bench/engines.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/lammps/lammps_settle.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "tests/experiments/program.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -33,11 +34,12 @@ class LammpsSettling : public testing::Test {
 
 TEST_F(LammpsSettling, TakesOurStepsAtFirst) {
   const bench::Packing loose = bench::loose_packing(small(), 1);
-  LammpsTask task;
-  task.cell = loose.cell;
-  task.scene = settle_scene(loose.parameters);
-  task.state = loose.state;
-  task.end = task.stride = 500;
+  const LammpsTask task{.cell = loose.cell,
+                        .scene = settle_scene(loose.parameters),
+                        .drive = {},
+                        .state = loose.state,
+                        .end = 500,
+                        .stride = 500};
   const State theirs = run_lammps(find_lammps(), task, 1).state;
   Simulation simulation(task.cell, task.scene, task.state);
   simulation.advance(Drive{}, task.end);
@@ -101,8 +103,8 @@ TEST_F(LammpsSettling, EndsAtTheTimeLimitWhereAWallNeverRests) {
   };
   const std::string ours = message([&] { settle_by(kOurs, program, loose, settle); });
   const std::string theirs = message([&] { settle_by(kLammps, program, loose, settle); });
-  EXPECT_NE(ours.find("takes to settle"), std::string::npos) << ours;
-  EXPECT_NE(theirs.find("takes to settle"), std::string::npos) << theirs;
+  EXPECT_TRUE(has(ours, "takes to settle"));
+  EXPECT_TRUE(has(theirs, "takes to settle"));
 }
 
 class SettleCommand : public ProgramTest {};
@@ -130,7 +132,7 @@ TEST_F(SettleCommand, SaysWhenThereWasNoTimeToSettle) {
   const Outcome outcome =
       run({"bench", "engines", "--size", "200", "--settle", "--settle-time-limit", "0.2"});
   EXPECT_EQ(outcome.code, 3);
-  EXPECT_NE(outcome.err.find("takes to settle"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "takes to settle"));
 }
 
 }  // namespace

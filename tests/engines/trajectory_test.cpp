@@ -35,10 +35,7 @@ LammpsTask task_of(const Case& scene) {
   Parameters pressing = p;
   pressing.drag_kg_per_s = Parameters{}.drag_kg_per_s;
   const bench::Packing packing = bench::pressed_packing(pressing, 1);
-  LammpsTask task;
-  task.cell = packing.cell;
-  task.scene = shear_scene(p);
-  task.drive = drive(p);
+  LammpsTask task{.cell = packing.cell, .scene = shear_scene(p), .drive = drive(p), .state = {}};
   Simulation simulation(task.cell, task.scene, packing.state);
   simulation.advance(task.drive, scene.from);
   task.state = simulation.state();
@@ -59,24 +56,21 @@ class LammpsTrajectory : public testing::TestWithParam<Case> {
 
 TEST_P(LammpsTrajectory, IsOurs) {
   const LammpsTask task = task_of(GetParam());
-  LammpsRun run(find_lammps(), task, GetParam().ranks);
-  const auto theirs = run.next_frame(std::chrono::minutes(5));
-  ASSERT_TRUE(theirs.has_value());
-  run.finish();
+  const State theirs = run_lammps(find_lammps(), task, GetParam().ranks).state;
   Simulation simulation(task.cell, task.scene, task.state);
   simulation.advance(task.drive, 200);
   const State ours = simulation.state();
-  const double apart = (ours.position - theirs->position).colwise().norm().maxCoeff();
+  const double apart = (ours.position - theirs.position).colwise().norm().maxCoeff();
   const double moved = (ours.position - task.state.position).colwise().norm().maxCoeff();
   std::printf("moved %.2g d, apart %.2g d, the wall %.2g d\n", moved, apart,
-              std::fabs(ours.wall_height - theirs->wall_height));
-  EXPECT_EQ(theirs->step, task.end);
+              std::fabs(ours.wall_height - theirs.wall_height));
+  EXPECT_EQ(theirs.step, task.end);
   EXPECT_GT(moved, 0.01);
   EXPECT_LT(apart, 1e-9);
-  EXPECT_LT(std::fabs(ours.wall_height - theirs->wall_height), 1e-10);
-  const double faster = (ours.velocity - theirs->velocity).colwise().norm().maxCoeff();
+  EXPECT_LT(std::fabs(ours.wall_height - theirs.wall_height), 1e-10);
+  const double faster = (ours.velocity - theirs.velocity).colwise().norm().maxCoeff();
   EXPECT_LT(faster, 1e-5);  // d/s, beside some 10 d/s
-  EXPECT_LT(std::fabs(ours.wall_velocity - theirs->wall_velocity), 1e-6);
+  EXPECT_LT(std::fabs(ours.wall_velocity - theirs.wall_velocity), 1e-6);
 }
 
 void top(Parameters& p) {
@@ -123,11 +117,10 @@ TEST(LammpsDrag, ExplicitlyErrsByOrderDt) {
     fine.drive.steps_per_cycle *= finer;
     fine.state.step *= finer;
     fine.end = fine.state.step + 50 * finer;
-    LammpsRun run(find_lammps(), fine, 1);
-    const auto theirs = run.next_frame(std::chrono::minutes(5));
+    const State theirs = run_lammps(find_lammps(), fine, 1).state;
     Simulation simulation(fine.cell, fine.scene, fine.state);
     simulation.advance(fine.drive, 50 * finer);
-    return (simulation.state().position - theirs->position).colwise().norm().maxCoeff();
+    return (simulation.state().position - theirs.position).colwise().norm().maxCoeff();
   };
   const double coarse = apart(1), fine = apart(4);
   std::printf("apart %.2g d at dt, %.2g d at dt/4\n", coarse, fine);

@@ -16,7 +16,6 @@
 #include "experiments/bench/speed.hpp"
 #include "experiments/bench/stability/stability.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/manifest/numerics.hpp"
 
 namespace shearcell {
 namespace {

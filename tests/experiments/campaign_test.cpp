@@ -17,11 +17,7 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
-class CampaignTest : public testing::Test {
- protected:
-  TemporaryFolder folder_;
-  Store store_{folder_.path() / "store", Access::create};
-};
+using CampaignTest = StoreTest;
 
 TEST_F(CampaignTest, DeclaresParentsFirstAndEachStageOnce) {
   const Manifest manifest = parse_manifest(tiny_manifest("", kBothFluids + "seeds: 2\n"), "t");
@@ -93,35 +89,28 @@ TEST_F(CampaignTest, GivesTheSameStatesWithAnyNumberOfWorkers) {
 }
 
 TEST_F(CampaignTest, ExtendsARunWithoutRepeatingAStep) {
-  ExpandOptions options;
-  options.cycles = 1;
-  compute(store_, tiny_manifest(), options);
-  ASSERT_EQ(runs_of_kind(store_, "shear").size(), 1U);
-  options.cycles = 3;
-  const CampaignResult result = compute(store_, tiny_manifest(), options);
+  compute(store_, tiny_manifest(), {.cycles = 1});
+  const CampaignResult result = compute(store_, tiny_manifest(), {.cycles = 3});
   EXPECT_EQ(result.completed, 1U);
   EXPECT_EQ(result.already, 1U);
-  const RunRecord run = runs_of_kind(store_, "shear").front();
+  const RunRecord run = sheared(store_);
   EXPECT_EQ(run.cycle, 3);
   EXPECT_EQ(run.attempts, 2U);
   EXPECT_EQ(run.particle_steps, static_cast<double>(kGrains * 3 * kStepsPerCycle));
   EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0, 1, 2, 3}));
 
   Store other(folder_.path() / "other", Access::create);
-  compute(other, tiny_manifest(), options);
+  compute(other, tiny_manifest(), {.cycles = 3});
   EXPECT_EQ(final_hashes(other), final_hashes(store_));
 
   // A shorter target asks for nothing.
-  options.cycles = 2;
-  EXPECT_EQ(compute(store_, tiny_manifest(), options).already, 2U);
+  EXPECT_EQ(compute(store_, tiny_manifest(), {.cycles = 2}).already, 2U);
 }
 
 TEST_F(CampaignTest, MoreSeedsAddRunsAndLeaveTheOthers) {
   compute(store_, tiny_manifest());
   const auto before = final_hashes(store_);
-  ExpandOptions options;
-  options.seeds = 3;
-  const CampaignResult result = compute(store_, tiny_manifest(), options);
+  const CampaignResult result = compute(store_, tiny_manifest(), {.seeds = 3});
   EXPECT_EQ(result.already, 2U);
   EXPECT_EQ(result.completed, 4U);
   const auto after = final_hashes(store_);
@@ -130,10 +119,9 @@ TEST_F(CampaignTest, MoreSeedsAddRunsAndLeaveTheOthers) {
 }
 
 TEST_F(CampaignTest, ResumesWhatIsAskedForWithItsPacking) {
-  const Manifest manifest = parse_manifest(tiny_manifest("", "seeds: 2\n"), "t");
-  const std::vector<StageJob> declared = declare(store_, manifest, expand(manifest));
-  ASSERT_EQ(declared.size(), 4U);
-  const StageJob& wanted = declared[3];
+  const std::vector<StageJob> all = declared(store_, tiny_manifest("", "seeds: 2\n"));
+  ASSERT_EQ(all.size(), 4U);
+  const StageJob& wanted = all[3];
   const std::vector<StageJob> jobs = unfinished(store_, {wanted.id.substr(0, 12)});
   ASSERT_EQ(jobs.size(), 2U);
   EXPECT_EQ(jobs[0].id, wanted.parent);
@@ -141,22 +129,15 @@ TEST_F(CampaignTest, ResumesWhatIsAskedForWithItsPacking) {
   Progress progress(jobs.size(), true);
   EXPECT_EQ(run_campaign(store_, jobs, 1, progress).completed, 2U);
   EXPECT_EQ(store_.run(wanted.id).state, RunState::completed);
-  EXPECT_EQ(store_.run(declared[1].id).state, RunState::declared);
+  EXPECT_EQ(store_.run(all[1].id).state, RunState::declared);
 
   EXPECT_THROW(unfinished(store_, {"no digest"}), NotFound);
   EXPECT_THROW(unfinished(store_, {""}), NotFound) << "an empty prefix fits every run";
 }
 
-TEST_F(CampaignTest, RecordsAtTheCadenceThatWasAskedFor) {
-  compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 2}\n"),
-          ExpandOptions{.scale = {}, .cycles = 5, .seeds = {}});
-  const RunRecord run = runs_of_kind(store_, "shear").front();
-  EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0, 2, 4, 5}));
-}
-
 TEST_F(CampaignTest, TakesZeroCyclesAsThePackingAlone) {
-  compute(store_, tiny_manifest(), ExpandOptions{.scale = {}, .cycles = 0, .seeds = {}});
-  const RunRecord run = runs_of_kind(store_, "shear").front();
+  compute(store_, tiny_manifest(), {.cycles = 0});
+  const RunRecord run = sheared(store_);
   EXPECT_EQ(run.state, RunState::completed);
   EXPECT_EQ(cycles_of(store_, run.id), std::vector<double>{0});
   EXPECT_EQ(run.particle_steps, 0);
@@ -179,7 +160,7 @@ TEST_F(CampaignTest, ARunInTwoExperimentsRunsOnce) {
 TEST_F(CampaignTest, ADenserCadenceAddsTheCheckpointsInBetween) {
   const std::string text = tiny_manifest("  cycles: 6\n");
   compute(store_, text + "checkpoints: {every_cycles: 3}\n");
-  const std::string run = runs_of_kind(store_, "shear").front().id;
+  const std::string run = sheared(store_).id;
   EXPECT_EQ(cycles_of(store_, run), (std::vector<double>{0, 3, 6}));
   const RunRecord before = store_.run(run);
   EXPECT_EQ(compute(store_, text).completed, 1U);
@@ -197,10 +178,44 @@ TEST_F(CampaignTest, ADenserCadenceAddsTheCheckpointsInBetween) {
 
   // Both cadences of two experiments that share the run, none of which contains the other.
   Store both(folder_.path() / "both", Access::create);
-  const Manifest two = parse_manifest(text + "checkpoints: {every_cycles: 2}\n", "two.yaml");
-  declare(both, two, expand(two));
+  declared(both, text + "checkpoints: {every_cycles: 2}\n");
   compute(both, "# three\n" + text + "checkpoints: {every_cycles: 3}\n");
   EXPECT_TRUE(missing_checkpoints(both, both.run(run)).empty());
+}
+
+// Stores that computed parts of one campaign, merged, are the store that computed all of it.
+TEST_F(CampaignTest, OfThreeMachinesIsWholeOnceMergedAndGoesOn) {
+  const std::string text = tiny_manifest("", kBothFluids);
+  const auto store_at = [&](const char* name) { return folder_.path() / name; };
+  ExpandOptions two_seeds{.seeds = 2};
+  {
+    Store a(store_at("a"), Access::create), b(store_at("b"), Access::create),
+        c(store_at("c"), Access::create), whole(store_at("whole"), Access::create);
+    compute(a, text);                // one seed, both fluids
+    compute(b, tiny_manifest());     // the same packing, one fluid: shared
+    compute(c, text, two_seeds, 1);  // both seeds
+    compute(whole, text);
+    compute(whole, tiny_manifest());
+    compute(whole, text, two_seeds);
+  }
+  Store merged(store_at("merged"), Access::create);
+  const auto reports = merged.merge({store_at("a"), store_at("b"), store_at("c")});
+  EXPECT_EQ(reports[1].checkpoints, 0U) << "the second one computed what the first had";
+  const Store whole(store_at("whole"), Access::read);
+  EXPECT_EQ(final_hashes(merged), final_hashes(whole));
+  for (const RunRecord& run : whole.runs()) {
+    const RunRecord other = merged.run(run.id);
+    EXPECT_EQ(other.state, run.state);
+    EXPECT_EQ(other.attempts, run.attempts);
+    EXPECT_EQ(other.memberships.size(), run.memberships.size());
+    EXPECT_EQ(other.particle_steps, run.particle_steps) << "an effort was counted twice";
+    EXPECT_EQ(cycles_of(merged, run.id), cycles_of(whole, run.id));
+  }
+  EXPECT_TRUE(merged.verify().ok());
+  // Nothing is computed again, and more can be added.
+  EXPECT_EQ(compute(merged, text, two_seeds).completed, 0U);
+  two_seeds.cycles = 3;
+  EXPECT_EQ(compute(merged, text, two_seeds).completed, 4U);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/suggest.hpp"
 #include "tests/experiments/program.hpp"
 
 namespace shearcell::test {
@@ -66,7 +67,7 @@ TEST_F(Comfort, NewWritesAManifestThatExpandsAndNamesEveryKey) {
   const std::string text = text_of("softer.yaml");
   const Manifest manifest = parse_manifest(text, "softer.yaml");
   EXPECT_EQ(manifest.experiment, "softer");
-  for (const std::string_view key : field_names()) {
+  for (const std::string_view key : names_of(schema())) {
     EXPECT_NE(text.find(std::string(key) + ":"), std::string::npos) << key;
   }
   EXPECT_EQ(json({"plan", "softer.yaml", "--scale", "smoke", "--json"}).at("runs"), 4);

@@ -7,21 +7,18 @@
 
 #include "experiments/runner/stage_runner.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell {
 namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
-class Failure : public testing::Test {
+class Failure : public StoreTest {
  protected:
   std::filesystem::path file_of(const CheckpointRecord& record) const {
     return store_.folder() / record.file;
   }
-
-  TemporaryFolder folder_;
-  StopWish wish_;
-  Store store_{folder_.path() / "store", Access::create};
 };
 
 // A time in which no packing settles.
@@ -34,7 +31,7 @@ TEST_F(Failure, OfAPackingStopsItsShearAndNothingElse) {
   EXPECT_EQ(result.blocked, 2U);
   ASSERT_EQ(result.messages.size(), 1U);
   std::printf("%s\n", result.messages[0].c_str());
-  EXPECT_NE(result.messages[0].find("settle_time_limit_s"), std::string::npos);
+  EXPECT_TRUE(has(result.messages[0], "settle_time_limit_s"));
 
   for (const RunRecord& run : store_.runs()) {
     const bool sound = run.resolved.at("parameters").at("settle_time_limit_s") == 60;
@@ -48,7 +45,7 @@ TEST_F(Failure, OfAPackingStopsItsShearAndNothingElse) {
       continue;
     }
     EXPECT_EQ(run.state, RunState::failed);
-    EXPECT_NE(run.error.find("settle"), std::string::npos);
+    EXPECT_TRUE(has(run.error, "settle"));
     const Event last = store_.events("run/" + run.id).back();
     ASSERT_EQ(last.type, "RunFailed");
     const nlohmann::json numbers = last.body().at("numbers");
@@ -108,13 +105,13 @@ TEST_F(Failure, IsNoticedInAShortRunToo) {
                                                               "  amplitude_rad: 0.5\n"
                                                               "  cycles: 1\n"));
   EXPECT_EQ(result.failed, 1U);
-  EXPECT_EQ(runs_of_kind(store_, "shear").at(0).state, RunState::failed);
+  EXPECT_EQ(sheared(store_).state, RunState::failed);
 }
 
 TEST_F(Failure, OfTheNewestCheckpointIsMendedFromTheOneBefore) {
   compute(store_, tiny_manifest("", kBothFluids));
   const auto expected = final_hashes(store_);
-  const RunRecord run = runs_of_kind(store_, "shear").front();
+  const RunRecord run = sheared(store_);
   const CheckpointRecord newest = store_.checkpoints(run.id).back();
   truncate_file(file_of(newest));
   EXPECT_FALSE(store_.verify().ok());
@@ -124,7 +121,7 @@ TEST_F(Failure, OfTheNewestCheckpointIsMendedFromTheOneBefore) {
   EXPECT_EQ(result.completed, 1U);
   EXPECT_EQ(result.already, 2U);
   ASSERT_EQ(result.messages.size(), 1U);
-  EXPECT_NE(result.messages[0].find(newest.file), std::string::npos) << result.messages[0];
+  EXPECT_TRUE(has(result.messages[0], newest.file));
   EXPECT_EQ(final_hashes(store_), expected);
   EXPECT_EQ(count_events(store_, "CheckpointRejected", "run/" + run.id), 1U);
   EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0, 1, 2}));
@@ -135,7 +132,7 @@ TEST_F(Failure, OfTheNewestCheckpointIsMendedFromTheOneBefore) {
 
 TEST_F(Failure, OfTheLastStateAloneLeavesWorkToDo) {
   compute(store_, tiny_manifest());
-  const RunRecord run = runs_of_kind(store_, "shear").front();
+  const RunRecord run = sheared(store_);
   const auto records = store_.checkpoints(run.id);
   ASSERT_EQ(records.size(), 3U);
   EXPECT_TRUE(stage_done(store_, run));
@@ -151,28 +148,25 @@ TEST_F(Failure, OfTheLastStateAloneLeavesWorkToDo) {
 
 // Half done, so the run is not completed: the damage must be named all the same.
 TEST_F(Failure, OfTheNewestCheckpointOfAnUnfinishedRunIsNamed) {
-  ExpandOptions options;
-  options.cycles = 2;
-  compute(store_, tiny_manifest(), options);
-  const RunRecord run = runs_of_kind(store_, "shear").front();
+  compute(store_, tiny_manifest());
+  const RunRecord run = sheared(store_);
   const CheckpointRecord newest = store_.checkpoints(run.id).back();
   truncate_file(file_of(newest));
-  options.cycles = 3;
-  const CampaignResult result = compute(store_, tiny_manifest(), options);
+  const CampaignResult result = compute(store_, tiny_manifest(), {.cycles = 3});
   EXPECT_EQ(result.completed, 1U);
   EXPECT_EQ(result.damaged, 1U);
   ASSERT_EQ(result.messages.size(), 1U);
-  EXPECT_NE(result.messages[0].find(newest.file), std::string::npos) << result.messages[0];
+  EXPECT_TRUE(has(result.messages[0], newest.file));
 
   Store whole(folder_.path() / "whole", Access::create);
-  compute(whole, tiny_manifest(), options);
+  compute(whole, tiny_manifest(), {.cycles = 3});
   EXPECT_EQ(final_hashes(store_), final_hashes(whole));
 }
 
 TEST_F(Failure, OfEveryCheckpointBeginsAgainFromThePacking) {
   compute(store_, tiny_manifest());
   const auto expected = final_hashes(store_);
-  const RunRecord run = runs_of_kind(store_, "shear").front();
+  const RunRecord run = sheared(store_);
   for (const CheckpointRecord& record : store_.checkpoints(run.id)) truncate_file(file_of(record));
   EXPECT_EQ(compute(store_, tiny_manifest()).completed, 1U);
   EXPECT_EQ(final_hashes(store_), expected);
@@ -184,8 +178,7 @@ TEST_F(Failure, OfAPackingFileIsMendedToTheSameState) {
   Store whole(folder_.path() / "whole", Access::create);
   compute(whole, tiny_manifest());
 
-  const Manifest manifest = parse_manifest(tiny_manifest(), "t");
-  const std::vector<StageJob> jobs = declare(store_, manifest, expand(manifest));
+  const std::vector<StageJob> jobs = declared(store_, tiny_manifest());
   ASSERT_EQ(run_stage(store_, jobs[0].id, {}), StageOutcome::completed);
   for (const CheckpointRecord& record : store_.checkpoints(jobs[0].id)) {
     std::filesystem::remove(file_of(record));
@@ -199,8 +192,7 @@ TEST_F(Failure, OfAPackingFileIsMendedToTheSameState) {
 }
 
 TEST_F(Failure, OfThePackingFileIsSeenByResumeToo) {
-  const Manifest manifest = parse_manifest(tiny_manifest(), "t");
-  const std::vector<StageJob> jobs = declare(store_, manifest, expand(manifest));
+  const std::vector<StageJob> jobs = declared(store_, tiny_manifest());
   ASSERT_EQ(run_stage(store_, jobs[0].id, {}), StageOutcome::completed);
   for (const CheckpointRecord& record : store_.checkpoints(jobs[0].id)) {
     truncate_file(file_of(record));

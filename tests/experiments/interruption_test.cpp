@@ -16,11 +16,8 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
-class Interruption : public testing::Test {
+class Interruption : public StoreTest {
  protected:
-  TemporaryFolder folder_;
-  StopWish wish_;
-  Store store_{folder_.path() / "store", Access::create};
   Store whole_{folder_.path() / "whole", Access::create};
 };
 
@@ -28,14 +25,9 @@ class Interruption : public testing::Test {
 // steps.
 TEST_F(Interruption, AfterEveryChunkLeavesNoTrace) {
   compute(whole_, tiny_manifest());
-  const Manifest manifest = parse_manifest(tiny_manifest(), "t");
-  const std::vector<StageJob> jobs = declare(store_, manifest, expand(manifest));
-  for (const StageJob& job : jobs) {
-    std::size_t interrupted = 0;
-    while (run_one_chunk(store_, job.id) == StageOutcome::interrupted) {
-      ASSERT_LT(++interrupted, 1000U) << "the stage does not come forward";
-      EXPECT_EQ(store_.run(job.id).state, RunState::interrupted);
-    }
+  for (const StageJob& job : declared(store_, tiny_manifest())) {
+    const std::size_t interrupted = interrupt_to_the_end(
+        store_, job.id, [&] { EXPECT_EQ(store_.run(job.id).state, RunState::interrupted); });
     const RunRecord run = store_.run(job.id);
     std::printf("%s: interrupted %zu times\n", job.name.c_str(), interrupted);
     EXPECT_GE(interrupted, 3U);
@@ -143,19 +135,14 @@ TEST_F(Interruption, IsNotInvitedByALongWayBetweenCheckpoints) {
 // A run that is interrupted within a cycle continues at the declared cadence.
 TEST_F(Interruption, KeepsTheCadenceOfItsCheckpoints) {
   const std::string text = tiny_manifest("", "checkpoints: {every_cycles: 2}\n");
-  const Manifest manifest = parse_manifest(text, "t");
-  ExpandOptions options;
-  options.cycles = 5;
-  const std::vector<StageJob> jobs = declare(store_, manifest, expand(manifest, options));
+  const std::vector<StageJob> jobs = declared(store_, text, {.cycles = 5});
   ASSERT_EQ(jobs.size(), 2U);
   run_stage(store_, jobs[0].id, {});
-  request_stop(true);
-  ASSERT_EQ(run_stage(store_, jobs[1].id, {}), StageOutcome::interrupted);
+  ASSERT_EQ(run_one_chunk(store_, jobs[1].id), StageOutcome::interrupted);
   const double stopped_at = store_.run(jobs[1].id).cycle;
   std::printf("stopped at cycle %g\n", stopped_at);
   ASSERT_GT(stopped_at, 0);
   ASSERT_LT(stopped_at, 1);
-  request_stop(false);
   const std::vector<StageJob> left = unfinished(store_, {});
   ASSERT_EQ(left.size(), 2U) << "the packing before it, and the run";
   EXPECT_EQ(resume(store_).completed, 1U);

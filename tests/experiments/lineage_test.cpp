@@ -6,10 +6,10 @@
 
 #include <cstdio>
 
-#include "experiments/figures/draw.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
-#include "tests/experiments/temporary_store.hpp"
+#include "tests/experiments/drawing.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell {
 namespace {
@@ -25,21 +25,13 @@ std::string line_of(const std::string& text, int line) {
   return found;
 }
 
-class FigureLineageTest : public testing::Test {
+class FigureLineageTest : public DrawingTest {
  protected:
   void SetUp() override {
-    compute(store_, kText, ExpandOptions{.scale = {}, .cycles = 1, .seeds = {}});
-    make("out");
-  }
-  void make(const std::string& name) {
-    FigureOptions options;
-    options.folder = folder_.path() / name;
-    draw_figure(store_, {*find_figure("S2"), "tiny"}, options);
+    compute(store_, kText, {.cycles = 1});
+    draw("out");
   }
   std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
-
-  TemporaryFolder folder_;
-  Store store_{folder_.path() / "store", Access::create};
 };
 
 TEST_F(FigureLineageTest, LeadsToEveryCheckpointAndWhatMadeIt) {
@@ -61,7 +53,7 @@ TEST_F(FigureLineageTest, LeadsToEveryCheckpointAndWhatMadeIt) {
     const Attempt& first = run.attempts.at(0);
     EXPECT_NE(lineage.runs.at(first.from_run).find(first.from_checkpoint), nullptr);
     for (const ManifestLine& line : input.lines) {
-      EXPECT_NE(line_of(kText, line.line).find(line.text), std::string::npos) << line.key;
+      EXPECT_TRUE(has(line_of(kText, line.line), line.text)) << line.key;
     }
     ASSERT_EQ(input.lines.size(), 4U);
     EXPECT_EQ(input.lines[0].key, "experiment");
@@ -77,6 +69,7 @@ TEST_F(FigureLineageTest, LeadsToEveryCheckpointAndWhatMadeIt) {
 
 TEST_F(FigureLineageTest, AFileAloneFindsItsRecord) {
   const std::string old = read_bytes(file("out/tiny/S2a.csv"));
+  const std::string old_lineage = read_bytes(file("out/tiny/S2.lineage.json"));
   for (const char* name : {"out/tiny/S2a.csv", "out/tiny/S2b.csv", "out/tiny/S2.lineage.json"}) {
     const auto found = find_published(store_, file(name));
     ASSERT_TRUE(found.has_value()) << name;
@@ -84,12 +77,22 @@ TEST_F(FigureLineageTest, AFileAloneFindsItsRecord) {
   }
   // A longer figure takes its place; the old file, renamed, still finds the old record.
   compute(store_, kText);
-  make("out");
+  draw("out");
   std::ofstream(file("published.csv"), std::ios::binary) << old;
   ASSERT_EQ(figure_records(store_).size(), 2U);
   const auto found = find_published(store_, file("published.csv"));
   ASSERT_TRUE(found.has_value());
   EXPECT_EQ(found->record.seq, figure_records(store_).at(0).seq);
+  EXPECT_EQ(find_published(store_, file("out/tiny/S2a.csv"))->record.seq,
+            figure_records(store_).at(1).seq);
+
+  // Changed, its name fits both records: the lineage beside it decides.
+  const std::filesystem::path beside = file("out/tiny/S2.lineage.json");
+  std::ofstream(file("out/tiny/S2a.csv"), std::ios::app) << "\n";
+  std::ofstream(beside, std::ios::binary) << old_lineage;
+  EXPECT_EQ(find_published(store_, file("out/tiny/S2a.csv"))->record.seq,
+            figure_records(store_).at(0).seq);
+  std::filesystem::remove(beside);
   EXPECT_EQ(find_published(store_, file("out/tiny/S2a.csv"))->record.seq,
             figure_records(store_).at(1).seq);
 }
@@ -111,18 +114,6 @@ TEST_F(FigureLineageTest, AChangedFileIsToldFromAnUnknownOne) {
   EXPECT_THROW(find_published(store_, folder_.path()), NotFound);
 }
 
-// Between two records of the same file name, the lineage beside the file decides.
-TEST_F(FigureLineageTest, TheLineageBesideAChangedFileNamesItsRecord) {
-  compute(store_, kText);
-  make("new");
-  std::ofstream(file("out/tiny/S2a.csv"), std::ios::app) << "\n";
-  EXPECT_EQ(find_published(store_, file("out/tiny/S2a.csv"))->record.seq,
-            figure_records(store_).at(0).seq);
-  std::filesystem::remove(file("out/tiny/S2.lineage.json"));
-  EXPECT_EQ(find_published(store_, file("out/tiny/S2a.csv"))->record.seq,
-            figure_records(store_).at(1).seq);
-}
-
 TEST_F(FigureLineageTest, MissingAndDamagedInputsAreNamed) {
   const FigureLineage lineage = figure_lineage(store_, figure_records(store_).at(0));
   const auto path = [&](std::size_t i) {
@@ -134,7 +125,7 @@ TEST_F(FigureLineageTest, MissingAndDamagedInputsAreNamed) {
   ASSERT_EQ(faults.size(), 2U);
   for (const InputFault& fault : faults) std::printf("%s\n", fault.what.c_str());
   EXPECT_EQ(faults[0].checkpoint, lineage.inputs[0].checkpoints[0]);
-  EXPECT_NE(faults[0].what.find("missing"), std::string::npos);
+  EXPECT_TRUE(has(faults[0].what, "missing"));
   EXPECT_EQ(faults[1].checkpoint, lineage.inputs[3].checkpoints[0]);
 }
 

@@ -284,12 +284,12 @@ json any_value(const Field& field) {
   if (const auto* member = std::get_if<ChoiceMember>(&field.member)) {
     return member->names[*rc::gen::inRange<std::size_t>(0, member->names.size())];
   }
-  if (std::holds_alternative<std::uint64_t Parameters::*>(field.member)) {
-    const auto low = static_cast<std::uint64_t>(field.min);
-    return *rc::gen::inRange<std::uint64_t>(low, static_cast<std::uint64_t>(field.max) + 1);
+  if (field.is_whole()) {
+    const auto low = static_cast<std::uint64_t>(field.range.min);
+    return *rc::gen::inRange<std::uint64_t>(low, static_cast<std::uint64_t>(field.range.max) + 1);
   }
   const double share = *rc::gen::inRange(1, 1001) / 1000.0;  // never the lower end
-  return field.min + (field.max - field.min) * std::pow(share, 4);
+  return field.range.min + (field.range.max - field.range.min) * std::pow(share, 4);
 }
 
 Parameters any_parameters() {
@@ -316,7 +316,8 @@ PROPERTY(Identity, ChangesWithEachValueAsTheSchemaSays, 100) {
     const json value = get_value(field, before);
     json other = any_value(field);
     if (value.is_number_float() && *rc::gen::arbitrary<bool>().as("by one bit")) {
-      other = std::nextafter(value.get<double>(), field.max == value ? field.min : field.max);
+      other = std::nextafter(value.get<double>(),
+                             field.range.max == value ? field.range.min : field.range.max);
     }
     if (other == value) continue;
     Parameters after = before;
@@ -343,6 +344,7 @@ PROPERTY(Identity, OfARecordReadBackIsTheSame, 300) {
       const StageRecord record = read_stage(stored);
       RC_ASSERT(stage_key(stored) == stage.key);
       RC_ASSERT(record.seed == seed);
+      RC_ASSERT(record.stage == stage.stage && record.parent == stage.parent);
       const StageSpec again = prepare_stage(record.parameters, seed);
       RC_ASSERT((stage.stage == Stage::prepare ? again : last_stage(record.parameters, seed, again))
                     .key == stage.key);

@@ -22,9 +22,7 @@ const fs::path kFolder = fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experime
 const std::vector<std::string> kScales = {"smoke", "desk", "paper"};
 
 Plan plan(const std::string& experiment, const std::string& scale) {
-  ExpandOptions options;
-  options.scale = scale;
-  return expand(load_manifest(kFolder / (experiment + ".yaml")), options);
+  return expand(load_manifest(kFolder / (experiment + ".yaml")), {.scale = scale});
 }
 
 std::set<std::string> last_stages(const Plan& plan) {

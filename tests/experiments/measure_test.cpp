@@ -8,26 +8,24 @@
 
 #include "analysis/error.hpp"
 #include "experiments/figures/collect.hpp"
-#include "experiments/figures/draw.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/sqlite.hpp"
-#include "tests/experiments/temporary_store.hpp"
+#include "tests/experiments/drawing.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell {
 namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
-class Measure : public testing::Test {
+class Measure : public DrawingTest {
  protected:
   void SetUp() override { compute(store_, tiny_manifest("", kBothFluids)); }
 
   FigureSummary make(const std::string& name, bool fresh = false) {
     FigureOptions options;
-    options.folder = folder_.path() / name;
-    options.workers = 2;
     options.fresh = fresh;
-    return draw_figure(store_, {*find_figure("S2"), "tiny"}, options);
+    return draw(name, kS2, options);
   }
   std::string csv(const std::string& name) const {
     const std::filesystem::path folder = folder_.path() / name / "tiny";
@@ -44,9 +42,6 @@ class Measure : public testing::Test {
     }
     return all;
   }
-
-  TemporaryFolder folder_;
-  Store store_{folder_.path() / "store", Access::create};
 };
 
 TEST_F(Measure, IsMeasuredOnceAndGivesTheSameBytesAgain) {
@@ -64,8 +59,7 @@ TEST_F(Measure, IsMeasuredOnceAndGivesTheSameBytesAgain) {
 
 TEST_F(Measure, OnlyNewCheckpointsAreMeasured) {
   make("short");
-  compute(store_, tiny_manifest("", kBothFluids),
-          ExpandOptions{.scale = {}, .cycles = 3, .seeds = {}});
+  compute(store_, tiny_manifest("", kBothFluids), {.cycles = 3});
   EXPECT_EQ(make("long").measured, 2U);
   std::filesystem::remove(cache());
   EXPECT_EQ(make("again").measured, 8U);
@@ -77,16 +71,12 @@ TEST_F(Measure, CurvesAndMotionArePlotted) {
       "plots: [{name: g, y: pair_correlation, at_cycle: 1}, "
       "{name: each, y: phi_profile, show: traces}, {name: moved, y: msd_1_cycle_d2, log: y}]\n";
   compute(store_, tiny_manifest("", kBothFluids + plots));
-  FigureOptions options;
-  options.folder = folder_.path() / "own";
-  for (const WantedFigure& wanted : wanted_figures(store_, {"g", "each", "moved"}).figures) {
-    EXPECT_EQ(draw_figure(store_, wanted, options).plot_error, "");
-  }
-  const auto text = [&](const char* name) { return read_bytes(options.folder / "tiny" / name); };
-  EXPECT_TRUE(text("g.csv").starts_with("variant,distance_d,pair_correlation_mean,"));
-  EXPECT_NE(text("g.gp").find("distance"), std::string::npos);
-  EXPECT_NE(text("each.csv").find("height_d,phi_profile_mean"), std::string::npos);
-  const std::string moved = text("moved.csv");
+  for (const char* name : {"g", "each", "moved"}) EXPECT_EQ(draw("own", name).plot_error, "");
+  const auto files = contents("own");
+  EXPECT_TRUE(files.at("g.csv").starts_with("variant,distance_d,pair_correlation_mean,"));
+  EXPECT_TRUE(has(files.at("g.gp"), "distance"));
+  EXPECT_TRUE(has(files.at("each.csv"), "height_d,phi_profile_mean"));
+  const std::string& moved = files.at("moved.csv");
   const std::string head = "variant,cycle,msd_1_cycle_mean_d2,msd_1_cycle_standard_error_d2,runs\n";
   EXPECT_TRUE(moved.starts_with(head + "fluid=cell,0,,,0\nfluid=cell,1,0.")) << moved;
 }
@@ -95,13 +85,11 @@ TEST_F(Measure, OneAnalysisGivesAllThatFiguresMadeTogetherNeed) {
   std::string text = tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\n");
   text.replace(text.find("[S2]"), 4, "[S7, walls]");
   compute(store_, text);
-  FigureOptions options;
-  options.folder = folder_.path() / "together";
   std::vector<std::string> order;
   std::size_t measured = 0;
   for (const WantedFigure& wanted : in_order_of_needs(wanted_figures(store_).figures)) {
     order.emplace_back(wanted.figure.name);
-    measured += draw_figure(store_, wanted, options).measured;
+    measured += draw("together", wanted).measured;
   }
   EXPECT_EQ(order, (std::vector<std::string>{"S7", "walls", "table1"}));
   EXPECT_EQ(measured, 6U) << "checkpoints, each once";
@@ -111,15 +99,12 @@ TEST_F(Measure, OneAnalysisGivesAllThatFiguresMadeTogetherNeed) {
 TEST_F(Measure, AFigureOfEveryExperimentMeasuresNothing) {
   const std::string text = tiny_manifest("", kBothFluids);
   compute(store_, "experiment: other" + text.substr(text.find('\n')));
-  FigureOptions options;
-  options.folder = folder_.path() / "table";
-  const FigureSummary table = draw_figure(store_, {*find_figure("table1"), ""}, options);
+  const FigureSummary table = draw("table", {*find_figure("table1"), ""});
   EXPECT_EQ(table.measured, 0U);
   EXPECT_EQ(table.runs, 2U * 2U);
   EXPECT_EQ(table.checkpoints, 2U * 2U) << "the last one of each";
   EXPECT_TRUE(table.verdicts.empty());
-  EXPECT_NE(read_bytes(folder_.path() / "table" / "table1.csv").find("other,mass_kg,"),
-            std::string::npos);
+  EXPECT_TRUE(has(read_bytes(folder_.path() / "table" / "table1.csv"), "other,mass_kg,"));
 }
 
 TEST_F(Measure, AChangedValueIsFoundAndReplaced) {

@@ -63,7 +63,7 @@ TEST(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
   EXPECT_LT(at_rest.mean_overlap, 4.5e-3);
   expect_balance(at_rest);
 
-  const RunRecord run = test::runs_of_kind(store, "shear").at(0);
+  const RunRecord run = test::sheared(store);
   const auto checkpoints = store.checkpoints(run.id);
   ASSERT_EQ(checkpoints.size(), 11U);
   double late = 0;  // mean over the last three cycles

@@ -8,13 +8,13 @@
 #include <thread>
 
 #include "experiments/figures/collect.hpp"
-#include "experiments/figures/draw.hpp"
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/asks.hpp"
 #include "experiments/runner/replay.hpp"
 #include "provenance/errors.hpp"
-#include "tests/experiments/temporary_store.hpp"
+#include "tests/experiments/drawing.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell {
 namespace {
@@ -23,12 +23,11 @@ using namespace test;  // NOLINT(google-build-using-namespace): the helpers of t
 
 const std::string kPhases = "checkpoints: {every_cycles: 2, phases: [0.25, 0.7]}\n";
 
-class Phases : public testing::Test {
+class Phases : public DrawingTest {
  protected:
   static std::string manifest(const std::string& rest) {
     return tiny_manifest("  cycles: 3\n", rest);
   }
-  static RunRecord sheared(const Store& store) { return runs_of_kind(store, "shear").at(0); }
 
   // SHA-256 of the checkpoints at whole cycles, or of the others.
   static std::map<double, std::string> files(const Store& store, bool whole) {
@@ -50,9 +49,6 @@ class Phases : public testing::Test {
     return contents;
   }
 
-  TemporaryFolder folder_;
-  StopWish wish_;
-  Store store_{folder_.path() / "store", Access::create};
   Store plain_{folder_.path() / "plain", Access::create};
 };
 
@@ -130,16 +126,9 @@ TEST_F(Phases, AreTheSameAfterInterruptionsWithinCycles) {
       manifest(kPhases +
                "plots: [{name: loop, x: shear_strain, y: stress_xy_Pa, cycles: [2, 3], "
                "show: traces}]\n");
-  const Manifest read = parse_manifest(text, "t");
-  const std::vector<StageJob> jobs = declare(store_, read, expand(read));
+  const std::vector<StageJob> jobs = declared(store_, text);
   run_stage(store_, jobs[0].id, {});
-  request_stop(true);  // each attempt ends after one chunk of steps
-  std::size_t interrupted = 0;
-  while (run_stage(store_, jobs[1].id, {}) == StageOutcome::interrupted) {
-    ASSERT_LT(++interrupted, 1000U);
-  }
-  request_stop(false);
-  EXPECT_GE(interrupted, 2U);
+  EXPECT_GE(interrupt_to_the_end(store_, jobs[1].id), 2U);
   EXPECT_EQ(final_hashes(store_).at(jobs[1].id), final_hashes(plain_).at(jobs[1].id));
   const auto left = files(store_, false);
   EXPECT_GT(left.size(), 4U) << "an interruption leaves checkpoints of its own";
@@ -152,7 +141,7 @@ TEST_F(Phases, AreTheSameAfterInterruptionsWithinCycles) {
   EXPECT_EQ(csv, drawn(whole, "loop").at("loop.csv"));
   EXPECT_EQ(std::ranges::count(csv, '\n'), 5) << csv;
   const auto at_quarter = fmt::format("\nbase,1,{:.6g}", std::tan(0.0833)).substr(0, 12);
-  EXPECT_NE(csv.find(at_quarter), std::string::npos) << csv;
+  EXPECT_TRUE(has(csv, at_quarter));
 }
 
 TEST_F(Phases, AreMadeByTwoProgramsOnOneStore) {
@@ -176,11 +165,8 @@ TEST_F(Phases, HaveNoPartInTheEndOfARun) {
 
 TEST_F(Phases, AreRefusedWhereTheirRecordIsNotOurs) {
   compute(plain_, manifest(""));
-  RunDeclaration forged;
   const RunRecord run = sheared(plain_);
-  forged.id = run.id, forged.parent = run.parent, forged.kind = run.kind;
-  forged.resolved = run.resolved, forged.grains = run.grains, forged.target_cycles = 3;
-  forged.membership = run.memberships.front();
+  RunDeclaration forged = declaration_of(run);
   forged.membership.experiment = "forged";
   forged.membership.checkpoint_phases.assign(1001, 0.5);
   plain_.declare_run(forged);

@@ -12,13 +12,14 @@
 #include "experiments/runner/stage_runner.hpp"
 #include "protocols/rest.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell {
 namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
-class Protocols : public testing::Test {
+class Protocols : public StoreTest {
  protected:
   std::vector<Checkpoint> states(const RunRecord& run) {
     std::vector<Checkpoint> found;
@@ -39,10 +40,6 @@ class Protocols : public testing::Test {
       EXPECT_FALSE(replay.divergence) << record.cycle << ": " << replay.divergence->message;
     }
   }
-
-  TemporaryFolder folder_;
-  StopWish wish_;
-  Store store_{folder_.path() / "store", Access::create};
 };
 
 TEST_F(Protocols, PausedShearRecordsTheEndsOfItsPauses) {
@@ -79,15 +76,13 @@ TEST_F(Protocols, AnInterruptedPauseLeavesNoTrace) {
   const std::string text = tiny_manifest("  protocol: paused\n  cycles: 1\n");
   Store whole(folder_.path() / "whole", Access::create);
   compute(whole, text);
-  const Manifest manifest = parse_manifest(text, "t");
-  const std::vector<StageJob> jobs = declare(store_, manifest, expand(manifest));
+  const std::vector<StageJob> jobs = declared(store_, text);
   EXPECT_EQ(run_stage(store_, jobs.at(0).id, {}), StageOutcome::completed);
-  request_stop(true);  // after every chunk
   bool within_pause = false;
-  while (run_stage(store_, jobs.at(1).id, {}) == StageOutcome::interrupted) {
+  interrupt_to_the_end(store_, jobs.at(1).id, [&] {
     const std::uint64_t step = store_.checkpoints(jobs[1].id).back().step;
     within_pause = within_pause || (step > kStepsPerCycle && step < 3 * kStepsPerCycle);
-  }
+  });
   EXPECT_TRUE(within_pause);
   EXPECT_EQ(final_hashes(store_), final_hashes(whole));
 }
@@ -156,14 +151,9 @@ TEST_F(Protocols, StiffeningIsExtendedAndInterruptedWithoutATrace) {
   compute(store_, tiny_manifest(kStiffen + "  stiffness_decades: 1\n"));
   EXPECT_EQ(runs_of_kind(store_, "stiffen").at(0).cycle, 5);
 
-  const Manifest manifest = parse_manifest(tiny_manifest(kStiffen), "t");
-  const std::vector<StageJob> jobs = declare(store_, manifest, expand(manifest));
-  request_stop(true);
-  std::size_t interrupted = 0;
-  while (run_stage(store_, jobs.at(1).id, {}) == StageOutcome::interrupted) {
-    ASSERT_LT(++interrupted, 10U);
-  }
-  EXPECT_EQ(interrupted, 3U) << "once after each stiffness but the last";
+  const std::vector<StageJob> jobs = declared(store_, tiny_manifest(kStiffen));
+  EXPECT_EQ(interrupt_to_the_end(store_, jobs.at(1).id), 3U)
+      << "once after each stiffness but the last";
   EXPECT_EQ(final_hashes(store_), final_hashes(whole));
 }
 
@@ -174,7 +164,7 @@ TEST_F(Protocols, AToleranceOutOfReachFailsTheRunAndSaysWhatToChange) {
   EXPECT_EQ(result.failed, 1U);
   const RunRecord run = runs_of_kind(store_, "stiffen").at(0);
   EXPECT_EQ(run.state, RunState::failed);
-  EXPECT_NE(run.error.find("minimize_force_tolerance"), std::string::npos) << run.error;
+  EXPECT_TRUE(has(run.error, "minimize_force_tolerance"));
   EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0}));
 }
 

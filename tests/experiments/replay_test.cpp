@@ -8,29 +8,25 @@
 #include <cstdio>
 #include <set>
 
-#include "experiments/figures/draw.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/sha256.hpp"
-#include "tests/experiments/temporary_store.hpp"
+#include "tests/experiments/drawing.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell {
 namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
-class ReplayTest : public testing::Test {
+class ReplayTest : public DrawingTest {
  protected:
   ReplayTest() { compute(store_, tiny_manifest("  cycles: 4\n")); }
 
-  RunRecord sheared() const { return runs_of_kind(store_, "shear").at(0); }
+  RunRecord sheared() const { return test::sheared(store_); }
   RunRecord packing() const { return runs_of_kind(store_, "prepare").at(0); }
   bool there(const CheckpointRecord& record) const {
     return std::filesystem::exists(store_.folder() / record.file);
   }
-
-  TemporaryFolder folder_;
-  StopWish wish_;
-  Store store_{folder_.path() / "store", Access::create};
 };
 
 TEST_F(ReplayTest, GivesEveryRecordedState) {
@@ -99,13 +95,9 @@ TEST_F(ReplayTest, MendsADamagedFile) {
 TEST_F(ReplayTest, WorksOnPackingsAndOnStatesWithinACycle) {
   // Interrupted after a chunk of steps, and so within the settling and within a cycle.
   Store other(folder_.path() / "other", Access::create);
-  const Manifest manifest = parse_manifest(tiny_manifest(), "t");
-  const std::vector<StageJob> jobs = declare(other, manifest, expand(manifest));
-  for (const StageJob& job : jobs) {
-    while (run_one_chunk(other, job.id) == StageOutcome::interrupted) {
-    }
+  for (const StageJob& job : declared(other, tiny_manifest())) {
+    interrupt_to_the_end(other, job.id);
   }
-  request_stop(false);
   const auto records = replayable(other);
   ASSERT_GT(records.size(), 10U);
   other.prune(other.prunable({}));
@@ -127,10 +119,7 @@ TEST_F(ReplayTest, TellsWhereAStateDiverges) {
   wrong.state.step += kStepsPerCycle;
   wrong.cycle = 5;
   wrong.state.velocity(1, 17) += 0.25;
-  ExpandOptions longer;
-  longer.cycles = 6;
-  const Manifest manifest = parse_manifest(tiny_manifest("  cycles: 4\n"), "t");
-  declare(store_, manifest, expand(manifest, longer));
+  declared(store_, tiny_manifest("  cycles: 4\n"), {.cycles = 6});
   store_.start_run(sheared().id, {}, records[4].sha256);
   const CheckpointRecord record = store_.record_checkpoint(sheared().id, wrong);
   store_.interrupt_run(sheared().id, "a test");
@@ -160,16 +149,14 @@ TEST_F(ReplayTest, TellsWhereAStateDiverges) {
 TEST_F(ReplayTest, FiguresNameWhatWasPruned) {
   const auto records = store_.checkpoints(sheared().id);
   store_.prune({records[1], records[2]});
-  FigureOptions options;
-  options.folder = folder_.path() / "figures";
-  const FigureSummary figure = draw_figure(store_, {*find_figure("S2"), "tiny"}, options);
+  const FigureSummary figure = draw("figures");
   EXPECT_TRUE(figure.damage.empty());
   ASSERT_EQ(figure.pruned.size(), 2U);
   for (const std::string& line : figure.pruned) {
-    EXPECT_NE(line.find("shearcell regenerate"), std::string::npos) << line;
+    EXPECT_TRUE(has(line, "shearcell regenerate"));
   }
   for (const std::size_t at : {1U, 2U}) regenerate_checkpoint(store_, records[at]);
-  EXPECT_TRUE(draw_figure(store_, {*find_figure("S2"), "tiny"}, options).pruned.empty());
+  EXPECT_TRUE(draw("figures").pruned.empty());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -48,11 +49,17 @@ inline std::string tiny_manifest(const std::string& base = "", const std::string
 
 inline const std::string kBothFluids = "sweep: {grid: {fluid: [still, cell]}}\n";
 
+/// Declares what a manifest expands to; its stages.
+inline std::vector<StageJob> declared(Store& store, const std::string& text,
+                                      const ExpandOptions& options = {}) {
+  const Manifest manifest = parse_manifest(text, "tiny.yaml");
+  return declare(store, manifest, expand(manifest, options));
+}
+
 /// Declares what a manifest expands to and brings it to its target.
 inline CampaignResult compute(Store& store, const std::string& text,
                               const ExpandOptions& options = {}, std::size_t workers = 2) {
-  const Manifest manifest = parse_manifest(text, "tiny.yaml");
-  const std::vector<StageJob> jobs = declare(store, manifest, expand(manifest, options));
+  const std::vector<StageJob> jobs = declared(store, text, options);
   Progress progress(jobs.size(), true);
   return run_campaign(store, jobs, workers, progress);
 }
@@ -76,6 +83,22 @@ inline std::vector<RunRecord> runs_of_kind(const Store& store, const std::string
     if (run.kind == kind) found.push_back(run);
   }
   return found;
+}
+
+/// The first run that shears.
+inline RunRecord sheared(const Store& store) {
+  return runs_of_kind(store, "shear").at(0);
+}
+
+/// Declares the run again for its first experiment.
+inline RunDeclaration declaration_of(const RunRecord& run) {
+  return {run.id,
+          run.parent,
+          run.kind,
+          run.resolved,
+          run.grains,
+          run.target_cycles,
+          run.memberships.front()};
 }
 
 inline std::size_t count_events(const Store& store, const std::string& type,
@@ -106,5 +129,26 @@ inline StageOutcome run_one_chunk(Store& store, const std::string& id) {
   options.begun = [] { request_stop(true); };
   return run_stage(store, id, options);
 }
+
+/// Interrupts a stage after each chunk of its steps until it is completed. Returns how often.
+inline std::size_t interrupt_to_the_end(Store& store, const std::string& id,
+                                        const std::function<void()>& between = {}) {
+  constexpr std::size_t most = 1000;
+  std::size_t interrupted = 0;
+  while (interrupted < most && run_one_chunk(store, id) == StageOutcome::interrupted) {
+    ++interrupted;
+    if (between) between();
+  }
+  EXPECT_LT(interrupted, most) << "the stage does not come forward";
+  return interrupted;
+}
+
+/// An empty store; a wish to stop ends with the test.
+class StoreTest : public testing::Test {
+ protected:
+  TemporaryFolder folder_;
+  StopWish wish_;
+  Store store_{folder_.path() / "store", Access::create};
+};
 
 }  // namespace shearcell::test

@@ -70,13 +70,13 @@ TEST(RunEnd, IsDescribed) {
 }
 
 // The packing densifies, so phi ends the runs. One run of six cycles gives the cycle.
-class UntilTest : public testing::Test {
+class UntilTest : public StoreTest {
  protected:
   static void SetUpTestSuite() {
     whole_folder_ = new TemporaryFolder;
     Store store(whole_folder_->path() / "store", Access::create);
     compute(store, manifest(""));
-    const RunRecord run = runs_of_kind(store, "shear").front();
+    const RunRecord run = sheared(store);
     whole_ = new std::vector<CheckpointRecord>(store.checkpoints(run.id));
     ASSERT_EQ(whole_->size(), 7U);
     std::vector<double> phi;
@@ -103,7 +103,7 @@ class UntilTest : public testing::Test {
 
   // The checkpoints on the cadence are those of the whole run, up to where this one ended.
   static void expect_end(const Store& store, std::size_t last) {
-    const RunRecord run = runs_of_kind(store, "shear").front();
+    const RunRecord run = sheared(store);
     EXPECT_EQ(run.state, RunState::completed);
     std::vector<CheckpointRecord> whole_cycles = store.checkpoints(run.id);
     std::erase_if(whole_cycles,
@@ -120,16 +120,12 @@ class UntilTest : public testing::Test {
   static inline std::vector<CheckpointRecord>* whole_ = nullptr;
   static inline double value_ = 0;
   static inline std::size_t end_ = 0;  // cycle
-
-  TemporaryFolder folder_;
-  StopWish wish_;
-  Store store_{folder_.path() / "store", Access::create};
 };
 
 TEST_F(UntilTest, EndsTheRunSaysWhyAndKeepsTheMeasures) {
   EXPECT_EQ(compute(store_, manifest(until())).completed, 2U);
   expect_end(store_, end_);
-  const RunRecord run = runs_of_kind(store_, "shear").front();
+  const RunRecord run = sheared(store_);
   const nlohmann::json why = end_of(store_, run);
   EXPECT_EQ(why.at("measure"), "phi");
   EXPECT_EQ(why.at("reached_at_cycle"), static_cast<double>(end_ - 1));
@@ -164,33 +160,29 @@ TEST_F(UntilTest, IsExtendedWithoutOneOrWithALaterOne) {
   expect_end(store_, end_ + 1);
   EXPECT_EQ(compute(store_, manifest("")).completed, 1U);
   expect_end(store_, 6);
-  EXPECT_TRUE(end_of(store_, runs_of_kind(store_, "shear").front()).is_null());
+  EXPECT_TRUE(end_of(store_, sheared(store_)).is_null());
 }
 
 TEST_F(UntilTest, OfTwoExperimentsTheLongestCounts) {
   std::string twin = tiny_manifest("  cycles: 5\n");
   twin.replace(twin.find("tiny"), 4, "twin");
   for (const std::string& text : {manifest(until(0)), twin}) {
-    const Manifest read = parse_manifest(text, "t");
-    declare(store_, read, expand(read));
+    declared(store_, text);
   }
   EXPECT_EQ(resume(store_).completed, 2U);
   expect_end(store_, 5);
 }
 
 TEST_F(UntilTest, IsTheSameAfterInterruptionsWithinCycles) {
-  const Manifest read = parse_manifest(manifest(until()), "t");
-  const std::vector<StageJob> jobs = declare(store_, read, expand(read));
+  const std::vector<StageJob> jobs = declared(store_, manifest(until()));
   run_stage(store_, jobs[0].id, {});
-  request_stop(true);  // each attempt ends after one chunk of steps
-  std::size_t interrupted = 0;
-  while (run_stage(store_, jobs[1].id, {}) == StageOutcome::interrupted) {
-    ASSERT_LT(++interrupted, 1000U);
+  bool second = false;
+  const std::size_t interrupted = interrupt_to_the_end(store_, jobs[1].id, [&] {
     // Whoever continues may have to measure again.
-    if (interrupted % 2 == 0) std::filesystem::remove(store_.folder() / DerivedCache::kFile);
-  }
+    if (second) std::filesystem::remove(store_.folder() / DerivedCache::kFile);
+    second = !second;
+  });
   EXPECT_GE(interrupted, 3U);
-  request_stop(false);
   expect_end(store_, end_);
 }
 

@@ -13,7 +13,6 @@
 #include "experiments/bench/packing.hpp"
 #include "experiments/bench/speed.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/manifest/numerics.hpp"
 #include "protocols/stiffen.hpp"
 
 namespace shearcell::accuracy {

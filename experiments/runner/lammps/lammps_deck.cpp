@@ -9,7 +9,7 @@
 #include <iterator>
 #include <string_view>
 
-#include "experiments/runner/engine_error.hpp"
+#include "provenance/io/child_process.hpp"
 
 namespace shearcell {
 namespace {
@@ -216,6 +216,40 @@ void add_velocity(std::string& text, Eigen::Index id, const Eigen::Vector3d& v) 
   add(text, "{} {:.17g} {:.17g} {:.17g} 0 0 0", id, v.x(), v.y(), v.z());
 }
 
+// Numbers one after the other, none of which is trusted.
+class Numbers {
+ public:
+  Numbers(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
+
+  /// Goes behind a line that begins so.
+  void skip_past(std::string_view heading) {
+    const auto at = text_.find(heading);
+    const auto end = at == text_.npos ? at : text_.find('\n', at);
+    if (end == text_.npos) refuse();
+    text_.remove_prefix(end + 1);
+  }
+
+  template <typename Number>
+  Number next() {
+    const auto start = text_.find_first_not_of(" \n");
+    if (start == text_.npos) refuse();
+    text_.remove_prefix(start);
+    Number number{};
+    const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), number);
+    if (error != std::errc()) refuse();
+    text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
+    return number;
+  }
+
+  [[noreturn]] void refuse() const {
+    throw ProgramError(file_ + ": not the whole state of the grains, as LAMMPS was to write");
+  }
+
+ private:
+  std::string_view text_;
+  std::string file_;
+};
+
 }  // namespace
 
 std::string lammps_data(const LammpsTask& task) {
@@ -253,44 +287,6 @@ std::string lammps_data(const LammpsTask& task) {
 std::string lammps_deck(const LammpsTask& task) {
   return Deck(task).text();
 }
-
-namespace {
-
-// Numbers one after the other, none of which is trusted.
-class Numbers {
- public:
-  Numbers(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
-
-  /// Goes behind a line that begins so.
-  void skip_past(std::string_view heading) {
-    const auto at = text_.find(heading);
-    const auto end = at == text_.npos ? at : text_.find('\n', at);
-    if (end == text_.npos) refuse();
-    text_.remove_prefix(end + 1);
-  }
-
-  template <typename Number>
-  Number next() {
-    const auto start = text_.find_first_not_of(" \n");
-    if (start == text_.npos) refuse();
-    text_.remove_prefix(start);
-    Number number{};
-    const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), number);
-    if (error != std::errc()) refuse();
-    text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
-    return number;
-  }
-
-  [[noreturn]] void refuse() const {
-    throw EngineError(file_ + ": not the whole state of the grains, as LAMMPS was to write");
-  }
-
- private:
-  std::string_view text_;
-  std::string file_;
-};
-
-}  // namespace
 
 State read_lammps_frame(const std::filesystem::path& file, std::size_t grains) {
   std::ifstream in(file, std::ios::binary);

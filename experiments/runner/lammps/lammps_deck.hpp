@@ -37,7 +37,7 @@ std::string lammps_data(const LammpsTask& task);
 /// each complete when it has that name; a file `stop` makes it leave one more and end.
 std::string lammps_deck(const LammpsTask& task);
 
-/// Reads a frame. Throws EngineError, naming the file, when it is not the whole state of so
+/// Reads a frame. Throws ProgramError, naming the file, when it is not the whole state of so
 /// many grains.
 State read_lammps_frame(const std::filesystem::path& file, std::size_t grains);
 

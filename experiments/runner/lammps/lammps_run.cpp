@@ -32,7 +32,7 @@ void write_text(const fs::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out << text;
   out.close();
-  if (!out) throw EngineError("cannot write " + file.string() + ": is the disk full?");
+  if (!out) throw ProgramError("cannot write " + file.string() + ": is the disk full?");
 }
 
 std::string last_line(std::string_view text) {
@@ -69,15 +69,12 @@ std::vector<std::string> variables() {
 
 std::unique_ptr<ChildProcess> start(const LammpsProgram& program, const fs::path& folder,
                                     std::size_t ranks) {
-  std::vector<std::string> words;
-  if (ranks > 1) words = {"mpirun", "-np", std::to_string(ranks)};
-  for (const char* word :
-       {program.path.c_str(), "-in", "deck.in", "-log", "log", "-screen", "none"}) {
-    words.emplace_back(word);
-  }
+  std::vector<std::string> words = {program.path, "-in",     "deck.in", "-log",
+                                    "log",        "-screen", "none"};
+  if (ranks > 1) words.insert(words.begin(), {"mpirun", "-np", std::to_string(ranks)});
   const fs::path file = folder / "said";
   const Descriptor said(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-  if (!said.valid()) throw EngineError("cannot write " + file.string());
+  if (!said.valid()) throw ProgramError("cannot write " + file.string());
   return std::make_unique<ChildProcess>(
       Command{words, folder, variables(), said.get(), said.get()});
 }
@@ -86,7 +83,7 @@ std::string help_of(const fs::path& program, const fs::path& folder) {
   try {
     const auto outcome = run_program({program.string(), "-h"}, folder, {}, kHelpSeconds);
     return outcome ? outcome->output + outcome->messages : "";
-  } catch (const EngineError&) {
+  } catch (const ProgramError&) {
     give_up_if_requested();
     throw;
   }
@@ -99,9 +96,9 @@ LammpsProgram find_lammps() {
   const std::string name = named == nullptr || *named == '\0' ? "lmp" : named;
   const auto path = find_program(name);
   if (!path) {
-    throw EngineError("LAMMPS is not installed: there is no program " + name +
-                      ". Install the Debian package lammps, or name the program in "
-                      "SHEARCELL_LAMMPS");
+    throw ProgramError("LAMMPS is not installed: there is no program " + name +
+                       ". Install the Debian package lammps, or name the program in "
+                       "SHEARCELL_LAMMPS");
   }
   remove_abandoned_folders();
   const ScratchFolder folder;
@@ -111,10 +108,10 @@ LammpsProgram find_lammps() {
   const auto at = text.find(title);
   const auto version = at == text.npos ? at : at + title.size();
   if (version == text.npos) {
-    throw EngineError(path->string() + " is not LAMMPS: its help does not say so");
+    throw ProgramError(path->string() + " is not LAMMPS: its help does not say so");
   }
   if (text.find("gran/hooke") == text.npos) {
-    throw EngineError(path->string() + " was built without the package GRANULAR of LAMMPS");
+    throw ProgramError(path->string() + " was built without the package GRANULAR of LAMMPS");
   }
   return {path->string(), text.substr(version, text.find('\n', version) - version)};
 }
@@ -128,7 +125,7 @@ LammpsRun::LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::
       ranks_(ranks),
       step_(task.state.step) {
   if (ranks > 1 && !find_program("mpirun")) {
-    throw EngineError("there is no program mpirun; install the Debian package openmpi-bin");
+    throw ProgramError("there is no program mpirun; install the Debian package openmpi-bin");
   }
   write_text(folder_.path() / "scene.data", lammps_data(task));
   write_text(folder_.path() / "deck.in", lammps_deck(task));
@@ -147,7 +144,7 @@ std::optional<State> LammpsRun::take_frame() {
   if (first == 0) return std::nullopt;
   const fs::path file = folder_.path() / fmt::format("{}{}", prefix, first);
   State state = read_lammps_frame(file, grains_);
-  if (state.step != first) throw EngineError(file.string() + " is of another step");
+  if (state.step != first) throw ProgramError(file.string() + " is of another step");
   fs::remove(file);
   step_ = std::max(step_, first);
   return state;
@@ -206,9 +203,9 @@ void LammpsRun::fail(int code) const {
     if (at != text->npos && why.empty()) why = text->substr(at, text->find('\n', at) - at);
   }
   if (why.empty()) why = last_line(said.empty() ? log : said);
-  throw EngineError(fmt::format("LAMMPS{} ended with code {} near step {}: {}",
-                                ranks_ > 1 ? fmt::format(" on {} processes", ranks_) : "", code,
-                                step_, why.empty() ? "it said nothing" : why));
+  throw ProgramError(fmt::format("LAMMPS{} ended with code {} near step {}: {}",
+                                 ranks_ > 1 ? fmt::format(" on {} processes", ranks_) : "", code,
+                                 step_, why.empty() ? "it said nothing" : why));
 }
 
 LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks) {
@@ -216,6 +213,31 @@ LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, st
   auto frame = run.next_frame(std::chrono::hours(24 * 365));
   run.finish();
   return {std::move(*frame), run.loop_seconds(), run.peak_bytes()};
+}
+
+LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protocol,
+                              const Scene& scene, const Cell& cell, const State& loose,
+                              std::size_t ranks, const std::function<void(const State&)>& seen) {
+  LammpsResult settled{loose, 0, 0};
+  for (;;) {
+    // One step of our own, which is discarded: before it the protocol decides whether the packing
+    // has settled, with it what acts on the grains now, and the watchdog looks at them.
+    Simulation look(cell, scene, settled.state);
+    if (protocol.advance(look, 1).finished) return settled;
+    const std::uint64_t end = protocol.next_look(settled.state.step);
+    const LammpsTask task{.cell = cell,
+                          .scene = look.scene(),
+                          .drive = protocol.drive(),
+                          .state = std::move(settled.state),
+                          .end = end,
+                          .stride = end,
+                          .look = lammps_look_steps(look.grains(), ranks)};
+    LammpsResult part = run_lammps(program, task, ranks);
+    settled.state = std::move(part.state);
+    settled.loop_seconds += part.loop_seconds;
+    settled.peak_bytes = std::max(settled.peak_bytes, part.peak_bytes);
+    if (seen) seen(settled.state);
+  }
 }
 
 }  // namespace shearcell

@@ -4,13 +4,15 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "experiments/runner/engine_error.hpp"
 #include "experiments/runner/lammps/lammps_deck.hpp"
 #include "experiments/runner/lammps/scratch_folder.hpp"
+#include "protocols/settle.hpp"
+#include "provenance/io/child_process.hpp"
 
 namespace shearcell {
 
@@ -19,7 +21,7 @@ struct LammpsProgram {
   std::string version;  ///< "29 Sep 2021 - Update 2"
 };
 
-/// The program `lmp` on PATH, or the one that $SHEARCELL_LAMMPS names. Throws EngineError when
+/// The program `lmp` on PATH, or the one that $SHEARCELL_LAMMPS names. Throws ProgramError when
 /// there is none, it lacks the package GRANULAR or does not answer, and Interrupted when it does
 /// not answer and a stop is requested. Removes what killed runs left behind.
 LammpsProgram find_lammps();
@@ -30,10 +32,11 @@ std::uint64_t lammps_look_steps(std::size_t grains, std::size_t ranks);
 
 class LammpsRun {
  public:
-  /// Starts it, with `ranks` processes under mpirun when that is more than one. Throws EngineError.
+  /// Starts it, with `ranks` processes under mpirun when that is more than one. Throws
+  /// ProgramError.
   LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
 
-  /// The next frame; waits at most so long. Throws EngineError with LAMMPS's message if it ended
+  /// The next frame; waits at most so long. Throws ProgramError with LAMMPS's message if it ended
   /// without one.
   std::optional<State> next_frame(std::chrono::milliseconds patience);
 
@@ -43,7 +46,7 @@ class LammpsRun {
   /// The last step that it reported.
   std::uint64_t step();
 
-  /// Waits for its end. Throws EngineError if it failed.
+  /// Waits for its end. Throws ProgramError if it failed.
   void finish();
 
   /// Wall seconds of its time loop, as it printed them, and memory [bytes] of its largest process;
@@ -68,7 +71,17 @@ struct LammpsResult {
   std::size_t peak_bytes;  ///< memory of its largest process
 };
 
-/// Runs a task that asks for one frame, its last, and waits for it. Throws EngineError.
+/// Runs a task that asks for one frame, its last, and waits for it. Throws ProgramError.
 LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
+
+/// Settles loose grains as protocols/settle does: LAMMPS takes the steps between two checks, and
+/// our protocol decides from the resulting state whether more are needed. `scene` is the
+/// protocol's; the result's step counts the steps that LAMMPS took. `seen` gets what came back
+/// after each look. Throws NumericalFailure as the protocol does, after its time limit above all,
+/// and ProgramError.
+LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protocol,
+                              const Scene& scene, const Cell& cell, const State& loose,
+                              std::size_t ranks,
+                              const std::function<void(const State&)>& seen = {});
 
 }  // namespace shearcell

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figures of a small experiment in a temporary store.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "experiments/figures/draw.hpp"
+#include "tests/experiments/temporary_store.hpp"
+
+namespace shearcell::test {
+
+class DrawingTest : public StoreTest {
+ protected:
+  /// Draws a figure into that folder beside the store; S2 of the experiment if none is named.
+  FigureSummary draw(const std::string& folder, const WantedFigure& wanted = kS2,
+                     FigureOptions options = {}) {
+    options.folder = folder_.path() / folder;
+    return draw_figure(store_, wanted, options);
+  }
+  FigureSummary draw(const std::string& folder, const std::string& name) {
+    return draw(folder, wanted_figures(store_, {name}).figures.at(0));
+  }
+
+  /// File name -> bytes.
+  std::map<std::string, std::string> contents(const std::string& folder) const {
+    std::map<std::string, std::string> files;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(folder_.path() / folder / "tiny")) {
+      files[entry.path().filename().string()] = read_bytes(entry.path());
+    }
+    return files;
+  }
+
+  static inline const WantedFigure kS2{*find_figure("S2"), "tiny"};
+};
+
+}  // namespace shearcell::test
