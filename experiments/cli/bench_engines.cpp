@@ -28,90 +28,85 @@ nlohmann::json facts(const EngineMeans& all) {
 }
 
 nlohmann::json facts(const EngineCheck& check) {
-  nlohmann::json trajectories = nlohmann::json::array(), speeds = trajectories,
-                 settlings = trajectories;
-  for (const TrajectoryCheck& t : check.trajectories) {
-    trajectories.push_back({{"scene", t.scene},
-                            {"steps", t.steps},
-                            {"distance_d", t.distance},
-                            {"height_difference_d", t.height},
-                            {"rounding_d", t.rounding}});
-  }
-  for (const Settling& s : check.settlings) {
-    const PackingNumbers& n = s.numbers;
-    settlings.push_back({{"engine", s.engine},
-                         {"seed", s.seed},
-                         {"steps", s.state.step},
-                         {"wall_seconds", s.seconds},
-                         {"million_particle_steps_per_second", s.million_particle_steps_per_second},
-                         {"bytes", s.bytes},
-                         {"phi", n.phi},
-                         {"contacts_per_grain", n.contacts},
-                         {"mean_overlap_d", n.overlap},
-                         {"wall_force_imbalance", n.imbalance},
-                         {"height_d", n.height}});
-  }
-  for (const EngineSpeed& speed : check.speeds) {
-    speeds.push_back(
-        {{"engine", speed.engine},
-         {"million_particle_steps_per_second", speed.million_particle_steps_per_second},
-         {"bytes", speed.bytes}});
-  }
+  const auto trajectory = [](const TrajectoryCheck& t) -> nlohmann::json {
+    return {{"scene", t.scene},
+            {"steps", t.steps},
+            {"distance_d", t.distance},
+            {"height_difference_d", t.height},
+            {"rounding_d", t.rounding}};
+  };
+  const auto settling = [](const Settling& s) -> nlohmann::json {
+    return {{"engine", s.engine},
+            {"seed", s.seed},
+            {"steps", s.state.step},
+            {"wall_seconds", s.seconds},
+            {"million_particle_steps_per_second", s.million_particle_steps_per_second},
+            {"bytes", s.bytes},
+            {"phi", s.numbers.phi},
+            {"contacts_per_grain", s.numbers.contacts},
+            {"mean_overlap_d", s.numbers.overlap},
+            {"wall_force_imbalance", s.numbers.imbalance},
+            {"height_d", s.numbers.height}};
+  };
+  const auto speed = [](const EngineSpeed& s) -> nlohmann::json {
+    return {{"engine", s.engine},
+            {"million_particle_steps_per_second", s.million_particle_steps_per_second},
+            {"bytes", s.bytes}};
+  };
   return {{"lammps", check.lammps_version},
           {"N", check.grains},
-          {"settlings", settlings},
+          {"settlings", json_list(check.settlings, settling)},
           {"settled_means", facts(check.settled)},
           {"settled_limit_in_standard_errors", check.settled.limit},
-          {"trajectories", trajectories},
+          {"trajectories", json_list(check.trajectories, trajectory)},
           {"means", facts(check.sheared)},
           {"limit_in_standard_errors", check.sheared.limit},
-          {"speeds", speeds},
+          {"speeds", json_list(check.speeds, speed)},
           {"agree", check.agree()}};
 }
 
 void print_trajectories(const EngineCheck& check) {
-  std::vector<std::vector<std::string>> rows;
-  for (const TrajectoryCheck& t : check.trajectories) {
-    rows.push_back({t.scene, std::to_string(t.steps), fmt::format("{:.2g}", t.distance),
-                    fmt::format("{:.2g}", t.height), fmt::format("{:.2g}", t.rounding)});
-  }
-  print_table({"scene", "steps", "distance [d]", "height [d]", "one rounding [d]"}, rows);
+  print_table({"scene", "steps", "distance [d]", "height [d]", "one rounding [d]"},
+              check.trajectories, [](const TrajectoryCheck& t) -> Row {
+                return {t.scene, std::to_string(t.steps), fmt::format("{:.2g}", t.distance),
+                        fmt::format("{:.2g}", t.height), fmt::format("{:.2g}", t.rounding)};
+              });
   fmt::print(
       "distance: largest of a grain from ours; one rounding: effect of 1 ulp in one number.\n");
 }
 
 void print_settlings(const EngineCheck& check) {
-  std::vector<std::vector<std::string>> rows;
-  for (const Settling& s : check.settlings) {
-    rows.push_back(
-        {s.engine, std::to_string(s.seed), std::to_string(s.state.step),
-         fmt::format("{:.1f}", s.seconds),
-         fmt::format("{:.2f}", s.million_particle_steps_per_second), format_bytes(s.bytes),
-         fmt::format("{:.4f}", s.numbers.phi), fmt::format("{:.3f}", s.numbers.contacts),
-         fmt::format("{:.3e}", s.numbers.overlap), fmt::format("{:.1e}", s.numbers.imbalance)});
-  }
   print_table({"settled by", "seed", "steps", "seconds", "M/s", "memory", "phi", "contacts",
                "overlap [d]", "imbalance"},
-              rows);
+              check.settlings, [](const Settling& s) -> Row {
+                return {s.engine,
+                        std::to_string(s.seed),
+                        std::to_string(s.state.step),
+                        fmt::format("{:.1f}", s.seconds),
+                        fmt::format("{:.2f}", s.million_particle_steps_per_second),
+                        format_bytes(s.bytes),
+                        fmt::format("{:.4f}", s.numbers.phi),
+                        fmt::format("{:.3f}", s.numbers.contacts),
+                        fmt::format("{:.3e}", s.numbers.overlap),
+                        fmt::format("{:.1e}", s.numbers.imbalance)};
+              });
   fmt::print("\n");
 }
 
 void print_means(const char* title, const EngineMeans& all) {
   if (all.means.empty()) return;
-  std::vector<std::vector<std::string>> rows;
-  for (const EngineMean& mean : all.means) {
-    std::vector<std::string> row = {mean.name};
+  Row header = {title};
+  header.insert(header.end(), all.engines.begin(), all.engines.end());
+  print_table(header, all.means, [](const EngineMean& mean) {
+    Row row = {mean.name};
     for (std::size_t e = 0; e < mean.of.size(); ++e) {
       std::string text = fmt::format("{:.4g}", mean.of[e].mean.value_or(0));
       if (mean.of[e].standard_error) text += fmt::format(" +- {:.1g}", *mean.of[e].standard_error);
       if (e > 0) text += fmt::format(" ({:.1f})", mean.apart[e]);
       row.push_back(std::move(text));
     }
-    rows.push_back(std::move(row));
-  }
-  std::vector<std::string> header = {title};
-  header.insert(header.end(), all.engines.begin(), all.engines.end());
-  print_table(header, rows);
+    return row;
+  });
   fmt::print("In brackets: standard errors from ours, at most {:.1f} by chance.\n\n", all.limit);
 }
 
@@ -122,12 +117,10 @@ void print(const EngineCheck& check) {
   print_trajectories(check);
   fmt::print("\n");
   print_means("sheared, mean over seeds", check.sheared);
-  std::vector<std::vector<std::string>> rows;
-  for (const EngineSpeed& speed : check.speeds) {
-    rows.push_back({speed.engine, fmt::format("{:.2f}", speed.million_particle_steps_per_second),
-                    format_bytes(speed.bytes)});
-  }
-  print_table({"engine", "M/s", "memory"}, rows);
+  print_table({"engine", "M/s", "memory"}, check.speeds, [](const EngineSpeed& speed) -> Row {
+    return {speed.engine, fmt::format("{:.2f}", speed.million_particle_steps_per_second),
+            format_bytes(speed.bytes)};
+  });
   fmt::print(
       "M/s: million particle-steps/s, of LAMMPS in its time loop. Memory: of our simulation, or "
       "of\n"
@@ -157,7 +150,7 @@ void add_bench_engines(CLI::App& bench, Context& context) {
              "(settle_time_limit_s)",
              "S", 1e-3, 1e6);
   command->add_flag("--no-gravity", *weightless, "Without gravity, for cells that P cannot lift");
-  command->add_flag("--json", context.json, "Print JSON for programs");
+  add_json_option(*command, context);
   command->footer(
       "Ends with code 3 if the engines do not agree: trajectories within the effect of rounding,\n"
       "means within their scatter over seeds. Both shear our packings; --settle also compares "
