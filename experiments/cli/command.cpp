@@ -4,18 +4,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <thread>
 
-#include "experiments/runner/terminal.hpp"
+#include "provenance/io/read_number.hpp"
 
 namespace shearcell::cli {
 
-void add_common_options(CLI::App& command, Context& context, bool with_json) {
+void add_json_option(CLI::App& command, Context& context) {
+  command.add_flag("--json", context.json, "Print JSON for programs");
+}
+
+void add_common_options(CLI::App& command, Context& context) {
   command.add_option("--store", context.store, "Folder of the store; else $SHEARCELL_STORE")
       ->capture_default_str()
       ->type_name("DIR");
-  if (with_json) command.add_flag("--json", context.json, "Print JSON for programs");
+  add_json_option(command, context);
 }
 
 namespace {
@@ -28,6 +31,11 @@ CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const c
 void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
   add_each(command, "--variant", variants, "Only runs with these swept values, as fluid=cell",
            "KEY=V");
+}
+
+template <class Enum>
+CLI::IsMember is_name() {
+  return CLI::IsMember(std::vector<std::string>(kNameList<Enum>.begin(), kNameList<Enum>.end()));
 }
 
 }  // namespace
@@ -47,21 +55,34 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
       ->check([](const std::string& text) { return unfit_count(text, 1, UINT64_MAX); });
   if (!states) return;
   add_each(command, "--state", selection.states, "Only runs in this state", "STATE")
-      ->check(CLI::IsMember(
-          std::vector<std::string>(kNameList<RunState>.begin(), kNameList<RunState>.end())));
+      ->check(is_name<RunState>());
+}
+
+LoadedManifests load_manifests(const std::vector<std::string>& paths,
+                               const ExpandOptions& options) {
+  LoadedManifests loaded;
+  for (const std::string& path : paths) {
+    loaded.manifests.push_back(load_manifest(path));
+    loaded.plans.push_back(expand(loaded.manifests.back(), options));
+    for (const std::string& warning : loaded.plans.back().warnings) {
+      tell_stderr("warning: {}\n", warning);
+    }
+  }
+  return loaded;
+}
+
+std::size_t core_count() {
+  return std::max(1U, std::thread::hardware_concurrency());
 }
 
 MeasureOptions measure_options() {
-  return {.workers = std::max(1U, std::thread::hardware_concurrency()),
-          .report = terminal_counter("measuring checkpoint")};
+  return {.workers = core_count(), .report = terminal_counter("measuring checkpoint")};
 }
 
 std::string unfit_count(const std::string& text, std::uint64_t low, std::uint64_t high) {
-  std::uint64_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  const bool plain = error == std::errc() && stop == end && (text[0] != '0' || text.size() == 1);
-  if (plain && value >= low && value <= high) return "";
+  const auto value = read_number<std::uint64_t>(text);
+  const bool plain = value && (text[0] != '0' || text.size() == 1);
+  if (plain && *value >= low && *value <= high) return "";
   if (high == UINT64_MAX) {
     return fmt::format("'{}' is not a whole number >= {} in decimal digits", text, low);
   }
@@ -69,10 +90,8 @@ std::string unfit_count(const std::string& text, std::uint64_t low, std::uint64_
 }
 
 std::string unfit_number(const std::string& text, double low, double high) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error == std::errc() && stop == end && value >= low && value <= high) return "";
+  const auto value = read_number<double>(text);
+  if (value && *value >= low && *value <= high) return "";
   return fmt::format("'{}' is not a number from {} to {} in decimal digits", text, low, high);
 }
 
@@ -89,8 +108,7 @@ void add_threads_option(CLI::App& command, std::size_t& threads, const std::stri
 
 void add_engine_option(CLI::App& command, ExpandOptions& options) {
   command.add_option("--engine", options.engine, "What computes the shear (default: shearcell)")
-      ->check(CLI::IsMember(
-          std::vector<std::string>(kNameList<EngineKind>.begin(), kNameList<EngineKind>.end())))
+      ->check(is_name<EngineKind>())
       ->type_name("NAME");
 }
 

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "experiments/cli/exit_code.hpp"
 #include "experiments/figures/measure.hpp"
 #include "experiments/figures/select_runs.hpp"
 #include "experiments/manifest/expand.hpp"
@@ -17,6 +17,15 @@
 
 namespace shearcell::cli {
 
+enum ExitCode : int {
+  kDone = 0,
+  kOtherError = 1,  ///< the machine failed: disk full, store locked, out of memory
+  kUsageError = 2,  ///< usage or manifest
+  kRunFailed = 3,   ///< a run failed numerically
+  kStoreDamaged = 4,
+  kInterrupted = 85,  ///< resumable
+};
+
 /// Filled in by the options, read by the subcommands.
 struct Context {
   std::string store = "shearcell-store";
@@ -24,9 +33,9 @@ struct Context {
   int exit_code = kDone;
 };
 
-/// Each subcommand lives in a file of its own and adds itself here.
+// Each subcommand lives in a file of its own, or with its closest relative, and adds itself here.
 void add_plan(CLI::App& app, Context& context);
-void add_run(CLI::App& app, Context& context);
+void add_run(CLI::App& app, Context& context);  ///< and `resume`
 void add_status(CLI::App& app, Context& context);
 void add_log(CLI::App& app, Context& context);
 void add_show(CLI::App& app, Context& context);
@@ -50,14 +59,36 @@ void add_manual(CLI::App& app, Context& context);
 /// Prints what came of a campaign and sets the exit code.
 void report(const CampaignResult& result, Context& context);
 
-/// --store DIR, and --json where the subcommand prints facts.
-void add_common_options(CLI::App& command, Context& context, bool with_json);
+/// The part of `show` for figures: what a figure came from, within 80 columns or as JSON.
+void show_figure(const Store& store, const FigureRecord& record, Context& context);
+
+/// Whether a figure's file is what the store recorded, and whether its inputs still are; then the
+/// same as show_figure. The exit code is kStoreDamaged when one of them is not. Throws NotFound for
+/// a file that the store does not know.
+void show_published(const Store& store, const std::filesystem::path& file, Context& context);
+
+/// --json.
+void add_json_option(CLI::App& command, Context& context);
+
+/// --store DIR and --json.
+void add_common_options(CLI::App& command, Context& context);
 
 /// --scale, --cycles and --seeds: what of a manifest is meant.
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
+struct LoadedManifests {
+  std::vector<Manifest> manifests;
+  std::vector<Plan> plans;  ///< one of each
+};
+
+/// Reads and expands all of them, and prints their warnings.
+LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options);
+
 /// --experiment, --scale, --variant and --seed, each as often as wanted; with `states`, --state.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);
+
+/// Cores of this machine, at least 1.
+std::size_t core_count();
 
 /// All cores; progress on standard error if that is a terminal.
 MeasureOptions measure_options();
@@ -91,10 +122,25 @@ void add_engine_option(CLI::App& command, ExpandOptions& options);
 /// Prints facts for programs: one JSON value, indented by two.
 void print_json(const nlohmann::json& facts);
 
+/// A JSON array: what `facts` makes of each item.
+nlohmann::json json_list(const auto& items, const auto& facts) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& item : items) list.push_back(facts(item));
+  return list;
+}
+
+using Row = std::vector<std::string>;
+
 /// Prints rows under a header, each column as wide as its longest cell; numbers to the right. On a
 /// terminal words are cut, with ~ at the end, until the table fits, and states have colours.
-void print_table(const std::vector<std::string>& header,
-                 const std::vector<std::vector<std::string>>& rows);
+void print_table(const Row& header, const std::vector<Row>& rows);
+
+/// The same with the row that `row` makes of each item.
+void print_table(const Row& header, const auto& items, const auto& row) {
+  std::vector<Row> rows;
+  for (const auto& item : items) rows.push_back(row(item));
+  print_table(header, rows);
+}
 
 /// "12.3 kB".
 std::string format_bytes(double bytes);

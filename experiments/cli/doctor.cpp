@@ -10,21 +10,19 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <sstream>
 
 #include "experiments/bench/speed.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/io/child_process.hpp"
-#include "provenance/store.hpp"
 
 namespace shearcell::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Finding {
+struct Check {
   std::string what;
   std::string found;
   std::string state;  ///< "ok", "slow", "missing"
@@ -38,25 +36,22 @@ fs::path place_of(const std::string& store) {
   return place;
 }
 
-Finding cores() {
+Check cores() {
   cpu_set_t set;
   const int usable = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
   return {"cores", fmt::format("{} usable", usable), "ok",
           fmt::format("`run` computes {} runs at a time", usable)};
 }
 
-Finding vectors(const std::string& simd) {
+Check vectors(const std::string& simd) {
   if (simd != scalar_kernels().name) return {"vectors", simd, "ok", ""};
   return {"vectors", simd, "slow", "the plain kernel has a twentieth of the speed of AVX-512"};
 }
 
-Finding memory() {
+Check memory() {
   std::ifstream file("/proc/meminfo");
-  std::string key, unit;
   double kib = 0;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    words >> key >> kib >> unit;
+  for (std::string key, unit; file >> key >> kib && std::getline(file, unit);) {
     if (key != "MemAvailable:") continue;
     return {"memory", format_bytes(kib * 1024) + " free", "ok",
             fmt::format("enough for {:.1e} grains at once", kib * 1024 / kRunBytesPerGrain)};
@@ -64,7 +59,7 @@ Finding memory() {
   return {"memory", "not told", "ok", ""};
 }
 
-Finding disk(const fs::path& place) {
+Check disk(const fs::path& place) {
   const double free = static_cast<double>(fs::space(place).available);
   Geometry shape;  // rough walls, as by default
   shape.grains = 5200;
@@ -74,13 +69,13 @@ Finding disk(const fs::path& place) {
       fmt::format("room for {:.1e} checkpoints of 5200 grains", free / checkpoint_bytes(shape))};
 }
 
-Finding filesystem(const fs::path& place) {
+Check filesystem(const fs::path& place) {
   struct statfs facts {};
   if (statfs(place.c_str(), &facts) != 0) return {"file system", "not told", "ok", ""};
   constexpr unsigned long network[] = {0x6969, 0xFF534D42, 0x0BD00BD0,
                                        0x517B, 0x47504653, 0xFE534D42};
   const auto type = static_cast<unsigned long>(facts.f_type);
-  if (std::find(std::begin(network), std::end(network), type) == std::end(network)) {
+  if (std::ranges::count(network, type) == 0) {
     return {"file system", fmt::format("local (type {:#x})", type), "ok", ""};
   }
   return {
@@ -88,7 +83,7 @@ Finding filesystem(const fs::path& place) {
       "keep the store on a local disk: SQLite's locks are not safe over a network; `merge` later"};
 }
 
-Finding sync_time(const fs::path& place) {
+Check sync_time(const fs::path& place) {
   std::string name = (place / "shearcell-doctor-XXXXXX").string();
   const int file = mkstemp(name.data());
   if (file < 0) {
@@ -108,63 +103,57 @@ Finding sync_time(const fs::path& place) {
           "each checkpoint waits for about six of these"};
 }
 
-Finding program(const std::string& name, const std::string& use, const std::string& package) {
+Check program(const std::string& name, const std::string& use, const std::string& package) {
   if (const auto file = find_program(name)) return {name, file->string(), "ok", use};
   return {name, "not found", "missing", use + ": apt install " + package};
 }
 
-Finding speed() {
+Check speed() {
   SpeedOptions options;
   options.sizes = {2000};
   options.repeats = 3;
   options.seconds_per_repeat = 0.3;
   const std::vector<SpeedResult> results = measure_speed(options);
-  const auto best =
-      std::max_element(results.begin(), results.end(),
-                       [](const auto& a, const auto& b) { return a.median_rate < b.median_rate; });
-  const double cycle = 5200 * 45600 / (best->median_rate * 1e6);
-  return {"speed", fmt::format("{:.0f} M particle-steps/s", best->median_rate),
-          best->median_rate > 20 ? "ok" : "slow",
+  const double rate = std::ranges::max(results, {}, &SpeedResult::median_rate).median_rate;
+  const double cycle = 5200 * 45600 / (rate * 1e6);
+  return {"speed", fmt::format("{:.0f} M particle-steps/s", rate), rate > 20 ? "ok" : "slow",
           fmt::format("one core; a cycle of 5200 grains takes about {:.1f} s", cycle)};
 }
 
-std::vector<Finding> examine(const std::string& store, bool with_speed) {
+std::vector<Check> examine(const std::string& store, bool with_speed) {
   const nlohmann::json facts = host_facts();
   const nlohmann::json& libraries = facts.at("libraries");
   const auto version = [&](const char* name) { return libraries.at(name).get<std::string>(); };
   const fs::path place = place_of(store);
-  std::vector<Finding> found = {{"processor", facts.at("cpu").get<std::string>(), "ok", ""},
-                                cores(),
-                                vectors(facts.at("simd").get<std::string>()),
-                                memory(),
-                                disk(place),
-                                filesystem(place),
-                                sync_time(place),
-                                {"SQLite", version("sqlite"), "ok", "the log"},
-                                {"HDF5", version("hdf5"), "ok", "checkpoints"},
-                                program("gnuplot", "draws figures", "gnuplot-nox"),
-                                program("rsvg-convert", "figures as PDF", "librsvg2-bin"),
-                                program("lmp", "`run --engine lammps`", "lammps")};
+  std::vector<Check> found = {{"processor", facts.at("cpu").get<std::string>(), "ok", ""},
+                              cores(),
+                              vectors(facts.at("simd").get<std::string>()),
+                              memory(),
+                              disk(place),
+                              filesystem(place),
+                              sync_time(place),
+                              {"SQLite", version("sqlite"), "ok", "the log"},
+                              {"HDF5", version("hdf5"), "ok", "checkpoints"},
+                              program("gnuplot", "draws figures", "gnuplot-nox"),
+                              program("rsvg-convert", "figures as PDF", "librsvg2-bin"),
+                              program("lmp", "`run --engine lammps`", "lammps")};
   if (with_speed) found.push_back(speed());
   return found;
 }
 
 void doctor(const Context& context, bool with_speed) {
-  const std::vector<Finding> findings = examine(context.store, with_speed);
+  const std::vector<Check> findings = examine(context.store, with_speed);
   if (context.json) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const Finding& f : findings) {
-      list.push_back(
-          {{"what", f.what}, {"found", f.found}, {"state", f.state}, {"advice", f.advice}});
-    }
-    print_json({{"findings", list}});
-    return;
+    const auto facts = [](const Check& f) -> nlohmann::json {
+      return {{"what", f.what}, {"found", f.found}, {"state", f.state}, {"advice", f.advice}};
+    };
+    return print_json({{"findings", json_list(findings, facts)}});
   }
-  std::vector<std::vector<std::string>> rows;
-  for (const Finding& f : findings) rows.push_back({f.what, f.state, f.found});
-  print_table({"what", "", "found"}, rows);
+  print_table({"what", "", "found"}, findings, [](const Check& f) {
+    return Row{f.what, f.state, f.found};
+  });
   fmt::print("\n");
-  for (const Finding& f : findings) {
+  for (const Check& f : findings) {
     if (!f.advice.empty()) fmt::print("{}: {}\n", f.what, f.advice);
   }
 }
@@ -173,7 +162,7 @@ void doctor(const Context& context, bool with_speed) {
 
 void add_doctor(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand("doctor", "Check this machine and measure its speed");
-  add_common_options(*command, context, true);
+  add_common_options(*command, context);
   auto no_speed = std::make_shared<bool>(false);
   command->add_flag("--no-speed", *no_speed, "Do not measure (about five seconds)");
   command->footer("Examples:\n  shearcell doctor\n  shearcell doctor --store /data/store --json");

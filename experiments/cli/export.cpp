@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -12,14 +11,13 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
-#include <type_traits>
 
 #include "core/drive.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/runner/terminal.hpp"
+#include "provenance/io/read_number.hpp"
 #include "provenance/io/temporary_folder.hpp"
 #include "provenance/ro_crate.hpp"
 
@@ -38,20 +36,37 @@ struct ExportOptions {
   bool metres = false;
 };
 
+using FrameWriters = std::vector<FrameWriter>;
+
 struct ExportFormat {
   const char* name;
   const char* title;
   const char* ending;  ///< of the file of a run; "" for a folder
-  /// Writes to `out`, which is free, and returns the files, relative to it. Throws
-  /// std::invalid_argument when the run cannot be exported.
-  std::vector<std::string> (*write)(const Store&, const SelectedRun&, const ExportOptions&,
-                                    const fs::path& out);
+  /// What writes so many frames to `out`; none for a crate, which has no frames.
+  FrameWriters (*writers)(const ExportOptions&, const fs::path& out, std::size_t frames);
 };
 
-std::vector<std::string> ro_crate(const Store& store, const SelectedRun& run,
-                                  const ExportOptions& options, const fs::path& out) {
-  return write_ro_crate(store, run.run.id, out, options.licence);
-}
+// A new format is one entry here.
+const std::array kFormats = {
+    ExportFormat{"h5md", "H5MD 1.1, one file: MDAnalysis, h5py, VMD; lengths in nm", ".h5md",
+                 [](const auto&, const fs::path& out, std::size_t frames) -> FrameWriters {
+                   return {h5md_writer(out, frames)};
+                 }},
+    ExportFormat{
+        "extxyz", "extended XYZ, one file: OVITO, ASE, MDAnalysis; lengths in d", ".xyz",
+        [](const ExportOptions& options, const fs::path& out, std::size_t) -> FrameWriters {
+          return {extxyz_writer(out, options.metres ? Lengths::metres : Lengths::diameters)};
+        }},
+    ExportFormat{"vtk", "VTK PolyData and run.json, a folder: ParaView; SI", "",
+                 [](const auto&, const fs::path& out, std::size_t) -> FrameWriters {
+                   return {vtk_writer(out), facts_writer(out)};
+                 }},
+    ExportFormat{"lammps", "LAMMPS data and run.json, a folder: LAMMPS, OVITO; SI", "",
+                 [](const auto&, const fs::path& out, std::size_t) -> FrameWriters {
+                   return {lammps_writer(out), facts_writer(out)};
+                 }},
+    ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5, and PROV-JSON", "", nullptr},
+};
 
 struct CycleRange {
   double first = 0;
@@ -73,14 +88,12 @@ CycleRange parse_cycles(const std::string& text) {
   std::size_t k = 0;
   for (std::string part; std::getline(parts, part, ':'); ++k) {
     if (part.empty() && k < 3) continue;
-    double value = 0;
-    const char* end = part.data() + part.size();
-    const auto [stop, error] = std::from_chars(part.data(), end, value);
-    if (k >= 3 || error != std::errc() || stop != end || !(value >= 0 && std::isfinite(value))) {
+    const auto value = read_number<double>(part);
+    if (k >= 3 || !value || !(*value >= 0 && std::isfinite(*value))) {
       throw std::invalid_argument("--cycles takes A:B or A:B:STEP, such as 0:60 or ::10 (got " +
                                   text + ")");
     }
-    *values[k] = value;
+    *values[k] = *value;
   }
   if (k == 1 && text.find(':') == std::string::npos) range.last = range.first;
   return range;
@@ -118,24 +131,20 @@ std::vector<std::string> files_of(const fs::path& out) {
   for (const auto& entry : fs::directory_iterator(out)) {
     files.push_back(entry.path().filename().string());
   }
-  std::sort(files.begin(), files.end());
+  std::ranges::sort(files);
   return files;
 }
 
-template <auto... Writers>
-std::vector<std::string> frames(const Store& store, const SelectedRun& run,
-                                const ExportOptions& options, const fs::path& out) {
+/// Writes to `out`, which is free, and returns the files, relative to it. Throws
+/// std::invalid_argument when the run cannot be exported.
+std::vector<std::string> write_run(const Store& store, const SelectedRun& run,
+                                   const ExportFormat& format, const ExportOptions& options,
+                                   const fs::path& out) {
+  if (format.writers == nullptr) return write_ro_crate(store, run.run.id, out, options.licence);
   const std::vector<CheckpointRecord> records = chosen(store, run.run, options.cycles);
-  if constexpr (sizeof...(Writers) > 1) fs::create_directory(out);
-  const auto writer = [&](auto make) -> FrameWriter {
-    if constexpr (std::is_invocable_v<decltype(make), fs::path, std::size_t>) {
-      return make(out, records.size());
-    } else {
-      return make(out);
-    }
-  };
+  if (*format.ending == '\0') fs::create_directory(out);
   {
-    const FrameWriter writers[] = {writer(Writers)...};
+    const FrameWriters writers = format.writers(options, out, records.size());
     MeasureSources sources(store);
     for (const CheckpointRecord& record : records) {
       const Frame frame = frame_of(store.load_checkpoint(record), record, run, &sources);
@@ -145,38 +154,12 @@ std::vector<std::string> frames(const Store& store, const SelectedRun& run,
   return files_of(out);
 }
 
-std::vector<std::string> extxyz(const Store& store, const SelectedRun& run,
-                                const ExportOptions& options, const fs::path& out) {
-  return options.metres ? frames<extxyz_in_metres>(store, run, options, out)
-                        : frames<extxyz_in_diameters>(store, run, options, out);
-}
-
-// A new format is one function and one line here.
-constexpr std::array kFormats = {
-    ExportFormat{"h5md", "H5MD 1.1, one file: MDAnalysis, h5py, VMD; lengths in nm", ".h5md",
-                 frames<h5md_writer>},
-    ExportFormat{"extxyz", "extended XYZ, one file: OVITO, ASE, MDAnalysis; lengths in d", ".xyz",
-                 extxyz},
-    ExportFormat{"vtk", "VTK PolyData and run.json, a folder: ParaView; SI", "",
-                 frames<vtk_writer, facts_writer>},
-    ExportFormat{"lammps", "LAMMPS data and run.json, a folder: LAMMPS, OVITO; SI", "",
-                 frames<lammps_writer, facts_writer>},
-    ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5, and PROV-JSON", "",
-                 ro_crate},
-};
-
 // Anything else would be read as a file of the crate.
 std::string check_uri(const std::string& text) {
   const bool web = text.starts_with("https://") || text.starts_with("http://");
   return web && text.find_first_of(" \"<>\\") == std::string::npos
              ? ""
              : text + " is no URI that begins with https://, as that of a licence does";
-}
-
-std::vector<std::string> names() {
-  std::vector<std::string> list;
-  for (const ExportFormat& format : kFormats) list.emplace_back(format.name);
-  return list;
 }
 
 /// The named runs, or else those of the filters; packings only by name.
@@ -226,8 +209,8 @@ std::vector<Exported> write_all(const Store& store, const std::vector<SelectedRu
   const fs::path given = fs::absolute(options.out);
   const fs::path out = given.has_filename() ? given : given.parent_path();
   const bool single = options.runs.size() == 1;
-  if (single && format.write == ro_crate) {  // which may add to an earlier one
-    return {{runs.front(), out, ro_crate(store, runs.front(), options, out)}};
+  if (single && format.writers == nullptr) {  // a crate may add to an earlier one
+    return {{runs.front(), out, write_run(store, runs.front(), format, options, out)}};
   }
   require_new(out);
   fs::create_directories(out.parent_path());
@@ -238,7 +221,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<SelectedRu
   for (const SelectedRun& run : runs) {
     const std::string name = single ? "" : entry_name(run, format);
     try {
-      auto files = format.write(store, run, options, single ? staged : staged / name);
+      auto files = write_run(store, run, format, options, single ? staged : staged / name);
       done.push_back({run, single ? out : out / name, std::move(files)});
     } catch (const std::invalid_argument& problem) {  // it has no such checkpoint
       if (single || (&run == &runs.back() && done.empty())) throw;
@@ -252,26 +235,27 @@ std::vector<Exported> write_all(const Store& store, const std::vector<SelectedRu
 
 void export_runs(const ExportOptions& options, Context& context) {
   const Store store(context.store, Access::read);
-  const auto* format =
-      std::find_if(kFormats.begin(), kFormats.end(),
-                   [&](const ExportFormat& known) { return known.name == options.format; });
+  const ExportFormat& format = *std::ranges::find(kFormats, options.format, &ExportFormat::name);
   std::vector<Exported> done;
   try {
-    done = write_all(store, wanted(store, options), *format, options);
+    done = write_all(store, wanted(store, options), format, options);
   } catch (const std::invalid_argument& problem) {
     throw CLI::ValidationError("export", problem.what());
   }
-  nlohmann::json list = nlohmann::json::array();
-  for (const auto& [selected, out, files] : done) {
-    list.push_back({{"run", selected.run.id},
-                    {"format", options.format},
-                    {"out", options.runs.size() == 1 ? options.out : out.string()},
-                    {"files", files}});
+  const bool single = options.runs.size() == 1;
+  for (Exported& one : done) {
+    if (single) one.out = options.out;
     if (context.json) continue;
-    tell("run {:.12}: {} files in {}\n", selected.run.id, files.size(),
-         options.runs.size() == 1 ? options.out : out.string());
+    tell("run {:.12}: {} files in {}\n", one.run.run.id, one.files.size(), one.out.string());
   }
-  if (context.json) print_json(options.runs.size() == 1 ? list.front() : list);
+  if (!context.json) return;
+  const nlohmann::json list = json_list(done, [&](const Exported& one) -> nlohmann::json {
+    return {{"run", one.run.run.id},
+            {"format", options.format},
+            {"out", one.out.string()},
+            {"files", one.files}};
+  });
+  print_json(single ? list.front() : list);
 }
 
 }  // namespace
@@ -285,7 +269,13 @@ void add_export(CLI::App& app, Context& context) {
   for (const char* filter : {"--experiment", "--scale", "--variant", "--seed"}) {
     named->excludes(command->get_option(filter));
   }
-  command->add_option("--to", options->format, "Format")->required()->check(CLI::IsMember(names()));
+  std::vector<std::string> names;
+  std::string formats = "Formats:\n";
+  for (const ExportFormat& format : kFormats) {
+    names.emplace_back(format.name);
+    formats += fmt::format("  {:<10} {}\n", format.name, format.title);
+  }
+  command->add_option("--to", options->format, "Format")->required()->check(CLI::IsMember(names));
   command->add_option("--out", options->out, "File or folder to write")
       ->required()
       ->type_name("PATH");
@@ -295,27 +285,19 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("--license", options->licence, "URI of the licence of the data")
       ->type_name("URI")
       ->check(check_uri);
-  add_common_options(*command, context, true);
-  std::string formats = "Formats:\n";
-  for (const ExportFormat& format : kFormats) {
-    formats += fmt::format("  {:<10} {}\n", format.name, format.title);
-  }
+  add_common_options(*command, context);
   command->footer(
       formats +
-      "Each file holds its run, seed, parameters and units, every scalar measure of each frame, "
-      "and for\n"
-      "each grain id, radius, velocity, phi_local, q6, largest overlap, contacts, pressure, "
-      "structure (by q6),\n"
-      "lattice (by common neighbours), crystallite, and displacement and D^2_min over the cycle "
-      "before, with\n"
-      "wall grains and the tilted cell. Writes one RUN to PATH, several to the folder PATH with a "
-      "name\n"
-      "each. PATH must be new; that of a crate may be an earlier export of the same run.\n"
-      "Examples:\n"
-      "  shearcell export 3f9a --to extxyz --cycles 0:60:10 --out run.xyz\n"
-      "  shearcell export 3f9a --to vtk --out frames\n"
-      "  shearcell export --experiment drag --variant fluid=cell --to extxyz --out packings\n"
-      "  shearcell export 3f9a --to ro-crate --out crate");
+      R"(Each file holds its run, seed, parameters and units, every scalar measure of each frame, and for
+each grain id, radius, velocity, phi_local, q6, largest overlap, contacts, pressure, structure (by q6),
+lattice (by common neighbours), crystallite, and displacement and D^2_min over the cycle before, with
+wall grains and the tilted cell. Writes one RUN to PATH, several to the folder PATH with a name
+each. PATH must be new; that of a crate may be an earlier export of the same run.
+Examples:
+  shearcell export 3f9a --to extxyz --cycles 0:60:10 --out run.xyz
+  shearcell export 3f9a --to vtk --out frames
+  shearcell export --experiment drag --variant fluid=cell --to extxyz --out packings
+  shearcell export 3f9a --to ro-crate --out crate)");
   command->callback([options, &context] { export_runs(*options, context); });
 }
 

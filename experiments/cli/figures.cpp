@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <memory>
 #include <set>
-#include <thread>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/draw.hpp"
-#include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/plain_file.hpp"
 
@@ -40,15 +37,13 @@ void complain(const FigureSummary& result, std::set<std::string>& told) {
 }
 
 nlohmann::json facts(const FigureSummary& result) {
-  nlohmann::json files = nlohmann::json::array();
-  for (const auto& file : result.files) files.push_back(file.string());
   return {{"figure", result.name},
           {"experiment", result.experiment},
           {"scale", result.scale},
           {"runs", result.runs},
           {"checkpoints", result.checkpoints},
           {"measured", result.measured},
-          {"files", files},
+          {"files", json_list(result.files, [](const auto& file) { return file.string(); })},
           {"notes", result.notes},
           {"damage", result.damage},
           {"pruned", result.pruned},
@@ -94,7 +89,7 @@ void figures(FigureArguments& options, Context& context) {
   };
   for (const std::string& problem : wanted.unknown) complain_of(problem);
   FigureOptions& how = options.how;
-  how.workers = std::max(1U, std::thread::hardware_concurrency());
+  how.workers = core_count();
   how.report = terminal_counter("measuring checkpoint");
   nlohmann::json list = nlohmann::json::array();
   std::set<std::string> told;
@@ -151,18 +146,14 @@ void add_figures(CLI::App& app, Context& context) {
       ->default_str("single");
   command->add_flag("--fresh", how.fresh,
                     "Measure every checkpoint again and compare with the cache");
-  add_common_options(*command, context, true);
+  add_common_options(*command, context);
   command->footer(
-      "Draws each figure once for every experiment that lists it, and the plots and claims of "
-      "their\n"
-      "manifests. Writes CSV, SVG and PDF of each panel, NAME.caption.txt, NAME.verdict.json "
-      "(verdicts\n"
-      "on claims) and NAME.lineage.json (the checkpoints behind it). Caches measures in the "
-      "store's\n"
-      "derived.sqlite, which you may delete at any time.\n"
-      "Figures and the keys that they compare (some have a curve for each value of other keys "
-      "too):\n" +
-      list_of_figures() +
+      R"(Draws each figure once for every experiment that lists it, and the plots and claims of their
+manifests. Writes CSV, SVG and PDF of each panel, NAME.caption.txt, NAME.verdict.json (verdicts
+on claims) and NAME.lineage.json (the checkpoints behind it). Caches measures in the store's
+derived.sqlite, which you may delete at any time.
+Figures and the keys that they compare (some have a curve for each value of other keys too):
+)" + list_of_figures() +
       "Examples:\n  shearcell figures S2 --out figures\n"
       "  shearcell figures S2 --experiment drag\n  shearcell figures --all");
   command->callback([options, &context] { figures(*options, context); });

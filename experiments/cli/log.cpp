@@ -26,26 +26,18 @@ void print_log(const std::string& run, Context& context) {
   const std::string stream = run.empty() ? "" : "run/" + store.find_run(run).id;
   const std::vector<Event> events = store.events(stream);
   if (context.json) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const Event& event : events) {
-      list.push_back({{"seq", event.seq},
-                      {"stream", event.stream},
-                      {"version", event.version},
-                      {"type", event.type},
-                      {"recorded_at", event.recorded_at},
-                      {"payload", event.body()},
-                      {"hash", event.hash}});
-    }
-    print_json({{"events", list}});
-    return;
+    const auto facts = [](const Event& event) -> nlohmann::json {
+      return {{"seq", event.seq},   {"stream", event.stream},           {"version", event.version},
+              {"type", event.type}, {"recorded_at", event.recorded_at}, {"payload", event.body()},
+              {"hash", event.hash}};
+    };
+    return print_json({{"events", json_list(events, facts)}});
   }
-  std::vector<std::vector<std::string>> rows;
-  for (const Event& event : events) {
+  print_table({"seq", "UTC", "stream", "event", ""}, events, [](const Event& event) -> Row {
     const auto slash = event.stream.find('/');
-    rows.push_back({std::to_string(event.seq), event.recorded_at.substr(0, 19),
-                    event.stream.substr(0, slash + 9), event.type, gist(event)});
-  }
-  print_table({"seq", "UTC", "stream", "event", ""}, rows);
+    return {std::to_string(event.seq), event.recorded_at.substr(0, 19),
+            event.stream.substr(0, slash + 9), event.type, gist(event)};
+  });
 }
 
 }  // namespace
@@ -54,7 +46,7 @@ void add_log(CLI::App& app, Context& context) {
   auto run = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("log", "List the events of the store or of one run");
   command->add_option("run", *run, "Run id, or a unique beginning of it");
-  add_common_options(*command, context, true);
+  add_common_options(*command, context);
   command->footer("Examples:\n  shearcell log\n  shearcell log 3f9a --json");
   command->callback([run, &context] { print_log(*run, context); });
 }

@@ -9,28 +9,31 @@
 #include <cstdlib>
 #include <exception>
 
+#include "core/filling.hpp"
+#include "core/watchdog.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/host.hpp"
+#include "provenance/errors.hpp"
+#include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
 namespace {
 
 constexpr const char* kDescription =
-    "Discrete element experiments on cyclically sheared frictionless grains:\n"
-    "YAML manifests expand into seeded runs, a store keeps every checkpoint, and figures are "
-    "drawn\n"
-    "from the store alone.";
+    R"(Discrete element experiments on cyclically sheared frictionless grains:
+YAML manifests expand into seeded runs, a store keeps every checkpoint, and figures are drawn
+from the store alone.)";
 
 constexpr const char* kFooter =
-    "Examples:\n"
-    "  shearcell plan experiments/drag.yaml --scale desk\n"
-    "  shearcell run experiments/drag.yaml --scale smoke\n"
-    "  shearcell figures S2 --out figures\n"
-    "  shearcell resume\n"
-    "\n"
-    "Exit codes: 0 done; 1 the machine failed (disk full, store locked, out of memory, output\n"
-    "lost); 2 usage or manifest error; 3 a run failed numerically; 4 the store is damaged;\n"
-    "85 interrupted, resumable.";
+    R"(Examples:
+  shearcell plan experiments/drag.yaml --scale desk
+  shearcell run experiments/drag.yaml --scale smoke
+  shearcell figures S2 --out figures
+  shearcell resume
+
+Exit codes: 0 done; 1 the machine failed (disk full, store locked, out of memory, output
+lost); 2 usage or manifest error; 3 a run failed numerically; 4 the store is damaged;
+85 interrupted, resumable.)";
 
 std::string version_text() {
   const nlohmann::json facts = host_facts();
@@ -44,6 +47,20 @@ std::string version_text() {
   return fmt::format("shearcell {} ({})\n{}, {} build, {}\nflags: {}\nlibraries: {}",
                      word("version"), word("commit"), word("compiler"), word("type"),
                      facts["simd"].get<std::string>(), word("flags"), libraries);
+}
+
+template <class... Errors>
+bool is_any(const std::exception& error) {
+  return ((dynamic_cast<const Errors*>(&error) != nullptr) || ...);
+}
+
+// The exit code of a program that ends with this error.
+ExitCode exit_code_of(const std::exception& error) {
+  if (is_any<UsageError, NotOurs, GeometryError>(error)) return kUsageError;
+  if (is_any<NumericalFailure>(error)) return kRunFailed;
+  // JSON of manifests and options is checked where it is read; the rest are records of a store.
+  if (is_any<StoreDamaged, nlohmann::json::exception>(error)) return kStoreDamaged;
+  return kOtherError;
 }
 
 int complain(int code, const char* what) {

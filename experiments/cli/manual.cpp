@@ -1,16 +1,172 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `manual`: the manual page, in roff, from the same texts as --help; or the reference, in Markdown.
+// `manual` and `completion`: texts made from the parser, so that they always match it.
+//   manual              the manual page, in roff, from the same texts as --help
+//   manual --markdown   the reference, experiments/REFERENCE.md
+//   completion          scripts with which a shell completes commands, options and paths
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 
+#include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/cli/command_tree.hpp"
-#include "experiments/cli/reference.hpp"
+#include "experiments/figures/run_table.hpp"
+#include "experiments/manifest/read_parts.hpp"
+#include "experiments/manifest/schema.hpp"
 #include "experiments/runner/host.hpp"
+#include "provenance/io/child_process.hpp"
 
 namespace shearcell::cli {
 namespace {
+
+// --- Commands and options as data ---
+
+struct OptionEntry {
+  std::vector<std::string> names;  ///< "-j", "--jobs"; none for a positional
+  std::string placeholder;         ///< what stands for its value; empty for a flag
+  std::string meaning;
+};
+
+struct CommandEntry {
+  std::vector<std::string> path;  ///< below the program: {} for itself, {"bench", "speed"}
+  const CLI::App* app;
+  std::vector<OptionEntry> options;  ///< positionals first
+  std::vector<const CLI::App*> subcommands;
+};
+
+OptionEntry entry(const CLI::Option& option) {
+  OptionEntry made;
+  for (const std::string& name : option.get_snames()) made.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) made.names.push_back("--" + name);
+  if (option.get_items_expected_max() > 0) {
+    made.placeholder = option.get_positional() ? option.get_single_name() : option.get_type_name();
+    const auto colon = made.placeholder.find(':');
+    if (colon != std::string::npos) made.placeholder.erase(colon);
+    if (made.placeholder.empty()) made.placeholder = "VALUE";
+  }
+  made.meaning = option.get_description();
+  return made;
+}
+
+void append(const CLI::App& app, const std::vector<std::string>& path,
+            std::vector<CommandEntry>& tree) {
+  CommandEntry made{path, &app, {}, app.get_subcommands([](const CLI::App* sub) {
+                      return !sub->get_group().empty();
+                    })};
+  for (const bool positional : {true, false}) {
+    for (const CLI::Option* option : app.get_options()) {
+      const bool hidden = option->get_group().empty();
+      if (!hidden && option->get_positional() == positional) made.options.push_back(entry(*option));
+    }
+  }
+  tree.push_back(made);
+  for (const CLI::App* sub : made.subcommands) {
+    std::vector<std::string> deeper = path;
+    deeper.push_back(sub->get_name());
+    append(*sub, deeper, tree);
+  }
+}
+
+/// The program first, then its subcommands in the order in which they were added, each before its
+/// own. Groups named "" are hidden and left out.
+std::vector<CommandEntry> command_tree(const CLI::App& app) {
+  std::vector<CommandEntry> tree;
+  append(app, {}, tree);
+  return tree;
+}
+
+/// "shearcell bench speed".
+std::string spoken(const CommandEntry& command) {
+  return fmt::format("shearcell {}", fmt::join(command.path, " "));
+}
+
+// --- Completion ---
+
+std::string option_words(const CommandEntry& command) {
+  std::vector<std::string> names;
+  for (const OptionEntry& option : command.options) {
+    names.insert(names.end(), option.names.begin(), option.names.end());
+  }
+  return fmt::format("{}", fmt::join(names, " "));
+}
+
+std::string subcommand_words(const CommandEntry& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : command.subcommands) names.push_back(sub->get_name());
+  return fmt::format("{}", fmt::join(names, " "));
+}
+
+std::string bash(const std::vector<CommandEntry>& tree) {
+  std::string cases;
+  for (const CommandEntry& command : tree) {
+    cases +=
+        fmt::format("    {}) commands={}; options={} ;;\n",
+                    shell_quoted(fmt::format("{}", fmt::join(command.path, " "))),
+                    shell_quoted(subcommand_words(command)), shell_quoted(option_words(command)));
+  }
+  return fmt::format(
+      R"(# bash completion for shearcell: source it, or put it where bash-completion looks.
+_shearcell() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} path='' commands='' options='' word
+  _shearcell_words ''
+  for word in "${{COMP_WORDS[@]:1:$((COMP_CWORD - 1))}}"; do
+    case " $commands " in *" $word "*)
+      path=${{path:+$path }}$word; _shearcell_words "$path" ;;
+    esac
+  done
+  if [[ $current == -* ]]; then
+    COMPREPLY=($(compgen -W "$options" -- "$current"))
+  elif [[ -n $commands ]]; then
+    COMPREPLY=($(compgen -W "$commands" -- "$current"))
+  else
+    local IFS=$'\n'
+      COMPREPLY=($(compgen -f -- "$current"))
+  fi
+}}
+_shearcell_words() {{
+  case $1 in
+{}  esac
+}}
+complete -o filenames -F _shearcell shearcell
+)",
+      cases);
+}
+
+std::string fish(const std::vector<CommandEntry>& tree) {
+  std::string all = "# fish completion for shearcell\n";
+  for (const CommandEntry& command : tree) {
+    std::string here;  // the condition that this command has been typed, and none of those below it
+    for (const std::string& word : command.path) {
+      here += fmt::format("{}__fish_seen_subcommand_from {}", here.empty() ? "" : "; and ", word);
+    }
+    if (!command.subcommands.empty()) {
+      here += fmt::format("{}not __fish_seen_subcommand_from {}", here.empty() ? "" : "; and ",
+                          subcommand_words(command));
+    }
+    for (const CLI::App* sub : command.subcommands) {
+      all += fmt::format("complete -c shearcell -f -n {} -a {} -d {}\n", shell_quoted(here),
+                         sub->get_name(), shell_quoted(sub->get_description()));
+    }
+    for (const OptionEntry& option : command.options) {
+      if (option.names.empty()) continue;  // a positional
+      all += fmt::format("complete -c shearcell -n {}", shell_quoted(here));
+      for (const std::string& name : option.names) {
+        all += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+      }
+      all += fmt::format("{} -d {}\n", option.placeholder.empty() ? "" : " -r",
+                         shell_quoted(option.meaning));
+    }
+  }
+  return all;
+}
+
+/// zsh runs the function written for bash.
+std::string zsh(const std::vector<CommandEntry>& tree) {
+  return "#compdef shearcell\nautoload -U +X bashcompinit && bashcompinit\n" + bash(tree);
+}
+
+// --- The manual page ---
 
 /// Text for roff: no line may begin with a control character, and hyphens stay hyphens.
 std::string escaped(const std::string& text) {
@@ -30,26 +186,26 @@ std::string escaped(const std::string& text) {
   return all;
 }
 
+/// "--jobs, -j J"; "manifest" of a positional.
+std::string usage(const OptionEntry& option) {
+  const bool spaced = !option.names.empty() && !option.placeholder.empty();
+  return fmt::format("{}{}{}", fmt::join(option.names, ", "), spaced ? " " : "",
+                     option.placeholder);
+}
+
 std::string option_text(const OptionEntry& option) {
-  std::string names;
-  for (const std::string& name : option.names) names += (names.empty() ? "" : ", ") + name;
-  const bool positional = option.names.empty();
-  return fmt::format(
-      ".TP\n.B {}\n{}\n",
-      escaped(positional ? option.placeholder
-                         : names + (option.placeholder.empty() ? "" : " " + option.placeholder)),
-      escaped(option.meaning));
+  return fmt::format(".TP\n.B {}\n{}\n", escaped(usage(option)), escaped(option.meaning));
 }
 
 std::string section(const CommandEntry& command) {
   std::string text;
   if (!command.path.empty()) {
-    text += fmt::format(".SS {}\n{}\n", escaped(spoken(command)), escaped(command.meaning));
+    text += fmt::format(".SS {}\n{}\n", escaped(spoken(command)),
+                        escaped(command.app->get_description()));
   }
-  for (const OptionEntry& option : command.positionals) text += option_text(option);
   for (const OptionEntry& option : command.options) text += option_text(option);
-  if (!command.path.empty() && !command.footer.empty()) {
-    text += fmt::format(".PP\n.nf\n{}\n.fi\n", escaped(command.footer));
+  if (!command.path.empty() && !command.app->get_footer().empty()) {
+    text += fmt::format(".PP\n.nf\n{}\n.fi\n", escaped(command.app->get_footer()));
   }
   return text;
 }
@@ -61,7 +217,8 @@ std::string manual(const std::vector<CommandEntry>& tree) {
       ".SH NAME\nshearcell \\- discrete element experiments on cyclically sheared grains\n"
       ".SH SYNOPSIS\n.B shearcell\n.I command\n[\\fIoptions\\fR]\n"
       ".SH DESCRIPTION\n{}\n.SH OPTIONS\n",
-      escaped(host_facts().at("build").at("version").get<std::string>()), escaped(program.meaning));
+      escaped(host_facts().at("build").at("version").get<std::string>()),
+      escaped(program.app->get_description()));
   text += section(program) + ".SH COMMANDS\n";
   for (std::size_t i = 1; i < tree.size(); ++i) text += section(tree[i]);
   return text +
@@ -69,10 +226,130 @@ std::string manual(const std::vector<CommandEntry>& tree) {
          ".TP\n.B SHEARCELL_STORE\nfolder of the store where \\-\\-store does not name it\n"
          ".TP\n.B NO_COLOR\nset to anything: no colours\n"
          ".SH EXAMPLES AND EXIT CODES\n.nf\n" +
-         escaped(program.footer) + "\n.fi\n";
+         escaped(program.app->get_footer()) + "\n.fi\n";
+}
+
+// --- The reference, from the tables of manifest keys, measures and figures as well ---
+
+/// Text for a cell of a table: '|' would end it, and a line break the table.
+std::string cell(const std::string& text) {
+  std::string all;
+  for (const char c : text) {
+    if (c == '|') all += '\\';
+    all += c == '\n' ? ' ' : c;
+  }
+  return all;
+}
+
+std::string manifest_reference() {
+  std::string text =
+      "## Manifest keys\n\n"
+      "At the top level ([format and examples](manifest/README.md#format)):\n\n"
+      "| key | example | meaning |\n|---|---|---|\n";
+  for (const ManifestKey& key : manifest_keys()) {
+    text += fmt::format("| `{}` | `{}` | {} |\n", key.name, key.example, key.meaning);
+  }
+  return text +
+         "\n## Parameters\n\n"
+         "Keys of `base`, `sweep` and of each scale, in SI units. Symbols and sections are those "
+         "of "
+         "the\nsupplement; d is the diameter and m the mass of a grain, A_w the area of the moving "
+         "wall. \"key of\"\nis the first stage whose [id](manifest/README.md#identity) depends on "
+         "the "
+         "parameter.\n\n" +
+         schema_markdown();
+}
+
+std::string measure_reference() {
+  std::string text =
+      "\n## Measures\n\n"
+      "Columns of `shearcell table`, which also has one for each swept parameter. Measures marked "
+      "*plot* can\nstand in `plots` and `claims` of a manifest. Columns from `critical_size` on "
+      "are "
+      "those of `--per run`.\n\n"
+      "| column | use | meaning |\n|---|---|---|\n";
+  for (const TableColumn& column : table_columns(RowPer::run)) {
+    const bool plots = std::ranges::any_of(
+        all_scalar_measures(),
+        [&](const ScalarMeasure& measure) { return measure.name == column.name; });
+    text +=
+        fmt::format("| `{}` | {} | {} |\n", column.name, plots ? "plot" : "", cell(column.meaning));
+  }
+  text +=
+      "\nCurves, of `shearcell table --curve` and as `y` of `plots`:\n\n"
+      "| curve | against | meaning |\n|---|---|---|\n";
+  for (const CurveMeasure& curve : all_curve_measures()) {
+    text += fmt::format("| `{}` | `{}` | {} |\n", curve.name, curve.x,
+                        cell(std::string(curve.meaning)));
+  }
+  return text;
+}
+
+std::string figure_reference() {
+  std::string text =
+      "\n## Figures\n\n"
+      "[Panels and sources](../analysis/README.md#figures).\n\n"
+      "| figure | shows | keys that its experiment varies |\n|---|---|---|\n";
+  for (const Figure& figure : all_figures()) {
+    text += fmt::format("| `{}` | {} | {} |\n", figure.name, cell(figure.title),
+                        cell(fmt::format("{}", fmt::join(figure.keys, ", "))));
+  }
+  return text;
+}
+
+std::string option_row(const OptionEntry& option) {
+  return fmt::format("| `{}` | {} |\n", cell(usage(option)), cell(option.meaning));
+}
+
+std::string command_reference(const CommandEntry& command) {
+  std::string text =
+      fmt::format("\n### {}\n\n{}.\n", spoken(command), command.app->get_description());
+  std::string rows;
+  for (const OptionEntry& option : command.options) {
+    if (option.names.empty() || option.names.back() != "--help") rows += option_row(option);
+  }
+  if (!rows.empty()) text += "\n| argument | meaning |\n|---|---|\n" + rows;
+  // The columns and figures, which have tables of their own above, are not listed again.
+  const bool listed = command.path.back() == "table" || command.path.back() == "figures";
+  if (!command.app->get_footer().empty() && !listed) {
+    text += fmt::format("\n```text\n{}\n```\n", command.app->get_footer());
+  }
+  return text;
+}
+
+/// experiments/REFERENCE.md holds it (test docs.reference).
+std::string reference(const std::vector<CommandEntry>& tree) {
+  std::string text =
+      "# Reference\n\n"
+      "`shearcell manual --markdown` prints this file from the program's own tables; a test "
+      "compares them.\n\n" +
+      manifest_reference() + measure_reference() + figure_reference() +
+      "\n## Commands\n\n"
+      "Every command takes `--help`. `SHEARCELL_STORE` names the store where `--store` does not; "
+      "`NO_COLOR` turns\ncolours off.\n";
+  for (std::size_t k = 1; k < tree.size(); ++k) text += command_reference(tree[k]);
+  return text + fmt::format("\n## Examples and exit codes\n\n```text\n{}\n```\n",
+                            tree.front().app->get_footer());
 }
 
 }  // namespace
+
+void add_completion(CLI::App& app, Context&) {
+  CLI::App* command = app.add_subcommand("completion", "Print a completion script for a shell");
+  auto shell = std::make_shared<std::string>();
+  command->add_option("shell", *shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  command->footer(
+      R"(Examples:
+  shearcell completion bash > ~/.local/share/bash-completion/completions/shearcell
+  source <(shearcell completion zsh)
+  shearcell completion fish > ~/.config/fish/completions/shearcell.fish)");
+  command->callback([shell, &app] {
+    const std::vector<CommandEntry> tree = command_tree(app);
+    fmt::print("{}", *shell == "bash" ? bash(tree) : *shell == "zsh" ? zsh(tree) : fish(tree));
+  });
+}
 
 void add_manual(CLI::App& app, Context&) {
   CLI::App* command = app.add_subcommand("manual", "Print the manual page, in roff");
@@ -83,7 +360,7 @@ void add_manual(CLI::App& app, Context&) {
       "Examples:\n  shearcell manual | man -l -\n  shearcell manual --markdown > reference.md");
   command->callback([&app, markdown] {
     const std::vector<CommandEntry> tree = command_tree(app);
-    fmt::print("{}", *markdown ? reference_markdown(tree) : manual(tree));
+    fmt::print("{}", *markdown ? reference(tree) : manual(tree));
   });
 }
 

@@ -6,7 +6,6 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/audit.hpp"
-#include "experiments/runner/terminal.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -19,16 +18,14 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     tell_stderr("no measures were copied from {}: {}\n", finding.subject, finding.message);
   }
   if (context.json) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const MergeReport& report : reports) {
-      list.push_back({{"source", report.source},
-                      {"head", {{"seq", report.head.seq}, {"hash", report.head.hash}}},
-                      {"events", report.events},
-                      {"checkpoints", report.checkpoints},
-                      {"bytes", report.bytes}});
-    }
-    print_json({{"merged", list}});
-    return;
+    const auto facts = [](const MergeReport& report) -> nlohmann::json {
+      return {{"source", report.source},
+              {"head", {{"seq", report.head.seq}, {"hash", report.head.hash}}},
+              {"events", report.events},
+              {"checkpoints", report.checkpoints},
+              {"bytes", report.bytes}};
+    };
+    return print_json({{"merged", json_list(reports, facts)}});
   }
   for (const MergeReport& report : reports) {
     tell("{}: {} of {} events and {} checkpoints ({}) were new\n", report.source, report.events,
@@ -44,15 +41,13 @@ void add_merge(CLI::App& app, Context& context) {
   command->add_option("source", *sources, "Folders of the stores to merge")
       ->required()
       ->type_name("STORE");
-  add_common_options(*command, context, true);
+  add_common_options(*command, context);
   command->footer(
-      "Checks the chain of each source and every file to copy before anything changes. Refuses "
-      "two\n"
-      "stores that record different states of one run at one step. The sources stay unchanged, "
-      "and\n"
-      "merging twice changes nothing. Cached measures are copied if three recomputed ones are "
-      "right.\n"
-      "Examples:\n  shearcell merge task-1 task-2 --store all");
+      R"(Checks the chain of each source and every file to copy before anything changes. Refuses two
+stores that record different states of one run at one step. The sources stay unchanged, and
+merging twice changes nothing. Cached measures are copied if three recomputed ones are right.
+Examples:
+  shearcell merge task-1 task-2 --store all)");
   command->callback([sources, &context] { merge(*sources, context); });
 }
 

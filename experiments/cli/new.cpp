@@ -16,11 +16,6 @@
 namespace shearcell::cli {
 namespace {
 
-/// The stem of the file names the experiment.
-std::string experiment_of(const std::filesystem::path& file) {
-  return file.stem().string();
-}
-
 std::string wrapped(const std::string& text, std::size_t width, const std::string& before) {
   std::string lines;
   std::string line;
@@ -59,45 +54,45 @@ std::string figure_comments() {
 
 std::string text_of(const std::string& experiment) {
   std::string text = fmt::format(
-      "# Keys that are commented out show their default.\n"
-      "# `shearcell plan FILE --scale smoke` checks this file and lists its runs.\n"
-      "experiment: {}\n"
-      "question: What is to be found out?\n"
-      "{}"
-      "figures: [S2]\n"
-      "# Plots and claims of your own (`shearcell manual --markdown`):\n"
-      "# plots:\n"
-      "#   - {{name: compaction, y: phi, x: cycle, show: traces}}\n"
-      "# claims:\n"
-      "#   - {{name: same, compare: phi, at_cycle: 10, between: [{{fluid: still}}, {{fluid: "
-      "cell}}], "
-      "margin: 0.001}}\n"
-      "# labels: {{\"fluid=still\": \"fluid at rest\"}}\n"
-      "\n"
-      "base:\n"
-      "  grains: {}\n"
-      "  amplitude_rad: {}\n\n",
+      R"(# Keys that are commented out show their default.
+# `shearcell plan FILE --scale smoke` checks this file and lists its runs.
+experiment: {}
+question: What is to be found out?
+{}figures: [S2]
+# Plots and claims of your own (`shearcell manual --markdown`):
+# plots:
+#   - {{name: compaction, y: phi, x: cycle, show: traces}}
+# claims:
+#   - {{name: same, compare: phi, at_cycle: 10, between: [{{fluid: still}}, {{fluid: cell}}], margin: 0.001}}
+# labels: {{"fluid=still": "fluid at rest"}}
+
+base:
+  grains: {}
+  amplitude_rad: {}
+
+)",
       experiment, figure_comments(), Parameters{}.grains, Parameters{}.amplitude_rad);
   for (const Field& field : schema()) {
     if (field.name != "grains" && field.name != "amplitude_rad") text += entry(field);
   }
   return text +
-         "\n"
-         "# What varies: every combination under `grid`; keys under `zip` advance together.\n"
-         "sweep:\n"
-         "  grid:\n"
-         "    fluid: [still, cell]\n"
-         "\n"
-         "seeds: 6                       # 1 to 6, or a list\n"
-         "\n"
-         "checkpoints:\n"
-         "  every_cycles: 1\n"
-         "\n"
-         "# Named sizes; each overrides what is above it in this file.\n"
-         "scales:\n"
-         "  smoke: {grains: 600, seeds: 2, cycles: 5}\n"
-         "  desk: {grains: 5200, seeds: 3, cycles: 120}\n"
-         "  paper: {cycles: 200}\n";
+         R"(
+# What varies: every combination under `grid`; keys under `zip` advance together.
+sweep:
+  grid:
+    fluid: [still, cell]
+
+seeds: 6                       # 1 to 6, or a list
+
+checkpoints:
+  every_cycles: 1
+
+# Named sizes; each overrides what is above it in this file.
+scales:
+  smoke: {grains: 600, seeds: 2, cycles: 5}
+  desk: {grains: 5200, seeds: 3, cycles: 120}
+  paper: {cycles: 200}
+)";
 }
 
 void write_new(const std::filesystem::path& file, const std::string& text) {
@@ -116,7 +111,7 @@ void write_new(const std::filesystem::path& file, const std::string& text) {
 
 void make(std::filesystem::path file) {
   if (file.extension() != ".yaml") file += ".yaml";
-  const std::string text = text_of(experiment_of(file));
+  const std::string text = text_of(file.stem().string());
   parse_manifest(text, file.string());  // a name that no experiment may have is refused here
   write_new(file, text);
   tell("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(), file.string());
@@ -129,10 +124,11 @@ void add_new(CLI::App& app, Context&) {
   auto name = std::make_shared<std::string>();
   command->add_option("name", *name, "Name of the experiment, or path of the file")->required();
   command->footer(
-      "Writes every key with its meaning and default, the sweep of `drag`, and three scales. "
-      "Refuses\n"
-      "to overwrite a file.\n"
-      "Examples:\n  shearcell new softer\n  shearcell new studies/softer.yaml");
+      R"(Writes every key with its meaning and default, the sweep of `drag`, and three scales. Refuses
+to overwrite a file.
+Examples:
+  shearcell new softer
+  shearcell new studies/softer.yaml)");
   command->callback([name] { make(*name); });
 }
 

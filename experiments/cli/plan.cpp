@@ -9,12 +9,9 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <thread>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/asks.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/engine.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
@@ -24,11 +21,6 @@
 
 namespace shearcell::cli {
 namespace {
-
-struct PlanOptions {
-  std::string manifest;
-  ExpandOptions expand;
-};
 
 std::optional<Store> open_if_there(const std::string& folder) {
   // An empty folder is not a store yet; `run` would create one there.
@@ -61,19 +53,17 @@ std::string remark(const Line& line) {
 
 void add_shares(const RunRecord& record, const std::string& experiment, Line& line) {
   for (const Membership& m : record.memberships) {
-    auto& names = line.shared_with;
-    const bool known = std::find(names.begin(), names.end(), m.experiment) != names.end();
-    if (m.experiment != experiment && !known) names.push_back(m.experiment);
+    const bool known = std::ranges::count(line.shared_with, m.experiment) > 0;
+    if (m.experiment != experiment && !known) line.shared_with.push_back(m.experiment);
   }
 }
 
 nlohmann::json facts(const std::optional<Novelty>& novelty) {
   if (!novelty) return nullptr;
-  nlohmann::json fields = nlohmann::json::array();
-  for (const Difference& d : novelty->differences) {
-    fields.push_back({{"field", d.field}, {"value", d.planned}, {"store_has", d.known}});
-  }
-  return {{"nearest", novelty->nearest}, {"fields", fields}};
+  return {{"nearest", novelty->nearest},
+          {"fields", json_list(novelty->differences, [](const Difference& d) -> nlohmann::json {
+             return {{"field", d.field}, {"value", d.planned}, {"store_has", d.known}};
+           })}};
 }
 
 // The time step of a stage; none where no time passes.
@@ -93,25 +83,22 @@ nlohmann::json facts(const std::optional<TimeStep>& step) {
 
 // Time steps and overlap of every kind of stage, each once.
 void print_numerics(const std::vector<Line>& lines) {
-  std::vector<std::vector<std::string>> rows;
-  std::set<std::vector<std::string>> seen;
+  std::vector<Row> rows;
   for (const Line& line : lines) {
     const std::optional<TimeStep> step = time_step_of(line);
     const bool prepare = line.stage->stage == Stage::prepare;
-    std::vector<std::string> row = {std::string(name_of(line.stage->stage)),
-                                    prepare ? "" : line.run->name,
-                                    "",
-                                    "",
-                                    "",
-                                    "",
-                                    fmt::format("{:.2g}", expected_overlap(line.run->parameters))};
-    if (step) {
-      if (!prepare) row[2] = std::to_string(line.run->parameters.steps_per_cycle);
-      row[3] = fmt::format("{:.4g}", step->seconds);
-      row[4] = fmt::format("{:.3f}", step->over_contact_time);
-      row[5] = fmt::format("{:.3f}", step->over_stability_limit);
-    }
-    if (seen.insert(row).second) rows.push_back(std::move(row));
+    const auto number = [&](const char* format, double value) {
+      return step ? fmt::format(fmt::runtime(format), value) : "";
+    };
+    const TimeStep t = step.value_or(TimeStep{});
+    Row row = {std::string(name_of(line.stage->stage)),
+               prepare ? "" : line.run->name,
+               step && !prepare ? std::to_string(line.run->parameters.steps_per_cycle) : "",
+               number("{:.4g}", t.seconds),
+               number("{:.3f}", t.over_contact_time),
+               number("{:.3f}", t.over_stability_limit),
+               fmt::format("{:.2g}", expected_overlap(line.run->parameters))};
+    if (std::ranges::count(rows, row) == 0) rows.push_back(std::move(row));
   }
   fmt::print("\n");
   print_table({"stage", "variant", "steps/cycle", "time step [s]", "/ contact time",
@@ -171,14 +158,6 @@ void print_until(const std::vector<Line>& lines, double at_most) {
   }
 }
 
-// Whether the run is complete, and an experiment that shares it asked for the same end.
-bool ended_as_asked(const Store& store, const PlannedRun& run, const RunRecord& record) {
-  return record.state == RunState::completed && run.until &&
-         std::ranges::any_of(asks_of(store, record.id), [&](const RunAsk& ask) {
-           return ask.until == run.until && ask.target_cycles >= run.cycles;
-         });
-}
-
 std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
                            const std::vector<RunRecord>& runs) {
   const KnownRuns known(runs);
@@ -193,8 +172,7 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
       if (const RunRecord* record = known.find(stage->key)) {
         line.cycle = record->cycle;
         add_shares(*record, plan.experiment, line);
-        const auto from = cycle_to_continue(run, *stage, record);
-        const bool done = !from || ended_as_asked(*store, run, *record);
+        const bool done = !cycle_to_continue(run, *stage, record, &*store);
         line.state = done ? "done" : record->attempts > 0 ? name_of(record->state) : "to do";
         if (line.state == "completed") line.state = "to extend";
       }
@@ -208,18 +186,14 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
   return lines;
 }
 
-void plan(const PlanOptions& options, Context& context) {
-  const Manifest manifest = load_manifest(options.manifest);
-  const Plan expanded = expand(manifest, options.expand);
-  for (const std::string& warning : expanded.warnings) {
-    tell_stderr("warning: {}\n", warning);
-  }
-  const std::optional<Store> store = open_if_there(context.store);
-  const auto known = store ? store->runs() : std::vector<RunRecord>{};
-  const std::vector<Line> lines = lines_of(expanded, store, known);
-  StageCost left;
+struct Left {
+  StageCost cost;
   double core_seconds = 0;
-  Rate rate{0, true};
+  Rate rate{0, true};  ///< mean, of one core
+};
+
+Left left_of(const std::vector<Line>& lines, const std::vector<RunRecord>& known) {
+  Left left;
   std::map<std::pair<EngineKind, std::uint64_t>, Rate> rates;
   for (const Line& line : lines) {
     const EngineKind engine = engine_of(line.stage->resolved);
@@ -228,90 +202,104 @@ void plan(const PlanOptions& options, Context& context) {
       entry->second = expected_rate(known, engine, static_cast<double>(line.run->grains));
     }
     const Rate own = entry->second;
-    left.particle_steps += line.left.particle_steps;
-    left.bytes += line.left.bytes;
-    core_seconds += line.left.particle_steps / own.particle_steps_per_second;
-    if (rate.particle_steps_per_second == 0) rate = own;  // where nothing is left to do
-    rate.measured = rate.measured && own.measured;
+    left.cost.particle_steps += line.left.particle_steps;
+    left.cost.bytes += line.left.bytes;
+    left.core_seconds += line.left.particle_steps / own.particle_steps_per_second;
+    if (left.rate.particle_steps_per_second == 0) left.rate = own;  // where nothing is left to do
+    left.rate.measured = left.rate.measured && own.measured;
   }
-  if (core_seconds > 0) rate.particle_steps_per_second = left.particle_steps / core_seconds;
-  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  const double seconds = core_seconds / cores;
-  const std::vector<std::string> notes = notes_of(expanded);
+  if (left.core_seconds > 0) {
+    left.rate.particle_steps_per_second = left.cost.particle_steps / left.core_seconds;
+  }
+  return left;
+}
 
+nlohmann::json facts(const Line& line) {
+  const StageBound bound = stage_bound(*line.run, *line.stage);
+  return {{"id", line.stage->key},
+          {"parent", line.stage->parent},
+          {"stage", name_of(line.stage->stage)},
+          {"variant", line.run->variant},
+          {"parameters", line.stage->resolved.at("parameters")},
+          {"seed", line.run->seed},
+          {"N", line.run->grains},
+          {"cycles", line.run->cycles},
+          {"state", line.state},
+          {"shared_with", line.shared_with},
+          {"time_step", facts(time_step_of(line))},
+          {"expected_overlap_d", expected_overlap(line.run->parameters)},
+          {"new", facts(line.novelty)},
+          {"particle_steps_left", line.left.particle_steps},
+          {"bytes_left", line.left.bytes},
+          {"most_particle_steps", bound.particle_steps},
+          {"memory_bytes", bound.memory_bytes}};
+}
+
+Row row(const Line& line) {
+  const bool prepare = line.stage->stage == Stage::prepare;
+  return {line.stage->key.substr(0, 8),
+          std::string(name_of(line.stage->stage)),
+          prepare ? "" : line.run->name,
+          std::to_string(line.run->seed),
+          std::to_string(line.run->grains),
+          prepare ? "" : fmt::format("{:.4g}/{}", line.cycle, line.run->cycles),
+          line.state,
+          remark(line)};
+}
+
+void plan(const std::string& manifest, const ExpandOptions& options, Context& context) {
+  const Plan expanded = load_manifests({manifest}, options).plans.front();
+  const std::optional<Store> store = open_if_there(context.store);
+  const auto known = store ? store->runs() : std::vector<RunRecord>{};
+  const std::vector<Line> lines = lines_of(expanded, store, known);
+  const Left left = left_of(lines, known);
+  const std::size_t cores = core_count();
+  const double seconds = left.core_seconds / static_cast<double>(cores);
+  const std::vector<std::string> notes = notes_of(expanded);
   if (context.json) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const Line& line : lines) {
-      const StageBound bound = stage_bound(*line.run, *line.stage);
-      list.push_back({{"id", line.stage->key},
-                      {"parent", line.stage->parent},
-                      {"stage", name_of(line.stage->stage)},
-                      {"variant", line.run->variant},
-                      {"parameters", line.stage->resolved.at("parameters")},
-                      {"seed", line.run->seed},
-                      {"N", line.run->grains},
-                      {"cycles", line.run->cycles},
-                      {"state", line.state},
-                      {"shared_with", line.shared_with},
-                      {"time_step", facts(time_step_of(line))},
-                      {"expected_overlap_d", expected_overlap(line.run->parameters)},
-                      {"new", facts(line.novelty)},
-                      {"particle_steps_left", line.left.particle_steps},
-                      {"bytes_left", line.left.bytes},
-                      {"most_particle_steps", bound.particle_steps},
-                      {"memory_bytes", bound.memory_bytes}});
-    }
-    print_json({{"experiment", expanded.experiment},
-                {"scale", expanded.scale},
-                {"notes", notes},
-                {"runs", expanded.runs.size()},
-                {"stages", list},
-                {"particle_steps_left", left.particle_steps},
-                {"particle_steps_left_with_until", left_until(lines)},
-                {"bytes_left", left.bytes},
-                {"seconds_left", seconds},
-                {"cores", cores},
-                {"particle_steps_per_second_and_core", rate.particle_steps_per_second},
-                {"rate_measured", rate.measured}});
-    return;
+    return print_json({{"experiment", expanded.experiment},
+                       {"scale", expanded.scale},
+                       {"notes", notes},
+                       {"runs", expanded.runs.size()},
+                       {"stages", json_list(lines, [](const Line& line) { return facts(line); })},
+                       {"particle_steps_left", left.cost.particle_steps},
+                       {"particle_steps_left_with_until", left_until(lines)},
+                       {"bytes_left", left.cost.bytes},
+                       {"seconds_left", seconds},
+                       {"cores", cores},
+                       {"particle_steps_per_second_and_core", left.rate.particle_steps_per_second},
+                       {"rate_measured", left.rate.measured}});
   }
   fmt::print("{} at scale {}: {} runs, {} stages\n\n", expanded.experiment,
              expanded.scale.empty() ? "base" : expanded.scale, expanded.runs.size(), lines.size());
-  std::vector<std::vector<std::string>> rows;
-  for (const Line& line : lines) {
-    const bool prepare = line.stage->stage == Stage::prepare;
-    rows.push_back({line.stage->key.substr(0, 8), std::string(name_of(line.stage->stage)),
-                    prepare ? "" : line.run->name, std::to_string(line.run->seed),
-                    std::to_string(line.run->grains),
-                    prepare ? "" : fmt::format("{:.4g}/{}", line.cycle, line.run->cycles),
-                    line.state, remark(line)});
-  }
-  print_table({"run", "stage", "variant", "seed", "N", "cycle", "state", ""}, rows);
+  print_table({"run", "stage", "variant", "seed", "N", "cycle", "state", ""}, lines, row);
   print_numerics(lines);
   fmt::print(
       "\nleft: {:.3g} particle-steps, about {} on {} cores at {:.0f} M particle-steps/s each ({}),"
       "\n      about {} on disk\n",
-      left.particle_steps, format_duration(seconds), cores, rate.particle_steps_per_second * 1e-6,
-      rate.measured ? "measured in this store" : "assumed until a run has been measured",
-      format_bytes(left.bytes));
-  print_until(lines, left.particle_steps);
+      left.cost.particle_steps, format_duration(seconds), cores,
+      left.rate.particle_steps_per_second * 1e-6,
+      left.rate.measured ? "measured in this store" : "assumed until a run has been measured",
+      format_bytes(left.cost.bytes));
+  print_until(lines, left.cost.particle_steps);
   if (!notes.empty()) fmt::print("\n{}\n", fmt::join(notes, "\n"));
 }
 
 }  // namespace
 
 void add_plan(CLI::App& app, Context& context) {
-  auto options = std::make_shared<PlanOptions>();
+  auto manifest = std::make_shared<std::string>();
+  auto options = std::make_shared<ExpandOptions>();
   CLI::App* command = app.add_subcommand(
       "plan", "Show the runs of a manifest, what is done, and the cost of the rest");
-  command->add_option("manifest", options->manifest, "YAML manifest")->required();
-  add_expand_options(*command, options->expand);
-  add_engine_option(*command, options->expand);
-  add_common_options(*command, context, true);
+  command->add_option("manifest", *manifest, "YAML manifest")->required();
+  add_expand_options(*command, *options);
+  add_engine_option(*command, *options);
+  add_common_options(*command, context);
   command->footer(
       "For each new run, prints the values in which it differs from the nearest known one.\n"
       "Examples:\n  shearcell plan experiments/drag.yaml --scale paper");
-  command->callback([options, &context] { plan(*options, context); });
+  command->callback([manifest, options, &context] { plan(*manifest, *options, context); });
 }
 
 }  // namespace shearcell::cli

@@ -8,7 +8,6 @@
 #include <map>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/runner/terminal.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -25,8 +24,7 @@ bool is_number(const std::string& cell) {
   return cell.empty() || cell.find_first_not_of("0123456789.-+e:%/") == std::string::npos;
 }
 
-std::vector<Column> measure(const std::vector<std::string>& header,
-                            const std::vector<std::vector<std::string>>& rows) {
+std::vector<Column> measure(const Row& header, const std::vector<Row>& rows) {
   std::vector<Column> columns(header.size());
   for (std::size_t c = 0; c < header.size(); ++c) {
     columns[c].width = characters(header[c]);
@@ -76,16 +74,15 @@ std::string painted(const std::string& word, const std::string& text) {
 
 }  // namespace
 
-void print_table(const std::vector<std::string>& header,
-                 const std::vector<std::vector<std::string>>& given) {
-  std::vector<std::vector<std::string>> rows = given;
+void print_table(const Row& header, const std::vector<Row>& given) {
+  std::vector<Row> rows = given;
   for (auto& row : rows) {
     for (std::string& cell : row) cell = for_terminal(cell);
   }
   std::vector<Column> columns = measure(header, rows);
   if (const auto limit = terminal_columns(stdout)) narrow(columns, *limit);
   const bool colours = shows_colours(stdout);
-  const auto print_row = [&](const std::vector<std::string>& row, bool is_header) {
+  const auto print_row = [&](const Row& row, bool is_header) {
     std::string line;
     for (std::size_t c = 0; c < row.size(); ++c) {
       if (c > 0) line.append(kGap, ' ');

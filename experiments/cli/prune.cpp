@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `prune`: deletes files of checkpoints that can be recomputed; their records stay.
+// `regenerate`: recomputes such files, and damaged ones, with the same bytes.
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/replay.hpp"
+#include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell::cli {
@@ -43,13 +47,12 @@ double bytes_of(const std::vector<CheckpointRecord>& records) {
 void print_plan(const Store& store, const std::vector<CheckpointRecord>& records) {
   std::map<std::string, std::vector<CheckpointRecord>> by_run;
   for (const CheckpointRecord& record : records) by_run[record.run].push_back(record);
-  std::vector<std::vector<std::string>> rows;
-  for (const auto& [id, of_run] : by_run) {
-    const RunRecord run = store.run(id);
-    rows.push_back({id.substr(0, 8), std::string(name_of(run.state)), std::to_string(of_run.size()),
-                    std::to_string(store.checkpoints(id).size()), format_bytes(bytes_of(of_run))});
-  }
-  print_table({"run", "state", "to free", "of", "bytes"}, rows);
+  print_table({"run", "state", "to free", "of", "bytes"}, by_run, [&](const auto& freed) -> Row {
+    const auto& [id, of_run] = freed;
+    return {id.substr(0, 8), std::string(name_of(store.run(id).state)),
+            std::to_string(of_run.size()), std::to_string(store.checkpoints(id).size()),
+            format_bytes(bytes_of(of_run))};
+  });
 }
 
 bool agreed() {
@@ -76,14 +79,13 @@ void prune(const PruneOptions& options, Context& context) {
   const bool go = !records.empty() && (options.yes || (!context.json && agreed()));
   const std::uint64_t freed = go ? store.prune(records) : 0;
   if (context.json) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const CheckpointRecord& record : records) {
-      list.push_back({{"run", record.run},
-                      {"cycle", record.cycle},
-                      {"sha256", record.sha256},
-                      {"size", record.size}});
-    }
-    print_json({{"checkpoints", list},
+    const auto checkpoint = [](const CheckpointRecord& record) -> nlohmann::json {
+      return {{"run", record.run},
+              {"cycle", record.cycle},
+              {"sha256", record.sha256},
+              {"size", record.size}};
+    };
+    print_json({{"checkpoints", json_list(records, checkpoint)},
                 {"leftovers", records.size() - news},
                 {"kept_of_other_engines", kept},
                 {"bytes", bytes_of(records)},
@@ -95,6 +97,76 @@ void prune(const PruneOptions& options, Context& context) {
   } else if (!records.empty()) {
     fmt::print("Nothing was freed. Use --yes to delete these files.\n");
   }
+}
+
+struct RegenerateWish {
+  std::vector<std::string> checkpoints;
+  std::size_t threads = 1;
+};
+
+bool sound(const Store& store, const CheckpointRecord& record) {
+  try {
+    store.load_checkpoint(record);
+    return record.state == CheckpointState::recorded;
+  } catch (const CheckpointPruned&) {
+  } catch (const StoreDamaged&) {
+  }
+  return false;
+}
+
+nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std::size_t threads,
+                              Context& context) {
+  nlohmann::json facts = {{"sha256", record.sha256},
+                          {"run", record.run},
+                          {"cycle", record.cycle},
+                          {"file", record.file},
+                          {"steps", 0}};
+  const auto say = [&](const std::string& outcome, const std::string& text) {
+    facts["outcome"] = outcome;
+    if (!context.json) {
+      tell("{:.12} (run {:.8}, cycle {:g}): {}\n", record.sha256, record.run, record.cycle, text);
+    }
+    return facts;
+  };
+  if (sound(store, record)) return say("kept", "the file is intact");
+  if (const auto why = why_not_again(store.run(record.run))) {
+    context.exit_code = kOtherError;
+    facts["why"] = *why;
+    return say("refused", *why + "; keep a copy of its file elsewhere");
+  }
+  const Replay replay = regenerate_checkpoint(store, record, threads);
+  facts["steps"] = replay.steps;
+  if (replay.interrupted) {
+    context.exit_code = kInterrupted;
+    return say("interrupted", "interrupted; nothing was changed");
+  }
+  if (replay.divergence) {
+    context.exit_code = kStoreDamaged;
+    facts["why"] = replay.divergence->message;
+    return say("diverged", "DIVERGED: " + replay.divergence->message);
+  }
+  return say("regenerated",
+             fmt::format("the same state and the same file again, from {} ({} steps)",
+                         replay.from ? fmt::format("cycle {:g}", replay.from->cycle)
+                                     : std::string("the beginning of its stage"),
+                         replay.steps));
+}
+
+void regenerate(const RegenerateWish& wish, Context& context) {
+  Store store(context.store, Access::write);
+  std::vector<CheckpointRecord> records;
+  for (const std::string& prefix : wish.checkpoints) {
+    records.push_back(store.find_checkpoint(prefix));
+  }
+  // Each from the one before it, where several of a run are asked for.
+  std::ranges::sort(records, {}, [](const auto& c) { return std::tie(c.run, c.step); });
+  catch_stop_signals();
+  nlohmann::json list = nlohmann::json::array();
+  for (const CheckpointRecord& record : records) {
+    list.push_back(regenerate_one(store, record, wish.threads, context));
+    if (stop_requested()) break;
+  }
+  if (context.json) print_json({{"checkpoints", list}});
 }
 
 }  // namespace
@@ -109,12 +181,29 @@ void add_prune(CLI::App& app, Context& context) {
   add_count(*command, "--keep-every", options->keep_every, "Keep every K-th cycle", "K", 1,
             1'000'000'000);
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
-  add_common_options(*command, context, true);
+  add_common_options(*command, context);
   command->footer(
       "Lists the files and asks. Never deletes the newest checkpoint of a run, those that other\n"
       "stages started from, or those of LAMMPS. Records stay, and `regenerate` recomputes a file.\n"
       "Examples:\n  shearcell prune --keep-every 10\n  shearcell prune --state failed --yes");
   command->callback([options, &context] { prune(*options, context); });
+}
+
+void add_regenerate(CLI::App& app, Context& context) {
+  auto wish = std::make_shared<RegenerateWish>();
+  CLI::App* command =
+      app.add_subcommand("regenerate", "Recompute the files of pruned or damaged checkpoints");
+  command
+      ->add_option("checkpoint", wish->checkpoints, "SHA-256 of checkpoints, or beginnings of them")
+      ->required();
+  add_threads_option(*command, wish->threads, "Threads, for large cells");
+  add_common_options(*command, context);
+  command->footer(
+      R"(Steps from the nearest earlier checkpoint. If the state or the file does not have the recorded
+hash, writes nothing, records ReplayDiverged and ends with code 4.
+Examples:
+  shearcell regenerate 2a2c47ca)");
+  command->callback([wish, &context] { regenerate(*wish, context); });
 }
 
 }  // namespace shearcell::cli

@@ -4,9 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
-#include <thread>
 
 #include "experiments/cli/command.hpp"
 #include "provenance/io/plain_file.hpp"
@@ -51,7 +49,7 @@ void report(ReportCommand& command, Context& context) {
   options.packings.budget = static_cast<std::size_t>(command.megabytes * 1e6);
   if (!command.accuracy.empty()) options.accuracy = command.accuracy;
   for (std::string& run : options.packings.runs) run = store.find_run(run).id;
-  options.workers = std::max(1U, std::thread::hardware_concurrency());
+  options.workers = core_count();
   options.measured = terminal_counter("measuring checkpoint");
   options.packed = terminal_counter("packing checkpoint");
   const Report made = make_report(store, options);
@@ -98,14 +96,14 @@ void add_report(CLI::App& app, Context& context) {
       ->type_name("DIR");
   sub->add_flag("--drawings", command->drawings,
                 "Figures as gnuplot draws them, no script, no packings");
-  add_common_options(*sub, context, true);
+  add_common_options(*sub, context);
   sub->footer(
-      "The file needs no network: figures to zoom and read values from, verdicts, runs, lineage, "
-      "and\n"
-      "packings in 3D with their positions rounded to 16 bits an axis. The store is only read.\n"
-      "Examples:\n  shearcell report --out report.html\n"
-      "  shearcell report --run 3f9a --frames 200 --out one-run.html\n"
-      "  shearcell report --scale desk --accuracy accuracy --out desk.html");
+      R"(The file needs no network: figures to zoom and read values from, verdicts, runs, lineage, and
+packings in 3D with their positions rounded to 16 bits an axis. The store is only read.
+Examples:
+  shearcell report --out report.html
+  shearcell report --run 3f9a --frames 200 --out one-run.html
+  shearcell report --scale desk --accuracy accuracy --out desk.html)");
   sub->callback([command, &context] { report(*command, context); });
 }
 

@@ -4,14 +4,11 @@
 
 #include <algorithm>
 #include <memory>
-#include <thread>
+#include <set>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/manifest/expand.hpp"
-#include "experiments/runner/campaign.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/stop.hpp"
-#include "provenance/errors.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -27,9 +24,8 @@ struct RunOptions {
 // As many runs at a time as their threads or processes leave cores for.
 std::size_t workers(const RunOptions& options) {
   if (options.jobs > 0) return options.jobs;
-  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  return std::max<std::size_t>(1,
-                               cores / std::max(options.parallel.threads, options.parallel.ranks));
+  const std::size_t each = std::max(options.parallel.threads, options.parallel.ranks);
+  return std::max<std::size_t>(1, core_count() / each);
 }
 
 void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options,
@@ -41,24 +37,14 @@ void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& 
 
 void run(const RunOptions& options, Context& context) {
   // All manifests are read before anything is written.
-  std::vector<Manifest> manifests;
-  std::vector<Plan> plans;
-  for (const std::string& path : options.manifests) {
-    manifests.push_back(load_manifest(path));
-    plans.push_back(expand(manifests.back(), options.expand));
-    for (const std::string& warning : plans.back().warnings) {
-      tell_stderr("warning: {}\n", warning);
-    }
-  }
-  const bool lammps = std::any_of(plans.begin(), plans.end(), asks_for_lammps);
-  if (lammps) find_lammps();  // or say what to install
+  const auto [manifests, plans] = load_manifests(options.manifests, options.expand);
+  if (std::ranges::any_of(plans, asks_for_lammps)) find_lammps();  // or say what to install
   Store store(context.store, Access::create);
   std::vector<StageJob> jobs;
+  std::set<std::string> known;
   for (std::size_t m = 0; m < manifests.size(); ++m) {
     for (StageJob& job : declare(store, manifests[m], plans[m])) {
-      const bool known = std::any_of(jobs.begin(), jobs.end(),
-                                     [&](const StageJob& other) { return other.id == job.id; });
-      if (!known) jobs.push_back(std::move(job));
+      if (known.insert(job.id).second) jobs.push_back(std::move(job));
     }
   }
   compute(store, jobs, options, context);
@@ -112,17 +98,17 @@ void add_run(CLI::App& app, Context& context) {
   add_expand_options(*command, options->expand);
   add_engine_option(*command, options->expand);
   add_worker_options(*command, *options);
-  add_common_options(*command, context, true);
+  add_common_options(*command, context);
   command->footer(
-      "Examples:\n"
-      "  shearcell run experiments/drag.yaml --scale smoke\n"
-      "  shearcell run experiments/drag.yaml --scale desk --cycles 100   # extend\n"
-      "  shearcell run experiments/critical_size.yaml --scale paper --variant amplitude_rad=0.1\n"
-      "  shearcell run experiments/drag.yaml --scale smoke --engine lammps --mpi 2\n"
-      "\n"
-      "Computes only what the store does not hold. Press Ctrl-C to write checkpoints and end with\n"
-      "code 85; `run` again, or `resume`, continues bit for bit. Start several programs on one\n"
-      "machine and one store to share the work.");
+      R"(Examples:
+  shearcell run experiments/drag.yaml --scale smoke
+  shearcell run experiments/drag.yaml --scale desk --cycles 100   # extend
+  shearcell run experiments/critical_size.yaml --scale paper --variant amplitude_rad=0.1
+  shearcell run experiments/drag.yaml --scale smoke --engine lammps --mpi 2
+
+Computes only what the store does not hold. Press Ctrl-C to write checkpoints and end with
+code 85; `run` again, or `resume`, continues bit for bit. Start several programs on one
+machine and one store to share the work.)");
   command->callback([options, &context] { run(*options, context); });
 
   auto resume_options = std::make_shared<RunOptions>();
@@ -130,7 +116,7 @@ void add_run(CLI::App& app, Context& context) {
   resume->add_option("run", resume_options->manifests,
                      "Run ids, or unique beginnings of them (default: all)");
   add_worker_options(*resume, *resume_options);
-  add_common_options(*resume, context, true);
+  add_common_options(*resume, context);
   resume->footer("Examples:\n  shearcell resume\n  shearcell resume 3f9a");
   resume->callback([resume_options, &context] {
     Store store(context.store, Access::write);

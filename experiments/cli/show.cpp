@@ -7,17 +7,15 @@
 
 #include "analysis/error.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/cli/show_figure.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/run_end.hpp"
-#include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell::cli {
 namespace {
 
-nlohmann::json facts(const CheckpointRecord& c) {
+nlohmann::json checkpoint_facts(const CheckpointRecord& c) {
   return {{"run", c.run},
           {"cycle", c.cycle},
           {"step", c.step},
@@ -84,18 +82,15 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, true);
   const nlohmann::json engine = engine_of_run(store, run.id);
   if (context.json) {
-    nlohmann::json members = nlohmann::json::array();
-    for (const Membership& m : run.memberships) {
-      members.push_back({{"experiment", m.experiment},
-                         {"scale", m.scale},
-                         {"variant", m.variant},
-                         {"seed", m.seed},
-                         {"target_cycles", m.target_cycles},
-                         {"manifest", m.manifest},
-                         {"overrides", overrides_of(store, run, m)}});
-    }
-    nlohmann::json list = nlohmann::json::array();
-    for (const CheckpointRecord& c : checkpoints) list.push_back(facts(c));
+    const auto member = [&](const Membership& m) -> nlohmann::json {
+      return {{"experiment", m.experiment},
+              {"scale", m.scale},
+              {"variant", m.variant},
+              {"seed", m.seed},
+              {"target_cycles", m.target_cycles},
+              {"manifest", m.manifest},
+              {"overrides", overrides_of(store, run, m)}};
+    };
     print_json({{"id", run.id},
                 {"parent", run.parent},
                 {"kind", run.kind},
@@ -103,8 +98,8 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                 {"resolved", run.resolved},
                 {"attempts", run.attempts},
                 {"engine", engine},
-                {"memberships", members},
-                {"checkpoints", list},
+                {"memberships", json_list(run.memberships, member)},
+                {"checkpoints", json_list(checkpoints, checkpoint_facts)},
                 {"measures", as_json(newest_measures(store, checkpoints))},
                 {"error", run.error},
                 {"ended", end_of(store, run)}});
@@ -138,47 +133,52 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
     }
   }
   tell("\n");
-  std::vector<std::vector<std::string>> rows;
-  for (const CheckpointRecord& c : checkpoints) {
-    rows.push_back({fmt::format("{:g}", c.cycle), std::to_string(c.step), c.sha256.substr(0, 12),
-                    c.state_hash.substr(0, 12), format_bytes(static_cast<double>(c.size)),
-                    c.state == CheckpointState::recorded ? "" : std::string(name_of(c.state))});
-  }
-  print_table({"cycle", "step", "checkpoint", "state", "size", ""}, rows);
+  print_table({"cycle", "step", "checkpoint", "state", "size", ""}, checkpoints,
+              [](const CheckpointRecord& c) -> Row {
+                return {fmt::format("{:g}", c.cycle),
+                        std::to_string(c.step),
+                        c.sha256.substr(0, 12),
+                        c.state_hash.substr(0, 12),
+                        format_bytes(static_cast<double>(c.size)),
+                        c.state == CheckpointState::recorded ? "" : std::string(name_of(c.state))};
+              });
   if (const Facts facts = newest_measures(store, checkpoints); !facts.empty()) {
     tell("\nnewest checkpoint:\n");
     print(facts);
   }
 }
 
-// What stays on record of a checkpoint whose file was freed.
-void show_pruned(const CheckpointRecord& record, Context& context) {
-  if (context.json) return print_json(facts(record));
+/// `file`: what has become of it.
+void print_head(const CheckpointRecord& record, const std::string& file) {
   tell("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
        record.run);
-  tell("file        pruned; `shearcell regenerate {:.12}` recomputes it\n", record.sha256);
+  tell("file        {}\n", file);
   tell("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step, record.time_s);
+}
+
+// What stays on record of a checkpoint whose file was freed.
+void show_pruned(const CheckpointRecord& record, Context& context) {
+  if (context.json) return print_json(checkpoint_facts(record));
+  print_head(record,
+             fmt::format("pruned; `shearcell regenerate {:.12}` recomputes it", record.sha256));
   for (const auto& [name, value] : record.observables) tell("{:<42} {:.6g}\n", name, value);
 }
 
 void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
   if (record.state == CheckpointState::pruned) return show_pruned(record, context);
   const Checkpoint checkpoint = store.load_checkpoint(record);
+  const Eigen::Index grains = checkpoint.state.position.cols();
+  const std::size_t wall_grains = checkpoint.cell.wall_grains.size();
   if (context.json) {
-    nlohmann::json all = facts(record);
-    all["grains"] = checkpoint.state.position.cols();
-    all["wall_grains"] = checkpoint.cell.wall_grains.size();
+    nlohmann::json all = checkpoint_facts(record);
+    all["grains"] = grains;
+    all["wall_grains"] = wall_grains;
     all["measures"] = as_json(measures_of(store, record));
-    print_json(all);
-    return;
+    return print_json(all);
   }
-  tell("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
-       record.run);
-  tell("file        {} ({}, hash verified)\n", record.file,
-       format_bytes(static_cast<double>(record.size)));
-  tell("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step, record.time_s);
-  tell("grains      {} and {} wall grains\n", checkpoint.state.position.cols(),
-       checkpoint.cell.wall_grains.size());
+  print_head(record, fmt::format("{} ({}, hash verified)", record.file,
+                                 format_bytes(static_cast<double>(record.size))));
+  tell("grains      {} and {} wall grains\n", grains, wall_grains);
   print(measures_of(store, record));
 }
 
@@ -186,7 +186,7 @@ std::optional<CheckpointRecord> find_checkpoint(const Store& store, const std::s
   std::optional<CheckpointRecord> found;
   for (const RunRecord& run : store.runs()) {
     for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
-      if (record.sha256.rfind(prefix, 0) != 0) continue;
+      if (!record.sha256.starts_with(prefix)) continue;
       if (found) throw NotFound("several checkpoints begin with " + prefix + "; give more digits");
       found = record;
     }
@@ -236,15 +236,15 @@ void add_show(CLI::App& app, Context& context) {
       ->add_option("name", *name,
                    "Run id or checkpoint SHA-256 (or a beginning), figure, or a figure's file")
       ->required();
-  add_common_options(*command, context, true);
+  add_common_options(*command, context);
   command->footer(
-      "For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and "
-      "the\n"
-      "SHA-256 of every checkpoint in it. For a file (CSV, SVG or lineage): checks that it is what "
-      "the\n"
-      "store recorded and that every checkpoint behind it is intact; exit code 4 if not.\n"
-      "Examples:\n  shearcell show 3f9a\n  shearcell show drag/S2\n  shearcell show "
-      "figures/drag/S2a.csv");
+      R"(For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and the
+SHA-256 of every checkpoint in it. For a file (CSV, SVG or lineage): checks that it is what the
+store recorded and that every checkpoint behind it is intact; exit code 4 if not.
+Examples:
+  shearcell show 3f9a
+  shearcell show drag/S2
+  shearcell show figures/drag/S2a.csv)");
   command->callback([name, &context] { show(*name, context); });
 }
 

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/cli/show_figure.hpp"
-
+// The part of `show` for figures and their files.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
-#include <string>
-#include <vector>
+#include <utility>
 
+#include "experiments/cli/command.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/document.hpp"
-#include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell::cli {
@@ -27,14 +26,14 @@ std::string cut(const std::string& text, std::size_t used) {
   return std::string(first_characters(shown, left - 3)) + "...";
 }
 
-std::string text_at(const nlohmann::json& object, const char* key) {
-  const auto found = object.is_object() ? object.find(key) : object.end();
-  if (!object.is_object() || found == object.end()) return "?";
-  return found->is_string() ? found->get<std::string>() : found->dump();
-}
-
+// Null where there is no such member.
 nlohmann::json at(const nlohmann::json& object, const char* key) {
   return object.is_object() ? object.value(key, nlohmann::json()) : nlohmann::json();
+}
+
+std::string text_at(const nlohmann::json& object, const char* key) {
+  const nlohmann::json found = at(object, key);
+  return found.is_null() ? "?" : found.is_string() ? found.get<std::string>() : found.dump();
 }
 
 // "2026-11-20 21:40:51" of "2026-11-20T21:40:51.123Z".
@@ -48,68 +47,55 @@ std::string moment(const std::string& utc) {
 class Machines {
  public:
   std::size_t build(const nlohmann::json& host) {
-    return number(builds_, {{"build", at(host, "build")}, {"libraries", at(host, "libraries")}});
+    const nlohmann::json build = at(host, "build"), libraries = at(host, "libraries");
+    Row lines = {
+        fmt::format("shearcell {} ({}), {} {}", text_at(build, "version"), text_at(build, "commit"),
+                    text_at(build, "compiler"), text_at(build, "type")),
+        text_at(build, "flags")};
+    std::string names;
+    for (const auto& [name, version] : libraries.items()) {
+      names += (names.empty() ? "" : ", ") + name + " " + text_at(libraries, name.c_str());
+    }
+    if (!names.empty()) lines.push_back(names);
+    return number(builds_, lines);
   }
   std::size_t host(const nlohmann::json& host) {
-    nlohmann::json machine = nlohmann::json::object();
-    for (const char* key : {"host", "system", "cpu", "cores", "simd"}) machine[key] = at(host, key);
-    return number(hosts_, machine);
+    return number(hosts_, {text_at(host, "host") + ", " + text_at(host, "system"),
+                           fmt::format("{}, {} cores, {}", text_at(host, "cpu"),
+                                       text_at(host, "cores"), text_at(host, "simd"))});
   }
   void print() const {
-    for (std::size_t b = 0; b < builds_.size(); ++b) {
-      const nlohmann::json& build = builds_[b]["build"];
-      tell("build {}   {}\n", b + 1,
-           cut(fmt::format("shearcell {} ({}), {} {}", text_at(build, "version"),
-                           text_at(build, "commit"), text_at(build, "compiler"),
-                           text_at(build, "type")),
-               10));
-      tell("          {}\n", cut(text_at(build, "flags"), 10));
-      std::string libraries;
-      for (const auto& [name, version] : builds_[b]["libraries"].items()) {
-        libraries += (libraries.empty() ? "" : ", ") + name + " " +
-                     text_at(builds_[b]["libraries"], name.c_str());
-      }
-      if (!libraries.empty()) tell("          {}\n", cut(libraries, 10));
-    }
-    for (std::size_t h = 0; h < hosts_.size(); ++h) {
-      const nlohmann::json& host = hosts_[h];
-      tell("host {}    {}\n", h + 1,
-           cut(text_at(host, "host") + ", " + text_at(host, "system"), 10));
-      tell("          {}\n", cut(fmt::format("{}, {} cores, {}", text_at(host, "cpu"),
-                                             text_at(host, "cores"), text_at(host, "simd")),
-                                 10));
-    }
+    print("build", builds_);
+    print("host", hosts_);
   }
 
  private:
-  static std::size_t number(std::vector<nlohmann::json>& known, const nlohmann::json& facts) {
-    const auto found = std::find(known.begin(), known.end(), facts);
-    if (found != known.end()) return static_cast<std::size_t>(found - known.begin()) + 1;
-    known.push_back(facts);
-    return known.size();
+  static std::size_t number(std::vector<Row>& known, const Row& lines) {
+    const auto found = std::ranges::find(known, lines);
+    const auto place = static_cast<std::size_t>(found - known.begin());
+    if (found == known.end()) known.push_back(lines);
+    return place + 1;
   }
-  std::vector<nlohmann::json> builds_;
-  std::vector<nlohmann::json> hosts_;
+  static void print(const char* what, const std::vector<Row>& all) {
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      std::string name = fmt::format("{} {}", what, k + 1);
+      for (const std::string& line : all[k]) {
+        tell("{:<9} {}\n", std::exchange(name, ""), cut(line, 10));
+      }
+    }
+  }
+  std::vector<Row> builds_, hosts_;  // what is printed of each
 };
 
 void print_manifests(const FigureLineage& lineage) {
   for (const ManifestText& manifest : lineage.manifests) {
     tell("\nmanifest  {}\n  sha256  {}\n", cut(manifest.path, 10), manifest.sha256);
-    std::vector<ManifestLine> shown;
+    std::map<int, std::string> lines;
     for (const FigureInput& input : lineage.inputs) {
       if (input.manifest != manifest.sha256) continue;
-      for (const ManifestLine& line : input.lines) {
-        const bool known = std::any_of(shown.begin(), shown.end(), [&](const ManifestLine& other) {
-          return other.line == line.line;
-        });
-        if (!known) shown.push_back(line);
-      }
+      for (const ManifestLine& line : input.lines) lines.emplace(line.line, line.text);
     }
-    std::sort(shown.begin(), shown.end(),
-              [](const ManifestLine& a, const ManifestLine& b) { return a.line < b.line; });
-    for (const ManifestLine& line : shown) {
-      tell("  line {:>4}  {}\n", line.line, cut(line.text, 13));
-    }
+    for (const auto& [number, text] : lines) tell("  line {:>4}  {}\n", number, cut(text, 13));
   }
 }
 
@@ -190,34 +176,26 @@ void print(const FigureLineage& lineage) {
     print_input(input, lineage.runs.at(input.run), machines);
   }
   for (const auto& [id, stage] : lineage.runs) {
-    const bool is_input = std::any_of(lineage.inputs.begin(), lineage.inputs.end(),
-                                      [&id = id](const FigureInput& i) { return i.run == id; });
-    if (is_input) continue;
-    print_stage_before(stage, machines);
+    if (std::ranges::count(lineage.inputs, id, &FigureInput::run) == 0) {
+      print_stage_before(stage, machines);
+    }
   }
   tell("\n");
   machines.print();
 }
 
-std::size_t checkpoints_of(const FigureLineage& lineage) {
-  std::size_t count = 0;
-  for (const FigureInput& input : lineage.inputs) count += input.checkpoints.size();
-  return count;
-}
-
 nlohmann::json check_json(const std::filesystem::path& file, const PublishedFile& found,
                           const std::vector<InputFault>& faults, std::size_t inputs) {
-  nlohmann::json list = nlohmann::json::array();
-  for (const InputFault& fault : faults) {
-    list.push_back({{"run", fault.run}, {"checkpoint", fault.checkpoint}, {"what", fault.what}});
-  }
+  const auto fault_facts = [](const InputFault& fault) -> nlohmann::json {
+    return {{"run", fault.run}, {"checkpoint", fault.checkpoint}, {"what", fault.what}};
+  };
   const bool matches = found.verdict == PublishedFile::Verdict::matches;
   return {{"file", file.string()},
           {"sha256", found.sha256},
           {"recorded_sha256", found.recorded},
           {"verdict", matches ? "matches" : "changed"},
           {"inputs", inputs},
-          {"input_faults", list}};
+          {"input_faults", json_list(faults, fault_facts)}};
 }
 
 void print_check(const std::filesystem::path& file, const PublishedFile& found,
@@ -257,12 +235,13 @@ void show_published(const Store& store, const std::filesystem::path& file, Conte
   const FigureLineage lineage = figure_lineage(store, found->record);
   const std::vector<InputFault> faults = check_inputs(store, lineage);
   // A checkpoint that was pruned on purpose is not damage.
-  const bool damaged = std::any_of(faults.begin(), faults.end(),
-                                   [](const InputFault& f) { return f.what != "pruned"; });
+  const bool damaged =
+      std::ranges::any_of(faults, [](const InputFault& f) { return f.what != "pruned"; });
   if (damaged || found->verdict == PublishedFile::Verdict::changed) {
     context.exit_code = kStoreDamaged;
   }
-  const std::size_t inputs = checkpoints_of(lineage);
+  std::size_t inputs = 0;
+  for (const FigureInput& input : lineage.inputs) inputs += input.checkpoints.size();
   if (context.json) {
     nlohmann::json all = to_json(lineage);
     all["check"] = check_json(file, *found, faults, inputs);

@@ -8,12 +8,9 @@
 #include <set>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/cluster/job_script.hpp"
 #include "experiments/cluster/proposal.hpp"
 #include "experiments/cluster/submission.hpp"
-#include "experiments/manifest/expand.hpp"
 #include "experiments/runner/progress.hpp"
-#include "provenance/errors.hpp"
 #include "provenance/io/plain_file.hpp"
 #include "provenance/sha256.hpp"
 
@@ -36,53 +33,41 @@ struct SubmitOptions {
   bool dry_run = false;
 };
 
-struct LoadedManifests {
-  std::vector<Manifest> manifests;
-  std::vector<Plan> plans;
-};
-
-LoadedManifests load(const SubmitOptions& options) {
-  LoadedManifests loaded;
-  for (const std::string& path : options.manifests) {
-    loaded.manifests.push_back(load_manifest(path));
-    loaded.plans.push_back(expand(loaded.manifests.back(), options.expand));
-    for (const std::string& warning : loaded.plans.back().warnings) {
-      tell_stderr("warning: {}\n", warning);
-    }
-  }
-  return loaded;
+nlohmann::json facts(const Proposal& proposal) {
+  const auto task = [&](const Share& share) -> nlohmann::json {
+    return {{"runs", share.runs},
+            {"packings", share.packings},
+            {"particle_steps", share.particle_steps},
+            {"seconds", seconds_of(share, proposal)}};
+  };
+  return {{"tasks", json_list(proposal.shares, task)},
+          {"cpus_per_task", proposal.job.cpus},
+          {"left_out", proposal.left_out}};
 }
 
-nlohmann::json facts(const Proposal& proposal) {
-  nlohmann::json tasks = nlohmann::json::array();
-  for (const Share& share : proposal.shares) {
-    tasks.push_back({{"runs", share.runs},
-                     {"packings", share.packings},
-                     {"particle_steps", share.particle_steps},
-                     {"seconds", seconds_of(share, proposal)}});
-  }
-  return {{"tasks", tasks}, {"cpus_per_task", proposal.job.cpus}, {"left_out", proposal.left_out}};
+/// For programs: the proposal and `more`.
+void print_json_of(const Proposal& proposal, const nlohmann::json& more) {
+  nlohmann::json all = facts(proposal);
+  all.update(more);
+  print_json(all);
 }
 
 void print_shares(const Proposal& proposal) {
-  std::vector<std::vector<std::string>> rows;
   std::size_t runs = 0;
-  for (const Share& share : proposal.shares) {
-    rows.push_back({std::to_string(rows.size() + 1), std::to_string(share.runs.size()),
-                    std::to_string(share.packings), fmt::format("{:.3g}", share.particle_steps),
-                    format_duration(seconds_of(share, proposal))});
-    runs += share.runs.size();
-  }
-  fmt::print("{} runs in {} tasks; cores of each: {}\n\n", runs, rows.size(), proposal.job.cpus);
-  print_table({"task", "runs", "packings", "particle-steps", "about"}, rows);
+  for (const Share& share : proposal.shares) runs += share.runs.size();
+  fmt::print("{} runs in {} tasks; cores of each: {}\n\n", runs, proposal.shares.size(),
+             proposal.job.cpus);
+  std::size_t task = 0;
+  print_table({"task", "runs", "packings", "particle-steps", "about"}, proposal.shares,
+              [&](const Share& share) -> Row {
+                return {std::to_string(++task), std::to_string(share.runs.size()),
+                        std::to_string(share.packings), fmt::format("{:.3g}", share.particle_steps),
+                        format_duration(seconds_of(share, proposal))};
+              });
 }
 
 void print_nothing(const Proposal& proposal, Context& context) {
-  if (context.json) {
-    nlohmann::json said = facts(proposal);
-    said["submission"] = nullptr;
-    return print_json(said);
-  }
+  if (context.json) return print_json_of(proposal, {{"submission", nullptr}});
   if (proposal.left_out == 0) {
     fmt::print("Nothing to do: the store holds every run at its length\n");
   } else {
@@ -101,7 +86,7 @@ fs::path whole_path(const std::string& store) {
 JobPlaces places_of(const fs::path& store, const fs::path& folder) {
   JobPlaces places{fs::read_symlink("/proc/self/exe"), store, folder};
   for (const fs::path& path : {places.program, places.folder}) {
-    if (const auto why = unfit_path(path)) throw ClusterError(*why);
+    if (const std::string why = unfit_path(path); !why.empty()) throw ClusterError(why);
   }
   return places;
 }
@@ -116,10 +101,7 @@ void dry_run(const Proposal& proposal, Context& context) {
   const std::string script = array_script(proposal.job, places, proposal.shares.size());
   const std::string folding = fold_script(proposal.job, places, proposal.shares.size());
   if (context.json) {
-    nlohmann::json said = facts(proposal);
-    said["script"] = script;
-    said["fold_script"] = folding;
-    return print_json(said);
+    return print_json_of(proposal, {{"script", script}, {"fold_script", folding}});
   }
   print_shares(proposal);
   fmt::print("\nNothing was submitted. The array job:\n\n{}\nand, when all of it has ended:\n\n{}",
@@ -161,12 +143,10 @@ void queue(const Submission& submission, const Proposal& proposal, Store& store,
   store.record_submission("JobQueued",
                           {{"submission", submission.id}, {"job", job}, {"fold_job", fold_job}});
   if (context.json) {
-    nlohmann::json said = facts(proposal);
-    said["submission"] = submission.id;
-    said["job"] = job;
-    said["fold_job"] = fold_job;
-    said["folder"] = folder.string();
-    return print_json(said);
+    return print_json_of(proposal, {{"submission", submission.id},
+                                    {"job", job},
+                                    {"fold_job", fold_job},
+                                    {"folder", folder.string()}});
   }
   print_shares(proposal);
   fmt::print("\nSubmitted as job {}; {} its stores. Logs: {}\n", job,
@@ -191,14 +171,12 @@ void fold_leftovers(Store& store, const std::vector<OpenSubmission>& open) {
   }
 }
 
-nlohmann::json event_facts(const SubmitOptions& options, const Proposal& proposal,
-                           const LoadedManifests& loaded, const std::vector<std::string>& shas) {
-  nlohmann::json scales = nlohmann::json::array();
-  for (const Plan& plan : loaded.plans) scales.push_back(plan.scale);
-  const JobOptions& job = proposal.job;
+nlohmann::json event_facts(const SubmitOptions& options, const JobOptions& job,
+                           const LoadedManifests& loaded) {
+  const auto sha = [](const Manifest& manifest) { return sha256_hex(manifest.text); };
   return {{"scheduler", options.scheduler},
-          {"manifests", shas},
-          {"scales", scales},
+          {"manifests", json_list(loaded.manifests, sha)},
+          {"scales", json_list(loaded.plans, [](const Plan& plan) { return plan.scale; })},
           {"options",
            {{"partition", job.partition},
             {"account", job.account},
@@ -216,47 +194,42 @@ void submit_really(const SubmitOptions& options, const LoadedManifests& loaded, 
   places_of(folder, folder);  // or says why it cannot be
   Store store(folder, Access::create);
   const std::size_t seen = store.events(kSubmissions).size();
-  const std::vector<OpenSubmission> open = open_submissions(store);
+  std::vector<OpenSubmission> open = unfinished_submissions(store);
+  ask_queue(open);
   fold_leftovers(store, open);
-  std::vector<std::string> shas;
   for (std::size_t m = 0; m < loaded.manifests.size(); ++m) {
     declare(store, loaded.manifests[m], loaded.plans[m]);
-    shas.push_back(sha256_hex(loaded.manifests[m].text));
   }
   const Proposal proposal =
-      propose(loaded.plans, store.runs(), busy_runs(store, open), options.array_size, options.job);
+      propose(loaded.plans, &store, busy_runs(store, open), options.array_size, options.job);
   if (proposal.shares.empty()) return print_nothing(proposal, context);
-  const Submission made = prepare_submission(store, proposal.shares,
-                                             event_facts(options, proposal, loaded, shas), seen);
+  const Submission made =
+      prepare_submission(store, proposal.shares, event_facts(options, proposal.job, loaded), seen);
   queue(made, proposal, store, context);
 }
 
 void submit(const SubmitOptions& options, Context& context) {
-  const LoadedManifests loaded = load(options);
+  const LoadedManifests loaded = load_manifests(options.manifests, options.expand);
   if (!options.dry_run) return submit_really(options, loaded, context);
-  std::vector<RunRecord> known;
+  std::optional<Store> store;
   std::set<std::string> busy;
   if (fs::exists(fs::path(context.store) / "store.sqlite")) {
-    const Store store(context.store, Access::read);
-    known = store.runs();
-    std::vector<OpenSubmission> open = unfinished_submissions(store);
+    store.emplace(context.store, Access::read);
+    std::vector<OpenSubmission> open = unfinished_submissions(*store);
     try {
       ask_queue(open);
     } catch (const ClusterError& error) {
       tell_stderr("warning: runs that are queued already are not left out: {}\n", error.what());
     }
-    busy = busy_runs(store, open);
+    busy = busy_runs(*store, open);
   }
-  const Proposal proposal = propose(loaded.plans, known, busy, options.array_size, options.job);
+  const Proposal proposal =
+      propose(loaded.plans, store ? &*store : nullptr, busy, options.array_size, options.job);
   proposal.shares.empty() ? print_nothing(proposal, context) : dry_run(proposal, context);
 }
 
-std::string check_value(const std::string& text) {
-  return unfit_value(text).value_or("");
-}
-
 std::string check_sbatch(const std::string& text) {
-  if (text.starts_with("--") && text.size() > 2) return check_value(text);
+  if (text.starts_with("--") && text.size() > 2) return unfit_value(text);
   return fmt::format("'{}' is not a long option of sbatch; write --sbatch=--qos=long", text);
 }
 
@@ -292,12 +265,12 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
           })
       ->check(schedulers)
       ->group("");
-  command.add_option("--partition,-p", job.partition, "Partition")->check(check_value);
-  command.add_option("--account,-A", job.account, "Account")->check(check_value);
+  command.add_option("--partition,-p", job.partition, "Partition")->check(unfit_value);
+  command.add_option("--account,-A", job.account, "Account")->check(unfit_value);
   command
       .add_option("--time", job.time,
                   "Time limit of one start of a task; it restarts until it is done")
-      ->check(check_value)
+      ->check(unfit_value)
       ->type_name("HH:MM:SS");
   add_count(command, "--array-size", options.array_size, "Most tasks (default: one per packing)",
             "K", 1, 100000);
@@ -309,6 +282,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
       .add_option("--scratch", job.scratch,
                   "Folder on each node's own disk to work in; the stores are saved every five "
                   "minutes")
+      ->check(unfit_path)
       ->type_name("DIR");
   add_count(command, "--warn", job.warn_seconds,
             "Seconds before the time limit at which tasks write checkpoints and queue themselves "
@@ -332,23 +306,18 @@ void add_submit(CLI::App& app, Context& context) {
   command->add_option("manifest", options->manifests, "YAML manifests")->required();
   add_expand_options(*command, options->expand);
   add_job_options(*command, *options);
-  add_common_options(*command, context, true);
+  add_common_options(*command, context);
   command->footer(
-      "Each task computes the runs of some packings in its own store under STORE/submissions; a "
-      "job\n"
-      "after the array merges these stores into STORE. Near its time limit a task writes "
-      "checkpoints\n"
-      "and queues itself again. Runs that are done or queued are left out, so you can submit again "
-      "at\n"
-      "any time. Put STORE on a disk that all nodes see.\n"
-      "Examples:\n"
-      "  shearcell submit experiments/drag.yaml --scale paper --partition long --time 24:00:00\n"
-      "  shearcell submit experiments/*.yaml --scale desk --scratch /scratch --sbatch=--mem=4G\n"
-      "  shearcell submit experiments/drag.yaml --dry-run");
+      R"(Each task computes the runs of some packings in its own store under STORE/submissions; a job
+after the array merges these stores into STORE. Near its time limit a task writes checkpoints
+and queues itself again. Runs that are done or queued are left out, so you can submit again at
+any time. Put STORE on a disk that all nodes see.
+Examples:
+  shearcell submit experiments/drag.yaml --scale paper --partition long --time 24:00:00
+  shearcell submit experiments/*.yaml --scale desk --scratch /scratch --sbatch=--mem=4G
+  shearcell submit experiments/drag.yaml --dry-run)");
   command->callback([options, &context] {
     check_time(options->job);
-    if (const auto why = unfit_path(options->job.scratch))
-      throw CLI::ValidationError("--scratch", *why);
     submit(*options, context);
   });
 }

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <thread>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/run_table.hpp"
-#include "experiments/runner/terminal.hpp"
 #include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
@@ -50,23 +48,9 @@ void table(const TableOptions& options, Context& context) {
   if (!made.damage.empty()) context.exit_code = kStoreDamaged;
 }
 
-std::vector<std::string> curve_names() {
-  std::vector<std::string> names;
-  for (const CurveMeasure& curve : all_curve_measures()) names.emplace_back(curve.name);
-  return names;
-}
-
-std::string curves_text() {
+std::string columns_text() {
   std::string text;
-  for (const CurveMeasure& curve : all_curve_measures()) {
-    text += fmt::format("  {:<37} {}; against {}\n", curve.name, curve.meaning, curve.x);
-  }
-  return text;
-}
-
-std::string columns_text(RowPer per) {
-  std::string text;
-  for (const TableColumn& column : table_columns(per)) {
+  for (const TableColumn& column : table_columns(RowPer::run)) {
     text += fmt::format("  {:<37} {}\n", column.name, column.meaning);
   }
   return text;
@@ -83,10 +67,16 @@ void add_table(CLI::App& app, Context& context) {
       command->add_option("--per", options->per, "One row for each checkpoint or each run")
           ->check(CLI::IsMember({"checkpoint", "run"}))
           ->capture_default_str();
+  std::vector<std::string> curves;
+  std::string curves_text;
+  for (const CurveMeasure& curve : all_curve_measures()) {
+    curves.emplace_back(curve.name);
+    curves_text += fmt::format("  {:<37} {}; against {}\n", curve.name, curve.meaning, curve.x);
+  }
   command
       ->add_option("--curve", options->curve,
                    "A row for each value of this curve at each checkpoint")
-      ->check(CLI::IsMember(curve_names()))
+      ->check(CLI::IsMember(curves))
       ->excludes(per);
   CLI::Option* format = command->add_option("--format", options->format, "csv or json")
                             ->check(CLI::IsMember({"csv", "json"}))
@@ -98,17 +88,17 @@ void add_table(CLI::App& app, Context& context) {
       ->excludes(command->get_option("--curve"));
   command->add_option("--out", options->out, "File to write (default: standard output)")
       ->type_name("FILE");
-  add_common_options(*command, context, true);
+  add_common_options(*command, context);
   command->get_option("--json")->excludes(format)->description("The same as --format json");
   command->footer(
       "Columns (one more for each swept parameter after the seed, named as in a manifest; an empty "
       "field\nis unknown or does not apply):\n" +
-      columns_text(RowPer::run) +
+      columns_text() +
       "Columns named per_cycle come with --ledger alone. The last ones, from critical_size on, are "
       "those of --per run, whose measures are of the "
       "newest\ncheckpoint. A row for each experiment that shares a run, up to the cycles that it "
       "asks for.\n\nCurves:\n" +
-      curves_text() +
+      curves_text +
       "Examples:\n"
       "  shearcell table --experiment drag --out drag.csv\n"
       "  shearcell table --per run --variant fluid=cell --format json\n"

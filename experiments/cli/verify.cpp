@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `verify`: checks that the store is unchanged and, on request, that it can be recomputed.
+// `rebuild`: mends its tables.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <memory>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stop.hpp"
+#include "provenance/io/read_number.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell::cli {
@@ -31,13 +32,10 @@ std::optional<Head> read_head(const std::vector<std::string>& words) {
   if (words.empty()) return std::nullopt;
   std::string text = words.size() == 2 ? words[0] + ":" + words[1] : words[0];
   if (const auto space = text.find(' '); space != std::string::npos) text[space] = ':';
-  const auto colon = text.find(':');
-  Head head;
-  if (colon != std::string::npos) {
-    const char* end = text.data() + colon;
-    const auto [stop, error] = std::from_chars(text.data(), end, head.seq);
-    head.hash = text.substr(colon + 1);
-    if (error == std::errc() && stop == end && is_sha256_hex(head.hash)) return head;
+  if (const auto colon = text.find(':'); colon != std::string::npos) {
+    const auto seq = read_number<std::uint64_t>(std::string_view(text).substr(0, colon));
+    const std::string hash = text.substr(colon + 1);
+    if (seq && is_sha256_hex(hash)) return Head{*seq, hash};
   }
   throw CLI::ValidationError(
       "--against",
@@ -46,9 +44,7 @@ std::optional<Head> read_head(const std::vector<std::string>& words) {
 
 // A new sample for every new event, and the same one again for the same store.
 std::uint64_t seed_of(const Head& head) {
-  std::uint64_t seed = 0;
-  std::from_chars(head.hash.data(), head.hash.data() + 12, seed, 16);
-  return seed;
+  return std::stoull(head.hash.substr(0, 12), nullptr, 16);
 }
 
 nlohmann::json facts(const Replay& replay) {
@@ -93,10 +89,10 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   for (const RunRecord& run : store.runs()) {
     if (why_not_again(run)) left_out += store.checkpoints(run.id, true).size();
   }
-  if (!context.json && left_out > 0) {
-    fmt::print("{} checkpoints of LAMMPS are left out: it does not repeat bits\n", left_out);
-  }
   if (!context.json) {
+    if (left_out > 0) {
+      tell("{} checkpoints of LAMMPS are left out: it does not repeat bits\n", left_out);
+    }
     tell("replaying up to {} of {} checkpoints, --seed {}\n", chosen.size(), all.size(), seed);
   }
   for (const CheckpointRecord& record : chosen) {
@@ -113,20 +109,19 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
 }
 
 nlohmann::json facts(const VerifyReport& report) {
-  nlohmann::json findings = nlohmann::json::array();
-  for (const Finding& finding : report.findings) {
-    findings.push_back({{"severity", name_of_severity(finding)},
-                        {"subject", finding.subject},
-                        {"run", finding.run},
-                        {"message", finding.message}});
-  }
+  const auto finding_facts = [](const Finding& finding) -> nlohmann::json {
+    return {{"severity", name_of_severity(finding)},
+            {"subject", finding.subject},
+            {"run", finding.run},
+            {"message", finding.message}};
+  };
   return {{"ok", report.ok()},
           {"events", report.events},
           {"checkpoints", report.checkpoints},
           {"bytes", report.bytes},
           {"orphans", report.orphans},
           {"head", {{"seq", report.head.seq}, {"hash", report.head.hash}}},
-          {"findings", findings}};
+          {"findings", json_list(report.findings, finding_facts)}};
 }
 
 // Only of a sound store: all these read its records and files.
@@ -177,6 +172,18 @@ void verify(const VerifyOptions& options, Context& context) {
   if (context.json) print_json(all);
 }
 
+void rebuild(Context& context) {
+  Store store(context.store, Access::write);
+  store.rebuild();
+  const std::vector<RunRecord> runs = store.runs();
+  const Head head = store.head();
+  if (context.json) {
+    print_json({{"events", head.seq}, {"runs", runs.size()}});
+  } else {
+    fmt::print("{} runs derived from {} events\n", runs.size(), head.seq);
+  }
+}
+
 }  // namespace
 
 void add_verify(CLI::App& app, Context& context) {
@@ -192,24 +199,34 @@ void add_verify(CLI::App& app, Context& context) {
             "Recompute the cached measures of K sampled checkpoints (default: 8)", "K");
   add_count(*command, "--seed", options->seed, "Seed of the sample (default: from the head)");
   add_threads_option(*command, options->threads, "Threads of a replay, for large cells");
-  add_common_options(*command, context, true);
+  add_common_options(*command, context);
   command->footer(
-      "Proves that no event or file was changed or lost; that each file is the one that its event\n"
-      "describes (step, cycle, time, units, grains, observables, state); that each run has the\n"
-      "parameters and labels of its id; that the tables follow from the events.\n"
-      "--replay K recomputes K sampled checkpoints from the ones before, compares every bit of "
-      "the\n"
-      "state and of all that is recorded with it, and records the outcome. --measures K "
-      "recomputes\n"
-      "what derived.sqlite caches of K sampled checkpoints.\n"
-      "Cannot prove: what is not sampled; when, where and how fast a run was computed; "
-      "trajectories\n"
-      "of LAMMPS; that nobody rewrote the log from its first event or cut off its end. To detect "
-      "the\n"
-      "last, keep the printed head away from the store and pass it to --against.\n"
-      "Examples:\n  shearcell verify --json\n  shearcell verify --replay 5\n"
-      "  shearcell verify --against 16 4358ffe4f2a9...");
+      R"(Proves that no event or file was changed or lost; that each file is the one that its event
+describes (step, cycle, time, units, grains, observables, state); that each run has the
+parameters and labels of its id; that the tables follow from the events.
+--replay K recomputes K sampled checkpoints from the ones before, compares every bit of the
+state and of all that is recorded with it, and records the outcome. --measures K recomputes
+what derived.sqlite caches of K sampled checkpoints.
+Cannot prove: what is not sampled; when, where and how fast a run was computed; trajectories
+of LAMMPS; that nobody rewrote the log from its first event or cut off its end. To detect the
+last, keep the printed head away from the store and pass it to --against.
+Examples:
+  shearcell verify --json
+  shearcell verify --replay 5
+  shearcell verify --against 16 4358ffe4f2a9...)");
   command->callback([options, &context] { verify(*options, context); });
+}
+
+void add_rebuild(CLI::App& app, Context& context) {
+  CLI::App* command =
+      app.add_subcommand("rebuild", "Rebuild the tables of the store from its events");
+  add_common_options(*command, context);
+  command->footer(
+      R"(Use it when `verify` reports a table that differs from the events. Events and checkpoints do
+not change.
+Examples:
+  shearcell rebuild)");
+  command->callback([&context] { rebuild(context); });
 }
 
 }  // namespace shearcell::cli

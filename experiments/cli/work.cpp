@@ -15,9 +15,8 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/cluster/task_report.hpp"
+#include "experiments/cluster/queue_view.hpp"
 #include "experiments/runner/audit.hpp"
-#include "experiments/runner/campaign.hpp"
 #include "experiments/runner/stop.hpp"
 
 namespace shearcell::cli {
@@ -155,14 +154,13 @@ void add_work(CLI::App& app, Context& context) {
                    "Work on a copy of the store in this folder, on the node's own disk")
       ->type_name("DIR");
   command->add_flag("--leave-failed", options->leave_failed, "Do not try failed runs again");
-  add_common_options(*command, context, true);
+  add_common_options(*command, context);
   command->footer(
-      "--store names the task's store. On SIGTERM or SIGUSR1 it writes checkpoints and ends with "
-      "code\n"
-      "85; started again, it continues bit for bit. With --scratch, copies the store back every "
-      "five\n"
-      "minutes and at the end.\n"
-      "Examples:\n  shearcell work --store shearcell-store/submissions/3f9a12bc45de/task-1 -j 2");
+      R"(--store names the task's store. On SIGTERM or SIGUSR1 it writes checkpoints and ends with code
+85; started again, it continues bit for bit. With --scratch, copies the store back every five
+minutes and at the end.
+Examples:
+  shearcell work --store shearcell-store/submissions/3f9a12bc45de/task-1 -j 2)");
   command->callback([options, &context] { work(*options, context); });
 }
 

@@ -2,6 +2,7 @@
 #include "experiments/cluster/proposal.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace shearcell {
@@ -9,35 +10,82 @@ namespace {
 
 constexpr std::size_t kMostCpus = 16;
 
-}  // namespace
-
-std::set<std::string> busy_runs(const Store& store, const std::vector<OpenSubmission>& open) {
-  std::set<std::string> busy;
-  for (const OpenSubmission& submission : open) {
-    if (submission.queue.empty()) continue;
-    for (const auto& task : submission.submission.tasks) busy.insert(task.begin(), task.end());
-  }
-  for (const Lease& lease : store.leases()) busy.insert(lease.run);
-  // Their packings as well, while these are still to be settled.
-  const std::vector<RunRecord> runs = store.runs();
-  std::set<std::string> parents;
-  for (const RunRecord& run : runs) {
-    if (busy.contains(run.id)) parents.insert(run.parent);
-  }
-  for (const RunRecord& run : runs) {
-    if (parents.contains(run.id) && run.state != RunState::completed) busy.insert(run.id);
-  }
-  return busy;
+std::vector<RunRecord> runs_of(const Store* store) {
+  return store == nullptr ? std::vector<RunRecord>{} : store->runs();
 }
 
-Proposal propose(const std::vector<Plan>& plans, const std::vector<RunRecord>& known,
+/// Particle-steps left of a stage; nothing when it is done.
+std::optional<double> left_of(const PlannedRun& run, const StageSpec& stage,
+                              const std::map<std::string, RunRecord>& known, const Store* store) {
+  const auto found = known.find(stage.key);
+  const RunRecord* record = found == known.end() ? nullptr : &found->second;
+  const auto cycle = cycle_to_continue(run, stage, record, store);
+  if (!cycle) return std::nullopt;
+  return stage_cost(run, stage, *cycle).particle_steps;
+}
+
+}  // namespace
+
+std::vector<Bundle> work_left(const std::vector<Plan>& plans, const Store* store) {
+  std::map<std::string, RunRecord> known;
+  for (RunRecord& run : runs_of(store)) known.emplace(run.id, run);
+  // Two manifests may ask for one run; the longer one decides.
+  std::map<std::string, const PlannedRun*> longest;
+  for (const Plan& plan : plans) {
+    for (const PlannedRun& run : plan.runs) {
+      const PlannedRun*& kept = longest[run.last.key];
+      if (kept == nullptr || run.cycles > kept->cycles) kept = &run;
+    }
+  }
+  std::vector<Bundle> bundles;
+  std::map<std::string, std::size_t> places;  // of each packing in bundles
+  std::set<std::string> seen;
+  for (const Plan& plan : plans) {
+    for (const PlannedRun& planned : plan.runs) {
+      if (!seen.insert(planned.last.key).second) continue;
+      const PlannedRun& run = *longest.at(planned.last.key);
+      const auto left = left_of(run, run.last, known, store);
+      if (!left) continue;
+      const auto [place, fresh] = places.try_emplace(run.prepare.key, bundles.size());
+      if (fresh) {
+        bundles.push_back(
+            {run.prepare.key, {}, left_of(run, run.prepare, known, store).value_or(0)});
+      }
+      bundles[place->second].runs.push_back(run.last.key);
+      bundles[place->second].particle_steps += *left;
+    }
+  }
+  return bundles;
+}
+
+std::vector<Share> share_out(std::vector<Bundle> bundles, std::size_t tasks) {
+  std::stable_sort(bundles.begin(), bundles.end(), [](const Bundle& a, const Bundle& b) {
+    return a.particle_steps > b.particle_steps;
+  });
+  std::vector<Share> shares(std::min(tasks, bundles.size()));
+  for (const Bundle& bundle : bundles) {
+    // Costs may be 0, and no share may stay empty.
+    const auto least =
+        std::min_element(shares.begin(), shares.end(), [](const Share& a, const Share& b) {
+          return std::pair(a.particle_steps, a.packings) < std::pair(b.particle_steps, b.packings);
+        });
+    least->runs.insert(least->runs.end(), bundle.runs.begin(), bundle.runs.end());
+    least->stages.insert(bundle.packing);
+    least->stages.insert(bundle.runs.begin(), bundle.runs.end());
+    least->particle_steps += bundle.particle_steps;
+    ++least->packings;
+  }
+  return shares;
+}
+
+Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job) {
   Proposal made;
-  std::vector<Bundle> bundles = work_left(plans, known);
+  std::vector<Bundle> bundles = work_left(plans, store);
   std::erase_if(bundles, [&](const Bundle& bundle) {
     const bool taken = busy.contains(bundle.packing) ||
-                       std::any_of(bundle.runs.begin(), bundle.runs.end(),
-                                   [&busy](const std::string& run) { return busy.contains(run); });
+                       std::ranges::any_of(
+                           bundle.runs, [&](const std::string& run) { return busy.contains(run); });
     if (taken) made.left_out += bundle.runs.size();
     return taken;
   });
@@ -52,7 +100,7 @@ Proposal propose(const std::vector<Plan>& plans, const std::vector<RunRecord>& k
   for (const Plan& plan : plans) {
     for (const PlannedRun& run : plan.runs) grains = std::max(grains, run.grains);
   }
-  made.rate = expected_rate(known, EngineKind::shearcell, static_cast<double>(grains));
+  made.rate = expected_rate(runs_of(store), EngineKind::shearcell, static_cast<double>(grains));
   return made;
 }
 

@@ -7,12 +7,35 @@
 #include <string>
 #include <vector>
 
-#include "experiments/cluster/job_script.hpp"
-#include "experiments/cluster/share.hpp"
-#include "experiments/cluster/submission.hpp"
+#include "experiments/cluster/slurm.hpp"
+#include "experiments/manifest/expand.hpp"
 #include "experiments/runner/cost.hpp"
+#include "provenance/store.hpp"
 
 namespace shearcell {
+
+/// Runs that start from one packing. They stay together, so that it is settled once.
+struct Bundle {
+  std::string packing;            ///< id of the `prepare` stage
+  std::vector<std::string> runs;  ///< ids of the stages left that start from it, as planned
+  double particle_steps = 0;      ///< left, the packing's own included
+};
+
+/// What one task computes.
+struct Share {
+  std::vector<std::string> runs;  ///< ids of the stages to compute, without their packings
+  std::set<std::string> stages;   ///< ids of these and of the packings that they start from
+  std::size_t packings = 0;
+  double particle_steps = 0;
+};
+
+/// Every run of the plans that the store, which may be null, does not hold completed at its length;
+/// each once, in the order of the plans.
+std::vector<Bundle> work_left(const std::vector<Plan>& plans, const Store* store);
+
+/// Distributes the bundles, the largest first, each to the task with the least work; equal ones in
+/// turn. At most `tasks` shares, none empty. The same bundles give the same shares.
+std::vector<Share> share_out(std::vector<Bundle> bundles, std::size_t tasks);
 
 struct Proposal {
   std::vector<Share> shares;
@@ -21,13 +44,9 @@ struct Proposal {
   Rate rate{};
 };
 
-/// Runs that somebody computes now, or will: those of submissions in the queue, and those that
-/// programs on this machine hold; and packings that they start from and have yet to settle.
-std::set<std::string> busy_runs(const Store& store, const std::vector<OpenSubmission>& open);
-
 /// Leaves out every bundle with a busy run or packing. Where `job` states no number of cores (0), a
 /// task gets one for each of its runs and threads, 16 at most but those of one run.
-Proposal propose(const std::vector<Plan>& plans, const std::vector<RunRecord>& known,
+Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 
 /// Expected of one task, when all its cores are busy.

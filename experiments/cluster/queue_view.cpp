@@ -5,38 +5,76 @@
 
 #include <algorithm>
 #include <cctype>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "provenance/io/plain_file.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell {
 namespace {
 
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+fs::path report_file(fs::path folder) {
+  return folder += ".progress.json";
+}
+
 std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }
 
 QueuedRun task_of(const OpenSubmission& open, std::size_t task) {
   const Submission& submission = open.submission;
-  QueuedRun found{.job = submission.job.empty() ? "" : fmt::format("{}_{}", submission.job, task),
-                  .state = "ended",
-                  .reason = {},
-                  .node = {},
-                  .reported = {}};
+  QueuedRun found;
+  if (!submission.job.empty()) found.job = fmt::format("{}_{}", submission.job, task);
+  found.state = "ended";
   for (const QueuedTask& queued : open.queue) {
     if (queued.name != submission.name() || queued.task != task) continue;
-    found.job = fmt::format("{}_{}", queued.job, task);
-    found.state = lower(queued.state);
-    found.reason = queued.reason;
-    found.node = queued.node;
+    found = {fmt::format("{}_{}", queued.job, task),
+             lower(queued.state),
+             queued.reason,
+             queued.node,
+             {}};
   }
   return found;
 }
 
 }  // namespace
 
+void write_task_report(const fs::path& folder, const std::vector<RunRecord>& runs) {
+  json list = json::array();
+  for (const RunRecord& run : runs) {
+    list.push_back({{"id", run.id}, {"state", name_of(run.state)}, {"cycle", run.cycle}});
+  }
+  try {
+    write_output(report_file(folder), json{{"runs", list}}.dump() + "\n");
+  } catch (const std::system_error&) {
+    // It only informs, and is written again soon.
+  }
+}
+
+std::map<std::string, ReportedRun> read_task_report(const fs::path& folder) {
+  std::map<std::string, ReportedRun> reported;
+  const json facts =
+      parse_json(read_plain(report_file(folder), StoreLimits::value_bytes).value_or(""));
+  try {
+    for (const json& run : facts.at("runs")) {
+      const auto state = value_of<RunState>(run.at("state").get_ref<const std::string&>());
+      if (!state) continue;
+      reported[run.at("id").get<std::string>()] = {*state, run.at("cycle").get<double>()};
+    }
+  } catch (const json::exception&) {
+    reported.clear();  // it only informs
+  }
+  return reported;
+}
+
 bool QueueView::busy() const {
-  return std::any_of(submissions.begin(), submissions.end(),
-                     [](const OpenSubmission& open) { return !open.queue.empty(); });
+  return std::ranges::any_of(submissions, [](const auto& open) { return !open.queue.empty(); });
 }
 
 QueueView look_at_queue(const Store& store) {
@@ -81,8 +119,8 @@ std::string describe(const OpenSubmission& open) {
   for (const auto& [state, tasks] : count) {
     states += fmt::format("{}{} {}", states.empty() ? "" : ", ", tasks, state);
   }
-  return fmt::format("submission {}: job {}, {} of {} tasks{}{}", s.id, open.queue.front().job,
-                     states.empty() ? "none" : states, s.tasks.size(), " in the queue",
+  return fmt::format("submission {}: job {}, {} of {} tasks in the queue{}", s.id,
+                     open.queue.front().job, states.empty() ? "none" : states, s.tasks.size(),
                      folding ? fmt::format("; job {} will fold their stores", s.fold_job) : "");
 }
 

@@ -1,15 +1,56 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Calls Slurm's own programs, with argument vectors.
+// What is particular to Slurm: the scripts that it runs (an array of tasks, and the job that folds
+// their stores together), and its own programs, which are called with argument vectors.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace shearcell {
+
+/// Options for Slurm. Empty texts leave the choice to the cluster.
+struct JobOptions {
+  std::string partition;
+  std::string account;
+  std::string time;                 ///< limit of one start of a task, in Slurm's own form
+  std::size_t cpus = 0;             ///< of a task; 0 where it is not chosen yet
+  std::size_t threads = 1;          ///< inside each run
+  std::size_t warn_seconds = 120;   ///< before the limit
+  std::vector<std::string> sbatch;  ///< further options, as "--qos=long"
+  std::string scratch;              ///< folder on a node's own disk
+};
+
+struct JobPlaces {
+  std::filesystem::path program;  ///< this one
+  std::filesystem::path store;    ///< that the tasks' stores are folded into
+  std::filesystem::path folder;   ///< of the submission; holds task-1, task-2, ...
+};
+
+/// Why a path cannot be passed to Slurm (a backslash or control character); "" when it can.
+std::string unfit_path(const std::filesystem::path& path);
+
+/// Why the text may not stand in a script as an option's value; "" when it may.
+std::string unfit_value(std::string_view text);
+
+/// Seconds of a time limit: "MM", "MM:SS", "HH:MM:SS", "D-HH", "D-HH:MM" or "D-HH:MM:SS". Nothing
+/// for anything else.
+std::optional<double> slurm_seconds(std::string_view time);
+
+/// For `sbatch`: task n works on FOLDER/task-n. It ends with the program's exit code, and is
+/// queued again when its time ran out.
+std::string array_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks);
+
+/// Folds every task's store into STORE, each by itself; ends with the last code that was not 0.
+std::string fold_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks);
+
+/// Of `--output`, whose patterns may mean nothing in the folder's own name.
+std::string output_pattern(const std::filesystem::path& folder, std::string_view file);
 
 /// Slurm is missing, does not answer, or refuses. The message holds its answer and the remedy.
 class ClusterError : public std::runtime_error {

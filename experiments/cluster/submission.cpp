@@ -44,14 +44,9 @@ void apply(std::vector<Submission>& known, const Event& event) {
   }
 }
 
-bool all_completed(const Submission& submission, const std::vector<RunRecord>& runs) {
-  const auto completed = [&](const std::string& id) {
-    const auto run =
-        std::find_if(runs.begin(), runs.end(), [&](const RunRecord& r) { return r.id == id; });
-    return run != runs.end() && run->state == RunState::completed;
-  };
-  return std::all_of(submission.tasks.begin(), submission.tasks.end(), [&](const auto& task) {
-    return std::all_of(task.begin(), task.end(), completed);
+bool all_completed(const Submission& submission, const std::set<std::string>& completed) {
+  return std::ranges::all_of(submission.tasks, [&](const auto& task) {
+    return std::ranges::all_of(task, [&](const auto& run) { return completed.contains(run); });
   });
 }
 
@@ -73,10 +68,14 @@ std::vector<Submission> read_submissions(const Store& store) {
 
 std::vector<OpenSubmission> unfinished_submissions(const Store& store) {
   std::vector<OpenSubmission> open;
-  const std::vector<RunRecord> runs = store.runs();
+  std::set<std::string> completed;
+  for (const RunRecord& run : store.runs()) {
+    if (run.state == RunState::completed) completed.insert(run.id);
+  }
   for (Submission& submission : read_submissions(store)) {
     // Others came by `merge` from stores elsewhere.
-    if (!fs::exists(submission.folder(store.folder())) || all_completed(submission, runs)) continue;
+    if (!fs::exists(submission.folder(store.folder()))) continue;
+    if (all_completed(submission, completed)) continue;
     open.push_back({std::move(submission), {}});
   }
   return open;
@@ -98,12 +97,6 @@ void ask_queue(std::vector<OpenSubmission>& submissions) {
   }
 }
 
-std::vector<OpenSubmission> open_submissions(const Store& store) {
-  std::vector<OpenSubmission> open = unfinished_submissions(store);
-  ask_queue(open);
-  return open;
-}
-
 std::vector<MergeReport> fold(Store& store, const Submission& submission) {
   std::vector<MergeReport> reports;
   for (std::size_t task = 1; task <= submission.tasks.size(); ++task) {
@@ -112,6 +105,25 @@ std::vector<MergeReport> fold(Store& store, const Submission& submission) {
     for (MergeReport& report : merge_stores(store, {folder})) reports.push_back(std::move(report));
   }
   return reports;
+}
+
+std::set<std::string> busy_runs(const Store& store, const std::vector<OpenSubmission>& open) {
+  std::set<std::string> busy;
+  for (const OpenSubmission& submission : open) {
+    if (submission.queue.empty()) continue;
+    for (const auto& task : submission.submission.tasks) busy.insert(task.begin(), task.end());
+  }
+  for (const Lease& lease : store.leases()) busy.insert(lease.run);
+  // Their packings as well, while these are still to be settled.
+  const std::vector<RunRecord> runs = store.runs();
+  std::set<std::string> parents;
+  for (const RunRecord& run : runs) {
+    if (busy.contains(run.id)) parents.insert(run.parent);
+  }
+  for (const RunRecord& run : runs) {
+    if (parents.contains(run.id) && run.state != RunState::completed) busy.insert(run.id);
+  }
+  return busy;
 }
 
 Submission prepare_submission(Store& store, const std::vector<Share>& shares, json facts,

@@ -7,10 +7,11 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
-#include "experiments/cluster/share.hpp"
+#include "experiments/cluster/proposal.hpp"
 #include "experiments/cluster/slurm.hpp"
 #include "provenance/store.hpp"
 
@@ -41,13 +42,15 @@ struct OpenSubmission {
 /// Oldest first. Throws StoreDamaged when an event does not hold what it must.
 std::vector<Submission> read_submissions(const Store& store);
 
-/// Those that are in this store's folder and have runs that the store does not hold completed, each
-/// with what the queue says. Asks Slurm only when there are any. Throws ClusterError.
-std::vector<OpenSubmission> open_submissions(const Store& store);
-
-/// The same without asking.
+/// Those that are in this store's folder and have runs that the store does not hold completed.
 std::vector<OpenSubmission> unfinished_submissions(const Store& store);
+
+/// Adds what the queue says of each. Asks Slurm only when there are any. Throws ClusterError.
 void ask_queue(std::vector<OpenSubmission>& submissions);
+
+/// Runs that somebody computes now, or will: those of submissions in the queue, and those that
+/// programs on this machine hold; and packings that they start from and have yet to settle.
+std::set<std::string> busy_runs(const Store& store, const std::vector<OpenSubmission>& open);
 
 /// Folds in what the tasks of a submission recorded. Task stores that no longer exist are skipped.
 std::vector<MergeReport> fold(Store& store, const Submission& submission);

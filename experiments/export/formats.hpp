@@ -29,12 +29,6 @@ enum class Lengths { diameters, metres };
 /// symbols; `type` is the wall. Lengths in grain diameters (the radius of a sphere is then
 /// 0.5, as OVITO and ASE expect numbers of order 1), with d in metres as d_m; or in metres.
 FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths);
-inline FrameWriter extxyz_in_diameters(const std::filesystem::path& file) {
-  return extxyz_writer(file, Lengths::diameters);
-}
-inline FrameWriter extxyz_in_metres(const std::filesystem::path& file) {
-  return extxyz_writer(file, Lengths::metres);
-}
 
 /// A folder with grains_CYCLE.vtp (points with their data; scalars as field data) and
 /// cell_CYCLE.vtp (the six faces of the cell) for each frame, and frames.pvd over all of them. SI.

@@ -21,10 +21,9 @@ void place_cell(const Checkpoint& c, const WallPose& pose, Frame& frame) {
       0, 0, c.cell.depth * d;
 }
 
-void add_grains(const Checkpoint& c, const GrainMeasures& measures, Frame& frame) {
+void add_grains(const Checkpoint& c, Frame& frame) {
   const double d = c.units.diameter_m;
   for (Eigen::Index i = 0; i < c.state.position.cols(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
     const double periods = std::floor(c.state.position(2, i) / c.cell.depth);
     Eigen::Vector3d r = c.state.position.col(i);
     r.z() -= periods * c.cell.depth;
@@ -32,31 +31,38 @@ void add_grains(const Checkpoint& c, const GrainMeasures& measures, Frame& frame
     frame.velocity.col(i) = c.state.velocity.col(i) * d;
     frame.image.push_back(static_cast<std::int32_t>(periods));
     frame.type.push_back(0);
-    frame.phi_local.push_back(measures.phi_local[k]);
-    frame.q6.push_back(measures.q6[k]);
-    frame.overlap.push_back(measures.largest_overlap[k]);
-    frame.pressure.push_back(measures.pressure[k]);
-    frame.contacts.push_back(measures.contacts[k]);
-    frame.structure.push_back(static_cast<std::int32_t>(measures.structure[k]));
-    frame.crystallite.push_back(measures.crystallites.label[k] + 1);
   }
 }
 
-void add_lattices(const Checkpoint& c, const WallPose& pose, Frame& frame) {
-  for (const Lattice lattice : common_neighbour_analysis(c.cell, pose, c.state.position)) {
-    frame.lattice.push_back(static_cast<std::int32_t>(lattice));
-  }
+Motion motion_since(const std::optional<Checkpoint>& earlier, const Checkpoint& now) {
+  if (earlier) return motion(*earlier, now);
+  const Eigen::Index grains = now.state.position.cols();
+  return {Eigen::Matrix3Xd::Constant(3, grains, std::nan("")),
+          std::vector<double>(static_cast<std::size_t>(grains), std::nan(""))};
 }
 
-void add_motion(const Checkpoint& c, const std::optional<Checkpoint>& earlier, Frame& frame) {
-  if (!earlier) {
-    frame.displacement.assign(frame.grains, std::nan(""));
-    frame.nonaffine.assign(frame.grains, std::nan(""));
-    return;
-  }
-  Motion moved = motion(*earlier, c);
-  for (const auto& way : moved.displacement.colwise()) frame.displacement.push_back(way.norm());
-  frame.nonaffine = std::move(moved.nonaffine);
+void add_columns(const Checkpoint& c, const WallPose& pose, const GrainMeasures& measures,
+                 const Motion& moved, Frame& frame) {
+  const auto add = [&](const char* name, const auto& of_grains, auto of_wall_grains) {
+    std::vector<decltype(of_wall_grains)> values;
+    for (const auto value : of_grains)
+      values.push_back(static_cast<decltype(of_wall_grains)>(value));
+    values.resize(frame.particles(), of_wall_grains);
+    frame.columns.push_back({name, std::move(values)});
+  };
+  const Eigen::VectorXd displacement = moved.displacement.colwise().norm();
+  add("phi_local", measures.phi_local, 0.0);
+  add("q6", measures.q6, 0.0);
+  add("overlap", measures.largest_overlap, 0.0);
+  add("grain_pressure_Pa", measures.pressure, 0.0);
+  add("displacement_d", displacement, 0.0);
+  add("d2min_d2", moved.nonaffine, 0.0);
+  add("contacts", measures.contacts, 0);
+  add("structure", measures.structure, -1);
+  add("lattice", common_neighbour_analysis(c.cell, pose, c.state.position), -1);
+  std::vector<int> crystallite = measures.crystallites.label;
+  for (int& label : crystallite) ++label;
+  add("crystallite", crystallite, -1);
 }
 
 /// What `table` measures besides an Analysis; only its scalars.
@@ -81,16 +87,6 @@ void add_wall_grains(const Checkpoint& c, const WallPose& pose, Frame& frame) {
         Eigen::Vector3d(0, moves ? c.state.wall_velocity * c.units.diameter_m : 0.0, 0);
     frame.image.push_back(0);
     frame.type.push_back(1 + static_cast<std::int32_t>(side));
-    frame.phi_local.push_back(0);
-    frame.q6.push_back(0);
-    frame.pressure.push_back(0);
-    frame.overlap.push_back(0);
-    frame.displacement.push_back(0);
-    frame.nonaffine.push_back(0);
-    frame.contacts.push_back(0);
-    frame.lattice.push_back(-1);
-    frame.structure.push_back(-1);
-    frame.crystallite.push_back(-1);
   }
 }
 
@@ -143,28 +139,11 @@ Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, con
   frame.velocity.resize(3, total);
   add_facts(record, run, analysis.measures, frame);
   place_cell(checkpoint, pose, frame);
-  add_grains(checkpoint, analysis.grains, frame);
-  add_lattices(checkpoint, pose, frame);
-  add_motion(checkpoint, sources == nullptr ? std::nullopt : sources->earlier(record, 1), frame);
+  add_grains(checkpoint, frame);
   add_wall_grains(checkpoint, pose, frame);
+  const auto earlier = sources == nullptr ? std::nullopt : sources->earlier(record, 1);
+  add_columns(checkpoint, pose, analysis.grains, motion_since(earlier, checkpoint), frame);
   return frame;
-}
-
-const std::vector<FrameColumn>& frame_columns() {
-  static const std::vector<FrameColumn> columns = {
-      {"type", nullptr, &Frame::type},
-      {"phi_local", &Frame::phi_local, nullptr},
-      {"q6", &Frame::q6, nullptr},
-      {"overlap", &Frame::overlap, nullptr},
-      {"grain_pressure_Pa", &Frame::pressure, nullptr},
-      {"displacement_d", &Frame::displacement, nullptr},
-      {"d2min_d2", &Frame::nonaffine, nullptr},
-      {"contacts", nullptr, &Frame::contacts},
-      {"structure", nullptr, &Frame::structure},
-      {"lattice", nullptr, &Frame::lattice},
-      {"crystallite", nullptr, &Frame::crystallite},
-  };
-  return columns;
 }
 
 }  // namespace shearcell

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "experiments/figures/run_table.hpp"
@@ -11,6 +13,12 @@
 #include "provenance/checkpoint.hpp"
 
 namespace shearcell {
+
+/// A measure of each particle.
+struct FrameColumn {
+  std::string name;
+  std::variant<std::vector<double>, std::vector<std::int32_t>> values;
+};
 
 /// The grains by id, then the wall grains. Arrays have one entry, or one column, per particle. Wall
 /// grains have measures of zero, and structure, lattice and crystallite -1.
@@ -38,16 +46,17 @@ struct Frame {
   Eigen::Matrix3Xd velocity;        ///< [m/s]; of wall grains that of their wall
   std::vector<std::int32_t> image;  ///< periods in z to add for the way of a grain as a whole
   std::vector<std::int32_t> type;   ///< 0 grain; wall grain: 1 left, 2 right, 3 bottom, 4 top
-  std::vector<double> phi_local;
-  std::vector<double> q6;
-  std::vector<double> overlap;            ///< largest, over the diameter
-  std::vector<double> pressure;           ///< of each grain's contacts over its cell [Pa]
-  std::vector<double> displacement;       ///< over the cycle before [d]; NaN without one
-  std::vector<double> nonaffine;          ///< D^2_min over the cycle before [d^2]; NaN likewise
-  std::vector<std::int32_t> contacts;     ///< with grains and wall grains
-  std::vector<std::int32_t> lattice;      ///< by common neighbours: 0 none, 1 FCC, 2 HCP, 3 BCC
-  std::vector<std::int32_t> structure;    ///< 0 disordered, 1 FCC, 2 HCP
-  std::vector<std::int32_t> crystallite;  ///< 0 none; 1, 2, ... by their lowest grain id
+  /// Everything beside these:
+  ///   phi_local, q6
+  ///   overlap            largest, over the diameter
+  ///   grain_pressure_Pa  of each grain's contacts over its cell
+  ///   displacement_d     over the cycle before [d]; NaN without one
+  ///   d2min_d2           D^2_min over the cycle before [d^2]; NaN likewise
+  ///   contacts           with grains and wall grains
+  ///   structure          0 disordered, 1 FCC, 2 HCP
+  ///   lattice            by common neighbours: 0 none, 1 FCC, 2 HCP, 3 BCC
+  ///   crystallite        0 none; 1, 2, ... by their lowest grain id
+  std::vector<FrameColumn> columns;
 
   std::size_t particles() const { return type.size(); }
 };
@@ -56,15 +65,5 @@ struct Frame {
 /// analyse() does.
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
                const SelectedRun& run = {}, MeasureSources* sources = nullptr);
-
-/// A column of per-particle numbers in a format that has columns.
-struct FrameColumn {
-  const char* name;
-  const std::vector<double> Frame::*real;
-  const std::vector<std::int32_t> Frame::*integer;  ///< when `real` is none
-};
-
-/// Everything beside id, position and velocity.
-const std::vector<FrameColumn>& frame_columns();
 
 }  // namespace shearcell

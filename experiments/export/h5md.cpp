@@ -42,26 +42,30 @@ class Trajectory {
     if (frame.particles() != particles_) {
       throw std::runtime_error("the number of particles changes between checkpoints of one run");
     }
-    put("step", H5T_STD_U64LE, &frame.step);
-    put("time", H5T_IEEE_F64LE, &frame.time_s);
     const Eigen::Matrix3d edges = frame.edges * nm_per_m;  // columns here are rows there
-    put("edges", H5T_IEEE_F64LE, edges.data());
     const Eigen::Vector3d origin = frame.origin * nm_per_m;
-    put("origin", H5T_IEEE_F64LE, origin.data());
     const Eigen::Matrix3Xd position = frame.position * nm_per_m;
-    put("position", H5T_IEEE_F64LE, position.data());
-    put("velocity", H5T_IEEE_F64LE, frame.velocity.data());
-    put("image", H5T_STD_I32LE, frame.image.data());
-    for (const FrameColumn& column : frame_columns()) {
-      if (column.real != nullptr) {
-        put(column.name, H5T_IEEE_F64LE, (frame.*column.real).data());
-      } else if (column.name != std::string("type")) {
-        put(column.name, H5T_STD_I32LE, (frame.*column.integer).data());
-      }
+    put("particles/all/step", H5T_STD_U64LE, {}, &frame.step);
+    put("particles/all/time", H5T_IEEE_F64LE, {}, &frame.time_s, "s");
+    element("particles/all/box/edges", H5T_IEEE_F64LE, {3, 3}, edges.data(), "nm");
+    // Beside what H5MD asks for.
+    element("particles/all/box/origin", H5T_IEEE_F64LE, {3}, origin.data(), "nm");
+    element("particles/all/position", H5T_IEEE_F64LE, {particles_, 3}, position.data(), "nm");
+    element("particles/all/velocity", H5T_IEEE_F64LE, {particles_, 3}, frame.velocity.data(),
+            "nm ns-1");
+    element("particles/all/image", H5T_STD_I32LE, {particles_}, frame.image.data());
+    for (const FrameColumn& column : frame.columns) {
+      const hid_t type = column.values.index() == 0 ? H5T_IEEE_F64LE : H5T_STD_I32LE;
+      const auto write = [&](const auto& values) {
+        element("particles/all/" + column.name, type, {particles_}, values.data());
+      };
+      std::visit(write, column.values);
     }
-    put("cycle", H5T_IEEE_F64LE, &frame.cycle);
-    put("theta", H5T_IEEE_F64LE, &frame.theta);
-    for (const auto& [name, value] : frame.scalars) put(name, H5T_IEEE_F64LE, &value);
+    element("observables/cycle", H5T_IEEE_F64LE, {}, &frame.cycle);
+    element("observables/theta", H5T_IEEE_F64LE, {}, &frame.theta, "rad");
+    for (const auto& [name, value] : frame.scalars) {
+      element("observables/" + name, H5T_IEEE_F64LE, {}, &value);
+    }
     require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), path_.string());
     ++next_;
   }
@@ -75,27 +79,18 @@ class Trajectory {
         H5Fclose};
   }
 
-  Handle& dataset(const Handle& parent, const std::string& link, const std::string& name,
-                  hid_t type, const Shape& shape, const std::string& unit) {
-    const Handle made = put_dataset(parent, link, type, nullptr, shape);
-    put_unit(made, unit);
-    H5Iinc_ref(made.get());
-    return sets_.emplace(name, Handle(made.get(), H5Dclose)).first->second;
-  }
-
-  /// {step, time, value}, of which step and time are the same for all.
-  void element(const Handle& parent, const std::string& name, hid_t type, Shape shape,
-               const std::string& unit) {
-    const Handle group = make_group(parent, name);
-    shape.insert(shape.begin(), frames_);
-    dataset(group, "value", name, type, shape, unit);
-    for (const char* shared : {"step", "time"}) {
-      require(H5Lcreate_hard(
-                  file_.get(),
-                  shared == std::string("step") ? "/particles/all/step" : "/particles/all/time",
-                  group.get(), shared, H5P_DEFAULT, H5P_DEFAULT),
-              "a link");
+  /// The frame's row of {step, time, value}, of which step and time are the same for all.
+  void element(const std::string& path, hid_t type, const Shape& shape, const void* data,
+               const std::string& unit = "") {
+    if (next_ == 0) {
+      const Handle group = make_group(file_, path);
+      for (const std::string shared : {"step", "time"}) {
+        require(H5Lcreate_hard(file_.get(), ("particles/all/" + shared).c_str(), group.get(),
+                               shared.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                "a link");
+      }
     }
+    put(path + "/value", type, shape, data, unit);
   }
 
   void begin(const Frame& frame) {
@@ -108,18 +103,11 @@ class Trajectory {
     require(
         H5Lcreate_soft("/particles/all", particles.get(), "trajectory", H5P_DEFAULT, H5P_DEFAULT),
         "a link");
-    dataset(all, "step", "step", H5T_STD_U64LE, {frames_}, "");
-    dataset(all, "time", "time", H5T_IEEE_F64LE, {frames_}, "s");
-    put_box(all);
-    element(all, "position", H5T_IEEE_F64LE, {particles_, 3}, "nm");
-    element(all, "velocity", H5T_IEEE_F64LE, {particles_, 3}, "nm ns-1");
-    element(all, "image", H5T_STD_I32LE, {particles_}, "");
-    for (const FrameColumn& column : frame_columns()) {
-      if (column.name != std::string("type")) {
-        element(all, column.name, column.real != nullptr ? H5T_IEEE_F64LE : H5T_STD_I32LE,
-                {particles_}, "");
-      }
-    }
+    const Handle box = make_group(all, "box");
+    const int dimension = 3;
+    put_attribute(box, "dimension", H5T_STD_I32LE, &dimension);
+    const std::string boundary("none\0\0\0\0none\0\0\0\0periodic", 24);
+    hdf5::put_strings(box, "boundary", boundary, 8, {3});
     std::vector<std::uint64_t> id(particles_);
     std::iota(id.begin(), id.end(), std::uint64_t{1});
     put_dataset(all, "id", H5T_STD_U64LE, id.data(), {particles_});
@@ -128,12 +116,7 @@ class Trajectory {
     put_unit(put_dataset(all, "mass", H5T_IEEE_F64LE, mass.data(), {particles_}), "kg");
     const std::vector<double> radius(particles_, frame.radius * nm_per_m);
     put_unit(put_dataset(all, "radius", H5T_IEEE_F64LE, radius.data(), {particles_}), "nm");
-    const Handle observables = make_group(file_, "observables", 2 + frame.scalars.size());
-    element(observables, "cycle", H5T_IEEE_F64LE, {}, "");
-    element(observables, "theta", H5T_IEEE_F64LE, {}, "rad");
-    for (const auto& [name, value] : frame.scalars) {
-      element(observables, name, H5T_IEEE_F64LE, {}, "");
-    }
+    make_group(file_, "observables", 2 + frame.scalars.size());
     const Handle parameters = make_group(file_, "parameters", 0, frame.facts.size());
     for (const auto& [key, value] : frame.facts) {
       if (value.is_string()) {
@@ -161,31 +144,26 @@ class Trajectory {
     put_attribute(units, "system", std::string("SI"));
   }
 
-  void put_box(const Handle& all) {
-    const Handle box = make_group(all, "box");
-    const int dimension = 3;
-    put_attribute(box, "dimension", H5T_STD_I32LE, &dimension);
-    const std::string boundary("none\0\0\0\0none\0\0\0\0periodic", 24);
-    hdf5::put_strings(box, "boundary", boundary, 8, {3});
-    element(box, "edges", H5T_IEEE_F64LE, {3, 3}, "nm");
-    element(box, "origin", H5T_IEEE_F64LE, {3}, "nm");  // beside what H5MD asks for
-  }
-
-  /// The next row of a dataset.
-  void put(const std::string& name, hid_t type, const void* data) {
-    const Handle& set = sets_.at(name);
-    const Handle space(require(H5Dget_space(set.get()), name), H5Sclose);
-    const int rank = H5Sget_simple_extent_ndims(space.get());
-    Shape count(static_cast<std::size_t>(rank)), start(count.size(), 0);
-    H5Sget_simple_extent_dims(space.get(), count.data(), nullptr);
-    if (next_ >= count.front()) throw std::runtime_error("more frames than were announced");
+  /// The frame's row of a dataset, which the first frame makes.
+  void put(const std::string& path, hid_t type, const Shape& shape, const void* data,
+           const std::string& unit = "") {
+    Shape count = shape, start(shape.size() + 1, 0);
+    count.insert(count.begin(), frames_);
+    if (next_ == 0) {
+      Handle made = put_dataset(file_, path, type, nullptr, count);
+      put_unit(made, unit);
+      sets_.emplace(path, std::move(made));
+    }
+    if (next_ >= frames_) throw std::runtime_error("more frames than were announced");
+    const Handle& set = sets_.at(path);
+    const Handle space(require(H5Dget_space(set.get()), path), H5Sclose);
     count.front() = 1;
     start.front() = next_;
     require(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
                                 nullptr),
-            name);
+            path);
     const Handle memory = hdf5::make_space(count);
-    require(H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, data), name);
+    require(H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, data), path);
   }
 
   std::filesystem::path path_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <numeric>
 
 #include "experiments/export/formats.hpp"
 #include "provenance/io/plain_file.hpp"
@@ -49,7 +50,7 @@ std::vector<double> flat(const Eigen::Matrix3Xd& columns) {
 
 std::vector<std::int64_t> count_from(std::int64_t first, std::size_t count) {
   std::vector<std::int64_t> numbers(count);
-  for (std::size_t i = 0; i < count; ++i) numbers[i] = first + static_cast<std::int64_t>(i);
+  std::iota(numbers.begin(), numbers.end(), first);
   return numbers;
 }
 
@@ -71,9 +72,11 @@ void write_grains(const Frame& f, const std::filesystem::path& file) {
   piece += "<PointData>\n" + out.array("id", "Int64", 1, count_from(1, f.particles())) +
            out.array("velocity", "Float64", 3, flat(f.velocity)) +
            out.array("radius", "Float64", 1, std::vector<double>(f.particles(), f.radius));
-  for (const FrameColumn& column : frame_columns()) {
-    piece += column.real != nullptr ? out.array(column.name, "Float64", 1, f.*column.real)
-                                    : out.array(column.name, "Int32", 1, f.*column.integer);
+  piece += out.array("type", "Int32", 1, f.type);
+  for (const FrameColumn& column : f.columns) {
+    const char* type = column.values.index() == 0 ? "Float64" : "Int32";
+    std::visit([&](const auto& values) { piece += out.array(column.name, type, 1, values); },
+               column.values);
   }
   piece += "</PointData>\n<Verts>\n" +
            out.array("connectivity", "Int64", 1, count_from(0, f.particles())) +

@@ -10,6 +10,7 @@
 #include "core/minimizer.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
+#include "experiments/runner/asks.hpp"
 
 namespace shearcell {
 namespace {
@@ -58,17 +59,17 @@ double checkpoint_bytes(const Geometry& shape) {
 }
 
 std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& stage,
-                                        const RunRecord* known) {
+                                        const RunRecord* known, const Store* store) {
   if (known == nullptr) return 0;
   if (known->state != RunState::completed) return known->cycle;
   if (stage.stage == Stage::prepare || known->cycle >= static_cast<double>(run.cycles)) {
     return std::nullopt;
   }
-  // It ended early, as this manifest asked for.
-  const bool asked = std::ranges::any_of(known->memberships, [&](const Membership& m) {
-    return m.manifest == run.manifest && m.target_cycles >= run.cycles;
-  });
-  return asked ? std::nullopt : std::optional(known->cycle);
+  const bool ended_as_asked =
+      run.until && std::ranges::any_of(asks_of(*store, known->id), [&](const RunAsk& a) {
+        return a.until == run.until && a.target_cycles >= run.cycles;
+      });
+  return ended_as_asked ? std::nullopt : std::optional(known->cycle);
 }
 
 StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle) {

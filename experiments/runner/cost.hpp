@@ -7,7 +7,7 @@
 
 #include "core/filling.hpp"
 #include "experiments/manifest/expand.hpp"
-#include "provenance/records.hpp"
+#include "provenance/store.hpp"
 
 namespace shearcell {
 
@@ -24,10 +24,11 @@ struct StageCost {
   double bytes = 0;  ///< of checkpoint files
 };
 
-/// Cycle from which the stage is left to compute; nothing when `known`, the store's record of it or
-/// null, shows that it is done.
+/// Cycle from which the stage is left to compute; nothing when `known`, the record of it in `store`
+/// or null, shows that it is done: it has its length, or an experiment asked for the same `until`
+/// and at least this length, and it ended there.
 std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& stage,
-                                        const RunRecord* known);
+                                        const RunRecord* known, const Store* store);
 
 /// Cost of a planned stage from `cycle` on. Settling is estimated from what it took at N = 600 to
 /// 18200; checkpoints by checkpoint_bytes.

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sharing out: every run once, packings settled once, the same every time, nobody much busier.
 // Stores for tasks, folding them, and the events that record it; without Slurm.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <map>
 
 #include "experiments/cluster/proposal.hpp"
 #include "experiments/cluster/queue_view.hpp"
@@ -20,14 +24,10 @@ class Submitted : public testing::Test {
   Submitted() : store_(folder_.path() / "store", Access::create) {}
 
   std::vector<Share> shares(std::uint64_t cycles = 2) {
-    const std::string text = tiny_manifest("", kBothFluids);
-    ExpandOptions options;
-    options.seeds = 2;
-    options.cycles = cycles;
-    const Manifest manifest = parse_manifest(text, "tiny.yaml");
-    const Plan plan = expand(manifest, options);
+    const Manifest manifest = parse_manifest(tiny_manifest("", kBothFluids), "tiny.yaml");
+    const Plan plan = expand(manifest, {.cycles = cycles, .seeds = 2});
     declare(store_, manifest, plan);
-    return share_out(work_left({plan}, store_.runs()), 2);
+    return share_out(work_left({plan}, &store_), 2);
   }
 
   Submission submit(const std::vector<Share>& parts) {
@@ -37,11 +37,12 @@ class Submitted : public testing::Test {
 
   std::map<std::string, std::string> computed_here(std::uint64_t cycles) {
     Store whole(folder_.path() / ("whole" + std::to_string(cycles)), Access::create);
-    ExpandOptions options;
-    options.seeds = 2;
-    options.cycles = cycles;
-    compute(whole, tiny_manifest("", kBothFluids), options);
+    compute(whole, tiny_manifest("", kBothFluids), {.cycles = cycles, .seeds = 2});
     return final_hashes(whole);
+  }
+
+  Store store_of(const Submission& made, std::size_t task) const {
+    return {made.task_store(store_.folder(), task), Access::write};
   }
 
   TemporaryFolder folder_;
@@ -51,7 +52,7 @@ class Submitted : public testing::Test {
 TEST_F(Submitted, TasksComputeTheirSharesAndTheirStoresFoldIntoTheWhole) {
   const Submission made = submit(shares());
   for (std::size_t task = 1; task <= 2; ++task) {
-    Store own(made.task_store(store_.folder(), task), Access::write);
+    Store own = store_of(made, task);
     EXPECT_EQ(own.runs().size(), 3U) << "two runs and their packing, nothing else";
     EXPECT_EQ(resume(own).completed, 3U);
     EXPECT_TRUE(own.verify().ok());
@@ -68,16 +69,14 @@ TEST_F(Submitted, TasksComputeTheirSharesAndTheirStoresFoldIntoTheWhole) {
 TEST_F(Submitted, ATaskGoesOnFromWhatTheStoreHolds) {
   const Submission first = submit(shares(1));
   for (std::size_t task = 1; task <= 2; ++task) {
-    Store own(first.task_store(store_.folder(), task), Access::write);
+    Store own = store_of(first, task);
     resume(own);
   }
   fold(store_, first);
-  const auto parts = shares(3);
-  const Submission second = submit(parts);
+  const Submission second = submit(shares(3));
   for (std::size_t task = 1; task <= 2; ++task) {
-    Store own(second.task_store(store_.folder(), task), Access::write);
-    const CampaignResult result = resume(own);
-    EXPECT_EQ(result.completed, 2U) << "the packing is there, and the first cycle";
+    Store own = store_of(second, task);
+    EXPECT_EQ(resume(own).completed, 2U) << "the packing is there, and the first cycle";
   }
   fold(store_, second);
   EXPECT_EQ(final_hashes(store_), computed_here(3));
@@ -93,26 +92,29 @@ TEST_F(Submitted, ATaskGoesOnFromWhatTheStoreHolds) {
 }
 
 TEST_F(Submitted, TasksEndRunsWhereUntilSays) {
-  const Manifest manifest =
-      parse_manifest(tiny_manifest("", "until: {phi: 0.1, extra_cycles: 1}\n"), "tiny.yaml");
+  const std::string text = tiny_manifest("", "until: {phi: 0.1, extra_cycles: 1}\n");
+  const Manifest manifest = parse_manifest(text, "tiny.yaml");
   const Plan plan = expand(manifest);
   declare(store_, manifest, plan);
-  const Submission made = submit(share_out(work_left({plan}, store_.runs()), 1));
-  Store own(made.task_store(store_.folder(), 1), Access::write);
+  const Submission made = submit(share_out(work_left({plan}, &store_), 1));
+  Store own = store_of(made, 1);
   EXPECT_EQ(resume(own).completed, 2U);
   fold(store_, made);
   const RunRecord run = runs_of_kind(store_, "shear").front();
   EXPECT_EQ(run.state, RunState::completed);
   EXPECT_EQ(run.cycle, 1);
   EXPECT_EQ(describe_end(end_of(store_, run)), "phi >= 0.1 at cycle 0 and 1 cycles more");
-  EXPECT_TRUE(work_left({plan}, store_.runs()).empty());
+  EXPECT_TRUE(work_left({plan}, &store_).empty());
+  const Plan edited = expand(parse_manifest(text + "# edited\n", "tiny.yaml"));
+  EXPECT_TRUE(work_left({edited}, &store_).empty()) << "its `until` is the same";
+  const Plan longer = expand(manifest, {.cycles = 9});
+  EXPECT_EQ(work_left({longer}, &store_).size(), 1U) << "nobody asked for this length yet";
 }
 
 TEST_F(Submitted, RunsInTheQueueAreBusyWithTheirPackings) {
   const Submission made = submit(shares());
   EXPECT_TRUE(busy_runs(store_, {{made, {}}}).empty()) << "its jobs have ended";
-  const QueuedTask waiting{
-      .name = made.name(), .job = "17", .task = 2, .state = "PENDING", .reason = {}, .node = {}};
+  const QueuedTask waiting{made.name(), "17", 2, "PENDING", {}, {}};
   EXPECT_EQ(busy_runs(store_, {{made, {waiting}}}).size(), 6U)
       << "nothing is folded before the end";
 }
@@ -128,21 +130,19 @@ TEST_F(Submitted, RunsAtWorkHereAreBusyWithTheirPackings) {
 }
 
 TEST(Proposed, LeavesOutBundlesThatAreBusyAndGivesACoreToEachRun) {
-  ExpandOptions options;
-  options.seeds = 3;
   const std::vector<Plan> plans = {
-      expand(parse_manifest(tiny_manifest("", kBothFluids), "tiny.yaml"), options)};
-  const Proposal all = propose(plans, {}, {}, 1000, {});
+      expand(parse_manifest(tiny_manifest("", kBothFluids), "tiny.yaml"), {.seeds = 3})};
+  const Proposal all = propose(plans, nullptr, {}, 1000, {});
   EXPECT_EQ(all.shares.size(), 3U);
   EXPECT_EQ(all.job.cpus, 2U);
   JobOptions threaded, single;
   threaded.threads = 4;
   single.cpus = 1;
-  const Proposal rest = propose(plans, {}, {all.shares[1].runs[0]}, 1000, threaded);
+  const Proposal rest = propose(plans, nullptr, {all.shares[1].runs[0]}, 1000, threaded);
   EXPECT_EQ(rest.shares.size(), 2U);
   EXPECT_EQ(rest.left_out, 2U);
   EXPECT_EQ(rest.job.cpus, 8U);
-  const Proposal few = propose(plans, {}, {}, 1, single);
+  const Proposal few = propose(plans, nullptr, {}, 1, single);
   EXPECT_EQ(few.shares.size(), 1U);
   EXPECT_EQ(few.job.cpus, 1U);
 }
@@ -153,12 +153,8 @@ TEST_F(Submitted, TwoAtOnceAreToldApart) {
   const Submission one = prepare_submission(store_, parts, nlohmann::json::object(), seen);
   EXPECT_THROW(prepare_submission(store_, parts, nlohmann::json::object(), seen),
                ConcurrencyConflict);
-  std::size_t folders = 0;
-  for ([[maybe_unused]] const auto& entry :
-       fs::directory_iterator(store_.folder() / "submissions")) {
-    ++folders;
-  }
-  EXPECT_EQ(folders, 1U) << "the late one left nothing";
+  EXPECT_EQ(std::distance(fs::directory_iterator(store_.folder() / "submissions"), {}), 1)
+      << "the late one left nothing";
   EXPECT_TRUE(fs::exists(one.folder(store_.folder())));
 }
 
@@ -221,6 +217,94 @@ TEST(TaskReport, ComesBackAndIsNotTrusted) {
     std::ofstream(folder.path() / "task-1.progress.json", std::ios::trunc) << text;
     EXPECT_TRUE(read_task_report(task).empty()) << text;
   }
+}
+
+std::vector<Plan> plans(const std::string& text, const ExpandOptions& options = {}) {
+  return {expand(parse_manifest(text, "tiny.yaml"), options)};
+}
+
+ExpandOptions of(std::uint64_t seeds, std::uint64_t cycles = 2) {
+  return {.cycles = cycles, .seeds = seeds};
+}
+
+TEST(WorkLeft, BundlesRunsByTheirPacking) {
+  const auto bundles = work_left(plans(tiny_manifest("", kBothFluids), of(3)), nullptr);
+  ASSERT_EQ(bundles.size(), 3U);
+  for (const Bundle& bundle : bundles) {
+    EXPECT_EQ(bundle.runs.size(), 2U) << "both fluids shear one packing";
+    EXPECT_GT(bundle.particle_steps, 2 * 2 * kStepsPerCycle * kGrains)
+        << "and it must settle first";
+  }
+}
+
+TEST(WorkLeft, TakesARunOfTwoManifestsOnceAndAtItsLongerLength) {
+  const std::string both = tiny_manifest("", kBothFluids);
+  std::vector<Plan> two = plans(both, of(2));
+  const auto shorter = work_left(two, nullptr);
+  two.push_back(plans(tiny_manifest(), of(2, 9)).front());  // the still fluid, longer
+  const auto bundles = work_left(two, nullptr);
+  ASSERT_EQ(bundles.size(), 2U);
+  EXPECT_EQ(bundles[0].runs, shorter[0].runs);
+  EXPECT_NEAR(bundles[0].particle_steps - shorter[0].particle_steps, 7.0 * kStepsPerCycle * kGrains,
+              1);
+}
+
+TEST(WorkLeft, LeavesOutWhatTheStoreHolds) {
+  const TemporaryFolder folder;
+  Store store(folder.path() / "store", Access::create);
+  const std::string text = tiny_manifest("", kBothFluids);
+  compute(store, text, of(1));
+  EXPECT_TRUE(work_left(plans(text, of(1)), &store).empty());
+  const auto more = work_left(plans(text, of(2)), &store);
+  ASSERT_EQ(more.size(), 1U);
+  EXPECT_EQ(more[0].runs.size(), 2U);
+  // A longer run continues: its packing and its first cycles cost nothing.
+  const auto longer = work_left(plans(text, of(1, 5)), &store);
+  ASSERT_EQ(longer.size(), 1U);
+  EXPECT_NEAR(longer[0].particle_steps, 2 * 3.0 * kStepsPerCycle * kGrains, 1);
+}
+
+Bundle bundle(const std::string& name, double cost) {
+  return {name, {name + "a", name + "b"}, cost};
+}
+
+TEST(SharingOut, GivesEveryRunToOneTaskWithItsPacking) {
+  std::vector<Bundle> bundles;
+  for (int b = 0; b < 23; ++b) bundles.push_back(bundle(fmt::format("p{}", b), 1 + b % 5));
+  for (const std::size_t tasks : {1U, 2U, 7U, 22U, 23U, 500U}) {
+    const auto shares = share_out(bundles, tasks);
+    EXPECT_EQ(shares.size(), std::min<std::size_t>(tasks, 23));
+    std::map<std::string, int> times;
+    double least = 1e9, most = 0;
+    for (const Share& share : shares) {
+      EXPECT_FALSE(share.runs.empty());
+      EXPECT_EQ(share.runs.size(), 2 * share.packings);
+      EXPECT_EQ(share.stages.size(), 3 * share.packings);
+      for (const std::string& run : share.runs) {
+        ++times[run];
+        EXPECT_TRUE(share.stages.contains(run.substr(0, run.size() - 1))) << "its packing";
+      }
+      least = std::min(least, share.particle_steps);
+      most = std::max(most, share.particle_steps);
+    }
+    EXPECT_EQ(times.size(), 46U);
+    for (const auto& [run, count] : times) EXPECT_EQ(count, 1) << run;
+    EXPECT_LE(most - least, 5) << "tasks differ by no more than the largest bundle";
+  }
+}
+
+TEST(SharingOut, GoesRoundWhenAllCostTheSame) {
+  const std::vector<Bundle> bundles = {bundle("p", 3), bundle("q", 3), bundle("r", 3),
+                                       bundle("s", 3)};
+  const auto shares = share_out(bundles, 2);
+  EXPECT_EQ(shares[0].runs, (std::vector<std::string>{"pa", "pb", "ra", "rb"}));
+  EXPECT_EQ(shares[1].runs, (std::vector<std::string>{"qa", "qb", "sa", "sb"}));
+}
+
+TEST(SharingOut, LeavesNoTaskEmptyWhenNothingCostsAnything) {
+  const auto shares = share_out({bundle("p", 0), bundle("q", 0), bundle("r", 0)}, 3);
+  for (const Share& share : shares) EXPECT_EQ(share.packings, 1U);
+  EXPECT_TRUE(share_out({}, 5).empty());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The commands that prove, free, restore and unite, and several programs on one store.
+// The commands that prove, free, restore and unite; several programs on one store; signals, and
+// stores that are not what they should be.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -12,10 +13,6 @@ namespace shearcell::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 class Care : public ProgramTest {
  protected:
@@ -30,36 +27,29 @@ class Care : public ProgramTest {
 
 TEST_F(Care, PruneShowsFirstAndRegenerateBringsBack) {
   campaign(manifest_, {"--cycles", "4"});
-  EXPECT_EQ(run({"prune"}).code, 2) << "nothing was said to go";
-  EXPECT_EQ(run({"prune", "--state", "lost"}).code, 2);
+  expect(2, {"prune"});  // nothing was said to go
+  expect(2, {"prune", "--state", "lost"});
   const std::size_t files = objects();
-  const Outcome shown = run({"prune", "--keep-every", "2"});
-  EXPECT_EQ(shown.code, 0);
-  EXPECT_TRUE(contains(shown.out, "4 checkpoints")) << shown.out;
-  EXPECT_TRUE(contains(shown.out, "Nothing was freed")) << shown.out;
+  expect(0, {"prune", "--keep-every", "2"}, {"4 checkpoints", "Nothing was freed"});
   EXPECT_EQ(objects(), files);
   const nlohmann::json done = json({"prune", "--keep-every", "2", "--yes", "--json"});
   EXPECT_EQ(done.at("bytes_freed"), done.at("bytes"));
   EXPECT_EQ(objects(), files - 4);
-  EXPECT_EQ(run({"verify"}).code, 0);
+  expect(0, {"verify"});
 
-  const Outcome figures = run({"figures", "S2"});
-  EXPECT_EQ(figures.code, 1) << "it is incomplete";
   const std::string sha = done.at("checkpoints").at(0).at("sha256");
-  EXPECT_TRUE(contains(figures.err, "shearcell regenerate " + sha.substr(0, 12))) << figures.err;
-
-  EXPECT_TRUE(contains(run({"show", sha}).out, "pruned; `shearcell regenerate")) << sha;
+  // It is incomplete.
+  expect(1, {"figures", "S2"}, {"shearcell regenerate " + sha.substr(0, 12)});
+  expect(0, {"show", sha}, {"pruned; `shearcell regenerate"});
   EXPECT_EQ(json({"show", sha, "--json"}).at("state"), "pruned");
   for (const auto& checkpoint : done.at("checkpoints")) {
-    const Outcome again = run({"regenerate", checkpoint.at("sha256").get<std::string>()});
-    EXPECT_EQ(again.code, 0) << again.err;
-    EXPECT_TRUE(contains(again.out, "the same file again")) << again.out;
+    expect(0, {"regenerate", checkpoint.at("sha256")}, {"the same file again"});
   }
   EXPECT_EQ(objects(), files);
-  EXPECT_EQ(run({"figures", "S2"}).code, 0);
-  EXPECT_EQ(run({"verify"}).code, 0);
-  EXPECT_TRUE(contains(run({"regenerate", sha}).out, "the file is intact"));
-  EXPECT_EQ(run({"regenerate", "no-such"}).code, 2);
+  expect(0, {"figures", "S2"});
+  expect(0, {"verify"});
+  expect(0, {"regenerate", sha}, {"the file is intact"});
+  expect(2, {"regenerate", "no-such"});
 }
 
 TEST_F(Care, VerifyReplaysAndHoldsAgainstAHead) {
@@ -68,41 +58,35 @@ TEST_F(Care, VerifyReplaysAndHoldsAgainstAHead) {
   const nlohmann::json told = json({"verify", "--replay", "3", "--seed", "5", "--json"});
   ASSERT_EQ(told.at("replay").at("replayed").size(), 3U);
   for (const auto& replay : told.at("replay").at("replayed")) EXPECT_EQ(replay.at("same"), true);
-  EXPECT_EQ(run({"verify", "--against", before}).code, 0);
   const auto colon = before.find(':');
-  EXPECT_EQ(run({"verify", "--against", before.substr(0, colon), before.substr(colon + 1)}).code,
-            0);
-  EXPECT_EQ(run({"verify", "--against", "3:" + before.substr(colon + 1)}).code, 4);
-  EXPECT_EQ(run({"verify", "--against", "9999" + before.substr(colon)}).code, 4);
-  EXPECT_EQ(run({"verify", "--against", "yesterday"}).code, 2);
-  const Outcome rebuilt = run({"rebuild"});
-  EXPECT_EQ(rebuilt.code, 0);
-  EXPECT_TRUE(contains(rebuilt.out, "3 runs")) << rebuilt.out;
-  EXPECT_EQ(run({"verify", "--against", before}).code, 0);
+  const std::string seq = before.substr(0, colon), hash = before.substr(colon + 1);
+  expect(0, {"verify", "--against", before});
+  expect(0, {"verify", "--against", seq, hash});
+  expect(4, {"verify", "--against", "3:" + hash});
+  expect(4, {"verify", "--against", "9999:" + hash});
+  expect(2, {"verify", "--against", "yesterday"});
+  expect(0, {"rebuild"}, {"3 runs"});
+  expect(0, {"verify", "--against", before});
 }
 
 TEST_F(Care, RebuildMendsATableThatWasChanged) {
   campaign(manifest_, {"--cycles", "0"});
   sqlite::Database(path("shearcell-store/store.sqlite"), sqlite::Open::existing)
       .execute("UPDATE runs SET state = 'failed'");
-  const Outcome damaged = run({"verify"});
-  EXPECT_EQ(damaged.code, 4);
-  EXPECT_TRUE(contains(damaged.out, "run `rebuild`")) << damaged.out;
-  EXPECT_EQ(run({"rebuild"}).code, 0);
-  EXPECT_EQ(run({"verify"}).code, 0);
+  expect(4, {"verify"}, {"run `rebuild`"});
+  expect(0, {"rebuild"});
+  expect(0, {"verify"});
 }
 
 TEST_F(Care, MergesAndRefusesConflicts) {
   campaign(tiny_manifest(), {"--cycles", "1"}, "a");
   campaign(manifest_, {}, "b");
   const auto whole = hashes("b");
-  const Outcome merged = run({"merge", "a", "b", "--store", "all"});
-  EXPECT_EQ(merged.code, 0) << merged.err;
+  expect(0, {"merge", "a", "b", "--store", "all"});
   EXPECT_EQ(hashes("all"), whole);
-  EXPECT_EQ(run({"verify", "--store", "all"}).code, 0);
-  EXPECT_EQ(run({"verify", "--replay", "2", "--store", "all"}).code, 0);
-  EXPECT_EQ(run({"merge", "all", "--store", "all"}).code, 2);
-  EXPECT_EQ(run({"merge", "nowhere", "--store", "all"}).code, 2);
+  expect(0, {"verify", "--replay", "2", "--store", "all"});
+  expect(2, {"merge", "all", "--store", "all"});
+  expect(2, {"merge", "nowhere", "--store", "all"});
   {
     // Somebody's own arithmetic: another state for a step that is known.
     Store store(path("odd"), Access::create);
@@ -119,9 +103,7 @@ TEST_F(Care, MergesAndRefusesConflicts) {
     store.record_checkpoint(sheared.id, wrong);
     store.interrupt_run(sheared.id, "a test");
   }
-  const Outcome refused = run({"merge", "odd", "--store", "all"});
-  EXPECT_EQ(refused.code, 4);
-  EXPECT_TRUE(contains(refused.err, "Nothing was merged")) << refused.err;
+  expect(4, {"merge", "odd", "--store", "all"}, {"Nothing was merged"});
   EXPECT_EQ(hashes("all"), whole);
 }
 
@@ -157,7 +139,7 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
   // A run that ended early is done for every manifest with that `until`, whatever else it says.
   const std::string early = tiny_manifest("", "until: {phi: 0.1}\n");
   write("early.yaml", early);
-  ASSERT_EQ(run({"run", "early.yaml", "--cycles", "5", "-q"}).code, 0);
+  expect(0, {"run", "early.yaml", "--cycles", "5", "-q"});
   write("early.yaml", early + "# edited\n");
   EXPECT_EQ(stage(json({"plan", "early.yaml", "--cycles", "5", "--json"}), "shear", 1).at("state"),
             "done");
@@ -174,9 +156,8 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
   const auto fields = other.at("stages").at(2).at("new").at("fields");
   EXPECT_EQ(fields, nlohmann::json::parse(
                         R"([{"field": "amplitude_rad", "value": 0.1, "store_has": 0.0833}])"));
-  const Outcome words = run({"plan", "twin.yaml", "--cycles", "1"});
-  EXPECT_TRUE(contains(words.out, "also in tiny")) << words.out;
-  EXPECT_TRUE(contains(words.out, "new: amplitude_rad 0.1 (store has 0.0833)")) << words.out;
+  expect(0, {"plan", "twin.yaml", "--cycles", "1"},
+         {"also in tiny", "new: amplitude_rad 0.1 (store has 0.0833)"});
 }
 
 class Sharing : public Care {
@@ -193,17 +174,17 @@ class Sharing : public Care {
       EXPECT_EQ(run.particle_steps, static_cast<double>(kGrains * run.step));
     }
     EXPECT_TRUE(store.leases().empty());
-    EXPECT_EQ(run({"verify"}).code, 0);
+    expect(0, {"verify"});
   }
 };
 
 TEST_F(Sharing, TwoProgramsDoEachRunOnce) {
   const std::string text = write("many.yaml", many_runs());
-  ASSERT_EQ(run({"run", text, "-q", "--store", "whole"}).code, 0);
+  expect(0, {"run", text, "-q", "--store", "whole"});
   const Running first = start_beside({"run", text, "-j", "1", "--json"}, "first");
   const Running second = start_beside({"run", text, "-j", "1", "--json"}, "second");
   // Meanwhile `status` shows which program holds the run.
-  bool seen_two = false, seen = false;
+  bool seen_two = false;
   for (int look = 0; look < 400 && !seen_two; ++look) {
     const Outcome status = run({"status", "--json"});
     const auto facts = nlohmann::json::parse(status.out, nullptr, false);
@@ -215,11 +196,9 @@ TEST_F(Sharing, TwoProgramsDoEachRunOnce) {
         }
       }
     }
-    seen = seen || !pids.empty();
     seen_two = pids.size() == 2;
   }
   EXPECT_TRUE(seen_two);
-  EXPECT_TRUE(seen);
   const Outcome one = wait_for(first), two = wait_for(second);
   EXPECT_EQ(one.code, 0) << one.err;
   EXPECT_EQ(two.code, 0) << two.err;
@@ -239,9 +218,9 @@ TEST_F(Sharing, TwoProgramsDoEachRunOnce) {
 
 TEST_F(Sharing, TheOtherTakesOverWhatAKilledOneHeld) {
   const std::string text = write("one.yaml", tiny_manifest("  cycles: 20\n"));
-  ASSERT_EQ(run({"run", text, "-q", "--store", "whole"}).code, 0);
+  expect(0, {"run", text, "-q", "--store", "whole"});
   const Running first = start_beside({"run", text, "-q"}, "first");
-  while (objects() < 5) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  wait_for_objects(5);
   const Running second = start_beside({"run", text}, "second");
   while (!contains(read_bytes(second.err), "waiting")) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -253,7 +232,7 @@ TEST_F(Sharing, TheOtherTakesOverWhatAKilledOneHeld) {
   EXPECT_EQ(rest.code, 0) << rest.err;
   EXPECT_TRUE(contains(rest.err, "waiting for 1 stage")) << rest.err;
   EXPECT_EQ(hashes(), hashes("whole"));
-  EXPECT_EQ(run({"verify"}).code, 0);
+  expect(0, {"verify"});
 }
 
 TEST_F(Care, HardCasesAreToldAndOneThatFailsEndsWithCode3) {
@@ -262,17 +241,83 @@ TEST_F(Care, HardCasesAreToldAndOneThatFailsEndsWithCode3) {
   ASSERT_EQ(cases.size(), 4U);
   for (const nlohmann::json& hard : cases) {
     EXPECT_TRUE(hard.at("as_expected").get<bool>()) << hard;
-    EXPECT_FALSE(hard.at("name").get<std::string>().empty());
-    EXPECT_FALSE(hard.at("expected").get<std::string>().empty());
-    EXPECT_FALSE(hard.at("outcome").get<std::string>().empty());
+    for (const char* key : {"name", "expected", "outcome"}) {
+      EXPECT_FALSE(hard.at(key).get<std::string>().empty()) << key;
+    }
   }
-  const Outcome hangs =
-      run({"bench", "stability", "--only", "1e7-steps-undamped", "--seconds", "0.1"});
-  EXPECT_EQ(hangs.code, 3);
-  EXPECT_TRUE(contains(hangs.out, "0 of 1 cases ended as expected")) << hangs.out;
-  const Outcome unknown = run({"bench", "stability", "--only", "vacanzy"});
-  EXPECT_EQ(unknown.code, 2);
-  EXPECT_TRUE(contains(unknown.err, "did you mean 'vacancy'?")) << unknown.err;
+  expect(3, {"bench", "stability", "--only", "1e7-steps-undamped", "--seconds", "0.1"},
+         {"0 of 1 cases ended as expected"});
+  expect(2, {"bench", "stability", "--only", "vacanzy"}, {"did you mean 'vacancy'?"});
+}
+
+const std::string kDrag =
+    (fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments" / "drag.yaml").string();
+
+class CommandLineStore : public ProgramTest {};
+
+TEST_F(CommandLineStore, NamesATruncatedCheckpointAndGoesOnWithTheOthers) {
+  campaign(tiny_manifest(), {"--cycles", "1", "--seeds", "2"});
+  const auto expected = hashes();
+  std::string victim;
+  for (const RunRecord& run : Store(path("shearcell-store"), Access::read).runs()) {
+    if (run.kind == "shear" && run.memberships.front().seed == 1) victim = run.id;
+  }
+  const std::string file = newest_file(victim);
+  truncate_file(path(file));
+  const Arguments more = {"run", "m.yaml", "--cycles", "1", "--seeds", "3", "-q"};
+  expect(4, more, {fs::path(file).filename()});
+
+  const auto after = hashes();  // all are completed
+  EXPECT_EQ(after.size(), expected.size() + 2);
+  for (const auto& [id, hash] : expected) EXPECT_EQ(after.at(id), hash);
+  expect(0, more);
+  expect(0, {"verify"});
+}
+
+TEST_F(CommandLineStore, SaysWhyARunFailed) {
+  const std::string manifest =
+      write("m.yaml", tiny_manifest("", "sweep: {grid: {settle_time_limit_s: [60, 0.1]}}\n"));
+  expect(3, {"run", manifest, "--cycles", "1", "-q"}, {"over its limit of 0.1"});
+  expect(0, {"status"}, {"over its limit of 0.1", "completed"});
+}
+
+// Long enough that a signal finds it at work: about a second.
+const std::string kCycles = "20";
+
+class Signals : public CommandLineStore, public testing::WithParamInterface<int> {};
+
+TEST_P(Signals, LeaveNoTrace) {
+  campaign(tiny_manifest(), {"--cycles", kCycles}, "whole");
+  const Outcome stopped = run_until({"run", "m.yaml", "--cycles", kCycles, "-q"}, 4, GetParam());
+  const bool killed = GetParam() == SIGKILL;
+  if (killed) {
+    EXPECT_EQ(stopped.signal, SIGKILL);
+  } else {
+    EXPECT_EQ(stopped.code, 85) << stopped.err;
+    EXPECT_TRUE(contains(stopped.err, "shearcell resume --store")) << stopped.err;
+  }
+  const nlohmann::json sheared = json({"status", "--json"}).at("runs").back();
+  EXPECT_EQ(sheared.at("state"), killed ? "running" : "interrupted");
+  EXPECT_LT(sheared.at("cycle"), 20);
+  EXPECT_GE(sheared.at("cycle"), 1);
+  expect(0, {"resume", "-q"});
+  EXPECT_EQ(hashes(), hashes("whole"));
+  expect(0, {"verify"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Signals, testing::Values(SIGINT, SIGTERM, SIGKILL));
+
+// One cycle of the smoke scale: what it takes on disk, against what the plan says.
+TEST_F(CommandLineStore, DragTakesTheDiskThatItsPlanSays) {
+  const nlohmann::json plan = json({"plan", kDrag, "--scale", "smoke", "--cycles", "1", "--json"});
+  expect(0, {"run", kDrag, "--scale", "smoke", "--cycles", "1", "-q"});
+  double bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(path("shearcell-store/objects"))) {
+    if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
+  }
+  const double expected = plan.at("bytes_left");
+  std::printf("checkpoints: %.4g MB, expected %.4g MB\n", bytes * 1e-6, expected * 1e-6);
+  EXPECT_NEAR(expected / bytes, 1, 0.3);
 }
 
 }  // namespace

@@ -2,29 +2,24 @@
 // The lineage that the program prints for published figures, and the crates that it exports.
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <sstream>
-
 #include "tests/experiments/program.hpp"
 
 namespace shearcell::test {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 class CommandLineLineage : public ProgramTest {
  protected:
   void SetUp() override {
     campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"});
-    ASSERT_EQ(run({"figures", "S2", "--out", "out"}).code, 0);
+    expect(0, {"figures", "S2", "--out", "out"});
   }
 };
 
 TEST_F(CommandLineLineage, ShowsAFigureWithoutCuttingItInAPipe) {
-  const Outcome shown = run({"show", "tiny/S2"});
-  ASSERT_EQ(shown.code, 0) << shown.err;
+  // The manifest's 2 cycles were overridden.
+  const Outcome shown = expect(0, {"show", "tiny/S2"},
+                               {"m.yaml", "experiment: tiny", "  cycles: 2",
+                                "given at the command line: cycles 1 (manifest: 2)"});
   EXPECT_FALSE(contains(shown.out, "...")) << shown.out;
   const nlohmann::json all = json({"show", "tiny/S2", "--json"});
   EXPECT_EQ(all.at("inputs").size(), 2U);
@@ -32,12 +27,6 @@ TEST_F(CommandLineLineage, ShowsAFigureWithoutCuttingItInAPipe) {
     EXPECT_TRUE(contains(shown.out, input.at("run")));
     for (const auto& c : input.at("checkpoints")) EXPECT_TRUE(contains(shown.out, c.at("sha256")));
   }
-  EXPECT_TRUE(contains(shown.out, "m.yaml"));
-  EXPECT_TRUE(contains(shown.out, "experiment: tiny"));
-  // The manifest's 2 cycles were overridden.
-  EXPECT_TRUE(contains(shown.out, "given at the command line: cycles 1 (manifest: 2)"))
-      << shown.out;
-  EXPECT_TRUE(contains(shown.out, "  cycles: 2")) << shown.out;
   const nlohmann::json overrides = {{"cycles", {{"run", 1}, {"manifest", 2}}}};
   const nlohmann::json lineage =
       nlohmann::json::parse(read_bytes(path("out/tiny/S2.lineage.json")));
@@ -64,46 +53,30 @@ TEST_F(CommandLineLineage, ShowsNamesOfTheLogEscaped) {
     facts["analysis_version"] = "\x1b]0;1\x07";
     store.record_figure(name, facts);
   }
-  const Outcome shown = run({"show", name});
-  ASSERT_EQ(shown.code, 0) << shown.err;
+  const Outcome shown = expect(0, {"show", name}, {"S2\\x1b[2J\\u202e"});
   EXPECT_EQ(shown.out.find_first_of("\x1b\x07"), std::string::npos) << shown.out;
   EXPECT_FALSE(contains(shown.out, "\u202e")) << shown.out;
-  EXPECT_TRUE(contains(shown.out, "S2\\x1b[2J\\u202e")) << shown.out;
 }
 
 TEST_F(CommandLineLineage, JudgesAPublishedFile) {
-  const Outcome sound = run({"show", "out/tiny/S2a.csv"});
-  EXPECT_EQ(sound.code, 0) << sound.err;
-  EXPECT_TRUE(contains(sound.out, "matches")) << sound.out;
-  EXPECT_TRUE(contains(sound.out, "4 checkpoints, all present and right")) << sound.out;
-
+  expect(0, {"show", "out/tiny/S2a.csv"}, {"matches", "4 checkpoints, all present and right"});
   const nlohmann::json all = json({"show", "out/tiny/S2a.csv", "--json"});
   EXPECT_EQ(all.at("check").at("verdict"), "matches");
   const std::string input = all.at("inputs").at(0).at("checkpoints").at(0).at("file");
   std::filesystem::remove(path("shearcell-store/" + input));
-  const Outcome missing = run({"show", "out/tiny/S2a.csv"});
-  EXPECT_EQ(missing.code, 4);
-  EXPECT_TRUE(contains(missing.out, "1 of them")) << missing.out;
-  EXPECT_TRUE(contains(missing.out, "missing")) << missing.out;
+  expect(4, {"show", "out/tiny/S2a.csv"}, {"1 of them", "missing"});
 
   write("out/tiny/S2b.csv", read_bytes(path("out/tiny/S2b.csv")) + "x");
-  const Outcome changed = run({"show", "out/tiny/S2b.csv"});
-  EXPECT_EQ(changed.code, 4);
-  EXPECT_TRUE(contains(changed.out, "CHANGED")) << changed.out;
+  expect(4, {"show", "out/tiny/S2b.csv"}, {"CHANGED"});
 
   write("other.csv", "a,b\n");
-  const Outcome unknown = run({"show", "other.csv"});
-  EXPECT_EQ(unknown.code, 2);
-  EXPECT_TRUE(contains(unknown.err, "unknown to this store")) << unknown.err;
-  EXPECT_EQ(run({"show", "missing.csv"}).code, 2);
+  expect_refused({"show", "other.csv"}, {"unknown to this store"});
+  expect_refused({"show", "missing.csv"}, {});
 }
 
 TEST_F(CommandLineLineage, ExportsACrateAndOverwritesNothing) {
-  const nlohmann::json status = json({"status", "--json"});
-  const std::string id = status.at("runs").back().at("id");
-  const Outcome exported =
-      run({"export", id.substr(0, 12), "--to", "ro-crate", "--out", "a/crate"});
-  EXPECT_EQ(exported.code, 0) << exported.err;
+  const std::string id = last_run();
+  expect(0, {"export", id.substr(0, 12), "--to", "ro-crate", "--out", "a/crate"});
   EXPECT_TRUE(std::filesystem::exists(path("a/crate/ro-crate-metadata.json")));
   EXPECT_TRUE(std::filesystem::exists(path("a/crate/prov.json")));
   const nlohmann::json again =
@@ -113,16 +86,12 @@ TEST_F(CommandLineLineage, ExportsACrateAndOverwritesNothing) {
   EXPECT_TRUE(contains(read_bytes(path("a/crate/ro-crate-metadata.json")),
                        "creativecommons.org/licenses/by/4.0/"));
 
-  const auto before = listing();
   for (const std::string out : {"a", "m.yaml", "shearcell-store", "."}) {
-    const Outcome refused = run({"export", id, "--to", "ro-crate", "--out", out});
-    EXPECT_EQ(refused.code, 2) << out;
-    EXPECT_TRUE(contains(refused.err, out)) << refused.err;
+    expect_refused({"export", id, "--to", "ro-crate", "--out", out}, {out});
   }
-  EXPECT_EQ(run({"export", id, "--to", "zip", "--out", "b"}).code, 2);
-  EXPECT_EQ(run({"export", id, "--to", "ro-crate", "--out", "b", "--license", "MIT"}).code, 2);
-  EXPECT_EQ(run({"export", "xyz", "--to", "ro-crate", "--out", "b"}).code, 2);
-  EXPECT_EQ(listing(), before);
+  expect_refused({"export", id, "--to", "zip", "--out", "b"}, {});
+  expect_refused({"export", id, "--to", "ro-crate", "--out", "b", "--license", "MIT"}, {"MIT"});
+  expect_refused({"export", "xyz", "--to", "ro-crate", "--out", "b"}, {"xyz"});
 }
 
 TEST_F(CommandLineLineage, WritesAReportAndChangesNothingElse) {
@@ -138,19 +107,17 @@ TEST_F(CommandLineLineage, WritesAReportAndChangesNothingElse) {
   EXPECT_TRUE(contains(read_bytes(path("out/report.html")), "as recorded"));
 
   const std::string first = read_bytes(path("out/report.html"));
-  ASSERT_EQ(run({"report", "--out", "out/report.html"}).code, 0);
+  expect(0, {"report", "--out", "out/report.html"});
   EXPECT_EQ(read_bytes(path("out/report.html")), first);
 
-  EXPECT_EQ(run({"report", "--run", "nothing"}).code, 2);
-  EXPECT_EQ(run({"report", "--accuracy", "nowhere"}).code, 2);
-  EXPECT_EQ(run({"report", "--out", "no/such/folder.html"}).code, 1);
+  expect(2, {"report", "--run", "nothing"});
+  expect(2, {"report", "--accuracy", "nowhere"});
+  expect(1, {"report", "--out", "no/such/folder.html"});
 
-  const std::string file = newest_file(json({"status", "--json"})["runs"].back()["id"]);
+  const std::string file = newest_file(last_run());
   std::filesystem::remove(path("shearcell-store/derived.sqlite"));
   truncate_file(path(file));
-  const Outcome damaged = run({"report", "--out", "out/report.html"});
-  EXPECT_EQ(damaged.code, 4) << damaged.err;
-  EXPECT_TRUE(contains(damaged.err, "left out: ")) << damaged.err;
+  expect(4, {"report", "--out", "out/report.html"}, {"left out: "});
 }
 
 }  // namespace

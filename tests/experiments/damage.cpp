@@ -87,8 +87,16 @@ Damage object(const std::function<void(const fs::path& file)>& change) {
   return [=](const fs::path& store) { change(an_object(store)); };
 }
 
-void write_file(const fs::path& file, const std::string& bytes) {
-  std::ofstream(file, std::ios::binary | std::ios::trunc) << bytes;
+Damage at(const std::string& name, const std::function<void(const fs::path&)>& change) {
+  return [=](const fs::path& store) { change(store / name); };
+}
+
+std::function<void(const fs::path&)> written(const std::string& bytes) {
+  return [=](const fs::path& file) { write_bytes(file, bytes); };
+}
+
+void removed(const fs::path& path) {
+  fs::remove_all(path);
 }
 
 /// Moves something out of the store and leaves a link to it.

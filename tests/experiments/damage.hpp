@@ -33,13 +33,17 @@ Damage states(const std::function<void(Checkpoint&)>& change);
 /// Changes every kept measure of this name and gives it the digest that belongs to it.
 Damage measures(const std::string& name, const std::function<void(nlohmann::json&)>& change);
 
+/// To a file or folder of the store.
+Damage at(const std::string& name, const std::function<void(const std::filesystem::path&)>& change);
+
 /// To one checkpoint file.
 Damage object(const std::function<void(const std::filesystem::path& file)>& change);
 
 std::filesystem::path an_object(const std::filesystem::path& store);
-void write_file(const std::filesystem::path& file, const std::string& bytes);
 
-// Something else in the place of a file or folder; what a link points to is what stood there.
+// What may be done to a file. Links point to what stood there.
+std::function<void(const std::filesystem::path&)> written(const std::string& bytes);
+void removed(const std::filesystem::path& path);
 void link_instead(const std::filesystem::path& path);
 void pipe_instead(const std::filesystem::path& path);
 void folder_instead(const std::filesystem::path& path);

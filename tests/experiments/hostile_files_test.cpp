@@ -2,13 +2,17 @@
 // Hostile manifests through the program, hostile names that reach gnuplot, and what stands in the
 // way of the files that the program writes; and a machine that lends little.
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
-#include <sstream>
+#include <array>
+#include <cstring>
+#include <map>
 
 #include "core/memory.hpp"
-#include "provenance/event_log.hpp"
+#include "tests/experiments/damage.hpp"
 #include "tests/experiments/program.hpp"
 
 namespace shearcell::test {
@@ -21,9 +25,7 @@ class HostileManifest : public ProgramTest {};
 TEST_F(HostileManifest, MoreGrainsThanTheMachineHoldsAreRefusedBeforeTheyAreMade) {
   if (machine_memory() > 60e9) GTEST_SKIP() << "this machine holds them";
   write("m.yaml", tiny_manifest("  grains: 100000000\n"));
-  const Outcome outcome = run({"run", "m.yaml"});
-  EXPECT_EQ(outcome.code, 3) << outcome.err;
-  EXPECT_NE(outcome.err.find("use fewer grains"), std::string::npos) << outcome.err;
+  expect(3, {"run", "m.yaml"}, {"use fewer grains"});
 }
 
 /// Lines of `base`, the exit code of `plan`, and a part of what it says.
@@ -60,12 +62,9 @@ TEST_F(HostileManifest, ParametersThatCannotBeComputedAreRefusedWithTheirLine) {
         Case{"grains: 1", 2, ":4:11: grains: the cell for so few grains"}}) {
     SCOPED_TRACE(base);
     write("m.yaml", "experiment: a\n# Hard.\nbase:\n  " + std::string(base) + "\n");
-    const Outcome outcome = run({"plan", "m.yaml"});
-    EXPECT_EQ(outcome.code, code) << outcome.err;
-    EXPECT_NE((outcome.out + outcome.err).find(says), std::string::npos)
-        << outcome.out << outcome.err;
+    const Outcome outcome = expect(code, {"plan", "m.yaml"}, {says});
     for (const char* odd : {"-1537", "nan", "inf "}) {
-      EXPECT_EQ(outcome.out.find(odd), std::string::npos) << outcome.out;
+      EXPECT_FALSE(contains(outcome.out, odd)) << outcome.out;
     }
   }
 }
@@ -74,21 +73,18 @@ class Outputs : public ProgramTest {
  protected:
   void SetUp() override {
     campaign(tiny_manifest("  grains: 200\n", kBothFluids), {"--cycles", "1"});
-    id_ = json({"status", "--json"})["runs"].back()["id"];
+    id_ = last_run();
     fs::create_directories(path("out/tiny"));
   }
 
-  void expect_refused(const std::vector<std::string>& command, const std::string& file) {
+  void expect_in_the_way(const Arguments& command, const std::string& file) {
     const auto listed = [this] {  // measures are kept all the same
       auto files = listing();
       files.erase("shearcell-store/derived.sqlite");
       return files;
     };
     const auto before = listed();
-    const Outcome outcome = run(command);
-    EXPECT_EQ(outcome.code, 2) << file << outcome.err;
-    EXPECT_NE(outcome.err.find(file), std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.err.find("--out"), std::string::npos) << outcome.err;
+    expect(2, command, {file, "--out"});
     EXPECT_EQ(listed(), before);
   }
 
@@ -99,20 +95,21 @@ TEST_F(Outputs, FiguresReplaceTheirOwnFilesAndNoOthers) {
   const std::vector<std::string> figures = {"figures", "S2", "--out", "out"};
   for (const char* file :
        {"S2a.csv", "S2a.gp", "S2b.svg", "S2b.pdf", "S2.verdict.json", "S2.lineage.json"}) {
-    write(std::string("out/tiny/") + file, "{\"mine\": 1}\n");
-    expect_refused(figures, file);
-    EXPECT_EQ(read_bytes(path(std::string("out/tiny/") + file)), "{\"mine\": 1}\n");
-    fs::remove(path(std::string("out/tiny/") + file));
-    fs::create_symlink(path("m.yaml"), path(std::string("out/tiny/") + file));
-    expect_refused(figures, file);
-    fs::remove(path(std::string("out/tiny/") + file));
+    const fs::path place = path(std::string("out/tiny/") + file);
+    write_bytes(place, "{\"mine\": 1}\n");
+    expect_in_the_way(figures, file);
+    EXPECT_EQ(read_bytes(place), "{\"mine\": 1}\n");
+    fs::remove(place);
+    fs::create_symlink(path("m.yaml"), place);
+    expect_in_the_way(figures, file);
+    fs::remove(place);
   }
-  ASSERT_EQ(run(figures).code, 0);
-  EXPECT_EQ(run(figures).code, 0) << "made by an earlier call";
+  expect(0, figures);
+  expect(0, figures);                   // over those of an earlier call
   fs::remove(path("out/tiny/S2a.gp"));  // killed before it was drawn
   fs::remove(path("out/tiny/S2a.svg"));
   fs::remove(path("out/tiny/S2a.pdf"));
-  EXPECT_EQ(run(figures).code, 0);
+  expect(0, figures);
   for (const auto& entry : fs::recursive_directory_iterator(path("out"))) {
     if (entry.is_directory()) continue;
     struct stat status {};
@@ -123,15 +120,13 @@ TEST_F(Outputs, FiguresReplaceTheirOwnFilesAndNoOthers) {
 
 TEST_F(Outputs, AReportReplacesAReportAndNothingElse) {
   write("out/notes.html", "<!doctype html>\n<html>mine\n");
-  expect_refused({"report", "--out", "out/notes.html"}, "notes.html");
-  expect_refused({"report", "--out", "m.yaml"}, "m.yaml");
-  expect_refused({"report", "--out", "out"}, "out");
   fs::create_symlink(path("m.yaml"), path("out/link.html"));
-  expect_refused({"report", "--out", "out/link.html"}, "link.html");
   ASSERT_EQ(mkfifo(path("out/pipe.html").c_str(), 0600), 0);
-  expect_refused({"report", "--out", "out/pipe.html"}, "pipe.html");
-  ASSERT_EQ(run({"report", "--out", "out/r.html"}).code, 0);
-  EXPECT_EQ(run({"report", "--out", "out/r.html"}).code, 0);
+  for (const char* taken : {"out/notes.html", "m.yaml", "out", "out/link.html", "out/pipe.html"}) {
+    expect_in_the_way({"report", "--out", taken}, taken);
+  }
+  expect(0, {"report", "--out", "out/r.html"});
+  expect(0, {"report", "--out", "out/r.html"});
 }
 
 TEST_F(Outputs, AnExportIsNeverWrittenOverAnything) {
@@ -140,9 +135,7 @@ TEST_F(Outputs, AnExportIsNeverWrittenOverAnything) {
   fs::create_symlink(path("nowhere"), path("dangling"));
   for (const char* format : {"h5md", "extxyz", "vtk", "lammps", "ro-crate"}) {
     for (const char* place : {"out", "out/notes", "dangling", "m.yaml"}) {
-      const auto before = listing();
-      EXPECT_EQ(run({"export", id_, "--to", format, "--out", place}).code, 2) << format << place;
-      EXPECT_EQ(listing(), before);
+      expect_refused({"export", id_, "--to", format, "--out", place}, {});
     }
   }
   EXPECT_EQ(read_bytes(path("out/notes")), notes);
@@ -153,38 +146,17 @@ TEST_F(Outputs, NamesOfAForgedStoreAreTextToGnuplot) {
   const std::string evil =
       "a'`touch owned`\"$(touch owned)\n!touch owned\r;system('touch owned')%s,"
       "{/:Bold x}\\";
-  {
-    Store store(path("shearcell-store"), Access::write);
-    std::vector<Event> events = store.events();
-    sqlite::Database log(path("shearcell-store/store.sqlite"), sqlite::Open::existing);
-    log.execute("DROP TRIGGER events_are_never_updated");
-    std::string prev(64, '0');
-    for (Event& event : events) {
-      nlohmann::json body = event.body();
-      if (event.type == "RunDeclared") {
-        body["membership"]["variant"] = evil + body["membership"]["variant"].get<std::string>();
-        body["membership"]["labels"] = {{evil, evil}};
-      }
-      event.payload = body.dump();
-      event.prev_hash = prev;
-      prev = event.hash = event_hash(event);
-      sqlite::Statement update(
-          log, "UPDATE events SET payload = ?, prev_hash = ?, hash = ? WHERE seq = ?");
-      update.bind(1, event.payload).bind(2, event.prev_hash).bind(3, event.hash);
-      update.bind(4, event.seq).run();
-    }
-    store.rebuild();
-  }
-  EXPECT_EQ(run({"verify"}).code, 0);
-  const Outcome figures = run({"figures", "S2", "--out", "out"});
-  EXPECT_EQ(figures.code, 0) << figures.err;
+  rebuilt(payload("RunDeclared", [&](nlohmann::json& body) {
+    body["membership"]["variant"] = evil + body["membership"]["variant"].get<std::string>();
+    body["membership"]["labels"] = {{evil, evil}};
+  }))(path("shearcell-store"));
+  expect(0, {"verify"});
+  expect(0, {"figures", "S2", "--out", "out"});
   EXPECT_TRUE(fs::exists(path("out/tiny/S2a.svg")));
-  EXPECT_EQ(run({"report", "--out", "r.html", "--drawings"}).code, 0);
-  EXPECT_EQ(run({"export", id_, "--to", "ro-crate", "--out", "crate"}).code, 0);
-  EXPECT_EQ(run({"status"}).out.find('\r'), std::string::npos);
-  for (const std::string& file : listing()) {
-    EXPECT_EQ(file.find("owned"), std::string::npos) << file;
-  }
+  expect(0, {"report", "--out", "r.html", "--drawings"});
+  expect(0, {"export", id_, "--to", "ro-crate", "--out", "crate"});
+  EXPECT_FALSE(contains(run({"status"}).out, "\r"));
+  for (const std::string& file : listing()) EXPECT_FALSE(contains(file, "owned")) << file;
 }
 
 /// A limit on this process and those it starts, until it goes.
@@ -215,15 +187,143 @@ TEST_F(HostileMachine, ThatLendsFewThreadsGivesTheSameBits) {
   GTEST_SKIP() << "a sanitizer needs more addresses than this limit leaves";
 #endif
   write("m.yaml", tiny_manifest("  grains: 100\n", kBothFluids));
-  ASSERT_EQ(run({"run", "m.yaml", "-q", "-j", "1", "--store", "many"}).code, 0);
+  expect(0, {"run", "m.yaml", "-q", "-j", "1", "--store", "many"});
   {
     const Limit stack(RLIMIT_STACK, rlim_t{1} << 30);  // of a thread, unless it asks for another
     const Limit addresses(RLIMIT_AS, rlim_t{6} << 30);
     if (!stack.set() || !addresses.set()) GTEST_SKIP() << "this user's limits are lower";
-    const Outcome outcome = run({"run", "m.yaml", "-q", "-j", "64", "-t", "64", "--store", "few"});
-    EXPECT_EQ(outcome.code, 0) << "signal " << outcome.signal << ": " << outcome.err;
+    expect(0, {"run", "m.yaml", "-q", "-j", "64", "-t", "64", "--store", "few"});
   }
   EXPECT_EQ(hashes("few"), hashes("many"));
+}
+
+// No file is visible under its final name before it is whole: whoever reads it meanwhile, or a
+// program that is killed, must not leave or find half of one.
+
+/// What happens to names below a folder, whose folders exist already, while a program runs.
+class NameWatch {
+ public:
+  explicit NameWatch(const fs::path& folder) {
+    watch(folder);
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      if (entry.is_directory()) watch(entry.path());
+    }
+  }
+  ~NameWatch() { close(descriptor_); }
+  NameWatch(const NameWatch&) = delete;
+  NameWatch& operator=(const NameWatch&) = delete;
+
+  /// File -> the events that happened to its name since the last call.
+  std::map<fs::path, std::uint32_t> events() {
+    std::map<fs::path, std::uint32_t> seen;
+    alignas(inotify_event) std::array<char, 1 << 16> buffer{};
+    for (ssize_t size = 0; (size = read(descriptor_, buffer.data(), buffer.size())) > 0;) {
+      for (const char* at = buffer.data(); at < buffer.data() + size;) {
+        inotify_event event{};
+        std::memcpy(&event, at, sizeof(event));
+        EXPECT_EQ(event.mask & IN_Q_OVERFLOW, 0U);
+        if (event.len > 0) seen[folders_[event.wd] / (at + sizeof(event))] |= event.mask;
+        at += sizeof(event) + event.len;
+      }
+    }
+    return seen;
+  }
+
+ private:
+  void watch(const fs::path& folder) {
+    const int wd =
+        inotify_add_watch(descriptor_, folder.c_str(), IN_CREATE | IN_MODIFY | IN_MOVED_TO);
+    ASSERT_GE(wd, 0) << folder;
+    folders_[wd] = folder;
+  }
+
+  int descriptor_ = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+  std::map<int, fs::path> folders_;
+};
+
+class FinalNames : public ProgramTest {
+ protected:
+  void SetUp() override {
+    campaign(tiny_manifest("  grains: 200\n", kBothFluids), {"--cycles", "3"});
+    id_ = last_run();
+  }
+
+  /// Removes the files below `folder`, but keeps its folders.
+  void clear(const std::string& folder) const {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(path(folder))) {
+      if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+    for (const fs::path& file : files) fs::remove(file);
+  }
+
+  /// Everything that there is at the end and that was touched came by a rename or a hard link.
+  /// Returns how many there are.
+  static std::size_t expect_whole(NameWatch& watch) {
+    std::size_t files = 0;
+    for (const auto& [file, mask] : watch.events()) {
+      if (!fs::exists(file) || contains(file.filename(), ".sqlite")) {
+        continue;  // a temporary name; a database
+      }
+      ++files;
+      EXPECT_EQ(mask & IN_MODIFY, 0U) << file << " was written under its name";
+      if ((mask & IN_MOVED_TO) != 0) continue;
+      EXPECT_TRUE(fs::is_regular_file(file)) << file << " is a folder that was made empty";
+    }
+    return files;
+  }
+
+  std::string id_;
+};
+
+TEST_F(FinalNames, AreGivenToWholeFilesAndFolders) {
+  for (const Arguments& command :
+       std::vector<Arguments>{{"export", id_, "--to", "extxyz", "--out", "out/e.xyz"},
+                              {"export", id_, "--to", "h5md", "--out", "out/e.h5md"},
+                              {"export", id_, "--to", "vtk", "--out", "out/vtk"},
+                              {"export", id_, "--to", "lammps", "--out", "out/lammps"},
+                              {"export", id_, "--to", "ro-crate", "--out", "out/crate"},
+                              {"new", "out/n.yaml"}}) {
+    SCOPED_TRACE(command.back());
+    fs::create_directories(path("out"));
+    NameWatch watch(path("out"));
+    expect(0, command);
+    EXPECT_EQ(expect_whole(watch), 1U);
+    fs::remove_all(path("out"));
+  }
+}
+
+TEST_F(FinalNames, AreGivenToWholeFilesWhereOthersStood) {
+  struct Case {
+    Arguments command;
+    std::size_t files;
+  };
+  for (const auto& [command, files] : std::vector<Case>{{{"figures", "S2", "--out", "out/f"}, 11},
+                                                        {{"table", "--out", "out/t.csv"}, 1},
+                                                        {{"report", "--out", "out/r.html"}, 1}}) {
+    SCOPED_TRACE(command.front());
+    fs::create_directories(path("out"));
+    expect(0, command);  // which leaves the folders to watch
+    NameWatch watch(path("out"));
+    expect(0, command);
+    EXPECT_EQ(expect_whole(watch), files) << "over its own files";
+    clear("out");
+    watch.events();
+    expect(0, command);
+    EXPECT_EQ(expect_whole(watch), files) << "where there were none";
+    fs::remove_all(path("out"));
+  }
+}
+
+TEST_F(FinalNames, AreGivenToWholeCheckpoints) {
+  Arguments again = {"regenerate"};
+  const nlohmann::json pruning = json({"prune", "--keep-every", "2", "--yes", "--json"});
+  for (const auto& pruned : pruning.at("checkpoints")) {
+    again.push_back(pruned["sha256"]);
+  }
+  NameWatch watch(path("shearcell-store"));
+  expect(0, again);
+  EXPECT_EQ(expect_whole(watch), again.size() - 1);
 }
 
 }  // namespace

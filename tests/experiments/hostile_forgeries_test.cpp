@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Stores that were forged so that all hashes match, stores that harm each other, and faults around
 // a store. Cases like those of hostile_stores_test.cpp.
-#include <sqlite3.h>
-#include <sys/stat.h>
-
-#include <thread>
-
 #include "provenance/io/clock.hpp"
 #include "tests/experiments/hostile.hpp"
 
@@ -102,9 +97,8 @@ std::vector<Case> forged_states() {
       told("measures_of_another_kind", "verify", 4,
            measures("scalars", [](json& m) { m = "none"; }), "derived.sqlite"),
       told("measures_untouched", "verify", 0, measures("scalars", [](json&) {}), "4 of 4"),
-      told(
-          "measures_of_garbage", "verify", 0,
-          [](auto& s) { write_file(s / "derived.sqlite", "garbage"); }, "all as it was written"),
+      told("measures_of_garbage", "verify", 0, at("derived.sqlite", written("garbage")),
+           "all as it was written"),
   };
 }
 
@@ -134,46 +128,39 @@ std::vector<Case> forged_limits() {
 
 /// In the place of the files beside a database, and links to it.
 std::vector<Case> odd_files() {
-  const auto pipe = [](const char* name) {
-    return [=](const fs::path& s) { pipe_instead(s / name); };
+  const Damage journal_is_pipe = at("store.sqlite-journal", pipe_instead);
+  const auto linked_as_snap = [](const fs::path& file) {
+    fs::create_hard_link(file, file.parent_path().parent_path() / "snap.sqlite");
   };
-  const auto hard_link = [](const fs::path& s) {
-    fs::create_hard_link(s / "store.sqlite", s.parent_path() / "snap.sqlite");
-  };
+  const Damage hard_link = at("store.sqlite", linked_as_snap);
   return {
-      told("journal_is_pipe", "status", 4, pipe("store.sqlite-journal"), "store.sqlite-journal",
+      told("journal_is_pipe", "status", 4, journal_is_pipe, "store.sqlite-journal", "remove it"),
+      told("journal_is_pipe_for_figures", "figures S2", 4, journal_is_pipe, "remove it"),
+      told("journal_is_folder", "status", 4, at("store.sqlite-journal", folder_instead),
            "remove it"),
-      told("journal_is_pipe_for_figures", "figures S2", 4, pipe("store.sqlite-journal"),
+      told("journal_is_link", "run m.yaml", 4,
+           at("store.sqlite-journal",
+              [](const fs::path& file) {
+                write_bytes(file, "");
+                link_instead(file);
+              }),
            "remove it"),
-      told(
-          "journal_is_folder", "status", 4,
-          [](auto& s) { fs::create_directory(s / "store.sqlite-journal"); }, "remove it"),
-      told(
-          "journal_is_link", "run m.yaml", 4,
-          [](auto& s) {
-            write_file(s / "x", "");
-            fs::create_symlink(s / "x", s / "store.sqlite-journal");
-          },
-          "remove it"),
       told(
           "wal_is_pipe", "status", 4,
-          [&](auto& s) {
+          [](const fs::path& s) {
             std::string bytes = read_bytes(s / "store.sqlite");
             bytes[18] = bytes[19] = 2;
-            write_file(s / "store.sqlite", bytes);
+            write_bytes(s / "store.sqlite", bytes);
             pipe_instead(s / "store.sqlite-wal");
           },
           "store.sqlite-wal", "remove it"),
-      told("measures_journal_is_pipe", "figures S2", 0, pipe("derived.sqlite-journal"), "S2 ("),
+      told("measures_journal_is_pipe", "figures S2", 0, at("derived.sqlite-journal", pipe_instead),
+           "S2 ("),
       told("hard_link", "run m.yaml", 4, hard_link, "hard link", "cp -a"),
       told("hard_link_to_read", "status", 4, hard_link, "hard link", "cp -a"),
       told("hard_link_to_merge", "merge shearcell-store --store other", 4, hard_link, "hard link"),
-      told(
-          "hard_linked_measures", "figures S2 --fresh", 0,
-          [](auto& s) {
-            fs::create_hard_link(s / "derived.sqlite", s.parent_path() / "snap.sqlite");
-          },
-          "S2 ("),
+      told("hard_linked_measures", "figures S2 --fresh", 0, at("derived.sqlite", linked_as_snap),
+           "S2 ("),
   };
 }
 
@@ -208,7 +195,7 @@ std::vector<Case> other_faults() {
 
 class ForgedStore : public HostileStore {};
 TEST_P(ForgedStore, IsFound) {
-  expect(GetParam());
+  expect_told(GetParam());
 }
 INSTANTIATE_TEST_SUITE_P(Events, ForgedStore, testing::ValuesIn(forged_events()), case_name);
 INSTANTIATE_TEST_SUITE_P(States, ForgedStore, testing::ValuesIn(forged_states()), case_name);
@@ -223,16 +210,16 @@ TEST_F(Neighbours, AStoreThatIsMovedAwayIsLeftAlone) {
   write("long.yaml", tiny_manifest("  cycles: 400\n"));
   write("m.yaml", tiny_manifest());
   const Running program = start_beside({"run", "long.yaml", "-q"}, "moved");
-  while (objects() < 4) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  wait_for_objects(4);
   fs::rename(path("shearcell-store"), path("moved"));
-  EXPECT_EQ(run({"run", "m.yaml", "-q"}).code, 0);
+  expect(0, {"run", "m.yaml", "-q"});
   const Outcome stopped = wait_for(program);
   EXPECT_EQ(stopped.code, 1) << stopped.err;
-  EXPECT_NE(stopped.err.find("moved, replaced or deleted"), std::string::npos) << stopped.err;
+  EXPECT_TRUE(contains(stopped.err, "moved, replaced or deleted")) << stopped.err;
   const nlohmann::json verified = json({"verify", "--json"});
   EXPECT_TRUE(verified.at("ok"));
   EXPECT_EQ(verified.at("orphans"), 0) << "the old process wrote into the new store";
-  EXPECT_EQ(run({"verify", "--store", "moved"}).code, 0);
+  expect(0, {"verify", "--store", "moved"});
 }
 
 TEST_F(Neighbours, AFolderMayHaveAnyName) {
@@ -240,15 +227,11 @@ TEST_F(Neighbours, AFolderMayHaveAnyName) {
   for (const std::string name :
        {"a?b", "a%41b", "file:x", "file:x?mode=memory", "a#b", " ", "-x"}) {
     fs::copy(path("shearcell-store"), path(name), fs::copy_options::recursive);
-    const Outcome found = run({"verify", "--store=" + name});
-    EXPECT_EQ(found.code, 0) << name << ": " << found.err;
+    expect(0, {"verify", "--store=" + name});
   }
   std::string longer = "x";
   for (int i = 0; i < 3; ++i) longer += "/" + std::string(200, 'd');
-  const Outcome refused = run({"run", "m.yaml", "--store", longer});
-  EXPECT_EQ(refused.code, 2);
-  EXPECT_NE(refused.err.find("bytes"), std::string::npos) << refused.err;
-  EXPECT_FALSE(fs::exists(path("x"))) << "left behind";
+  expect_refused({"run", "m.yaml", "--store", longer}, {"bytes"});
 }
 
 // The nearest known run is looked for among all of them.

@@ -13,50 +13,33 @@ namespace fs = std::filesystem;
 const std::string kBackup = "restore it from a backup";
 
 std::vector<Case> damaged_logs() {
-  const auto log = [](const fs::path& store) { return store / "store.sqlite"; };
+  const auto log = [](const auto& change) { return at("store.sqlite", change); };
+  const std::string odd = "a folder, link or device";
   return {
-      told(
-          "log_cut_in_half", "status", 4, [=](auto& s) { truncate_file(log(s)); }, "damaged",
-          kBackup),
-      told(
-          "log_empty", "status", 4, [=](auto& s) { write_file(log(s), ""); }, "the log is empty",
-          kBackup),
-      told(
-          "log_missing", "run m.yaml", 4, [=](auto& s) { fs::remove(log(s)); }, "the log is lost",
-          kBackup),
-      told(
-          "log_is_text", "status", 4, [=](auto& s) { write_file(log(s), std::string(9999, 'x')); },
-          "not an SQLite database", "from a backup"),
-      told(
-          "log_is_folder", "status", 4, [=](auto& s) { folder_instead(log(s)); },
-          "a folder, link or device", "remove it"),
-      told(
-          "log_is_link", "status", 4, [=](auto& s) { link_instead(log(s)); },
-          "a folder, link or device", "remove it"),
-      told(
-          "log_is_pipe", "verify", 4, [=](auto& s) { pipe_instead(log(s)); },
-          "a folder, link or device", "remove it"),
-      told(
-          "pages_overwritten", "verify", 4,
-          [=](auto& s) {
-            std::string bytes = read_bytes(log(s));
-            bytes.replace(bytes.size() / 4, bytes.size() / 2, bytes.size() / 2, '\x55');
-            write_file(log(s), bytes);
-          },
-          "damaged", kBackup),
-      told(
-          "journal_of_garbage", "status", 0,
-          [](auto& s) { write_file(s / "store.sqlite-journal", "not a journal"); }, "completed"),
+      told("log_cut_in_half", "status", 4, log(truncate_file), "damaged", kBackup),
+      told("log_empty", "status", 4, log(written("")), "the log is empty", kBackup),
+      told("log_missing", "run m.yaml", 4, log(removed), "the log is lost", kBackup),
+      told("log_is_text", "status", 4, log(written(std::string(9999, 'x'))),
+           "not an SQLite database", "from a backup"),
+      told("log_is_folder", "status", 4, log(folder_instead), odd, "remove it"),
+      told("log_is_link", "status", 4, log(link_instead), odd, "remove it"),
+      told("log_is_pipe", "verify", 4, log(pipe_instead), odd, "remove it"),
+      told("pages_overwritten", "verify", 4, log([](const fs::path& file) {
+             std::string bytes = read_bytes(file);
+             bytes.replace(bytes.size() / 4, bytes.size() / 2, bytes.size() / 2, '\x55');
+             write_bytes(file, bytes);
+           }),
+           "damaged", kBackup),
+      told("journal_of_garbage", "status", 0, at("store.sqlite-journal", written("not a journal")),
+           "completed"),
       told(
           "store_is_a_file", "status", 4,
-          [](auto& s) {
-            fs::remove_all(s);
-            write_file(s, "x");
+          [](const fs::path& store) {
+            fs::remove_all(store);
+            write_bytes(store, "x");
           },
           "a store is a folder", "name another store"),
-      told(
-          "store_is_missing", "status", 2, [](auto& s) { fs::remove_all(s); },
-          "there is no store here", "shearcell run"),
+      told("store_is_missing", "status", 2, removed, "there is no store here", "shearcell run"),
       told("of_another_program", "status", 4, sql("PRAGMA application_id=1"),
            "belongs to another program"),
       told("newer_schema", "run m.yaml", 4, sql("PRAGMA user_version=99"), "schema 99",
@@ -171,36 +154,28 @@ std::vector<Case> damaged_tables() {
            "\\x1b]0;owned\\x07\\x9b"),
       told("terminal_escapes_in_a_figure", "figures S2", 0,
            sql("UPDATE memberships SET scale = char(27) || '[2J'"), "S2 (\\x1b[2J scale)"),
-      told(
-          "measures_of_garbage", "figures S2", 0,
-          [](auto& s) { write_file(s / "derived.sqlite", "garbage"); }, "S2 ("),
+      told("measures_of_garbage", "figures S2", 0, at("derived.sqlite", written("garbage")),
+           "S2 ("),
       told("measures_nested_deeply", "figures S2", 0,
            measures("",
                     [](auto& m) {
                       for (int i = 0; i < 100; ++i) m = {m};
                     }),
            "4 of them measured now"),
-      told(
-          "measures_in_a_folder", "figures S2", 0,
-          [](auto& s) { folder_instead(s / "derived.sqlite"); }, "measures cannot be cached"),
-      told(
-          "measures_through_a_link", "figures S2", 0,
-          [](auto& s) {
-            fs::rename(s / "derived.sqlite", s / "x");
-            fs::create_symlink(s / "x", s / "derived.sqlite");
-          },
-          "measures cannot be cached", "remove it"),
+      told("measures_in_a_folder", "figures S2", 0, at("derived.sqlite", folder_instead),
+           "measures cannot be cached"),
+      told("measures_through_a_link", "figures S2", 0, at("derived.sqlite", link_instead),
+           "measures cannot be cached", "remove it"),
   };
 }
 
 std::vector<Case> damaged_objects() {
   return {
-      told("object_removed", "verify", 4, object([](auto& f) { fs::remove(f); }),
-           "the file is missing", "from a backup"),
-      told("object_cut_in_half", "verify", 4, object([](auto& f) { truncate_file(f); }),
-           "bytes instead of", "from a backup"),
+      told("object_removed", "verify", 4, object(removed), "the file is missing", "from a backup"),
+      told("object_cut_in_half", "verify", 4, object(truncate_file), "bytes instead of",
+           "from a backup"),
       told("object_of_zeros", "verify", 4,
-           object([](auto& f) { write_file(f, std::string(fs::file_size(f), '\0')); }),
+           object([](auto& f) { write_bytes(f, std::string(fs::file_size(f), '\0')); }),
            "its SHA-256 is not the recorded one"),
       told("object_with_holes_of_a_terabyte", "verify", 4,
            object([](auto& f) { fs::resize_file(f, std::uintmax_t{1} << 40); }),
@@ -211,24 +186,22 @@ std::vector<Case> damaged_objects() {
       told("objects_folder_is_file", "verify", 4, object([](auto& f) {
              const fs::path d = f.parent_path();
              fs::remove_all(d);
-             write_file(d, "x");
+             write_bytes(d, "x");
            }),
            "this must be a folder of the store", "remove it"),
-      told(
-          "objects_is_link", "verify", 4, [](auto& s) { link_instead(s / "objects"); },
-          "this must be a folder of the store"),
-      told(
-          "no_objects", "figures S2 --fresh", 4, [](auto& s) { fs::remove_all(s / "objects"); },
-          "left out: ", "the file is missing"),
-      told(
-          "object_of_a_stranger", "verify", 0,
-          [](auto& s) { write_file(s / "objects" / "note.txt", "x"); }, "no event names this file"),
+      told("objects_is_link", "verify", 4, at("objects", link_instead),
+           "this must be a folder of the store"),
+      told("no_objects", "figures S2 --fresh", 4, at("objects", removed),
+           "left out: ", "the file is missing"),
+      told("object_of_a_stranger", "verify", 0, at("objects/note.txt", written("x")),
+           "no event names this file"),
       told(
           "checkpoints_forged_text", "figures S2 --fresh", 4,
-          [](auto& s) { forge_checkpoints(s, std::string(5000, 'x')); }, "it is not HDF5"),
+          [](const fs::path& s) { forge_checkpoints(s, std::string(5000, 'x')); },
+          "it is not HDF5"),
       told(
           "checkpoints_forged_hdf5", "figures S2 --fresh", 4,
-          [](auto& s) {
+          [](const fs::path& s) {
             std::string hdf5 = read_bytes(an_object(s)).substr(512);
             hdf5.replace(96 + 16, 64, 64, '\x10');
             forge_checkpoints(s, hdf5);
@@ -245,7 +218,7 @@ std::vector<Case> damaged_objects() {
 
 class DamagedStore : public HostileStore {};
 TEST_P(DamagedStore, IsToldWithItsExitCode) {
-  expect(GetParam());
+  expect_told(GetParam());
 }
 INSTANTIATE_TEST_SUITE_P(Logs, DamagedStore, testing::ValuesIn(damaged_logs()), case_name);
 INSTANTIATE_TEST_SUITE_P(Events, DamagedStore, testing::ValuesIn(damaged_events()), case_name);

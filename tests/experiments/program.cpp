@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <functional>
 #include <thread>
 
 extern char** environ;
@@ -79,6 +78,28 @@ Outcome ProgramTest::run(const Arguments& arguments) {
   return wait_for(start(arguments));
 }
 
+Outcome ProgramTest::expect(int code, const Arguments& arguments,
+                            const std::vector<std::string>& says,
+                            const std::source_location& where) {
+  std::string words;
+  for (const std::string& word : arguments) words += " " + word;
+  const testing::ScopedTrace trace(where.file_name(), static_cast<int>(where.line()), words);
+  Outcome outcome = run(arguments);
+  const std::string said = outcome.out + outcome.err;
+  EXPECT_EQ(outcome.code, code) << "signal " << outcome.signal << "\n" << said.substr(0, 2000);
+  for (const std::string& part : says) {
+    EXPECT_TRUE(contains(said, part)) << "not: " << part << "\nbut: " << said.substr(0, 2000);
+  }
+  return outcome;
+}
+
+void ProgramTest::expect_refused(const Arguments& arguments, const std::vector<std::string>& says,
+                                 const std::source_location& where) {
+  const auto before = listing();
+  EXPECT_EQ(expect(2, arguments, says, where).out, "");
+  EXPECT_EQ(listing(), before) << "something was written";
+}
+
 Outcome ProgramTest::shell(const std::string& script) {
   return wait_for(start({"-c", script, SHEARCELL_PROGRAM}, "", "/bin/sh"));
 }
@@ -96,41 +117,45 @@ Outcome ProgramTest::run_until(const Arguments& arguments, std::size_t files, in
   return wait_for(program);
 }
 
-void ProgramTest::campaign(const std::string& manifest, const Arguments& options,
-                           const std::string& store) {
-  const std::string file = write("m.yaml", manifest);
-  std::string identity = manifest;
-  for (const std::string& option : options) identity += " " + option;
+void ProgramTest::shared(const std::string& identity, const std::string& place,
+                         const std::function<void(const std::string& folder)>& make) {
   // Beside the program, by its date: another build computes it again.
   const fs::path program = SHEARCELL_PROGRAM;
   const auto date = fs::last_write_time(program).time_since_epoch().count();
-  const fs::path shared = program.parent_path() / "test-campaigns" / std::to_string(date);
-  const fs::path kept = shared / std::to_string(std::hash<std::string>{}(identity));
-  if (fs::create_directories(shared)) {
-    for (const auto& old : fs::directory_iterator(shared.parent_path())) {
-      if (old.path() != shared) fs::remove_all(old.path());
+  const fs::path all = program.parent_path() / "test-campaigns" / std::to_string(date);
+  const fs::path kept = all / std::to_string(std::hash<std::string>{}(identity));
+  if (fs::create_directories(all)) {
+    for (const auto& old : fs::directory_iterator(all.parent_path())) {
+      if (old.path() != all) fs::remove_all(old.path());
     }
   }
   const int lock = open((kept.string() + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   ASSERT_GE(lock, 0);
   flock(lock, LOCK_EX);
   if (!fs::exists(kept)) {
-    Arguments words = {"run", file, "-q", "--store", "being-shared"};
-    words.insert(words.end(), options.begin(), options.end());
-    const Outcome outcome = run(words);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    fs::remove_all(kept.string() + ".part");
-    fs::copy(path("being-shared"), kept.string() + ".part", fs::copy_options::recursive);
-    fs::rename(kept.string() + ".part", kept);
-    fs::remove_all(path("being-shared"));
+    const std::string part = kept.string() + ".part";
+    fs::remove_all(part);
+    make(part);
+    fs::rename(part, kept);
   }
   close(lock);
-  fs::copy(kept, path(store), fs::copy_options::recursive);
+  fs::copy(kept, path(place), fs::copy_options::recursive);
+}
+
+void ProgramTest::campaign(const std::string& manifest, const Arguments& options,
+                           const std::string& store) {
+  const std::string file = write("m.yaml", manifest);
+  std::string identity = manifest;
+  for (const std::string& option : options) identity += " " + option;
+  shared(identity, store, [&](const std::string& folder) {
+    Arguments words = {"run", file, "-q", "--store", folder};
+    words.insert(words.end(), options.begin(), options.end());
+    expect(0, words);
+  });
 }
 
 nlohmann::json ProgramTest::json(const Arguments& arguments) {
-  const Outcome outcome = run(arguments);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = expect(0, arguments);
   nlohmann::json facts = nlohmann::json::parse(outcome.out, nullptr, false);
   EXPECT_FALSE(facts.is_discarded()) << outcome.out;
   return facts;
@@ -163,11 +188,6 @@ std::map<std::string, std::string> ProgramTest::hashes(const std::string& store)
   }
   EXPECT_FALSE(found.empty());
   return found;
-}
-
-std::string ProgramTest::newest_file(const std::string& run, const std::string& store) {
-  const auto checkpoints = json({"show", run, "--json", "--store", store}).at("checkpoints");
-  return store + "/" + checkpoints.back().at("file").get<std::string>();
 }
 
 }  // namespace shearcell::test

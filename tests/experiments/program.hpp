@@ -4,12 +4,17 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <source_location>
+#include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/experiments/temporary_store.hpp"
@@ -23,12 +28,30 @@ struct Outcome {
   std::string err;
 };
 
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// "run m.yaml -q" as three arguments.
+inline std::vector<std::string> split(const std::string& line) {
+  std::istringstream words(line);
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
 class ProgramTest : public testing::Test {
  protected:
   using Arguments = std::vector<std::string>;
 
   /// Runs it to its end.
   Outcome run(const Arguments& arguments);
+
+  /// Runs a command that must end with this code and say each of `says`, on either stream.
+  Outcome expect(int code, const Arguments& arguments, const std::vector<std::string>& says = {},
+                 const std::source_location& where = std::source_location::current());
+
+  /// The same of a bad command line, which must print nothing but messages, and write nothing.
+  void expect_refused(const Arguments& arguments, const std::vector<std::string>& says,
+                      const std::source_location& where = std::source_location::current());
 
   /// Runs a script of sh, whose "$0" is the program.
   Outcome shell(const std::string& script);
@@ -44,8 +67,12 @@ class ProgramTest : public testing::Test {
   Running start_beside(const Arguments& arguments, const std::string& name);
   static Outcome wait_for(const Running& program);
 
-  /// Leaves m.yaml and the store as `run m.yaml OPTIONS -q` does in an empty folder. Each campaign
-  /// is computed once per build and shared by all test processes.
+  /// Copies to `place` what `make` leaves in an empty folder. It is made once per build and shared
+  /// by all test processes.
+  void shared(const std::string& identity, const std::string& place,
+              const std::function<void(const std::string& folder)>& make);
+
+  /// Leaves m.yaml and the store as `run m.yaml OPTIONS -q` does in an empty folder; shared.
   void campaign(const std::string& manifest, const Arguments& options = {},
                 const std::string& store = "shearcell-store");
 
@@ -72,8 +99,21 @@ class ProgramTest : public testing::Test {
   /// Run id -> state hash, from `status --json`.
   std::map<std::string, std::string> hashes(const std::string& store = "shearcell-store");
 
+  /// Id of the run that was declared last, which shears.
+  std::string last_run() const {
+    return Store(path("shearcell-store"), Access::read).runs().back().id;
+  }
+
   /// File of the last checkpoint of a run, relative to the test's folder.
-  std::string newest_file(const std::string& run, const std::string& store = "shearcell-store");
+  std::string newest_file(const std::string& run) const {
+    const Store store(path("shearcell-store"), Access::read);
+    return "shearcell-store/" + store.checkpoints(run).back().file;
+  }
+
+  /// Waits until the store has that many checkpoint files.
+  void wait_for_objects(std::size_t files, const std::string& store = "shearcell-store") const {
+    while (objects(store) < files) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
 
  private:
   Running start(const Arguments& arguments, const std::string& name = "",

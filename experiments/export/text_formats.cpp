@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The formats that are text: extended XYZ, LAMMPS data, and run.json beside folders of frames.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "experiments/export/formats.hpp"
+#include "provenance/io/plain_file.hpp"
+
+namespace shearcell {
+namespace {
+
+// Quoted as ASE and OVITO read it; a text of a damaged store must not end the quotes or the line.
+std::string quoted(std::string text) {
+  for (char& c : text) {
+    if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) c = '_';
+  }
+  return '"' + text + '"';
+}
+
+std::string xyz_comment(const Frame& f, Lengths lengths) {
+  const bool si = lengths == Lengths::metres;
+  const double d = 2 * f.radius;
+  const Eigen::Matrix3d e = f.edges / (si ? 1 : d);
+  const Eigen::Vector3d o = f.origin / (si ? 1 : d);
+  std::string line = fmt::format(
+      "Lattice=\"{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\" "
+      "Origin=\"{:.17g} {:.17g} {:.17g}\" pbc=\"F F T\" Time={:.17g} step={} cycle={:.17g} "
+      "theta={:.17g} Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:radius:R:1:type:I:1",
+      e(0, 0), e(1, 0), e(2, 0), e(0, 1), e(1, 1), e(2, 1), e(0, 2), e(1, 2), e(2, 2), o.x(), o.y(),
+      o.z(), f.time_s, f.step, f.cycle, f.theta);
+  for (const FrameColumn& column : f.columns) {
+    line += fmt::format(":{}:{}:1", column.name, column.values.index() == 0 ? 'R' : 'I');
+  }
+  line += fmt::format(" length_unit={} velocity_unit={} d_m={:.17g} checkpoint={}", si ? "m" : "d",
+                      si ? "m/s" : "d/s", d, quoted(f.checkpoint));
+  for (const auto& [key, value] : f.facts) {
+    line += fmt::format(" {}={}", key,
+                        value.is_string() ? quoted(value.get<std::string>()) : value.dump());
+  }
+  for (const auto& [name, value] : f.scalars) {
+    if (std::isfinite(value)) line += fmt::format(" {}={:.17g}", name, value);
+  }
+  return line;
+}
+
+std::string lammps_header(const Frame& f) {
+  const double tilt = f.edges(0, 1) / f.edges(1, 1);
+  const double low_y = f.position.row(1).minCoeff() - f.radius;
+  const double high_y = f.position.row(1).maxCoeff() + f.radius;
+  const Eigen::RowVectorXd along = f.position.row(0) - tilt * f.position.row(1);
+  const double low_x = along.minCoeff() + tilt * low_y - f.radius;
+  const double high_x = along.maxCoeff() + tilt * low_y + f.radius;
+  return fmt::format(
+      "LAMMPS data file by shearcell, units si, atom_style sphere, step {}, cycle {:.17g}, "
+      "run {:.64}\n\n"
+      "{} atoms\n5 atom types\n\n"
+      "{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n0 {:.17g} zlo zhi\n{:.17g} 0 0 xy xz "
+      "yz\n\n",
+      f.step, f.cycle, f.facts.front().second.get<std::string>(), f.particles(), low_x, high_x,
+      low_y, high_y, f.edges(2, 2), tilt * (high_y - low_y));
+}
+
+}  // namespace
+
+FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths) {
+  return [lengths, out = std::make_shared<NewFile>(file)](const Frame& f) {
+    const double unit = lengths == Lengths::metres ? 1 : 2 * f.radius;
+    std::string text = fmt::format("{}\n{}\n", f.particles(), xyz_comment(f, lengths));
+    for (std::size_t i = 0; i < f.particles(); ++i) {
+      const Eigen::Vector3d r = f.position.col(static_cast<Eigen::Index>(i)) / unit;
+      const Eigen::Vector3d v = f.velocity.col(static_cast<Eigen::Index>(i)) / unit;
+      const auto line = std::back_inserter(text);
+      fmt::format_to(line, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} {:.17g} {}",
+                     f.type[i] == 0 ? "H" : "He", r.x(), r.y(), r.z(), v.x(), v.y(), v.z(), i + 1,
+                     f.radius / unit, f.type[i]);
+      for (const FrameColumn& column : f.columns) {
+        if (const auto* real = std::get_if<0>(&column.values)) {
+          fmt::format_to(line, " {:.17g}", (*real)[i]);
+        } else {
+          fmt::format_to(line, " {}", std::get<1>(column.values)[i]);
+        }
+      }
+      text += '\n';
+    }
+    out->add(text);
+  };
+}
+
+FrameWriter lammps_writer(const std::filesystem::path& folder) {
+  return [folder](const Frame& f) {
+    const double density = f.mass / (4.0 / 3.0 * std::numbers::pi * std::pow(f.radius, 3));
+    std::string text = lammps_header(f) + "Atoms # sphere\n\n";
+    for (std::size_t i = 0; i < f.particles(); ++i) {
+      const auto r = f.position.col(static_cast<Eigen::Index>(i));
+      fmt::format_to(std::back_inserter(text),
+                     "{} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} 0 0 {}\n", i + 1, f.type[i] + 1,
+                     2 * f.radius, density, r.x(), r.y(), r.z(), f.image[i]);
+    }
+    text += "\nVelocities\n\n";
+    for (std::size_t i = 0; i < f.particles(); ++i) {
+      const auto v = f.velocity.col(static_cast<Eigen::Index>(i));
+      fmt::format_to(std::back_inserter(text), "{} {:.17g} {:.17g} {:.17g} 0 0 0\n", i + 1, v.x(),
+                     v.y(), v.z());
+    }
+    NewFile(folder / fmt::format("frame_{:g}.data", f.cycle)).add(text);
+  };
+}
+
+FrameWriter facts_writer(const std::filesystem::path& folder) {
+  using Json = nlohmann::ordered_json;
+  return [folder, frames = std::make_shared<Json>(Json::array())](const Frame& f) {
+    Json all = {{"units", "SI: m, kg, s; others are in the names"}};
+    constexpr std::size_t kIdentity = 5;  // the run, and how its experiment names it
+    for (std::size_t i = 0; i < f.facts.size(); ++i) {
+      const auto& [key, value] = f.facts[i];
+      (i < kIdentity ? all[key] : all["parameters"][key]) = value;
+    }
+    Json frame = {{"cycle", f.cycle}, {"time_s", f.time_s}, {"checkpoint", f.checkpoint}};
+    for (const auto& [name, value] : f.scalars) frame[name] = value;  // NaN as null
+    frames->push_back(std::move(frame));
+    all["frames"] = *frames;
+    write_output(folder / "run.json",
+                 all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  };
+}
+
+}  // namespace shearcell
