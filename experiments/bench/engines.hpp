@@ -84,8 +84,8 @@ struct EngineCheck {
   bool agree() const;
 };
 
-/// Table I in a rough cell. Throws ProgramError if LAMMPS is missing or fails, NumericalFailure if a
-/// packing does not settle.
+/// Table I in a rough cell. Throws ProgramError if LAMMPS is missing or fails, NumericalFailure if
+/// a packing does not settle.
 EngineCheck check_engines(const EngineCheckOptions& options);
 
 }  // namespace shearcell::bench

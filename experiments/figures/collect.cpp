@@ -17,8 +17,8 @@
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/manifest/variants.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "experiments/manifest/variants.hpp"
 #include "experiments/runner/asks.hpp"
 #include "provenance/errors.hpp"
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <span>
 
 #include "analysis/statistics.hpp"
 #include "core/watchdog.hpp"
@@ -140,6 +141,96 @@ std::vector<Section> closed_form_sections(const Options& options, double engine_
   return sections;
 }
 
+// work(n) for n < count, `jobs` at once. Rethrows an exception of one of them.
+template <class Work>
+auto in_parallel(std::size_t count, std::size_t jobs, const Work& work) {
+  std::vector<decltype(work(count))> results;
+  while (results.size() < count) {
+    std::vector<std::future<decltype(work(count))>> at_once;
+    for (std::size_t n = results.size(); n < std::min(results.size() + jobs, count); ++n) {
+      at_once.push_back(std::async(std::launch::async, work, n));
+    }
+    for (auto& result : at_once) results.push_back(result.get());
+  }
+  return results;
+}
+
+// Means over the ends of the cycles `first` to `last` of a run; NaN if the watchdog stopped it.
+PackingNumbers means_of_cycles(const bench::Packing& packing, std::uint64_t steps_per_cycle,
+                               std::uint64_t first, std::uint64_t last) {
+  Parameters parameters = packing.parameters;
+  parameters.steps_per_cycle = steps_per_cycle;
+  const Drive tilt = drive(parameters);
+  PackingNumbers mean;
+  try {
+    Simulation simulation(packing.cell, shear_scene(parameters), packing.state);
+    simulation.advance(tilt, (first - 1) * steps_per_cycle);
+    const auto count = static_cast<double>(last - first + 1);
+    for (std::uint64_t cycle = first; cycle <= last; ++cycle) {
+      simulation.advance(tilt, steps_per_cycle);
+      simulation.check();
+      const PackingNumbers now =
+          bench::numbers_of(packing.cell, simulation.scene(), 0, simulation.state());
+      mean.phi += now.phi / count;
+      mean.contacts += now.contacts / count;
+      mean.overlap += now.overlap / count;
+    }
+  } catch (const NumericalFailure&) {
+    mean.phi = mean.contacts = mean.overlap = kNaN;
+  }
+  return mean;
+}
+
+Section seeds_section(const Options& options, double engine_rate) {
+  options.report("means over seeds at each time step");
+  const std::size_t seeds = options.quick ? 2 : 8;
+  const std::uint64_t first = options.quick ? 1 : 3, last = options.quick ? 1 : 5;
+  // The supplement's four, then up to the stability limit and beyond.
+  std::vector<std::uint64_t> steps = {76923, 57143, 45600, 28571, 20000, 17000, 15000};
+  if (options.quick) steps = {28571, 20000};
+  Parameters p = small_cell(options.quick);
+  const auto packings = in_parallel(
+      seeds, options.jobs, [&](std::size_t s) { return bench::settled_packing(p, s + 1); });
+  const auto means = in_parallel(steps.size() * seeds, options.jobs, [&](std::size_t n) {
+    return means_of_cycles(packings[n % seeds], steps[n / seeds], first, last);
+  });
+  Section section;
+  section.title = fmt::format("{} sheared grains, {} seeds, means of cycles {} to {}", p.grains,
+                              seeds, first, last);
+  section.table.name = "accuracy-seeds";
+  section.table.chart = {
+      .x = {.name = "time step", .unit = Text("2/ω") + subscript("max")},
+      .y = {.name = "volume fraction", .symbol = italic("ϕ")},
+      .series = {{.title = fmt::format("{} seeds", seeds),
+                  .colour = "#000000",
+                  .columns = {
+                      .x = "time_step_over_stability_limit", .y = "phi", .y_error = "phi_error"}}}};
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    const std::span runs = std::span(means).subspan(s * seeds, seeds);
+    const RunStatistics phi = bench::over(runs, &PackingNumbers::phi),
+                        contacts = bench::over(runs, &PackingNumbers::contacts),
+                        overlap = bench::over(runs, &PackingNumbers::overlap);
+    const auto stopped = static_cast<std::int64_t>(seeds - phi.runs);
+    p.steps_per_cycle = steps[s];
+    const TimeStep step = shear_time_step(p);
+    const double seconds = seconds_per_cycle(p.grains, step.seconds, engine_rate);
+    add_row(section, {{"steps_per_cycle", static_cast<std::int64_t>(steps[s])},
+                      {"time_step_s", step.seconds, "dt [s]", short_number(step.seconds)},
+                      {"time_step_over_stability_limit", step.over_stability_limit, "dt/limit",
+                       fixed(step.over_stability_limit, 2)},
+                      {"seconds_per_cycle", seconds, "s/cycle", fixed(seconds, 2)},
+                      {"phi", phi.mean, "phi", with_error(phi, 4)},
+                      {"phi_error", phi.standard_error},
+                      {"contacts_per_grain", contacts.mean, "contacts", with_error(contacts, 2)},
+                      {"contacts_per_grain_error", contacts.standard_error},
+                      {"mean_overlap_d", overlap.mean, "overlap [d]", with_error(overlap, 6)},
+                      {"mean_overlap_d_error", overlap.standard_error},
+                      {"runs", static_cast<std::int64_t>(phi.runs)},
+                      {"stopped", stopped, "stopped", std::to_string(stopped)}});
+  }
+  return section;
+}
+
 // A settled packing, its stiffness raised to `decades` powers of ten above k_0, in quarters.
 std::vector<PackingNumbers> stiffened(const Parameters& p, std::size_t seed,
                                       std::uint64_t decades) {
@@ -161,14 +252,9 @@ Section stiffness_section(const Options& options, double engine_rate) {
   options.report("finite stiffness");
   const std::size_t seeds = options.quick ? 2 : 4;
   const Parameters p = small_cell(options.quick);
-  std::vector<std::vector<PackingNumbers>> runs;
-  while (runs.size() < seeds) {
-    std::vector<std::future<std::vector<PackingNumbers>>> at_once;
-    for (std::size_t s = runs.size() + 1; s <= std::min(runs.size() + options.jobs, seeds); ++s) {
-      at_once.push_back(std::async(std::launch::async, stiffened, p, s, options.quick ? 1 : 2));
-    }
-    for (auto& run : at_once) runs.push_back(run.get());
-  }
+  const auto runs = in_parallel(seeds, options.jobs, [&](std::size_t s) {
+    return stiffened(p, s + 1, options.quick ? 1 : 2);
+  });
   Section section;
   section.title =
       fmt::format("Finite stiffness: {} settled packings of {} grains", seeds, p.grains);
@@ -231,6 +317,7 @@ std::vector<Section> measure_accuracy(const Options& options) {
                           .front()
                           .median_rate;
   std::vector<Section> sections = closed_form_sections(options, rate);
+  sections.push_back(seeds_section(options, rate));
   sections.push_back(stiffness_section(options, rate));
   return sections;
 }

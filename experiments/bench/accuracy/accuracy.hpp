@@ -14,7 +14,7 @@ namespace shearcell::accuracy {
 struct Options {
   bool quick = false;    ///< seconds instead of minutes: the same tables from fewer runs
   std::size_t jobs = 1;  ///< runs computed at once
-  std::function<void(const std::string&)> report;  ///< progress messages; may be empty
+  std::function<void(const std::string&)> report;  ///< progress messages
 };
 
 struct Section {
