@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
@@ -18,11 +19,24 @@
 namespace shearcell {
 namespace {
 
+/// Over how many cycles crystallites are followed, beside n_bin, to show what that choice does.
+constexpr std::array<std::int64_t, 5> cycles_to_follow = {1, 2, 5, 10, 20};
+
+/// The counts of those runs in which some crystallite could be followed over so many cycles.
+std::vector<GrowthBySize> followed(std::span<const FigureRun* const> runs, std::int64_t cycles) {
+  std::vector<GrowthBySize> all;
+  for (const FigureRun* run : runs) {
+    GrowthBySize counts = growth_of(*run, cycles);
+    if (!counts.empty()) all.push_back(std::move(counts));
+  }
+  return all;
+}
+
 struct AmplitudeGrowth {
   double amplitude;
   const PublishedAmplitude* published;
-  std::vector<GrowthBySize> runs;  ///< those in which some crystallite could be followed
-  std::size_t all_runs;
+  std::vector<const FigureRun*> all_runs;
+  std::vector<GrowthBySize> runs;     ///< followed over n_bin cycles
   std::optional<double> onset_cycle;  ///< median over runs
   std::optional<GrowthFit> fit;
   std::optional<Estimate> critical;          ///< interval of the fit's critical size
@@ -32,12 +46,8 @@ struct AmplitudeGrowth {
 std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs) {
   std::vector<AmplitudeGrowth> all;
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
-    AmplitudeGrowth one{amplitude, &published_nearest(amplitude), {}, members.size(), {}, {}, {},
-                        {}};
-    for (const FigureRun* run : members) {
-      GrowthBySize counts = growth_of(*run, one.published->n_bin);
-      if (!counts.empty()) one.runs.push_back(std::move(counts));
-    }
+    AmplitudeGrowth one{amplitude, &published_nearest(amplitude), members, {}, {}, {}, {}, {}};
+    one.runs = followed(members, one.published->n_bin);
     one.onset_cycle = median_wait(waits_for_onset(members));
     one.fit = fit_growth(one.runs);
     one.critical = critical_size(one.runs);
@@ -170,6 +180,43 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
   return table;
 }
 
+/// Grains that have longer to grow appear to be past the critical size when they are smaller.
+FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
+  FigureTable table;
+  table.name = "C_followed";
+  table.columns = {"amplitude_rad",
+                   "cycles_followed",
+                   "critical_size_grains",
+                   "critical_size_low_grains",
+                   "critical_size_high_grains",
+                   "critical_size_standard_error_grains",
+                   "runs"};
+  table.chart = {.x = {.name = "cycles that crystallites are followed", .log = true},
+                 .y = {.name = "critical size", .unit = "grains", .log = true}};
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    std::set<std::int64_t> choices(cycles_to_follow.begin(), cycles_to_follow.end());
+    choices.insert(all[k].published->n_bin);
+    for (const std::int64_t cycles : choices) {
+      const std::vector<GrowthBySize> runs = followed(all[k].all_runs, cycles);
+      TableRow& row = table.rows.emplace_back(TableRow{all[k].amplitude, cycles});
+      std::ranges::move(cells_of(critical_size(runs)), std::back_inserter(row));
+      row.emplace_back(runs.size());
+    }
+    table.chart.series.push_back({.title = title_of(all[k].amplitude),
+                                  .colour = colour_of(k),
+                                  .point = filled_symbol(k),
+                                  .join = Join::line,
+                                  .columns = {.x = "cycles_followed",
+                                              .y = "critical_size_grains",
+                                              .y_error = "critical_size_standard_error_grains"},
+                                  .filter = {"amplitude_rad", all[k].amplitude}});
+    table.chart.lines.push_back({.at = all[k].published->critical_size,
+                                 .colour = colour_of(k),
+                                 .title = "the supplement's critical sizes"});
+  }
+  return table;
+}
+
 /// Fig. 4(b) of the main text: with method 1 of section C the onset is the phi at which a curve
 /// reaches its critical size. No crystallite counts as one grain, as in method 2.
 FigureTable largest_table(std::span<const FigureRun> runs, std::span<const AmplitudeGrowth> all) {
@@ -195,7 +242,7 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   const double published = one.published->critical_size;
   std::optional<Estimate> relative = one.critical;
   std::string note = fmt::format("crystallites followed over {} cycles in {} of {} runs",
-                                 one.published->n_bin, one.runs.size(), one.all_runs);
+                                 one.published->n_bin, one.runs.size(), one.all_runs.size());
   if (one.onset_cycle) note += fmt::format(", onset at cycle {:.3g} (median)", *one.onset_cycle);
   if (relative) {
     note += fmt::format("; {:.3g} grains", one.critical->value);
@@ -218,7 +265,8 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
 
 FigureResult figure_c(std::span<const FigureRun> runs) {
   const std::vector<AmplitudeGrowth> all = growth_by_amplitude(runs);
-  FigureResult result{{rates_table(all), critical_table(all), largest_table(runs, all)}, {}};
+  FigureResult result{
+      {rates_table(all), critical_table(all), largest_table(runs, all), followed_table(all)}, {}};
   for (const AmplitudeGrowth& one : all) {
     result.verdicts.push_back(critical_size_is_published(one));
   }

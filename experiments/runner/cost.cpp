@@ -15,14 +15,13 @@
 namespace shearcell {
 namespace {
 
-// Particle-steps/s until the store has measured them: rough cells on one core of a Xeon with
-// AVX-512, for LAMMPS of one process (29 Sep 2021). N = 5200 from the shears of scale desk, 100,000
-// from `bench engines`, 1,000,000 from `bench speed` (SCALING.md).
+// Particle-steps/s until the store has measured them: rough cells on one core of an EPYC (Zen 4),
+// from `bench speed`, for LAMMPS of one process (29 Sep 2021) from `bench engines` (SCALING.md).
 struct MeasuredRate {
   double grains, rate;
 };
-constexpr MeasuredRate kOurRates[] = {{5200, 107e6}, {1e5, 61e6}, {1e6, 30e6}};
-constexpr MeasuredRate kLammpsRates[] = {{5200, 7.6e6}, {1e5, 3.0e6}};
+constexpr MeasuredRate kOurRates[] = {{5200, 74e6}, {1e5, 57e6}, {1e6, 53e6}};
+constexpr MeasuredRate kLammpsRates[] = {{5200, 6.6e6}, {1e5, 3.0e6}};
 
 // Between two sizes a power of N; beyond the outermost as there.
 double assumed_rate(std::span<const MeasuredRate> rates, double grains) {

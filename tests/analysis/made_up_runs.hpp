@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <numbers>
 #include <numeric>
 #include <span>
@@ -90,7 +89,7 @@ inline std::vector<std::int32_t> grain_ids(std::int32_t first, std::int32_t coun
 }
 
 /// A map in which each list of grains is a crystallite. Grains need not be in order.
-inline CrystalliteMap map_of(std::initializer_list<std::vector<std::int32_t>> crystallites) {
+inline CrystalliteMap map_of(const std::vector<std::vector<std::int32_t>>& crystallites) {
   CrystalliteMap map;
   std::vector<std::pair<std::int32_t, std::int32_t>> grains;
   for (const std::vector<std::int32_t>& members : crystallites) {

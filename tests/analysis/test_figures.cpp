@@ -109,6 +109,40 @@ TEST(FigureC, DrawsTheLargestCrystalliteAgainstPhi) {
   EXPECT_EQ(table.chart.lines.at(0).at, 20) << "the critical size of the supplement";
 }
 
+// Crystallites of s grains gain one with probability s / (s + 6), and else lose one.
+FigureRun biased_walks(std::uint32_t seed) {
+  FigureRun run = made_up_run("amplitude_rad", 0.0833, seed, 40, [](int, Measures&) {});
+  std::vector<std::int32_t> sizes(24);
+  for (std::size_t k = 0; k < sizes.size(); ++k) sizes[k] = 1 + static_cast<std::int32_t>(k) / 2;
+  for (std::uint32_t n = 0; n < run.checkpoints.size(); ++n) {
+    std::vector<std::vector<std::int32_t>> crystallites;
+    for (std::uint32_t k = 0; k < sizes.size(); ++k) {
+      std::int32_t& size = sizes[k];
+      crystallites.push_back(testing::grain_ids(static_cast<std::int32_t>(100 * k), size));
+      const double grows = size / (size + 6.0);
+      size += uniform_pair({seed, n, k, 2}, 7)[0] < grows ? 1 : size > 1 ? -1 : 0;
+    }
+    run.checkpoints[n].crystallites = testing::map_of(crystallites);
+  }
+  return run;
+}
+
+TEST(FigureC, FollowsCrystallitesOverSeveralNumbersOfCycles) {
+  const std::vector<FigureRun> runs = {biased_walks(1), biased_walks(2), biased_walks(3)};
+  const FigureResult made = find_figure("C")->make(runs);
+  const FigureTable &followed = panel(made, "C_followed"),
+                    &critical = panel(made, "C_critical_size");
+  std::vector<TableValue> cycles;
+  for (const TableRow& row : followed.rows) {
+    cycles.push_back(row.at(1));
+    EXPECT_NEAR(std::get<double>(row.at(2)), 6, 1.5) << std::get<std::int64_t>(row.at(1));
+  }
+  EXPECT_EQ(cycles,
+            (std::vector<TableValue>{std::int64_t{1}, std::int64_t{2}, std::int64_t{5},
+                                     std::int64_t{10}, std::int64_t{15}, std::int64_t{20}}));
+  EXPECT_EQ(followed.rows.at(4).at(2), critical.rows.at(0).at(3)) << "15 cycles are n_bin";
+}
+
 // As the supplement does: one experiment, with the standard deviation of runs at A = 0.05.
 TEST(FigureS5, TheExperimentHasTheStandardDeviationOfOurRuns) {
   std::vector<FigureRun> runs;
