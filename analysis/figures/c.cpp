@@ -199,7 +199,9 @@ FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
     for (const std::int64_t cycles : choices) {
       const std::vector<GrowthBySize> runs = followed(all[k].all_runs, cycles);
       TableRow& row = table.rows.emplace_back(TableRow{all[k].amplitude, cycles});
-      std::ranges::move(cells_of(critical_size(runs)), std::back_inserter(row));
+      std::optional<Estimate> size = critical_size(runs);
+      if (size && !std::isfinite(size->interval.high - size->interval.low)) size.reset();
+      std::ranges::move(cells_of(size), std::back_inserter(row));
       row.emplace_back(runs.size());
     }
     table.chart.series.push_back({.title = title_of(all[k].amplitude),

@@ -109,18 +109,23 @@ TEST(FigureC, DrawsTheLargestCrystalliteAgainstPhi) {
   EXPECT_EQ(table.chart.lines.at(0).at, 20) << "the critical size of the supplement";
 }
 
-// Crystallites of s grains gain one with probability s / (s + 6), and else lose one.
+// Crystallites of s grains gain one with probability s / (s + 6), and else lose one. One that has
+// vanished begins again with other grains.
 FigureRun biased_walks(std::uint32_t seed) {
   FigureRun run = made_up_run("amplitude_rad", 0.0833, seed, 40, [](int, Measures&) {});
-  std::vector<std::int32_t> sizes(24);
-  for (std::size_t k = 0; k < sizes.size(); ++k) sizes[k] = 1 + static_cast<std::int32_t>(k) / 2;
+  struct Walk {
+    std::int32_t start, first_grain, size;
+  };
+  std::vector<Walk> walks;
+  for (std::int32_t k = 0; k < 24; ++k) walks.push_back({1 + k / 2, 100 * k, 1 + k / 2});
   for (std::uint32_t n = 0; n < run.checkpoints.size(); ++n) {
     std::vector<std::vector<std::int32_t>> crystallites;
-    for (std::uint32_t k = 0; k < sizes.size(); ++k) {
-      std::int32_t& size = sizes[k];
-      crystallites.push_back(testing::grain_ids(static_cast<std::int32_t>(100 * k), size));
-      const double grows = size / (size + 6.0);
-      size += uniform_pair({seed, n, k, 2}, 7)[0] < grows ? 1 : size > 1 ? -1 : 0;
+    for (std::uint32_t k = 0; k < walks.size(); ++k) {
+      Walk& walk = walks[k];
+      crystallites.push_back(testing::grain_ids(walk.first_grain, walk.size));
+      const double grows = walk.size / (walk.size + 6.0);
+      walk.size += uniform_pair({seed, n, k, 2}, 7)[0] < grows ? 1 : -1;
+      if (walk.size == 0) walk = {walk.start, walk.first_grain + 10'000, walk.start};
     }
     run.checkpoints[n].crystallites = testing::map_of(crystallites);
   }

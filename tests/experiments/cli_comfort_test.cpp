@@ -229,9 +229,8 @@ TEST_F(BenchAccuracy, PrintsJsonAndWritesTablesAndFigures) {
     EXPECT_TRUE(std::filesystem::exists(path("made/here/" + name + ".csv"))) << name;
     EXPECT_TRUE(std::filesystem::exists(path("made/here/" + name + ".svg"))) << name;
   }
-  EXPECT_EQ(names, (std::set<std::string>{
-                       "accuracy-cage", "accuracy-collision-end", "accuracy-collision-speed",
-                       "accuracy-row", "accuracy-seeds", "accuracy-stiffness", "accuracy-wall"}));
+  EXPECT_EQ(names, (std::set<std::string>{"accuracy-collision-speed", "accuracy-seeds",
+                                          "accuracy-stiffness", "accuracy-wall"}));
 }
 
 TEST_F(BenchAccuracy, SaysWhatIsWrongBeforeItMeasures) {
