@@ -35,7 +35,7 @@ struct JobPlaces {
 /// Why a path cannot be passed to Slurm (a backslash or control character); "" when it can.
 std::string unfit_path(const std::filesystem::path& path);
 
-/// Why the text may not stand in a script as an option's value; "" when it may.
+/// Why the text cannot be an option's value in a script; "" when it can.
 std::string unfit_value(std::string_view text);
 
 /// Seconds of a time limit: "MM", "MM:SS", "HH:MM:SS", "D-HH", "D-HH:MM" or "D-HH:MM:SS". Nothing

@@ -38,7 +38,7 @@ std::string table_html(const ReportPanel& panel) {
 
 struct Count {
   const char* css_class;
-  const char* mark;  ///< tells the states apart without colour
+  const char* mark;  ///< distinguishes the states without colour
   const char* name;
   std::size_t number;
 };

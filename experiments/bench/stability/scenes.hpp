@@ -83,7 +83,7 @@ void add(Cases& cases, const std::string& name, const std::string& done,
                    }});
 }
 
-/// Adds a case for each value, which stands in its name and description.
+/// Adds a case for each value, which appears in its name and description.
 template <class Value>
 void add_each(Cases& cases, const std::vector<Value>& values, const std::string& name,
               const std::string& done, const std::string& expected, Outcome (*compute)(Value)) {
