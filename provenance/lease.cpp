@@ -69,7 +69,7 @@ std::optional<std::uint64_t> start_of(std::uint64_t pid) {
   const auto end_of_name = line.rfind(')');
   if (end_of_name == std::string::npos) return std::nullopt;
   std::istringstream rest(line.substr(end_of_name + 1));
-  const std::vector<std::string> fields{std::istream_iterator<std::string>(rest), {}};
+  const std::vector<std::string> fields(std::istream_iterator<std::string>(rest), {});
   constexpr std::size_t kState = 0, kStart = 19;  // fields 3 and 22 of the line
   if (fields.size() <= kStart || fields[kState] == "Z" || fields[kState] == "X") {
     return std::nullopt;  // dead, maybe not yet reaped

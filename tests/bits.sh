@@ -17,11 +17,13 @@ build() {  # name, compiler, build type, more options: the program that compares
   cmake --build "$folder" >/dev/null
 }
 build g++ g++ Debug
-"$folder/test_bits"
-echo "g++ without optimization: the same bits"
 build clang++ clang++ Release
-"$folder/test_bits"
-echo "clang++: the same bits"
 build aarch64 aarch64-linux-gnu-g++ Release -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64
-qemu-aarch64-static "$folder/test_bits" sheared deep
+build/bits-g++/test_bits &
+plain=$!
+build/bits-clang++/test_bits
+echo "clang++: the same bits"
+qemu-aarch64-static build/bits-aarch64/test_bits sheared deep
 echo "aarch64: the same bits"
+wait "$plain"
+echo "g++ without optimization: the same bits"
