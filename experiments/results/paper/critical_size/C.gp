@@ -1,4 +1,4 @@
-set terminal svg size 325,230 enhanced font 'Helvetica,10.67' background '#ffffff'
+set terminal svg size 325,245 enhanced font 'Helvetica,10.67' background '#ffffff'
 set encoding utf8
 set datafile separator ','
 set border 15 lw 0.8
@@ -22,9 +22,52 @@ set xrange [0:60]
 set yrange [-1.05:1.05]
 set offsets 0, 0, 0, 0
 set arrow from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#888888'
-set arrow from 16, graph 0 to 16, graph 0.06 nohead lw 2 lc rgb '#6a3d9a'
-set arrow from 20, graph 0 to 20, graph 0.06 nohead lw 2 lc rgb '#000000'
+set arrow from 13, graph 0 to 13, graph 0.06 nohead lw 2 lc rgb '#6a3d9a'
+set arrow from 16, graph 0 to 16, graph 0.06 nohead lw 2 lc rgb '#000000'
+set arrow from 20, graph 0 to 20, graph 0.06 nohead lw 2 lc rgb '#009e73'
 $series0 << EOD
+1,-0.705109724,,0.104017051
+2,-0.547482661,,0.0851153667
+3,-0.431030452,,0.117708974
+4,-0.33829685,,0.144092219
+5,-0.26141449,,0.160166838
+6,-0.195981632,,0.175061044
+7,-0.139237051,,0.194217073
+8,-0.0893180151,,0.210119228
+9,-0.0449022297,,0.225565715
+10,-0.00501466535,,0.238206325
+15,0.147518795,,0.27944854
+20,0.252046213,,0.30401264
+25,0.329385312,,0.312576178
+30,0.389503345,,0.318224086
+35,0.437889962,,0.321205335
+40,0.477860512,,0.321006601
+45,0.511553926,,0.318519356
+50,0.540420896,,0.315895064
+55,0.565484784,,0.312840235
+60,0.587490832,,0.309539431
+EOD
+$series1 << EOD
+1,-0.702495202,,0.0220566796
+2,-0.613333333,,0.064354843
+3,-0.195876289,,0.0981410731
+4,-0.307692308,,0.128785128
+5,-0.384615385,,0.125250715
+6,-0.08,,0.136953569
+7,-0.0344827586,,0.176684696
+8,-0.214285714,,0.175976538
+9,-0.52,,0.165634665
+10,-0.230769231,,0.181381826
+11.4241131,-0.0434782609,,0.195959179
+13,-0.3,,0.200609922
+14.5567908,0.238095238,,0.199242422
+18.3012158,0.142857143,,0.20238029
+22.6531974,0.304347826,,0.18827149
+28.8975657,0.5,,0.185728698
+40.5575411,0.5,,0.185728698
+68.6411898,1,,0.0868666442
+EOD
+$series2 << EOD
 1,-0.557195752,,0.174500769
 2,-0.304421558,,0.219553722
 3,-0.12975444,,0.250183778
@@ -46,7 +89,7 @@ $series0 << EOD
 55,0.830186885,,0.157632721
 60,0.842056644,,0.151139286
 EOD
-$series1 << EOD
+$series3 << EOD
 1,-0.534545455,,0.0359909567
 2,-0.379310345,,0.0978954862
 3,-0.228070175,,0.125926614
@@ -61,7 +104,7 @@ $series1 << EOD
 183.39701,0.8,,0.143113573
 309.605888,1,,0.0868666442
 EOD
-$series2 << EOD
+$series4 << EOD
 1,-0.724925347,,0.0699328173
 2,-0.596042339,,0.0812872186
 3,-0.501929344,,0.0847756157
@@ -83,7 +126,7 @@ $series2 << EOD
 55,0.394676174,,0.0793702164
 60,0.418869241,,0.0791377125
 EOD
-$series3 << EOD
+$series5 << EOD
 1,-0.730027548,,0.0359448659
 2,-0.617647059,,0.0949425327
 3,-0.485714286,,0.144084862
@@ -109,11 +152,17 @@ $series3 << EOD
 1588.52247,0.4,,0.194239721
 EOD
 plot keyentry with lines lc rgb '#6a3d9a' lw 1.2 notitle, \
-     keyentry with points lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.0833', \
+     keyentry with points lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.0667', \
      keyentry with lines lc rgb '#000000' lw 1.2 notitle, \
-     keyentry with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.1', \
+     keyentry with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.0833', \
+     keyentry with lines lc rgb '#009e73' lw 1.2 notitle, \
+     keyentry with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.1', \
+     $series4 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
      $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
      $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#6a3d9a' fs transparent solid 0.2 noborder notitle, \
+     $series5 every 1 using 1:2:4 with yerrorbars lc rgb '#009e73' lw 0.7 pt 0 notitle, \
+     $series5 every 1 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 notitle, \
+     $series4 using 1:2 with lines lc rgb '#009e73' lw 1.2 notitle, \
      $series3 every 1 using 1:2:4 with yerrorbars lc rgb '#000000' lw 0.7 pt 0 notitle, \
      $series3 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
      $series2 using 1:2 with lines lc rgb '#000000' lw 1.2 notitle, \

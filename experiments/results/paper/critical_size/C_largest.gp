@@ -1,4 +1,4 @@
-set terminal svg size 325,230 enhanced font 'Helvetica,10.67' background '#ffffff'
+set terminal svg size 325,245 enhanced font 'Helvetica,10.67' background '#ffffff'
 set encoding utf8
 set datafile separator ','
 set border 15 lw 0.8
@@ -20,11 +20,34 @@ set logscale y
 set format y '10^{%T}'
 set mytics 10
 set xrange [*:*]
-set yrange [*<15:21<*]
+set yrange [*<11.25:21.75<*]
 set offsets graph 0.03, graph 0.03, graph 0.05, graph 0.05
-set arrow from graph 0, first 16 to graph 1, first 16 nohead dt 2 lc rgb '#6a3d9a'
-set arrow from graph 0, first 20 to graph 1, first 20 nohead dt 2 lc rgb '#000000'
+set arrow from graph 0, first 13 to graph 1, first 13 nohead dt 2 lc rgb '#6a3d9a'
+set arrow from graph 0, first 16 to graph 1, first 16 nohead dt 2 lc rgb '#000000'
+set arrow from graph 0, first 20 to graph 1, first 20 nohead dt 2 lc rgb '#009e73'
 $series0 << EOD
+0.637626936,1,,
+0.639329927,1,0.00011944738,0
+0.641169823,1,9.4646292e-05,0
+0.643179969,1.73138528,0.000129692705,0.599955061
+0.645044817,4.905962,5.0840505e-05,1.56768793
+0.646916053,20.344071,5.23300071e-05,7.31652142
+0.64900576,68.6922167,6.91917329e-05,18.8696321
+0.650969244,150.866667,8.48680224e-05,39.8410983
+0.653075922,248.743687,3.1190189e-05,58.1284729
+0.654985759,336.9,6.23673967e-05,67.6935989
+0.656987934,425.829365,0.000102036767,77.3523206
+0.659017187,493.255556,0.000132340479,85.2821664
+0.660862113,576.875,0.000142801687,111.703994
+0.662977201,690.446667,0.000125892722,127.539635
+0.664934963,768.633333,9.40544289e-05,140.812231
+0.666901002,918.916667,0.000155670146,205.580901
+0.669238997,1031.5,0.00044691502,315.880911
+0.670486583,1308,,
+0.672390629,1543.5,0.000345225669,93.5
+0.674044646,1706,,
+EOD
+$series1 << EOD
 0.637626936,1,,
 0.639371802,1,0.000102021764,0
 0.641247852,1.05555556,0.000117289189,0.0555555556
@@ -63,7 +86,7 @@ $series0 << EOD
 0.712690328,3308.5,,
 0.715021407,3419.4,,
 EOD
-$series1 << EOD
+$series2 << EOD
 0.637626936,1,,
 0.639292484,1.05555556,0.000112978932,0.0555555556
 0.641058708,3.06574074,0.000123980035,1.21083111
@@ -97,10 +120,14 @@ $series1 << EOD
 0.697265965,2238.61111,0.000113924248,356.034309
 0.698588036,1519.66667,,
 EOD
-plot keyentry with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.0833', \
-     keyentry with linespoints lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.1', \
+plot keyentry with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.0667', \
+     keyentry with linespoints lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.0833', \
+     keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.1', \
+     $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
      $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
      $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#6a3d9a' fs transparent solid 0.2 noborder notitle, \
+     $series2 using 1:2 with lines lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 notitle, \
+     $series2 every 2 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 notitle, \
      $series1 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
      $series1 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
      $series0 using 1:2 with lines lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 notitle, \

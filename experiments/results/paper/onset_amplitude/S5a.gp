@@ -15,7 +15,7 @@ set xlabel 'amplitude  {/:Italic A}  [rad]'
 set ylabel 'onset  {/:Italic ϕ}'
 set xtics 0.02
 set format x '%.2f'
-set ytics 0.001
+set ytics 0.002
 set format y '%.3f'
 set xrange [0:0.12]
 set yrange [*<0.6445:0.6475<*]
@@ -26,10 +26,12 @@ $series0 << EOD
 0.01,0.645,,
 EOD
 $series1 << EOD
+0.0667,0.64656169,,0.000720283698
 0.0833,0.646089051,,0.000665802448
 0.1,0.642727418,,0.000409511642
 EOD
 $series2 << EOD
+0.0677,0.648045238,,0.000625822897
 0.0843,0.647545238,,0.000864358892
 0.101,0.641976753,,0.000831181712
 EOD
