@@ -135,7 +135,7 @@ void add_speed(CLI::App& bench, Context& context) {
             "N", 1, 1000);
   add_number(*command, "--seconds", options->seconds_per_repeat, "Length of one timing", "S", 0.01,
              60);
-  command->add_flag("--json", context.json, "Print JSON for programs");
+  add_json_option(*command, context);
   command->footer(
       "Checks that all kernels of this machine give the same state, then times each.\n"
       "Examples:\n  shearcell bench speed --size 600 5200\n"
@@ -204,7 +204,7 @@ void add_accuracy(CLI::App& bench, Context& context) {
                     "Seconds instead of minutes: the same tables from fewer runs");
   add_count(*command, "--jobs", options->jobs, "Runs computed at once", "J", 1, 1024);
   command->add_option("--out", *out, "Folder for CSV files and figures")->type_name("DIR");
-  command->add_flag("--json", context.json, "Print JSON for programs");
+  add_json_option(*command, context);
   command->footer(
       "core/ACCURACY.md explains the tables and how to choose a time step.\n"
       "Examples:\n  shearcell bench accuracy --quick\n  shearcell bench accuracy --out accuracy");
@@ -296,7 +296,7 @@ void add_engines(CLI::App& bench, Context& context) {
              "(settle_time_limit_s)",
              "S", 1e-3, 1e6);
   command->add_flag("--no-gravity", *weightless, "Without gravity, for cells that P cannot lift");
-  command->add_flag("--json", context.json, "Print JSON for programs");
+  add_json_option(*command, context);
   command->footer(
       "Ends with code 3 if the engines do not agree: trajectories within the effect of rounding,\n"
       "means within their scatter over seeds. Both shear our packings; --settle also compares "
@@ -350,7 +350,7 @@ void add_stability(CLI::App& bench, Context& context) {
   command->add_flag("--quick", options->quick, "Fewer steps in the very long cases");
   add_number(*command, "--seconds", options->seconds_per_case,
              "A case that takes longer counts as hanging", "S", 0.1, 86400);
-  command->add_flag("--json", context.json, "Print JSON for programs");
+  add_json_option(*command, context);
   command->footer(
       "Ends with code 3 if a case does not end as expected.\n"
       "Examples:\n  shearcell bench stability --quick\n"
