@@ -15,22 +15,21 @@ using Keys = std::vector<std::string>;
 
 /// A curve for each variant; `keys` are what they compare.
 Figure of_curves(const char* name, const char* title, Make make, Keys keys) {
-  return {name, title, FigureNeeds::scalars, make, FigureForm::curves, std::move(keys)};
+  return {name, title, make, FigureForm::curves, std::move(keys)};
 }
 
 /// Averages over the variants that have the same values of `keys`.
 Figure of_groups(const char* name, const char* title, Make make, Keys keys,
-                 FigureNeeds needs = FigureNeeds::scalars) {
-  return {name, title, needs, make, FigureForm::groups, std::move(keys)};
+                 bool crystallites = false) {
+  return {name, title, make, FigureForm::groups, std::move(keys), crystallites};
 }
 
 std::vector<Figure> make_figures() {
-  constexpr auto crystallites = FigureNeeds::crystallites;
   Figure b5 = of_curves("B5", "Continuous and periodically paused shear", figure_b5, {"protocol"});
   b5.at_rest = true;
   return {
-      {"table1", "Table I beside the parameters of every experiment", FigureNeeds::none,
-       figure_table1, FigureForm::table},
+      {"table1", "Table I beside the parameters of every experiment", figure_table1,
+       FigureForm::table},
       of_groups("S1", "Packing fraction in the limit of hard grains", figure_s1, {"pressure_at"}),
       of_curves("S2", "Still fluid and fluid that moves with the cell", figure_s2, {"fluid"}),
       of_curves("S3", "Time steps", figure_s3, {"steps_per_cycle"}),
@@ -41,8 +40,8 @@ std::vector<Figure> make_figures() {
       of_curves("S6", "Shear with and without gravity", figure_s6,
                 {"amplitude_rad", "gravity_m_per_s2"}),
       of_groups("S7", "Where crystallites nucleate", figure_s7,
-                {"amplitude_rad", "stiffness_N_per_m"}, crystallites),
-      of_groups("C", "Growth of crystallites by size", figure_c, {"amplitude_rad"}, crystallites),
+                {"amplitude_rad", "stiffness_N_per_m"}, true),
+      of_groups("C", "Growth of crystallites by size", figure_c, {"amplitude_rad"}, true),
       of_groups("nucleation", "Runs without an onset, and the rate of nucleation",
                 figure_nucleation, {"amplitude_rad", "grains"}),
       std::move(b5),

@@ -49,11 +49,8 @@ struct FigureResult {
   std::vector<Verdict> verdicts;
 };
 
-/// Which measures of each checkpoint a figure needs; each value includes those before it. A figure
-/// that needs none gets the last checkpoint of each run, unmeasured.
-enum class FigureNeeds { none, scalars, crystallites };
-
-/// `table`: of the runs of every experiment, each run once per experiment. The others are of the
+/// `table`: of the runs of every experiment, each run once per experiment, with its last checkpoint
+/// alone, unmeasured. The others are of the
 /// runs of one experiment: `curves` has one curve for each variant; `groups` averages over the
 /// variants that have the same values of the figure's `keys`.
 enum class FigureForm { table, curves, groups };
@@ -62,10 +59,10 @@ enum class FigureForm { table, curves, groups };
 struct Figure {
   std::string name;
   std::string title;
-  FigureNeeds needs = FigureNeeds::scalars;
   std::function<FigureResult(std::span<const FigureRun> runs)> make;
   FigureForm form = FigureForm::curves;
   std::vector<std::string> keys = {};  ///< parameters that its curves compare
+  bool crystallites = false;           ///< needs where the crystallites are
   bool at_rest = false;                ///< needs phi_at_rest of cycles 1 to early_cycles
   /// Names of the derived measures that it needs besides the scalars (derived_measures.hpp).
   std::vector<std::string> derived = {};

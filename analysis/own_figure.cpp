@@ -267,7 +267,7 @@ bool is_measure(std::string_view name) {
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   const CurveMeasure* measured = find_curve_measure(plot.y);
   const std::string x(measured == nullptr ? plot.x : measured->x);
-  Figure figure{plot.name, plot.y + " against " + x, FigureNeeds::scalars,
+  Figure figure{plot.name, plot.y + " against " + x,
                 [plot, names, measured](std::span<const FigureRun> runs) {
                   FigureTable table = draw(plot, runs, names);
                   table.chart.x = measured == nullptr ? axis_of(plot.x)
@@ -294,7 +294,7 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
 }
 
 Figure claim_figure(const ClaimSpec& claim) {
-  Figure figure{claim.name, "", FigureNeeds::scalars,
+  Figure figure{claim.name, "",
                 [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
   figure.derived.emplace_back(find_measure(claim.compare)->derived());
   return figure;

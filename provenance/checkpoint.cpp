@@ -56,29 +56,8 @@ void put_element(const Handle& parent, const std::string& name, const Checkpoint
   put_dataset(group, "value", H5T_IEEE_F64LE, value, shape, unit);
 }
 
-void put_metadata(const Handle& file) {
-  const Handle h5md = make_group(file, "h5md");
-  const int version[2] = {1, 1};
-  put_attribute(h5md, "version", H5T_STD_I32LE, version, {2});
-  const Handle author = make_group(h5md, "author");
-  put_attribute(author, "name", std::string("shearcell"));
-  const Handle creator = make_group(h5md, "creator");
-  put_attribute(creator, "name", std::string("shearcell"));
-  // The version of the layout, not of the program: equal states give equal bytes in every release.
-  put_attribute(creator, "version", std::to_string(hdf5::kRestartFormat));
-  const Handle modules = make_group(h5md, "modules");
-  const Handle units = make_group(modules, "units");
-  const int units_version[2] = {1, 0};
-  put_attribute(units, "version", H5T_STD_I32LE, units_version, {2});
-  put_attribute(units, "system", std::string("SI"));
-}
-
 void put_box(const Handle& all, const Checkpoint& checkpoint, const WallPose& pose) {
-  const Handle box = make_group(all, "box");
-  const int dimension = 3;
-  put_attribute(box, "dimension", H5T_STD_I32LE, &dimension);
-  const std::string boundary("none\0\0\0\0none\0\0\0\0periodic", 24);
-  put_strings(box, "boundary", boundary, 8, {3});
+  const Handle box = hdf5::put_h5md_box(all);
   const double d = checkpoint.units.diameter_m;
   const double edges[3] = {checkpoint.cell.width * d, (pose.top - pose.bottom) * d,
                            checkpoint.cell.depth * d};
@@ -266,7 +245,9 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
     const Handle file(require(H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation.get(), access.get()),
                               "a memory file"),
                       H5Fclose);
-    put_metadata(file);
+    // The version of the layout, not of the program: equal states give equal bytes in every
+    // release.
+    hdf5::put_h5md(file, std::to_string(hdf5::kRestartFormat));
     put_particles(file, checkpoint);
     put_observables(file, checkpoint);
     put_restart(file, checkpoint);

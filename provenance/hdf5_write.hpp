@@ -130,4 +130,30 @@ inline Handle put_dataset(const Handle& parent, const std::string& name, hid_t t
   return dataset;
 }
 
+/// The group `h5md` of a file of H5MD 1.1, in SI units.
+inline void put_h5md(const Handle& file, const std::string& version_of_creator) {
+  const Handle h5md = make_group(file, "h5md");
+  const int version[2] = {1, 1};
+  put_attribute(h5md, "version", H5T_STD_I32LE, version, {2});
+  const Handle author = make_group(h5md, "author");
+  put_attribute(author, "name", std::string("shearcell"));
+  const Handle creator = make_group(h5md, "creator");
+  put_attribute(creator, "name", std::string("shearcell"));
+  put_attribute(creator, "version", version_of_creator);
+  const Handle modules = make_group(h5md, "modules");
+  const Handle units = make_group(modules, "units");
+  const int units_version[2] = {1, 0};
+  put_attribute(units, "version", H5T_STD_I32LE, units_version, {2});
+  put_attribute(units, "system", std::string("SI"));
+}
+
+/// The group `box` of H5MD, without edges: periodic along z alone.
+inline Handle put_h5md_box(const Handle& particles) {
+  Handle box = make_group(particles, "box");
+  const int dimension = 3;
+  put_attribute(box, "dimension", H5T_STD_I32LE, &dimension);
+  put_strings(box, "boundary", std::string("none\0\0\0\0none\0\0\0\0periodic", 24), 8, {3});
+  return box;
+}
+
 }  // namespace shearcell::hdf5

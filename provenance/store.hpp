@@ -127,10 +127,13 @@ class Store {
   RunRecord find_run(std::string_view prefix) const;
   /// In ascending order of step: the recorded ones; with `all`, rejected and pruned ones too.
   std::vector<CheckpointRecord> checkpoints(const std::string& id, bool all = false) const;
-  /// The checkpoint with this prefix of the SHA-256, in any state. Throws like find_run.
-  CheckpointRecord find_checkpoint(std::string_view prefix) const;
+  /// The checkpoint with this prefix of the SHA-256, in any state, if there is one. Throws
+  /// NotFound, with the candidates, if it is ambiguous.
+  std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;
   /// Reads, verifies and decodes. Throws StoreDamaged, which names the file, or CheckpointPruned.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
+  /// The same; nothing when it is damaged or was pruned.
+  std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;
   std::vector<FigureRecord> figures() const;  ///< the newest of each name, by name
   /// Events of one stream ("run/<id>", ...), or all ("").
   std::vector<Event> events(std::string_view stream = "") const;

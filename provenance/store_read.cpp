@@ -70,13 +70,10 @@ RunRecord Store::find_run(std::string_view prefix) const {
   return run(ids.front());
 }
 
-CheckpointRecord Store::find_checkpoint(std::string_view prefix) const {
+std::optional<CheckpointRecord> Store::find_checkpoint(std::string_view prefix) const {
   const std::scoped_lock guard(mutex_);
   const auto found = query_checkpoints_by_prefix(database_, prefix, kListed);
-  if (found.empty()) {
-    throw NotFound(fmt::format(
-        "the store has no checkpoint '{}'; `shearcell show RUN` lists those of a run", prefix));
-  }
+  if (found.empty()) return std::nullopt;
   std::vector<std::string> names;
   for (const CheckpointRecord& record : found) names.push_back(record.sha256);
   require_one("checkpoints", prefix, names);
@@ -120,6 +117,15 @@ Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
   } catch (const StoreDamaged& damage) {
     throw StoreDamaged(fmt::format("{}: {}", file, damage.what()));
   }
+}
+
+std::optional<Checkpoint> Store::load_if_readable(const CheckpointRecord& record) const {
+  try {
+    return load_checkpoint(record);
+  } catch (const CheckpointPruned&) {
+  } catch (const StoreDamaged&) {
+  }
+  return std::nullopt;
 }
 
 std::vector<FigureRecord> Store::figures() const {

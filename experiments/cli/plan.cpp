@@ -123,13 +123,14 @@ std::vector<std::string> notes_of(const Plan& plan) {
 using ExpectedEnds = std::map<std::string, std::optional<double>>;
 std::optional<double> left_until(const Line& line, const std::optional<Store>& store,
                                  ExpectedEnds& ends) {
-  if (!line.run->until || line.stage->stage == Stage::prepare) return line.left.particle_steps;
-  const auto [known, fresh] = ends.try_emplace(describe(*line.run->until));
-  if (fresh && store) known->second = expected_end(*store, *line.run->until);
+  if (!line.run->ends_early || line.stage->stage == Stage::prepare) return line.left.particle_steps;
+  const auto [known, fresh] = ends.try_emplace(describe(*line.run->ends_early));
+  if (fresh && store) known->second = expected_end(*store, *line.run->ends_early);
   const std::optional<double> end = known->second;
   if (!end) return std::nullopt;
   PlannedRun shorter = *line.run;
-  shorter.cycles = std::min(shorter.cycles, static_cast<std::uint64_t>(std::llround(*end)));
+  shorter.target_cycles =
+      std::min(shorter.target_cycles, static_cast<std::uint64_t>(std::llround(*end)));
   return stage_cost(shorter, *line.stage, line.cycle).particle_steps;
 }
 
@@ -138,7 +139,7 @@ nlohmann::json left_until(const std::vector<Line>& lines) {
   double sum = 0;
   bool asked = false;
   for (const Line& line : lines) {
-    asked = asked || line.run->until;
+    asked = asked || line.run->ends_early;
     if (!line.left_until) return nullptr;
     sum += *line.left_until;
   }
@@ -146,10 +147,10 @@ nlohmann::json left_until(const std::vector<Line>& lines) {
 }
 
 void print_until(const std::vector<Line>& lines, double at_most) {
-  const auto asks =
-      std::ranges::find_if(lines, [](const Line& line) { return line.run->until.has_value(); });
+  const auto asks = std::ranges::find_if(
+      lines, [](const Line& line) { return line.run->ends_early.has_value(); });
   if (asks == lines.end()) return;
-  fmt::print("      with until: {}: ", describe(*asks->run->until));
+  fmt::print("      with until: {}: ", describe(*asks->run->ends_early));
   if (const nlohmann::json left = left_until(lines); left.is_null()) {
     fmt::print("less; how much less is unknown until such a run has ended\n");
   } else {
@@ -197,9 +198,10 @@ Left left_of(const std::vector<Line>& lines, const std::vector<RunRecord>& known
   std::map<std::pair<EngineKind, std::uint64_t>, Rate> rates;
   for (const Line& line : lines) {
     const EngineKind engine = engine_of(line.stage->resolved);
-    const auto [entry, fresh] = rates.try_emplace({engine, line.run->grains});
+    const auto [entry, fresh] = rates.try_emplace({engine, line.run->parameters.grains});
     if (fresh) {
-      entry->second = expected_rate(known, engine, static_cast<double>(line.run->grains));
+      entry->second =
+          expected_rate(known, engine, static_cast<double>(line.run->parameters.grains));
     }
     const Rate own = entry->second;
     left.cost.particle_steps += line.left.particle_steps;
@@ -222,8 +224,8 @@ nlohmann::json facts(const Line& line) {
           {"variant", line.run->variant},
           {"parameters", line.stage->resolved.at("parameters")},
           {"seed", line.run->seed},
-          {"N", line.run->grains},
-          {"cycles", line.run->cycles},
+          {"N", line.run->parameters.grains},
+          {"cycles", line.run->target_cycles},
           {"state", line.state},
           {"shared_with", line.shared_with},
           {"time_step", facts(time_step_of(line))},
@@ -241,8 +243,8 @@ Row row(const Line& line) {
           std::string(name_of(line.stage->stage)),
           prepare ? "" : line.run->name,
           std::to_string(line.run->seed),
-          std::to_string(line.run->grains),
-          prepare ? "" : fmt::format("{:.4g}/{}", line.cycle, line.run->cycles),
+          std::to_string(line.run->parameters.grains),
+          prepare ? "" : fmt::format("{:.4g}/{}", line.cycle, line.run->target_cycles),
           line.state,
           remark(line)};
 }

@@ -105,13 +105,7 @@ struct RegenerateWish {
 };
 
 bool sound(const Store& store, const CheckpointRecord& record) {
-  try {
-    store.load_checkpoint(record);
-    return record.state == CheckpointState::recorded;
-  } catch (const CheckpointPruned&) {
-  } catch (const StoreDamaged&) {
-  }
-  return false;
+  return record.state == CheckpointState::recorded && store.load_if_readable(record);
 }
 
 nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std::size_t threads,
@@ -156,7 +150,12 @@ void regenerate(const RegenerateWish& wish, Context& context) {
   Store store(context.store, Access::write);
   std::vector<CheckpointRecord> records;
   for (const std::string& prefix : wish.checkpoints) {
-    records.push_back(store.find_checkpoint(prefix));
+    const auto found = store.find_checkpoint(prefix);
+    if (!found) {
+      throw NotFound(fmt::format(
+          "the store has no checkpoint '{}'; `shearcell show RUN` lists those of a run", prefix));
+    }
+    records.push_back(*found);
   }
   // Each from the one before it, where several of a run are asked for.
   std::ranges::sort(records, {}, [](const auto& c) { return std::tie(c.run, c.step); });

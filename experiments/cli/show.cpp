@@ -182,18 +182,6 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
   print(measures_of(store, record));
 }
 
-std::optional<CheckpointRecord> find_checkpoint(const Store& store, const std::string& prefix) {
-  std::optional<CheckpointRecord> found;
-  for (const RunRecord& run : store.runs()) {
-    for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
-      if (!record.sha256.starts_with(prefix)) continue;
-      if (found) throw NotFound("several checkpoints begin with " + prefix + "; give more digits");
-      found = record;
-    }
-  }
-  return found;
-}
-
 // The newest record of "drag/S2", or of "S2" where one experiment has that figure.
 std::optional<FigureRecord> find_record(const Store& store, const std::string& name) {
   std::vector<FigureRecord> found;
@@ -219,7 +207,7 @@ void show(const std::string& name, Context& context) {
   if (const auto figure = find_record(store, name)) return show_figure(store, *figure, context);
   if (is_file_name(name)) return show_published(store, name, context);
   if (name.size() >= 4) {
-    if (const auto checkpoint = find_checkpoint(store, name)) {
+    if (const auto checkpoint = store.find_checkpoint(name)) {
       return show_checkpoint(store, *checkpoint, context);
     }
   }

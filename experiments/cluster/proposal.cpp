@@ -34,7 +34,7 @@ std::vector<Bundle> work_left(const std::vector<Plan>& plans, const Store* store
   for (const Plan& plan : plans) {
     for (const PlannedRun& run : plan.runs) {
       const PlannedRun*& kept = longest[run.last.key];
-      if (kept == nullptr || run.cycles > kept->cycles) kept = &run;
+      if (kept == nullptr || run.target_cycles > kept->target_cycles) kept = &run;
     }
   }
   std::vector<Bundle> bundles;
@@ -96,9 +96,9 @@ Proposal propose(const std::vector<Plan>& plans, const Store* store,
     job.cpus = std::max(std::min(kMostCpus, most * job.threads), job.threads);
   }
   made.job = std::move(job);
-  std::size_t grains = 0;
+  std::uint64_t grains = 0;
   for (const Plan& plan : plans) {
-    for (const PlannedRun& run : plan.runs) grains = std::max(grains, run.grains);
+    for (const PlannedRun& run : plan.runs) grains = std::max(grains, run.parameters.grains);
   }
   made.rate = expected_rate(runs_of(store), EngineKind::shearcell, static_cast<double>(grains));
   return made;

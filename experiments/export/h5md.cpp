@@ -95,7 +95,7 @@ class Trajectory {
 
   void begin(const Frame& frame) {
     particles_ = frame.particles();
-    put_metadata();
+    hdf5::put_h5md(file_, "1");
     const Handle particles = make_group(file_, "particles");
     const Handle all = make_group(particles, "all", 20);
     // MDAnalysis counts the particles of a group of this name, and opens the file without a
@@ -103,11 +103,7 @@ class Trajectory {
     require(
         H5Lcreate_soft("/particles/all", particles.get(), "trajectory", H5P_DEFAULT, H5P_DEFAULT),
         "a link");
-    const Handle box = make_group(all, "box");
-    const int dimension = 3;
-    put_attribute(box, "dimension", H5T_STD_I32LE, &dimension);
-    const std::string boundary("none\0\0\0\0none\0\0\0\0periodic", 24);
-    hdf5::put_strings(box, "boundary", boundary, 8, {3});
+    hdf5::put_h5md_box(all);
     std::vector<std::uint64_t> id(particles_);
     std::iota(id.begin(), id.end(), std::uint64_t{1});
     put_dataset(all, "id", H5T_STD_U64LE, id.data(), {particles_});
@@ -127,21 +123,6 @@ class Trajectory {
         put_attribute(parameters, key, value.get<double>());
       }
     }
-  }
-
-  void put_metadata() {
-    const Handle h5md = make_group(file_, "h5md");
-    const int version[2] = {1, 1};
-    put_attribute(h5md, "version", H5T_STD_I32LE, version, {2});
-    for (const char* who : {"author", "creator"}) {
-      const Handle group = make_group(h5md, who);
-      put_attribute(group, "name", std::string("shearcell"));
-      if (who == std::string("creator")) put_attribute(group, "version", std::string("1"));
-    }
-    const Handle units = make_group(make_group(h5md, "modules"), "units");
-    const int units_version[2] = {1, 0};
-    put_attribute(units, "version", H5T_STD_I32LE, units_version, {2});
-    put_attribute(units, "system", std::string("SI"));
   }
 
   /// The frame's row of a dataset, which the first frame makes.

@@ -53,8 +53,9 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
     return record.state == CheckpointState::rejected || record.cycle < first ||
            record.cycle > last || !(whole || std::ranges::binary_search(phases, record.step));
   });
-  if (figure.needs == FigureNeeds::none && !found.empty())
+  if (figure.form == FigureForm::table && !found.empty()) {
     found.erase(found.begin(), --found.end());
+  }
   return found;
 }
 
@@ -270,8 +271,9 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
 }
 
 std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures) {
-  std::ranges::stable_sort(figures, std::greater{},
-                           [](const WantedFigure& wanted) { return wanted.figure.needs; });
+  std::ranges::stable_sort(figures, {}, [](const WantedFigure& wanted) {
+    return std::pair(!wanted.figure.crystallites, wanted.figure.form == FigureForm::table);
+  });
   return figures;
 }
 
@@ -309,11 +311,12 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   }
   collected.runs = chosen.runs();
   collected.notes = chosen.notes();
-  if (wanted.figure.needs != FigureNeeds::none) name_variants(manifests, collected);
+  const bool measured = wanted.figure.form != FigureForm::table;
+  if (measured) name_variants(manifests, collected);
   for (CollectedRun& run : collected.runs) {
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }
-  if (wanted.figure.needs != FigureNeeds::none) {
+  if (measured) {
     for (std::string& note : never_made(store, wanted.figure, collected.runs))
       collected.notes.push_back(std::move(note));
   }

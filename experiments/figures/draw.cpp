@@ -23,7 +23,7 @@ namespace shearcell {
 namespace {
 
 std::vector<DerivedMeasure> needed(const Figure& figure) {
-  if (figure.needs == FigureNeeds::none) return {};
+  if (figure.form == FigureForm::table) return {};
   std::vector<DerivedMeasure> measures = {scalar_measures()};
   for (const std::string& name : figure.derived) {
     if (name == "drive" || name == "ledger") continue;  // more_measures.hpp
@@ -31,7 +31,7 @@ std::vector<DerivedMeasure> needed(const Figure& figure) {
       measures.push_back(derived_measure(name));
     }
   }
-  if (figure.needs == FigureNeeds::crystallites) measures.push_back(crystallite_measure());
+  if (figure.crystallites) measures.push_back(crystallite_measure());
   return measures;
 }
 
@@ -53,7 +53,7 @@ std::vector<std::optional<CheckpointMeasures>> measures_of(const Store& store, c
       if (std::ranges::any_of(results, &nlohmann::json::is_null)) continue;
       one.emplace();
       one->measures = read_results(measures, results);
-      if (figure.needs == FigureNeeds::crystallites) {
+      if (figure.crystallites) {
         one->crystallites = read_crystallite_map(results.back());
       }
       results.clear();  // JSON takes more memory than the measures

@@ -5,44 +5,42 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
+#include <tuple>
 
+#include "experiments/manifest/filter.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
 
 namespace shearcell {
 namespace {
 
-/// One filter, and what it has seen: all values, and those of the wanted that were found.
-struct Filter {
-  const char* what;
-  std::vector<std::string> wanted;
-  bool (*fits)(const std::string& wanted, const std::string& value);
-  std::set<std::string> values = {};
-  std::set<std::string> found = {};
+void require_found(const char* what, const Filter& filter) {
+  const std::string* missing = filter.unfound();
+  if (missing == nullptr) return;
+  const std::vector<std::string_view> known(filter.seen().begin(), filter.seen().end());
+  const std::string nearest = suggest_name(*missing, known).name;
+  throw NotFound(fmt::format("no run of the store has {} {}; {}", what, *missing,
+                             nearest.empty() ? fmt::format("it has {}", fmt::join(known, "; "))
+                                             : "did you mean " + nearest + "?"));
+}
 
-  bool passes(const std::string& value) {
-    values.insert(value);
-    bool passes = wanted.empty();
-    for (const std::string& one : wanted) {
-      if (!fits(one, value)) continue;
-      found.insert(one);
-      passes = true;
-    }
-    return passes;
-  }
-
-  void require_found() const {
-    for (const std::string& one : wanted) {
-      if (found.contains(one)) continue;
-      const std::vector<std::string_view> known(values.begin(), values.end());
-      const std::string nearest = suggest_name(one, known).name;
-      throw NotFound(fmt::format("no run of the store has {} {}; {}", what, one,
-                                 nearest.empty() ? fmt::format("it has {}", fmt::join(known, "; "))
-                                                 : "did you mean " + nearest + "?"));
+/// Of a run that an edited manifest declared again, the newest place alone.
+std::vector<Membership> newest_memberships(const RunRecord& run) {
+  const auto place = [](const Membership& m) {
+    return std::tie(m.experiment, m.scale, m.variant, m.seed);
+  };
+  std::vector<Membership> newest;
+  for (const Membership& m : run.memberships) {
+    const auto same = std::ranges::find(newest, place(m), place);
+    if (same == newest.end()) {
+      newest.push_back(m);
+    } else {
+      *same = m;
     }
   }
-};
+  if (newest.empty()) newest.emplace_back();
+  return newest;
+}
 
 }  // namespace
 
@@ -51,18 +49,13 @@ Membership first_membership(const RunRecord& run) {
 }
 
 std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& selection) {
-  const auto same = [](const std::string& a, const std::string& b) { return a == b; };
-  Filter experiment{"experiment", selection.experiments, same};
-  Filter scale{"scale", selection.scales, same};
-  Filter variant{"variant", selection.variants, has_values};
   std::vector<std::string> seeds;
   for (const std::uint64_t seed : selection.seeds) seeds.push_back(std::to_string(seed));
-  Filter seed{"seed", seeds, same};
+  Filter experiment(selection.experiments), scale(selection.scales), seed(seeds);
+  Filter variant(selection.variants, has_values);
   std::vector<SelectedRun> selected;
   for (const RunRecord& run : store.runs()) {
-    std::vector<Membership> memberships = run.memberships;
-    if (memberships.empty()) memberships.emplace_back();
-    for (const Membership& m : memberships) {
+    for (const Membership& m : newest_memberships(run)) {
       // Not by &&: each has to see every value.
       bool passes = experiment.passes(m.experiment);
       passes &= scale.passes(m.scale);
@@ -73,7 +66,10 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
       if (passes) selected.push_back({run, m});
     }
   }
-  for (const Filter* filter : {&experiment, &scale, &variant, &seed}) filter->require_found();
+  require_found("experiment", experiment);
+  require_found("scale", scale);
+  require_found("variant", variant);
+  require_found("seed", seed);
   return selected;
 }
 

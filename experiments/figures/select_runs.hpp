@@ -25,7 +25,8 @@ struct SelectedRun {
   Membership membership;  ///< a run of two experiments is selected once for each
 };
 
-/// In the order of declaration. Throws NotFound for an experiment, scale, variant or seed that the
+/// In the order of declaration. A run that several versions of a manifest declared is that of the
+/// newest. Throws NotFound for an experiment, scale, variant or seed that the
 /// store does not have, and names those that it has.
 std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& selection);
 

@@ -10,6 +10,7 @@
 
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
+#include "experiments/manifest/filter.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -82,35 +83,6 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   if (value_at(scale, "engine") == engine) return;
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
-
-// Whether the variants are wanted; remembers what was found.
-class WantedVariants {
- public:
-  explicit WantedVariants(const std::vector<std::string>& wanted)
-      : wanted_(wanted), found_(wanted.size()) {}
-
-  bool wants(const std::string& variant) {
-    known_.push_back(variant);
-    bool wanted = wanted_.empty();
-    for (std::size_t k = 0; k < wanted_.size(); ++k) {
-      if (!has_values(wanted_[k], variant)) continue;
-      found_[k] = wanted = true;
-    }
-    return wanted;
-  }
-  void require_found(const Manifest& manifest) const {
-    const auto missing = std::ranges::find(found_, false);
-    if (missing == found_.end()) return;
-    const std::size_t k = static_cast<std::size_t>(missing - found_.begin());
-    refuse(manifest, "variant", "no variant has these values", printable(wanted_[k]),
-           fmt::format("It has {}.", fmt::join(known_, "; ")));
-  }
-
- private:
-  const std::vector<std::string>& wanted_;
-  std::vector<bool> found_;
-  std::vector<std::string> known_;
-};
 
 void warn_of_variant(const Variant& variant, const ExpandOptions& options, Plan& plan) {
   const Parameters& p = variant.parameters;
@@ -202,12 +174,12 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   Plan plan{manifest.experiment, scale.name, {}, {}};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
   WithoutEffect without_effect(scale);
-  WantedVariants wanted(options.variants);
+  Filter wanted(options.variants, has_values);
   const std::string manifest_sha = sha256_hex(manifest.text);
   for_each_variant(scale, [&](const Variant& variant) {
     const Parameters& p = variant.parameters;
     without_effect.visit(p);
-    if (!wanted.wants(variant.name())) return;
+    if (!wanted.passes(variant.name())) return;
     warn_of_variant(variant, options, plan);
     if (options.engine && asks_lammps_to_stiffen(p)) {
       refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", *options.engine,
@@ -219,19 +191,19 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     }
     for (const std::uint64_t seed : seeds) {
       PlannedRun run;
-      run.experiment = plan.experiment;
-      run.scale = plan.scale;
-      run.variant = variant.name();
-      run.labels = variant.labels();
-      run.seed = seed;
+      static_cast<Membership&>(run) = {.experiment = plan.experiment,
+                                       .scale = plan.scale,
+                                       .variant = variant.name(),
+                                       .labels = variant.labels(),
+                                       .seed = seed,
+                                       .manifest = manifest_sha,
+                                       .checkpoint_every = scale.checkpoints->every_cycles,
+                                       .target_cycles = target_cycles(p),
+                                       .checkpoint_phases = scale.checkpoints->phases};
       run.prepare = prepare_stage(p, seed);
       run.last = last_stage(p, seed, run.prepare);
-      run.cycles = target_cycles(p);
-      run.manifest = manifest_sha;
-      run.checkpoint_every = scale.checkpoints->every_cycles;
-      run.checkpoint_phases = scale.checkpoints->phases;
-      if (run.last.stage == Stage::shear) run.until = scale.until->until;
-      run.grains = static_cast<std::size_t>(p.grains);
+      if (run.last.stage == Stage::shear) run.ends_early = scale.until->until;
+      if (run.ends_early) run.until = to_json(*run.ends_early);
       run.parameters = p;
       const std::string& same = variant_of.emplace(run.last.key, run.variant).first->second;
       if (same != run.variant && seed == seeds.front()) {
@@ -242,7 +214,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       plan.runs.push_back(std::move(run));
     }
   });
-  wanted.require_found(manifest);
+  if (const std::string* missing = wanted.unfound()) {
+    refuse(manifest, "variant", "no variant has these values", printable(*missing),
+           fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
+  }
   name_variants(manifest, plan);
   without_effect.warn(manifest.file, plan);
   return plan;

@@ -2,9 +2,7 @@
 // From a manifest at one scale to its runs, in the manifest's own order.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +10,7 @@
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/parameters.hpp"
+#include "provenance/records.hpp"
 
 namespace shearcell {
 
@@ -23,21 +22,12 @@ struct ExpandOptions {
   std::optional<std::string> engine = {};  ///< instead of the manifest's; named in the variant
 };
 
-struct PlannedRun {
-  std::string experiment;
-  std::string scale;      ///< empty when the manifest has no scales
-  std::string variant;    ///< "fluid=cell"; "base" when nothing is swept
-  std::string name = {};  ///< of the variant, for people (names.hpp)
-  nlohmann::json labels;  ///< the swept keys and their values, an object
-  std::uint64_t seed = 0;
+/// Its scale is empty when the manifest has none, and its variant "base" when nothing is swept.
+struct PlannedRun : Membership {
+  std::string name;  ///< of the variant, for people (variants.hpp)
   StageSpec prepare;
-  StageSpec last;                      ///< what is done to the packing: shear, or stiffening
-  std::uint64_t cycles = 0;            ///< target length of the last stage
-  std::uint64_t checkpoint_every = 1;  ///< cycles
-  std::vector<double> checkpoint_phases = {};  ///< of each cycle after one of these
-  std::string manifest = {};                   ///< SHA-256 of its text
-  std::optional<Until> until = {};             ///< ends it before `cycles`
-  std::size_t grains = 0;
+  StageSpec last;                   ///< what is done to the packing: shear, or stiffening
+  std::optional<Until> ends_early;  ///< `until`, read
   Parameters parameters;
 };
 

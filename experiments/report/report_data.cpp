@@ -142,7 +142,7 @@ void add_runs(const Store& store, ReportData& data) {
   }
 }
 
-/// Scale, variant and run: a run of two versions of a manifest is a member of it twice.
+/// Scale, variant and run.
 using RowKey = std::tuple<std::string, std::string, std::string>;
 
 std::size_t place(const RunTable& table, std::string_view name) {
@@ -163,13 +163,9 @@ json rounded(const json& value) {
 
 std::map<RowKey, json> traces_of(const RunTable& checkpoints) {
   std::map<RowKey, json> traces;
-  std::set<std::pair<RowKey, json>> seen;
   for (const std::vector<json>& row : checkpoints.rows) {
-    const RowKey key = key_of(checkpoints, row);
-    const json& cycle = row[place(checkpoints, "cycle")];
-    if (!seen.emplace(key, cycle).second) continue;
-    json& trace = traces[key];
-    trace["cycle"].push_back(cycle);
+    json& trace = traces[key_of(checkpoints, row)];
+    trace["cycle"].push_back(row[place(checkpoints, "cycle")]);
     trace["phi"].push_back(rounded(row[place(checkpoints, "phi")]));
     trace["percent"].push_back(rounded(row[place(checkpoints, "crystalline_percent")]));
   }
@@ -180,10 +176,6 @@ void add_run_table(const Store& store, const RunSelection& selection,
                    const MeasureOptions& measuring, ReportExperiment& experiment, Report& report) {
   experiment.table = run_table(store, selection, RowPer::run, measuring);
   const RunTable checkpoints = run_table(store, selection, RowPer::checkpoint, measuring);
-  std::set<RowKey> seen;
-  std::erase_if(experiment.table.rows, [&](const std::vector<json>& row) {
-    return !seen.insert(key_of(experiment.table, row)).second;
-  });
   const std::map<RowKey, json> traces = traces_of(checkpoints);
   for (const std::vector<json>& row : experiment.table.rows) {
     const auto found = traces.find(key_of(experiment.table, row));

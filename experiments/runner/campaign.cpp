@@ -305,28 +305,26 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   if (auto limits = overlap_limits(manifest); !limits.empty()) {
     info["max_overlap_diameters"] = std::move(limits);
   }
-  const std::string sha = store.register_manifest(manifest.text, manifest.file, info);
+  store.register_manifest(manifest.text, manifest.file, info);
   std::vector<StageJob> jobs;
   std::set<std::string> known;
   for (const PlannedRun& run : plan.runs) {
     for (const StageSpec* stage : {&run.prepare, &run.last}) {
       const bool prepare = stage->stage == Stage::prepare;
       if (!known.insert(stage->key).second) continue;
-      Membership membership{.experiment = run.experiment,
-                            .scale = run.scale,
-                            .variant = prepare ? "packing" : run.variant,
-                            .seed = run.seed,
-                            .manifest = sha,
-                            .checkpoint_every = run.checkpoint_every};
-      if (!prepare) {
-        membership.labels = run.labels;
-        membership.checkpoint_phases = run.checkpoint_phases;
-        if (run.until) membership.until = to_json(*run.until);
+      Membership membership = run;
+      if (prepare) {
+        membership = {.experiment = run.experiment,
+                      .scale = run.scale,
+                      .variant = "packing",
+                      .seed = run.seed,
+                      .manifest = run.manifest,
+                      .checkpoint_every = run.checkpoint_every};
       }
       const std::string kind(name_of(stage->stage));
       jobs.push_back({stage->key, stage->parent, job_name(membership, kind, run.name)});
-      store.declare_run({stage->key, stage->parent, kind, stage->resolved, run.grains,
-                         prepare ? 0 : run.cycles, std::move(membership)});
+      store.declare_run({stage->key, stage->parent, kind, stage->resolved, run.parameters.grains,
+                         membership.target_cycles, std::move(membership)});
     }
   }
   return jobs;

@@ -61,12 +61,12 @@ std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& 
                                         const RunRecord* known, const Store* store) {
   if (known == nullptr) return 0;
   if (known->state != RunState::completed) return known->cycle;
-  if (stage.stage == Stage::prepare || known->cycle >= static_cast<double>(run.cycles)) {
+  if (stage.stage == Stage::prepare || known->cycle >= static_cast<double>(run.target_cycles)) {
     return std::nullopt;
   }
   const bool ended_as_asked =
-      run.until && std::ranges::any_of(asks_of(*store, known->id), [&](const RunAsk& a) {
-        return a.until == run.until && a.target_cycles >= run.cycles;
+      run.ends_early && std::ranges::any_of(asks_of(*store, known->id), [&](const RunAsk& a) {
+        return a.until == run.ends_early && a.target_cycles >= run.target_cycles;
       });
   return ended_as_asked ? std::nullopt : std::optional(known->cycle);
 }
@@ -75,30 +75,30 @@ StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle
   const Geometry shape = geometry(run.parameters);
   const double width = cell_width(shape);
   const double bytes = checkpoint_bytes(shape);
-  const auto grains = static_cast<double>(run.grains);
+  const auto grains = static_cast<double>(run.parameters.grains);
   if (stage.stage == Stage::prepare) {
     const double time = std::min(settling_time(shape.height_over_width * width),
                                  run.parameters.settle_time_limit_s);
     return {grains * time / run.parameters.settle_time_step_s, bytes * (1 + std::floor(time / 2))};
   }
   if (stage.stage == Stage::stiffen) {
-    const double left = std::max(0.0, static_cast<double>(run.cycles) - cycle);
+    const double left = std::max(0.0, static_cast<double>(run.target_cycles) - cycle);
     return {grains * kMinimization * left, bytes * (left + (cycle == 0 ? 1 : 0))};
   }
-  const double cycles = std::max(0.0, static_cast<double>(run.cycles) - cycle);
+  const double cycles = std::max(0.0, static_cast<double>(run.target_cycles) - cycle);
   const auto steps = static_cast<double>(cycle_steps(drive(run.parameters)));
   const auto every = static_cast<double>(run.checkpoint_every);
   const double begun =
-      std::ceil(static_cast<double>(run.cycles) / every) - std::ceil(cycle / every);
+      std::ceil(static_cast<double>(run.target_cycles) / every) - std::ceil(cycle / every);
   const double files = std::ceil(cycles / every) +
                        std::max(0.0, begun) * static_cast<double>(run.checkpoint_phases.size());
   return {grains * steps * cycles, bytes * (files + (cycle == 0 ? 1 : 0))};
 }
 
 StageBound stage_bound(const PlannedRun& run, const StageSpec& stage) {
-  const auto grains = static_cast<double>(run.grains);
+  const auto grains = static_cast<double>(run.parameters.grains);
   const double memory = kRunBytesPerGrain * (grains + wall_grain_count(geometry(run.parameters)));
-  const auto cycles = static_cast<double>(run.cycles);
+  const auto cycles = static_cast<double>(run.target_cycles);
   double steps = cycles * static_cast<double>(cycle_steps(drive(run.parameters)));
   if (stage.stage == Stage::prepare) {
     steps = std::ceil(run.parameters.settle_time_limit_s / run.parameters.settle_time_step_s);
@@ -131,8 +131,7 @@ RemainingWork remaining_work(const std::vector<RunRecord>& stages,
     const StageRecord record = read_stage(run.resolved);
     PlannedRun planned;
     planned.parameters = record.parameters;
-    planned.grains = run.grains;
-    planned.cycles = run.target_cycles;
+    planned.target_cycles = run.target_cycles;
     const double steps =
         stage_cost(planned, {record.stage, run.id, run.parent, {}}, run.cycle).particle_steps;
     const Rate rate =

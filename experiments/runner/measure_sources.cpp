@@ -73,13 +73,7 @@ std::optional<nlohmann::json> MeasureSources::measure(const CheckpointRecord& re
 std::optional<Checkpoint> MeasureSources::earlier(const CheckpointRecord& record,
                                                   std::uint64_t cycles) const {
   const CheckpointRecord* found = find(record, cycles);
-  if (found == nullptr) return std::nullopt;
-  try {
-    return store_.load_checkpoint(*found);
-  } catch (const CheckpointPruned&) {
-  } catch (const StoreDamaged&) {
-  }
-  return std::nullopt;
+  return found == nullptr ? std::nullopt : store_.load_if_readable(*found);
 }
 
 }  // namespace shearcell

@@ -47,17 +47,6 @@ void compare(const char* field, const Eigen::Matrix3Xd& a, const Eigen::Matrix3X
   }
 }
 
-// The recorded state, where its file can still be read.
-std::optional<Checkpoint> recorded_state(const Store& store, const CheckpointRecord& record) {
-  try {
-    return store.load_checkpoint(record);
-  } catch (const CheckpointPruned&) {
-    return std::nullopt;
-  } catch (const StoreDamaged&) {
-    return std::nullopt;
-  }
-}
-
 class Replaying {
  public:
   Replaying(Store& store, const CheckpointRecord& record)
@@ -104,7 +93,7 @@ class Replaying {
     if (hash == record.state_hash) return compare_numbers(found);
     diverge(record.step, fmt::format("state {:.12} instead of {:.12}", hash, record.state_hash));
     Divergence& worst = *replay_.divergence;
-    if (const auto recorded = recorded_state(store_, record)) {
+    if (const auto recorded = store_.load_if_readable(record)) {
       const State& a = recorded->state;
       const State& b = found.state;
       compare("position", a.position, b.position, worst);
@@ -130,7 +119,7 @@ class Replaying {
       const auto again = found.observables.find(name);
       require(name, again == found.observables.end() ? std::nan("") : again->second, value);
     }
-    if (const auto recorded = recorded_state(store_, record)) {
+    if (const auto recorded = store_.load_if_readable(record)) {
       require("theta", found.theta, recorded->theta);
     }
   }

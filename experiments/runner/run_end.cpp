@@ -135,12 +135,8 @@ std::optional<Measures> RunEnd::measures_of(const CheckpointRecord& record) {
   } catch (const AnalysisError&) {
     // Measured again and replaced.
   }
-  try {
-    return measure(record, store_.load_checkpoint(record));
-  } catch (const StoreDamaged&) {
-  } catch (const CheckpointPruned&) {
-  }
-  return std::nullopt;
+  const auto checkpoint = store_.load_if_readable(record);
+  return checkpoint ? std::optional(measure(record, *checkpoint)) : std::nullopt;
 }
 
 Measures RunEnd::measure(const CheckpointRecord& record, const Checkpoint& checkpoint) {

@@ -133,11 +133,8 @@ Beginning beginning_before(Store& store, const StagePlan& plan,
   std::vector<CheckpointRecord> earlier = store.checkpoints(plan.run.id);
   for (auto record = earlier.rbegin(); record != earlier.rend(); ++record) {
     if (!before(*record)) continue;
-    try {
-      Checkpoint kept = store.load_checkpoint(*record);
-      return {std::move(kept.cell), std::move(kept.state), std::move(*record), ""};
-    } catch (const CheckpointPruned&) {
-    } catch (const StoreDamaged&) {
+    if (auto kept = store.load_if_readable(*record)) {
+      return {std::move(kept->cell), std::move(kept->state), std::move(*record), ""};
     }
   }
   std::vector<std::string> ignored;

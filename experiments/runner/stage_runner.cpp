@@ -199,13 +199,7 @@ class Attempt {
 // Else run_stage says what is wrong with it.
 bool newest_is_sound(const Store& store, const RunRecord& run) {
   const auto recorded = store.checkpoints(run.id);
-  if (recorded.empty()) return false;
-  try {
-    store.load_checkpoint(recorded.back());
-    return true;
-  } catch (const StoreDamaged&) {
-    return false;
-  }
+  return !recorded.empty() && store.load_if_readable(recorded.back());
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ TEST(Chart, EveryPanelOfEveryFigureHasOne) {
     runs.push_back(testing::rising_run("still", seed, 4, 0.03));
   }
   for (const Figure& figure : all_figures()) {
-    if (figure.needs == FigureNeeds::none) continue;  // a table, not a chart
+    if (figure.form == FigureForm::table) continue;  // a table, not a chart
     for (const FigureTable& table : figure.make(runs).tables) {
       for (const Axis* axis : {&table.chart.x, &table.chart.y}) {
         EXPECT_FALSE(axis->name.empty() && axis->symbol.empty()) << table.name;

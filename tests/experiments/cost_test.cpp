@@ -97,7 +97,7 @@ void expect_bounded(const std::string& text) {
       const Geometry shape = geometry(p);
       EXPECT_FALSE(too_large(shape));
       EXPECT_LE(p.settle_time_limit_s / p.settle_time_step_s, kMostSteps);
-      EXPECT_LE(static_cast<double>(run.cycles) * static_cast<double>(cycle_steps(drive(p))),
+      EXPECT_LE(static_cast<double>(run.target_cycles) * static_cast<double>(cycle_steps(drive(p))),
                 2 * kMostSteps);
       EXPECT_TRUE(std::isfinite(expected_overlap(p)));
       for (const TimeStep& step : {shear_time_step(p), settle_time_step(p)}) {

@@ -54,9 +54,8 @@ TEST(Drag, ExpandsAtEveryScale) {
     ASSERT_EQ(plan.runs.size(), expected.runs);
     EXPECT_TRUE(plan.warnings.empty());
     for (const PlannedRun& run : plan.runs) {
-      EXPECT_EQ(run.grains, expected.grains);
       EXPECT_EQ(run.parameters.grains, expected.grains);
-      EXPECT_EQ(run.cycles, expected.cycles);
+      EXPECT_EQ(run.target_cycles, expected.cycles);
       EXPECT_EQ(run.checkpoint_every, 1U);
       EXPECT_EQ(run.parameters.steps_per_cycle, 45600U);
     }
@@ -128,7 +127,7 @@ scales:
 )");
   const Plan smoke = at(manifest, "smoke");
   EXPECT_EQ(variants(smoke), (Strings{"grains=300", "grains=600"}));
-  EXPECT_EQ(smoke.runs[0].cycles, 3U);
+  EXPECT_EQ(smoke.runs[0].target_cycles, 3U);
   EXPECT_EQ(smoke.runs[0].seed, 1U);
   EXPECT_EQ(smoke.runs[0].checkpoint_every, 1U);
   EXPECT_EQ(smoke.runs[0].parameters.amplitude_rad, 0.05);
@@ -143,7 +142,7 @@ TEST(Expand, OptionsOverrideTheManifest) {
   ExpandOptions options{.scale = "smoke", .cycles = 9, .seeds = 3};
   const Plan plan = expand(drag(), options);
   ASSERT_EQ(plan.runs.size(), 6U);
-  EXPECT_EQ(plan.runs[0].cycles, 9U);
+  EXPECT_EQ(plan.runs[0].target_cycles, 9U);
   EXPECT_EQ(plan.runs[2].seed, 3U);
   const Manifest listed = parse("experiment: a\nbase: {}\nseeds: [11, 7, 5]\n");
   EXPECT_EQ(expand(listed, {.seeds = 2}).runs[1].seed, 7U);
@@ -156,12 +155,13 @@ TEST(Expand, AZipHasALengthForEachVariant) {
       parse("experiment: a\nsweep: {zip: {amplitude_rad: [0.05, 0.1], cycles: [300, 20]}}\n");
   const Plan plan = expand(manifest);
   EXPECT_EQ(variants(plan), (Strings{"amplitude_rad=0.05", "amplitude_rad=0.1"}));
-  EXPECT_EQ(plan.runs[0].cycles, 300U);
-  EXPECT_EQ(plan.runs[1].cycles, 20U);
+  EXPECT_EQ(plan.runs[0].target_cycles, 300U);
+  EXPECT_EQ(plan.runs[1].target_cycles, 20U);
   EXPECT_EQ(plan.runs[1].labels, (nlohmann::json{{"amplitude_rad", 0.1}}));
   EXPECT_EQ(plan.runs[1].last.key,
             expand(parse("experiment: a\nbase: {amplitude_rad: 0.1}\n")).runs[0].last.key);
-  for (const PlannedRun& run : expand(manifest, {.cycles = 7}).runs) EXPECT_EQ(run.cycles, 7U);
+  for (const PlannedRun& run : expand(manifest, {.cycles = 7}).runs)
+    EXPECT_EQ(run.target_cycles, 7U);
 }
 
 TEST(Expand, TakesOnlyTheVariantsAskedFor) {
@@ -236,11 +236,11 @@ TEST(Expand, AnUntilIsReadOverriddenAndPartOfNoIdentity) {
       "  none: {until: none}\n";
   const Manifest manifest = parse(text + "until: {crystalline_percent: 10, extra_cycles: 15}\n");
   const PlannedRun one = at(manifest, "one").runs[0];
-  EXPECT_EQ(one.until, (Until{StopMeasure::crystalline_percent, 10, 15}));
-  EXPECT_EQ(at(manifest, "two").runs[0].until, (Until{StopMeasure::phi, 0.65, 0}));
-  EXPECT_EQ(at(manifest, "none").runs[0].until, std::nullopt);
+  EXPECT_EQ(one.ends_early, (Until{StopMeasure::crystalline_percent, 10, 15}));
+  EXPECT_EQ(at(manifest, "two").runs[0].ends_early, (Until{StopMeasure::phi, 0.65, 0}));
+  EXPECT_EQ(at(manifest, "none").runs[0].ends_early, std::nullopt);
   EXPECT_EQ(one.last.key, at(parse(text), "one").runs[0].last.key);
-  EXPECT_EQ(until_from_json(to_json(*one.until)), *one.until);
+  EXPECT_EQ(until_from_json(to_json(*one.ends_early)), *one.ends_early);
   for (const char* bad : {"{}", "[]", "{\"phi\":1}", "{\"phi\":\"1\",\"extra_cycles\":1}",
                           "{\"phi\":1,\"extra_cycles\":-1}"}) {
     EXPECT_THROW(until_from_json(nlohmann::json::parse(bad)), std::runtime_error) << bad;

@@ -105,7 +105,7 @@ TEST(Manifests, HaveTheSizesAndNumbersOfTheSupplement) {
       runs_of_variants(plan("system_size", "paper")),
       (Variants{{"grains=5200", 3}, {"grains=7900", 3}, {"grains=11400", 3}, {"grains=18200", 3}}));
   for (const PlannedRun& run : plan("nucleation_sites", "paper").runs) {
-    EXPECT_EQ(run.grains, 18200U);
+    EXPECT_EQ(run.parameters.grains, 18200U);
   }
 }
 

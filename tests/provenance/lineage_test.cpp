@@ -70,7 +70,7 @@ TEST_F(Lineage, ARejectedCheckpointIsKnownAsSuchUntilItIsMadeAgain) {
 }
 
 TEST_F(Lineage, ARejectedCheckpointThatIsRegeneratedIsSoundAgain) {
-  store_.restore_checkpoint(store_.find_checkpoint(history_.rejected),
+  store_.restore_checkpoint(store_.find_checkpoint(history_.rejected).value(),
                             test::sample_checkpoint(history_.sheared, 45600));
   EXPECT_TRUE(run_lineage(store_, history_.sheared).back().find(history_.rejected)->kept());
 }

@@ -82,7 +82,7 @@ TEST_F(PruneTest, FreesTheFilesAndKeepsTheRecords) {
   EXPECT_TRUE(store_.verify().ok());
 
   expect_refused<CheckpointPruned>(
-      [&] { store_.load_checkpoint(store_.find_checkpoint(chosen[0].sha256)); },
+      [&] { store_.load_checkpoint(store_.find_checkpoint(chosen[0].sha256).value()); },
       {"shearcell regenerate " + chosen[0].sha256.substr(0, 12)});
   EXPECT_THROW(store_.load_checkpoint(chosen[0]), CheckpointPruned) << "an older record of it";
 }
@@ -104,7 +104,7 @@ TEST_F(PruneTest, FinishesWhatACrashLeft) {
   EXPECT_TRUE(report.ok());
   ASSERT_EQ(report.findings.size(), 1u);
   EXPECT_EQ(report.findings[0].subject, records_[1].file);
-  EXPECT_THROW(store_.load_checkpoint(store_.find_checkpoint(records_[1].sha256)),
+  EXPECT_THROW(store_.load_checkpoint(store_.find_checkpoint(records_[1].sha256).value()),
                CheckpointPruned);
   const auto left = store_.prune_leftovers();
   ASSERT_EQ(left.size(), 1u);

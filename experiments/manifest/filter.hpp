@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace shearcell {
+
+/// Passes the values that fit one of those wanted, or all when none is; remembers what it has seen.
+class Filter {
+ public:
+  using Fits = bool (*)(const std::string& wanted, const std::string& value);
+
+  explicit Filter(
+      std::vector<std::string> wanted,
+      Fits fits = [](const std::string& one, const std::string& value) { return one == value; })
+      : wanted_(std::move(wanted)), fits_(fits) {}
+
+  bool passes(const std::string& value) {
+    if (std::ranges::find(seen_, value) == seen_.end()) seen_.push_back(value);
+    return wanted_.empty() ||
+           std::ranges::any_of(wanted_, [&](const auto& one) { return fits_(one, value); });
+  }
+
+  /// The first of those wanted that no value fitted, or null.
+  const std::string* unfound() const {
+    const auto found = [&](const std::string& one) {
+      return std::ranges::any_of(seen_, [&](const auto& value) { return fits_(one, value); });
+    };
+    const auto missing = std::ranges::find_if_not(wanted_, found);
+    return missing == wanted_.end() ? nullptr : &*missing;
+  }
+
+  const std::vector<std::string>& seen() const { return seen_; }  ///< each once, in order
+
+ private:
+  std::vector<std::string> wanted_;
+  Fits fits_;
+  std::vector<std::string> seen_;
+};
+
+}  // namespace shearcell
