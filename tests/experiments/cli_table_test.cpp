@@ -111,8 +111,9 @@ TEST_F(CommandLineTable, HasRowsAtPhasesWhichExportFinds) {
 }
 
 TEST_F(CommandLineTable, CallsVariantsByTheLabelsOfTheNewestManifest) {
-  campaign(tiny_manifest("", kBothFluids + "labels: {\"fluid=still\": \"water at rest\"}\n"),
-           {"--cycles", "1"});
+  write("labelled.yaml",
+        tiny_manifest("", kBothFluids + "labels: {\"fluid=still\": \"water at rest\"}\n"));
+  expect(0, {"run", "labelled.yaml", "--cycles", "1"});
   expect(0, {"status"}, {"  water at rest  "});
   std::set<std::string> in_status, in_table;
   const nlohmann::json status = json({"status", "--json"});
