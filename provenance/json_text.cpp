@@ -69,4 +69,14 @@ StoreDamaged damaged_payload(const Event& event, const json::exception& problem)
                                   event.type, event.stream, problem.what()));
 }
 
+json member_of(const json& object, const char* key) {
+  return object.is_object() ? object.value(key, json()) : json();
+}
+
+std::string text_at(const json& object, const char* key) {
+  const json found = member_of(object, key);
+  if (found.is_null()) return "unknown";
+  return found.is_string() ? found.get<std::string>() : found.dump();
+}
+
 }  // namespace shearcell

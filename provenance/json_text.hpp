@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "provenance/errors.hpp"
@@ -26,5 +27,10 @@ StoreDamaged damaged_payload(const Event& event, const nlohmann::json::exception
 /// A whole number from 0 to 2^64 - 1. Throws nlohmann::json::exception when the value is missing or
 /// something else; the library's `get` would convert 1e300.
 std::uint64_t count_at(const nlohmann::json& object, const char* key);
+
+/// Null when `object` has no such member or is no object.
+nlohmann::json member_of(const nlohmann::json& object, const char* key);
+/// The same as text; "unknown" for null.
+std::string text_at(const nlohmann::json& object, const char* key);
 
 }  // namespace shearcell

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -19,11 +20,6 @@ constexpr const char* kProfile = "https://w3id.org/ro/wfrun/process/0.5";
 
 json reference(const std::string& id) {
   return {{"@id", id}};
-}
-
-std::string text_at(const json& object, const char* key) {
-  if (!object.is_object() || !object.contains(key)) return "unknown";
-  return object[key].is_string() ? object[key].get<std::string>() : object[key].dump();
 }
 
 /// The entities of the crate, each id once.

@@ -12,6 +12,7 @@
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/document.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -26,16 +27,6 @@ std::string cut(const std::string& text, std::size_t used) {
   return std::string(first_characters(shown, left - 3)) + "...";
 }
 
-// Null where there is no such member.
-nlohmann::json at(const nlohmann::json& object, const char* key) {
-  return object.is_object() ? object.value(key, nlohmann::json()) : nlohmann::json();
-}
-
-std::string text_at(const nlohmann::json& object, const char* key) {
-  const nlohmann::json found = at(object, key);
-  return found.is_null() ? "?" : found.is_string() ? found.get<std::string>() : found.dump();
-}
-
 // "2026-11-20 21:40:51" of "2026-11-20T21:40:51.123Z".
 std::string moment(const std::string& utc) {
   std::string text = utc.substr(0, 19);
@@ -47,7 +38,7 @@ std::string moment(const std::string& utc) {
 class Machines {
  public:
   std::size_t build(const nlohmann::json& host) {
-    const nlohmann::json build = at(host, "build"), libraries = at(host, "libraries");
+    const nlohmann::json build = member_of(host, "build"), libraries = member_of(host, "libraries");
     Row lines = {
         fmt::format("shearcell {} ({}), {} {}", text_at(build, "version"), text_at(build, "commit"),
                     text_at(build, "compiler"), text_at(build, "type")),
@@ -158,7 +149,7 @@ void print_stage_before(const RunLineage& stage, Machines& machines) {
 void print(const FigureLineage& lineage) {
   const nlohmann::json& facts = lineage.record.provenance;
   Machines machines;
-  const nlohmann::json made = at(facts, "made");
+  const nlohmann::json made = member_of(facts, "made");
   std::string by;
   if (made.is_object()) {
     by = fmt::format(", build {}, host {}", machines.build(made), machines.host(made));

@@ -39,8 +39,8 @@ struct ChosenRun {
   std::size_t wall_grains = 0;
 };
 
-const Membership* member_of(const RunRecord& run, const std::string& experiment,
-                            const std::optional<std::string>& scale) {
+const Membership* membership_in(const RunRecord& run, const std::string& experiment,
+                                const std::optional<std::string>& scale) {
   const Membership* found = nullptr;
   for (const Membership& member : run.memberships) {
     if (member.experiment == experiment && (!scale || member.scale == *scale)) found = &member;
@@ -55,7 +55,7 @@ std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<
                                           std::size_t limit) {
   std::vector<ChosenRun> last;
   for (const RunRecord& run : runs) {
-    const Membership* member = member_of(run, experiment, scale);
+    const Membership* member = membership_in(run, experiment, scale);
     if (member == nullptr || run.kind == "prepare") continue;
     std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id);
     if (checkpoints.empty()) continue;

@@ -7,22 +7,13 @@
 
 #include "experiments/report/html.hpp"
 #include "experiments/report/page.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
 namespace {
 
 using nlohmann::json;
-
-json at(const json& object, const char* key) {
-  return object.is_object() ? object.value(key, json()) : json();
-}
-
-std::string text_at(const json& object, const char* key) {
-  const json found = at(object, key);
-  if (found.is_null()) return "?";
-  return found.is_string() ? found.get<std::string>() : found.dump();
-}
 
 std::string row(const char* name, const std::string& html) {
   return fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html);
@@ -43,7 +34,7 @@ std::string run_link(const std::string& id) {
 
 /// "shearcell 0.1.0 (dd11cbe), GNU 12.2.0 Release, on HOST: CPU, AVX-512".
 std::string made_by(const json& host) {
-  const json build = at(host, "build");
+  const json build = member_of(host, "build");
   return fmt::format("shearcell {} ({}), {} {}; {}, {}, {}", text_at(build, "version"),
                      text_at(build, "commit"), text_at(build, "compiler"), text_at(build, "type"),
                      text_at(host, "host"), text_at(host, "cpu"), text_at(host, "simd"));
@@ -79,7 +70,7 @@ std::string outputs_html(const ReportFigure& figure) {
     const std::string sha256 = sha256_hex(panel.csv);
     html += escape_html(file) + " " + code(sha256);
     if (figure.recorded) {
-      const json outputs = at(figure.recorded->provenance, "outputs");
+      const json outputs = member_of(figure.recorded->provenance, "outputs");
       html += text_at(outputs, file.c_str()) == sha256 ? ", as recorded" : ", NOT as recorded";
     }
     html += "<br>";
@@ -138,7 +129,7 @@ std::string attempts_html(const RunLineage& stage) {
                             ? ""
                             : ", checkpoint " + code(attempt.from_checkpoint.substr(0, 12)),
                         escape_html(made_by(attempt.host)),
-                        code(text_at(at(attempt.host, "build"), "flags")));
+                        code(text_at(member_of(attempt.host, "build"), "flags")));
     if (!attempt.why.empty()) html += "<br>" + escape_html(attempt.why);
     html += "</p>\n";
   }
