@@ -79,10 +79,18 @@ std::unique_ptr<ChildProcess> start(const LammpsProgram& program, const fs::path
       Command{words, folder, variables(), said.get(), said.get()});
 }
 
+// "... Massively Parallel Simulator - 29 Sep 2021 - Update 2"
+constexpr std::string_view kTitle = "Massively Parallel Simulator - ";
+
+// MPI has failed to start beside other programs that were starting theirs: it is asked again.
 std::string help_of(const fs::path& program, const fs::path& folder) {
+  constexpr int kAttempts = 3;
   try {
-    const auto outcome = run_program({program.string(), "-h"}, folder, {}, kHelpSeconds);
-    return outcome ? outcome->output + outcome->messages : "";
+    for (int attempt = 1;; ++attempt) {
+      const auto outcome = run_program({program.string(), "-h"}, folder, {}, kHelpSeconds);
+      std::string said = outcome ? outcome->output + outcome->messages : "";
+      if (said.find(kTitle) != said.npos || attempt == kAttempts) return said;
+    }
   } catch (const ProgramError&) {
     give_up_if_requested();
     throw;
@@ -103,16 +111,15 @@ LammpsProgram find_lammps() {
   remove_abandoned_folders();
   const ScratchFolder folder;
   const std::string text = help_of(*path, folder.path());
-  // "... Massively Parallel Simulator - 29 Sep 2021 - Update 2"
-  const std::string_view title = "Massively Parallel Simulator - ";
-  const auto at = text.find(title);
-  const auto version = at == text.npos ? at : at + title.size();
-  if (version == text.npos) {
-    throw ProgramError(path->string() + " is not LAMMPS: its help does not say so");
+  const auto at = text.find(kTitle);
+  if (at == text.npos) {
+    throw ProgramError(path->string() + " is not LAMMPS, or cannot start: its help ends with '" +
+                       last_line(text) + "'");
   }
   if (text.find("gran/hooke") == text.npos) {
     throw ProgramError(path->string() + " was built without the package GRANULAR of LAMMPS");
   }
+  const auto version = at + kTitle.size();
   return {path->string(), text.substr(version, text.find('\n', version) - version)};
 }
 
