@@ -1,10 +1,11 @@
 #!/bin/sh
 # Tests in Chromium the report that campaign.sh wrote to FOLDER:
-#   sh tests/report/browser.sh FRONT_END FOLDER
+#   sh tests/report/browser.sh FRONT_END FOLDER [check...]
 # FRONT_END is the build's folder of the front end, with its node_modules. Screenshots stay in FOLDER.
 # Exit code 77: something is not installed, and nothing was tested.
 set -eu
 front_end=$1 folder=$2
+shift 2
 cd "$(dirname "$0")/../.."
 
 skip() {
@@ -18,4 +19,4 @@ CHROMIUM=${CHROMIUM:-$(command -v chromium || true)}
 [ -d "$front_end/node_modules/playwright-core" ] || skip "npm did not install playwright-core"
 export CHROMIUM
 
-node tests/report/browser.mjs "$front_end" "$folder/report.html" "$folder/screenshots"
+node tests/report/browser.mjs "$front_end" "$folder/report.html" "$folder/screenshots" "$@"
