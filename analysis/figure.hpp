@@ -50,9 +50,8 @@ struct FigureResult {
 };
 
 /// `table`: of the runs of every experiment, each run once per experiment, with its last checkpoint
-/// alone, unmeasured. The others are of the
-/// runs of one experiment: `curves` has one curve for each variant; `groups` averages over the
-/// variants that have the same values of the figure's `keys`.
+/// alone, unmeasured. The others are of the runs of one experiment: `curves` has one curve for each
+/// variant; `groups` averages over the variants that have the same values of the figure's `keys`.
 enum class FigureForm { table, curves, groups };
 
 /// A figure of the supplement.

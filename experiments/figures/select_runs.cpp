@@ -17,7 +17,8 @@ namespace {
 void require_found(const char* what, const Filter& filter) {
   const std::string* missing = filter.unfound();
   if (missing == nullptr) return;
-  const std::vector<std::string_view> known(filter.seen().begin(), filter.seen().end());
+  const std::vector<std::string> seen = filter.seen();
+  const std::vector<std::string_view> known(seen.begin(), seen.end());
   const std::string nearest = suggest_name(*missing, known).name;
   throw NotFound(fmt::format("no run of the store has {} {}; {}", what, *missing,
                              nearest.empty() ? fmt::format("it has {}", fmt::join(known, "; "))

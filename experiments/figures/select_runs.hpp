@@ -26,8 +26,8 @@ struct SelectedRun {
 };
 
 /// In the order of declaration. A run that several versions of a manifest declared is that of the
-/// newest. Throws NotFound for an experiment, scale, variant or seed that the
-/// store does not have, and names those that it has.
+/// newest. Throws NotFound for an experiment, scale, variant or seed that the store does not have,
+/// and names those that it has.
 std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& selection);
 
 /// A run that no experiment declared, as a damaged store may hold it, has an empty membership.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,9 +20,9 @@ class Filter {
       : wanted_(std::move(wanted)), fits_(fits) {}
 
   bool passes(const std::string& value) {
-    if (std::ranges::find(seen_, value) == seen_.end()) seen_.push_back(value);
-    return wanted_.empty() ||
-           std::ranges::any_of(wanted_, [&](const auto& one) { return fits_(one, value); });
+    if (wanted_.empty()) return true;
+    seen_.push_back(value);
+    return std::ranges::any_of(wanted_, [&](const auto& one) { return fits_(one, value); });
   }
 
   /// The first of those wanted that no value fitted, or null.
@@ -33,7 +34,15 @@ class Filter {
     return missing == wanted_.end() ? nullptr : &*missing;
   }
 
-  const std::vector<std::string>& seen() const { return seen_; }  ///< each once, in order
+  /// Each once, in order.
+  std::vector<std::string> seen() const {
+    std::set<std::string> known;
+    std::vector<std::string> distinct;
+    for (const std::string& value : seen_) {
+      if (known.insert(value).second) distinct.push_back(value);
+    }
+    return distinct;
+  }
 
  private:
   std::vector<std::string> wanted_;

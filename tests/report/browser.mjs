@@ -50,7 +50,10 @@ async function drawAllPlots(page) {
   await page.evaluate(async () => {
     for (const plot of document.querySelectorAll("[data-chart]")) {
       plot.scrollIntoView();
-      while (!plot.querySelector("svg.canvas .axes")) await new Promise(requestAnimationFrame);
+      for (const end = performance.now() + 30000; !plot.querySelector("svg.canvas .axes");) {
+        if (performance.now() > end) throw new Error(`the plot ${plot.dataset.chart} is not drawn`);
+        await new Promise(requestAnimationFrame);
+      }
     }
   });
 }
