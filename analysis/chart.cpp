@@ -154,7 +154,7 @@ std::string plain_text(const Text& text) {
 
 std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
   std::string text = title + ".";
-  bool bars = false, bands = false;
+  bool bars = false, bands = false, own_errors = false;
   std::vector<std::string> lines, notes;
   const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
     if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);
@@ -162,9 +162,12 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
   for (const FigureTable& table : tables) {
     const Chart& chart = table.chart;
     if (chart.series.empty()) continue;
-    text += fmt::format(" {}{} against {}.", chart.letter.empty() ? "" : "(" + chart.letter + ") ",
-                        axis_text(chart.y), axis_text(chart.x));
+    text += fmt::format(" {}{} against {}{}.",
+                        chart.letter.empty() ? "" : "(" + chart.letter + ") ", axis_text(chart.y),
+                        axis_text(chart.x), chart.errors.empty() ? "" : "; " + chart.errors);
+    own_errors = own_errors || !chart.errors.empty();
     for (const Series& series : chart.series) {
+      if (!chart.errors.empty()) break;
       for (const ChartPoint& p : points_of(table, series)) {
         if (p.y_error) (series.band ? bands : bars) = true;
       }
@@ -173,9 +176,11 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
     for (const ReferenceLine& line : chart.lines) add_once(lines, plain_text(line.title));
   }
   if (bars || bands) {
-    text += fmt::format(" {}: standard errors over runs.", bars && bands ? "Bars and bands"
-                                                           : bars        ? "Bars"
-                                                                         : "Bands");
+    text += fmt::format(" {}: standard errors over runs{}.",
+                        bars && bands ? "Bars and bands"
+                        : bars        ? "Bars"
+                                      : "Bands",
+                        own_errors ? ", but where stated" : "");
   }
   for (const std::string& note : notes) text += " " + note + ".";
   if (!lines.empty()) text += fmt::format(" Reference lines: {}.", fmt::join(lines, "; "));

@@ -118,6 +118,8 @@ struct Chart {
   bool wide = false;        ///< drawn over two columns of a journal (17.8 cm), not one (8.6 cm)
   std::string letter = {};  ///< of the panel: "a"
   std::string note = {};    ///< a sentence of the caption, without its full stop
+  /// What the bars and bands are, for the caption, where they are not standard errors over runs.
+  std::string errors = {};
 };
 
 /// A table that is drawn as text: the first row is the heading.

@@ -15,6 +15,9 @@
 namespace shearcell {
 namespace {
 
+constexpr const char* no_group =
+    "there are no such runs, or they differ in another swept parameter too";
+
 RunValue measured(double value) {
   return {value, std::isfinite(value) ? Missing::nothing : Missing::undefined};
 }
@@ -47,7 +50,7 @@ void add_missing(std::string& note, const Values& values, const Scalar& scalar) 
                           why == Missing::checkpoint  ? "lack a checkpoint of"
                           : why == Missing::too_short ? "end before"
                           : why == Missing::too_late  ? "begin after"
-                                                      : "have no interior grains at",
+                                                      : "have no value at",
                           scalar.reach));
   }
 }
@@ -56,12 +59,12 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
                  std::size_t runs, const Values& values, const Scalar& scalar, std::string note) {
   add_missing(note, values, scalar);
   if (values.runs == 0) {
-    note = "there are no such runs";
+    note = no_group;
   } else if (!values.enough()) {
     add(note, "more than a quarter of the runs are left out");
     estimate.reset();
-  } else if (!estimate) {
-    add(note, fmt::format("too few runs: {} of at least {}", runs, least_runs));
+  } else if (runs < least_runs) {
+    add(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
   }
   return decide(claim, quantity, estimate, runs, std::move(note));
 }
@@ -70,6 +73,10 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
 struct Pairs {
   std::vector<double> differences;
   bool any = false;  ///< some runs share packings, with numbers or without
+
+  bool enough(RunGroup a, RunGroup b) const {
+    return 4 * differences.size() >= 3 * std::min(a.size(), b.size());
+  }
 };
 Pairs paired(RunGroup a, RunGroup b, const Values& values,
              const std::function<double(double)>& number) {
@@ -160,6 +167,7 @@ Scalar onset_phi(OnsetMethod method) {
     const RunOnset onset = method(run, critical_size_for(run));
     if (onset.observed == Observed::never) return {0, Missing::too_short};
     if (onset.observed == Observed::before_start) return {0, Missing::too_late};
+    if (onset.observed == Observed::unclear) return {0, Missing::undefined};
     return measured(onset.phi);
   };
   return {"phi at the onset", "the onset", of};
@@ -192,6 +200,10 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
     estimate = mean_of(pairs.differences);
     runs = pairs.differences.size();
     note = fmt::format("{} pairs of runs that share a packing", runs);
+    if (estimate && !pairs.enough(a, b)) {
+      note += "; more than a quarter of the runs have no partner";
+      estimate.reset();
+    }
   } else {
     const auto numbers = [&](RunGroup group) {
       std::vector<double> found;
@@ -264,9 +276,9 @@ Verdict compare_waits(const Claim& claim, const std::string& event, std::span<co
   std::string note;
   if (runs > 0) note = wait_in_words(a) + "; " + wait_in_words(b);
   if (runs == 0) {
-    note = "there are no such runs";
+    note = no_group;
   } else if (runs < least_runs) {
-    add(note, fmt::format("too few runs: {} of at least {}", runs, least_runs));
+    add(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
   } else if (!estimate) {
     add(note, "every run ends before " + event);
   }

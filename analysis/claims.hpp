@@ -40,7 +40,7 @@ Scalar at_cycle(const std::string& name, Quantity quantity, std::int64_t cycle);
 Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t first,
                    std::int64_t last);
 
-/// phi, mean over the cycles before the grains crystallize: 1 to 15.
+/// phi, mean over cycles 1 to 15, before most runs crystallize.
 Scalar early_phi();
 
 /// Percentage of crystalline grains, mean over phi from 0.646 to 0.67: the polygon through the
@@ -60,7 +60,8 @@ using RunGroup = std::span<const FigureRun* const>;
 
 /// a less b. Paired, by Student's t, if some runs share packings: those that do not are then left
 /// out. Else Welch's interval. A verdict needs least_runs runs or pairs and, so that runs that end
-/// early do not bias it, the number of three quarters of the runs. [choice]
+/// early do not bias it, the number of three quarters of the runs; with pairs, also partners for as
+/// many. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
 /// The mean over runs less the published number.

@@ -69,6 +69,10 @@ nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
   return nullptr;
 }
 
+bool sweeps_engine(const FigureRun& run) {
+  return run.labels.is_object() && run.labels.contains("engine");
+}
+
 double number_of(const FigureRun& run, const std::string& key) {
   const nlohmann::json value = parameter_of(run, key);
   return value.is_number() ? value.get<double>() : std::nan("");

@@ -77,6 +77,9 @@ nlohmann::json parameter_of(const FigureRun& run, const std::string& key);
 /// The same as a number; NaN if it is not a number.
 double number_of(const FigureRun& run, const std::string& key);
 
+/// Whether its engine is one of its swept values: `run --engine` adds such runs to an experiment.
+bool sweeps_engine(const FigureRun& run);
+
 /// Those of `keys` that distinguish the variants: each varies, and without any one of them two
 /// variants would be equal. Of keys that advance together the first stays. `variants` are objects
 /// of swept keys and values.

@@ -172,7 +172,11 @@ std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs, Vanished
 }
 
 std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs, Vanished vanished) {
-  return over_selections(runs, vanished, [](const GrowthFit& fit) { return fit.critical_size(); });
+  const auto found =
+      over_selections(runs, vanished, [](const GrowthFit& fit) { return fit.critical_size(); });
+  const auto largest = static_cast<double>(cases_of(runs, vanished).log_size.size());
+  if (!found || found->value < 1 || found->value > largest) return std::nullopt;
+  return found;
 }
 
 std::optional<Estimate> fitted_delta_rho(std::span<const GrowthBySize> runs, double size) {

@@ -71,7 +71,8 @@ std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs,
                                     Vanished vanished = Vanished::shrank);
 
 /// Over runs; the interval is the bootstrap's with runs as its unit, since one crystallite is
-/// followed over many cycles. None for fewer than least_runs, or if the fit has no critical size.
+/// followed over many cycles. None for fewer than least_runs, if the fit has no critical size, or
+/// if that is less than a grain or more than the largest size that was fitted.
 std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs,
                                       Vanished vanished = Vanished::shrank);
 

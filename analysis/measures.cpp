@@ -72,7 +72,7 @@ std::span<const ScalarMeasure> all_scalar_measures() {
                         &U::kinetic_stress_Pa}},
       {"coordination", "1", "contacts per interior grain",
        MechanicalMember{"coordination", &F::coordination, nullptr}},
-      {"rattlers_percent", "%", "interior grains that fewer than four contacts hold",
+      {"rattlers_percent", "%", "interior grains with fewer than four contacts",
        MechanicalMember{"rattlers_percent", &F::rattlers, nullptr}},
       {"coordination_without_rattlers", "1",
        "contacts among interior grains that are not rattlers, per grain",

@@ -5,6 +5,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -107,11 +108,15 @@ double score(const Strata& strata, double exponent) {
   return sum;
 }
 
-/// The exponent of maximum likelihood; the score falls with it. None where it has no zero: then no
-/// bin compares two sizes, or all events are in the largest or the smallest cells.
+/// The exponent of maximum likelihood; the score falls with it. Infinite where all events are in
+/// the largest or the smallest cells; none where no bin compares two sizes.
 std::optional<double> most_likely(const Strata& strata) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
   double low = -10, high = 10;
-  if (!(score(strata, low) > 1e-9) || !(score(strata, high) < -1e-9)) return std::nullopt;
+  const bool rises = score(strata, low) > 1e-9, falls = score(strata, high) < -1e-9;
+  if (!rises && !falls) return std::nullopt;
+  if (!falls) return infinite;
+  if (!rises) return -infinite;
   for (int halving = 0; halving < 40; ++halving) {
     const double middle = (low + high) / 2;
     (score(strata, middle) > 0 ? low : high) = middle;

@@ -25,9 +25,9 @@ inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis);
 
 /// The same with one place for each nucleus, where it first has 15 to 25 grains, so that one that
-/// is seen in many cycles counts once. A crystallite of 15 grains or more continues a nucleus if at
-/// least half of its grains have been in that nucleus before, at any cycle; else it is a new
-/// one. A nucleus that is first seen with more than 25 grains has no place. [choice]
+/// is seen in many cycles counts once. A crystallite of 15 grains or more is a new nucleus if fewer
+/// than half of its grains have been in nuclei before, at any cycle. A nucleus that is first seen
+/// with more than 25 grains has no place. [choice]
 std::vector<double> nucleus_births(const FigureRun& run, CellAxis axis);
 
 struct DensityBin {
@@ -57,8 +57,8 @@ std::vector<NucleationRate> nucleation_rates(RunGroup runs);
 
 /// The exponent a of rate = c(amplitude, phi) N_inves^a, by maximum likelihood: onsets are a
 /// Poisson process with a constant c in each bin of phi at each amplitude. Interval by bootstrap
-/// over runs. None if no bin with an event has runs of two sizes, or for fewer than least_runs
-/// runs.
+/// over runs. None if no bin with an event has runs of two sizes, if all events are in the largest
+/// or the smallest cells, or for fewer than least_runs runs.
 std::optional<Estimate> size_exponent(RunGroup runs);
 
 }  // namespace shearcell

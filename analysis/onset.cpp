@@ -81,7 +81,7 @@ RunOnset onset_by_slope(const FigureRun& run, double critical_size) {
   const std::vector<Point> points = points_of(run);
   const auto [lowest, highest] = std::ranges::minmax(points, {}, &Point::phi);
   constexpr double step = slope_window / 32;
-  RunOnset found;
+  RunOnset found{Observed::unclear};
   double steepest = 0;
   const auto steps = static_cast<int>((highest.phi - lowest.phi) / step);
   for (int k = 0; k <= steps; ++k) {
@@ -106,6 +106,7 @@ Onset onset(std::span<const FigureRun* const> runs, OnsetMethod method, double c
     const RunOnset found = method(*run, critical_size);
     if (found.observed == Observed::never) ++result.never;
     if (found.observed == Observed::before_start) ++result.before_start;
+    if (found.observed == Observed::unclear) ++result.unclear;
     if (found.observed != Observed::yes) continue;
     phi.push_back(found.phi);
     cycle.push_back(found.cycle);

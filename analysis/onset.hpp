@@ -11,8 +11,9 @@
 
 namespace shearcell {
 
-/// A run is censored when its onset lies outside of what was observed.
-enum class Observed { yes, never, before_start };
+/// A run is censored when its onset lies outside of what was observed. `unclear`: it is within, but
+/// the method finds no phi.
+enum class Observed { yes, never, before_start, unclear };
 
 struct RunOnset {
   Observed observed = Observed::never;
@@ -27,9 +28,9 @@ RunOnset onset_by_size(const FigureRun& run, double critical_size);
 
 /// Method 2: where ln(largest crystallite) against phi is steepest. The slope at phi is that of the
 /// straight line, by least squares, through the checkpoints within `slope_window / 2`; at least
-/// four checkpoints that span half of the window, and no crystallite counts as one grain. A run
-/// whose largest crystallite never reaches `critical_size` has not crystallized and is censored.
-/// [choice]
+/// four checkpoints that span half of the window, and no crystallite counts as one grain; a run
+/// without such a window is unclear. One whose largest crystallite never reaches `critical_size`
+/// has not crystallized and is censored. [choice]
 inline constexpr double slope_window = 0.008;
 RunOnset onset_by_slope(const FigureRun& run, double critical_size);
 
@@ -46,6 +47,7 @@ struct Onset {
   RunStatistics cycle;              ///< over observed runs
   std::size_t never = 0;            ///< runs that end before
   std::size_t before_start = 0;     ///< runs that begin after
+  std::size_t unclear = 0;          ///< runs in which the method finds none
 };
 Onset onset(std::span<const FigureRun* const> runs, OnsetMethod method, double critical_size);
 

@@ -221,23 +221,31 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
   return against_measure(plot, curves);
 }
 
-/// The runs of the one variant with these parameters.
+/// The runs of the one variant with these parameters; of another engine only if they say so.
 std::vector<const FigureRun*> variant_with(const ClaimSpec& claim, const nlohmann::json& where,
                                            std::span<const FigureRun> runs) {
   std::vector<const FigureRun*> found;
-  std::set<std::string> variants;
   for (const FigureRun& run : runs) {
     bool fits = true;
-    for (const auto& [key, value] : where.items()) fits = fits && parameter_of(run, key) == value;
-    if (!fits) continue;
-    found.push_back(&run);
-    variants.insert(run.variant);
+    for (const auto& [key, value] : where.items()) {
+      const bool own_engine = key == "engine" && value == "shearcell" && !sweeps_engine(run);
+      fits = fits && (own_engine || parameter_of(run, key) == value);
+    }
+    if (fits) found.push_back(&run);
   }
-  if (variants.size() == 1) return found;
+  const auto variants = [](std::span<const FigureRun* const> some) {
+    std::set<std::string> distinct;
+    for (const FigureRun* run : some) distinct.insert(run->variant);
+    return distinct.size();
+  };
+  if (variants(found) == 1) return found;
+  std::vector<const FigureRun*> as_stated = found;
+  std::erase_if(as_stated, [](const FigureRun* run) { return sweeps_engine(*run); });
+  if (variants(as_stated) == 1) return as_stated;
   throw UsageError(
       fmt::format("claim {}: {} variants have {}; `between` must name one on each "
                   "side",
-                  claim.name, variants.size(), words_of(where)));
+                  claim.name, variants(found), words_of(where)));
 }
 
 FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> runs) {

@@ -68,7 +68,7 @@ inline constexpr double published_overlap = 1e-3;
 inline constexpr std::int32_t nucleus_smallest = 15;
 inline constexpr std::int32_t nucleus_largest = 25;
 
-/// Cycles over which phi is compared: before the grains crystallize. [choice]
+/// Cycles over which phi is compared: before most runs crystallize. [choice]
 inline constexpr std::int64_t early_cycles = 15;
 /// phi over which the percentage of crystalline grains is compared: from the onset to where a fifth
 /// of the grains is crystalline. [choice]

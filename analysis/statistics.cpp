@@ -23,7 +23,7 @@ Interval around(double value, double error, double freedom) {
   return {value - half, value + half};
 }
 
-/// Values over all selections; those without a finite one are left out.
+/// Values over all selections; those without one are left out.
 std::vector<double> bootstrap_values(std::size_t runs, const RunStatistic& statistic) {
   std::vector<std::size_t> selection(runs);
   std::vector<double> values;
@@ -33,7 +33,7 @@ std::vector<double> bootstrap_values(std::size_t runs, const RunStatistic& stati
       selection[k] = static_cast<std::size_t>(u * static_cast<double>(runs));
     }
     const std::optional<double> value = statistic(selection);
-    if (value && std::isfinite(*value)) values.push_back(*value);
+    if (value && !std::isnan(*value)) values.push_back(*value);
   }
   return values;
 }
@@ -63,9 +63,8 @@ RunStatistics over_runs(std::span<const double> values) {
 
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic) {
   if (runs < 2) return std::nullopt;
-  const std::vector<double> values = bootstrap_values(runs, statistic);
-  if (values.size() < bootstrap_selections / 2) return std::nullopt;
-  const RunStatistics found = over_runs(values);
+  const RunStatistics found = over_runs(bootstrap_values(runs, statistic));
+  if (found.runs < bootstrap_selections / 2) return std::nullopt;
   const auto n = static_cast<double>(runs);
   return found.standard_error.value() * std::sqrt(static_cast<double>(found.runs) * n / (n - 1));
 }

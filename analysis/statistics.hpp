@@ -62,8 +62,9 @@ std::optional<Estimate> difference_of_means(std::span<const double> a, std::span
 
 /// A statistic of a selection of runs that is not a mean. Expanded percentile interval of the
 /// bootstrap, which has the length of Student's interval where the statistic is a mean: T. C.
-/// Hesterberg, The American Statistician 69, 371 (2015). Selections that have no statistic widen
-/// the interval at both ends. None when all runs together have no statistic.
+/// Hesterberg, The American Statistician 69, 371 (2015). A selection's statistic may be infinite.
+/// Selections that have none widen the interval at both ends. None when all runs together have no
+/// finite statistic.
 std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic);
 
 /// Runs per group, or pairs, from which on an interval excludes a value at `distance` from the

@@ -83,8 +83,7 @@ ObjectInfo ObjectStore::put(std::span<const std::byte> bytes) {
 std::vector<std::byte> ObjectStore::get(std::string_view sha256, std::uint64_t size) const {
   const auto damaged = [&](const std::string& why) {
     return StoreDamaged(
-        fmt::format("{}: {}; restore the file from a backup, or run `resume` to continue from an "
-                    "older checkpoint",
+        fmt::format("{}: {}; restore the file from a backup, or compute it again with `regenerate`",
                     (folder_ / file_of(sha256)).string(), why));
   };
   if (!is_sha256_hex(sha256)) throw damaged("the name in the log is not a SHA-256");

@@ -25,8 +25,8 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   const std::string name = folder.string();
   sqlite::full_name(folder / kLogFile);  // or says that it is too long, before anything is made
   if (fs::exists(folder) && !fs::is_directory(folder)) {
-    throw StoreDamaged(fmt::format(
-        "{}: a store is a folder, but this is a file; remove it or name another store", name));
+    throw UsageError(
+        fmt::format("{}: a store is a folder, but this is a file; name another one", name));
   }
   if (fs::exists(folder / kLogFile)) return folder;
   if (fs::exists(folder / "objects")) {

@@ -19,9 +19,8 @@ namespace {
 
 void require_same(std::string_view what, const auto& in_file, const auto& in_log) {
   if (in_file == in_log) return;
-  throw StoreDamaged(
-      fmt::format("its {} is {}, and the log says {}; `resume` continues from an older checkpoint",
-                  what, in_file, in_log));
+  throw StoreDamaged(fmt::format(
+      "its {} is {}, and the log says {}; `regenerate` computes it again", what, in_file, in_log));
 }
 
 void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const RunRecord& run) {

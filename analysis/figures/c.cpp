@@ -92,7 +92,8 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
             .low = -1.05,
             .high = 1.05,
             .clip = true},
-      .lines = {{.at = 0, .title = "growth as probable as shrinking"}}};
+      .lines = {{.at = 0, .title = "growth as probable as shrinking"}},
+      .errors = "bars are binomial errors, bands half the length of the 90 % interval of the fit"};
   for (std::size_t k = 0; k < all.size(); ++k) {
     const AmplitudeGrowth& one = all[k];
     const std::string colour = colour_of(k);
@@ -253,9 +254,18 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   } else {
     note += one.runs.size() < least_runs ? "; too few runs" : "; no size at which growth begins";
   }
-  if (one.without_vanished) {
-    note += fmt::format(", {:.3g} if those that vanish are left out", one.without_vanished->value);
+  GrowthCount all;
+  for (const GrowthBySize& run : one.runs) {
+    for (const auto& [size, count] : run) {
+      if (size > largest_size_fitted) break;
+      all.shrank += count.shrank;
+      all.vanished += count.vanished;
+    }
   }
+  note += fmt::format(
+      "; {} if the {} of {} that shrink by vanishing are left out",
+      one.without_vanished ? fmt::format("{:.3g}", one.without_vanished->value) : "none",
+      all.vanished, all.shrank);
   return decide({fmt::format("C: the critical size at A = {} rad is about {} grains", one.amplitude,
                              published),
                  margin_critical_size.value},

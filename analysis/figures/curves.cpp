@@ -207,13 +207,14 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs, std::span<const st
 }
 
 const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& value) {
-  const Curve* found = nullptr;
+  std::vector<const Curve*> found;
   for (const Curve& curve : curves) {
-    if (!matches(curve.value, value)) continue;
-    if (found != nullptr) return nullptr;
-    found = &curve;
+    if (matches(curve.value, value)) found.push_back(&curve);
   }
-  return found;
+  if (found.size() > 1) {
+    std::erase_if(found, [](const Curve* curve) { return sweeps_engine(*curve->runs.front()); });
+  }
+  return found.size() == 1 ? found.front() : nullptr;
 }
 
 Axis cycle_axis() {

@@ -54,7 +54,8 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs, std::span<const st
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
                              std::span<const CurveStyle> styles);
 
-/// The one curve in which the parameter has that value; null if there is none, or several.
+/// The one curve in which the parameter has that value, one of another engine only if it is the
+/// only one; null if there is none, or several.
 const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& value);
 
 // The axes that several figures share.

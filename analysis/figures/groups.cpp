@@ -66,13 +66,13 @@ Onset onset_of(RunGroup runs, OnsetMethod method) {
 
 std::vector<std::string> onset_columns(std::vector<std::string> columns) {
   columns.insert(columns.end(), {"onset_phi_mean", "onset_phi_standard_error", "runs",
-                                 "runs_ended_before", "runs_began_after"});
+                                 "runs_ended_before", "runs_began_after", "runs_unclear"});
   return columns;
 }
 
 TableRow onset_row(TableRow row, const Onset& onset) {
-  row.insert(row.end(),
-             {onset.phi.mean, onset.phi_error, onset.phi.runs, onset.never, onset.before_start});
+  row.insert(row.end(), {onset.phi.mean, onset.phi_error, onset.phi.runs, onset.never,
+                         onset.before_start, onset.unclear});
   return row;
 }
 

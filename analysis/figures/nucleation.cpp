@@ -113,7 +113,8 @@ FigureTable rate_table(const Groups& groups) {
                                       .y = "rate_per_grain_cycle",
                                       .y_error = "rate_standard_error",
                                       .x_high = "phi_high"},
-                                     Join::none)};
+                                     Join::none),
+                 .errors = "bars are errors of Poisson counts"};
   return table;
 }
 

@@ -171,22 +171,20 @@ std::vector<FigureTable> structure_panels(std::span<const Curve> curves) {
   return panels;
 }
 
-/// The claims on one amplitude; `with` may be null.
-std::vector<Verdict> claims_on(double amplitude, const Curve& without, const Curve* with) {
-  std::vector<Verdict> verdicts = {onset_is_published(
-      without.runs,
-      fmt::format("D: without gravity the onset at A = {} rad is phi = 0.646", amplitude))};
-  if (with == nullptr) return verdicts;
-  verdicts.push_back(compare(
-      {fmt::format("D: the onset at A = {} rad is the same with and without gravity", amplitude),
-       margin_onset_phi.value},
-      onset_phi(onset_by_size), without.runs, with->runs));
-  verdicts.push_back(compare({fmt::format("D: percentage crystalline against phi at A = {} rad is "
-                                          "the same with and without gravity",
-                                          amplitude),
-                              margin_percentage.value},
-                             percentage_over_phi(), without.runs, with->runs));
-  return verdicts;
+/// What holds at each amplitude; `with` may be null.
+std::vector<Verdict> same_without_gravity(double amplitude, const Curve& without,
+                                          const Curve* with) {
+  const RunGroup others = with == nullptr ? RunGroup() : RunGroup(with->runs);
+  return {
+      compare({fmt::format("D: the onset at A = {} rad is the same with and without gravity",
+                           amplitude),
+               margin_onset_phi.value},
+              onset_phi(onset_by_size), without.runs, others),
+      compare({fmt::format("D: percentage crystalline against phi at A = {} rad is the same with "
+                           "and without gravity",
+                           amplitude),
+               margin_percentage.value},
+              percentage_over_phi(), without.runs, others)};
 }
 
 }  // namespace
@@ -223,7 +221,10 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
     if (published_interior(grains)) {
       result.verdicts.push_back(interior_is_published(grains, members));
     }
-    if (interior >= converged_interior_grains) {
+    const bool small = std::ranges::all_of(members, [](const FigureRun* run) {
+      return number_of(*run, "amplitude_rad") <= small_amplitude_rad;
+    });
+    if (small && interior >= converged_interior_grains) {
       converged = true;
       result.verdicts.push_back(onset_is_published(
           members, fmt::format("C: the onset at N = {} is phi = 0.646", grains)));
@@ -264,14 +265,22 @@ FigureResult figure_s6(std::span<const FigureRun> runs) {
   phi.chart.series.push_back(onset_series(onsets));
   FigureResult result{{std::move(phi), onset_table(onsets)}, {}};
   std::ranges::move(structure_panels(curves), std::back_inserter(result.tables));
+  bool small = false;
   for (const CurveOnset& o : onsets) {
     if (o.gravity) continue;
+    if (o.amplitude <= small_amplitude_rad) {
+      small = true;
+      result.verdicts.push_back(onset_is_published(
+          o.curve->runs,
+          fmt::format("D: without gravity the onset at A = {} rad is phi = 0.646", o.amplitude)));
+    }
     const Curve* with = curve_with(curves, amplitude_and_gravity(o.amplitude, true));
-    std::ranges::move(claims_on(o.amplitude, *o.curve, with), std::back_inserter(result.verdicts));
+    std::ranges::move(same_without_gravity(o.amplitude, *o.curve, with),
+                      std::back_inserter(result.verdicts));
   }
-  if (result.verdicts.empty()) {
-    result.verdicts.push_back(
-        onset_is_published({}, "D: without gravity the onset is phi = 0.646"));
+  if (!small) {
+    result.verdicts.push_back(onset_is_published(
+        {}, "D: without gravity the onset at A = 0.04 and 0.05 rad is phi = 0.646"));
   }
   return result;
 }

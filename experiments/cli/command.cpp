@@ -84,15 +84,18 @@ std::string unfit_count(const std::string& text, std::uint64_t low, std::uint64_
   const bool plain = value && (text[0] != '0' || text.size() == 1);
   if (plain && *value >= low && *value <= high) return "";
   if (high == UINT64_MAX) {
-    return fmt::format("'{}' is not a whole number >= {} in decimal digits", text, low);
+    return fmt::format("must be a whole number from {} on, in decimal digits (got '{}')", low,
+                       text);
   }
-  return fmt::format("'{}' is not a whole number from {} to {} in decimal digits", text, low, high);
+  return fmt::format("must be a whole number from {} to {} in decimal digits (got '{}')", low, high,
+                     text);
 }
 
 std::string unfit_number(const std::string& text, double low, double high) {
   const auto value = read_number<double>(text);
   if (value && *value >= low && *value <= high) return "";
-  return fmt::format("'{}' is not a number from {} to {} in decimal digits", text, low, high);
+  return fmt::format("must be a number from {} to {} in decimal digits (got '{}')", low, high,
+                     text);
 }
 
 CLI::Option* add_number(CLI::App& command, const std::string& names, double& value,

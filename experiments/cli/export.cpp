@@ -107,13 +107,21 @@ std::vector<CheckpointRecord> chosen(const Store& store, const RunRecord& run,
       shears ? 0.5 / static_cast<double>(cycle_steps(drive(read_stage(run.resolved).parameters)))
              : 0;
   std::vector<CheckpointRecord> records;
-  for (CheckpointRecord& record : store.checkpoints(run.id)) {
-    if (range.holds(record.cycle, near)) records.push_back(std::move(record));
+  std::size_t pruned = 0;
+  for (CheckpointRecord& record : store.checkpoints(run.id, true)) {
+    if (!range.holds(record.cycle, near)) continue;
+    if (record.state == CheckpointState::pruned) ++pruned;
+    if (record.state == CheckpointState::recorded) records.push_back(std::move(record));
   }
   if (records.empty()) {
     throw std::invalid_argument(fmt::format(
         "run {:.8} has no stored checkpoint in cycles {} (pruned ones: `shearcell regenerate`)",
         run.id, cycles.empty() ? "of any number" : cycles));
+  }
+  if (pruned > 0) {
+    tell_stderr(
+        "run {:.8}: {} pruned checkpoints are left out; `shearcell regenerate` makes them\n",
+        run.id, pruned);
   }
   return records;
 }

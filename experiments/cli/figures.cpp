@@ -66,7 +66,7 @@ void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
   if (incomplete && context.exit_code == kDone) context.exit_code = kOtherError;
   list.push_back(facts(result));
   if (context.json) return;
-  tell("{}{}{} ({} scale): {} runs, {} checkpoints, {} of them measured now\n", result.experiment,
+  tell("{}{}{} ({} scale): {} runs, {} checkpoints, {} of them newly measured\n", result.experiment,
        result.experiment.empty() ? "" : "/", result.name,
        result.scale.empty() ? "base" : result.scale, result.runs, result.checkpoints,
        result.measured);
@@ -111,9 +111,9 @@ void figures(FigureArguments& options, Context& context) {
 std::string list_of_figures() {
   std::string text;
   for (const Figure& figure : all_figures()) {
-    text += fmt::format("  {:<8} {}\n", figure.name, figure.title);
+    text += fmt::format("  {:<10} {}\n", figure.name, figure.title);
     if (!figure.keys.empty()) {
-      text += fmt::format("           varies {}\n", fmt::join(figure.keys, ", "));
+      text += fmt::format("             varies {}\n", fmt::join(figure.keys, ", "));
     }
   }
   return text;
@@ -141,7 +141,7 @@ void add_figures(CLI::App& app, Context& context) {
   command
       ->add_option_function<std::string>(
           "--width", [options](const std::string& width) { options->how.wide = width == "double"; },
-          "Of the drawings: one column of a journal (8.6 cm) or two (17.8 cm)")
+          "Width of the drawings: one column of a journal (8.6 cm) or two (17.8 cm)")
       ->check(CLI::IsMember({"single", "double"}))
       ->default_str("single");
   command->add_flag("--fresh", how.fresh,

@@ -35,17 +35,27 @@ struct CommandEntry {
   std::vector<const CLI::App*> subcommands;
 };
 
+constexpr std::size_t kLongestChoice = 60;
+
 OptionEntry entry(const CLI::Option& option) {
   OptionEntry made;
   for (const std::string& name : option.get_snames()) made.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) made.names.push_back("--" + name);
   if (option.get_items_expected_max() > 0) {
     made.placeholder = option.get_positional() ? option.get_single_name() : option.get_type_name();
-    const auto colon = made.placeholder.find(':');
-    if (colon != std::string::npos) made.placeholder.erase(colon);
+    if (const auto choices = made.placeholder.find(":{"); choices != std::string::npos) {
+      std::string one_of = made.placeholder.substr(choices + 2);
+      one_of.pop_back();
+      std::ranges::replace(one_of, ',', '|');
+      made.placeholder.erase(choices);
+      if (one_of.size() <= kLongestChoice) made.placeholder = one_of;  // longer: a table has them
+    }
     if (made.placeholder.empty()) made.placeholder = "VALUE";
   }
   made.meaning = option.get_description();
+  if (const std::string value = option.get_default_str(); !value.empty()) {
+    made.meaning += fmt::format(" (default: {})", value);
+  }
   return made;
 }
 
@@ -179,6 +189,8 @@ std::string escaped(const std::string& text) {
       all += "\\e";
     } else if (c == '-') {
       all += "\\-";
+    } else if (c == '|') {
+      all += "|\\:";  // a line may end here
     } else {
       all += c;
     }

@@ -47,7 +47,7 @@ std::string figure_comments() {
   for (const Figure& figure : all_figures()) {
     if (figure.keys.empty()) continue;
     text +=
-        fmt::format("#   {:<8} {}: {}\n", figure.name, figure.title, fmt::join(figure.keys, ", "));
+        fmt::format("#   {:<10} {}: {}\n", figure.name, figure.title, fmt::join(figure.keys, ", "));
   }
   return text;
 }
@@ -97,6 +97,7 @@ scales:
 
 void write_new(const std::filesystem::path& file, const std::string& text) {
   try {
+    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
     write_output(file, text, Existing::kept);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::file_exists) throw;

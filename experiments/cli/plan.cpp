@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 
+#include "core/memory.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/cost.hpp"
@@ -106,10 +108,35 @@ void print_numerics(const std::vector<Line>& lines) {
               rows);
 }
 
-// A note on runs by another engine.
+// A run goes on to the longest target that it was ever declared with; returns how many do.
+std::size_t take_longer_targets(const std::vector<RunRecord>& known, Plan& plan) {
+  std::map<std::string, const RunRecord*> unfinished;
+  for (const RunRecord& run : known) {
+    if (run.state != RunState::completed) unfinished[run.id] = &run;
+  }
+  std::size_t longer = 0;
+  for (PlannedRun& run : plan.runs) {
+    const auto found = unfinished.find(run.last.key);
+    if (found == unfinished.end() || found->second->target_cycles <= run.target_cycles) continue;
+    run.target_cycles = found->second->target_cycles;
+    ++longer;
+  }
+  return longer;
+}
+
+// Notes on runs that this machine cannot hold, and on runs by another engine.
 std::vector<std::string> notes_of(const Plan& plan) {
-  if (!asks_for_lammps(plan)) return {};
-  std::vector<std::string> notes = lammps_caveats();
+  std::vector<std::string> notes;
+  double most = 0;
+  for (const PlannedRun& run : plan.runs) {
+    most = std::max(most, stage_bound(run, run.last).memory_bytes);
+  }
+  if (most > machine_memory()) {
+    notes.push_back(fmt::format("the largest run needs {}, and this machine has {}",
+                                format_bytes(most), format_bytes(machine_memory())));
+  }
+  if (!asks_for_lammps(plan)) return notes;
+  std::ranges::move(lammps_caveats(), std::back_inserter(notes));
   try {
     notes.push_back("LAMMPS here: " + find_lammps().version);
   } catch (const ProgramError& missing) {
@@ -150,9 +177,9 @@ void print_until(const std::vector<Line>& lines, double at_most) {
   const auto asks = std::ranges::find_if(
       lines, [](const Line& line) { return line.run->ends_early.has_value(); });
   if (asks == lines.end()) return;
-  fmt::print("      with until: {}: ", describe(*asks->run->ends_early));
+  fmt::print("      `until` ({}): ", describe(*asks->run->ends_early));
   if (const nlohmann::json left = left_until(lines); left.is_null()) {
-    fmt::print("less; how much less is unknown until such a run has ended\n");
+    fmt::print("less, by how much is known once such a run has ended\n");
   } else {
     fmt::print("about {:.3g} particle-steps, {:.0f} % of these, as such runs ended before\n",
                left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
@@ -250,14 +277,21 @@ Row row(const Line& line) {
 }
 
 void plan(const std::string& manifest, const ExpandOptions& options, Context& context) {
-  const Plan expanded = load_manifests({manifest}, options).plans.front();
+  Plan expanded = load_manifests({manifest}, options).plans.front();
   const std::optional<Store> store = open_if_there(context.store);
   const auto known = store ? store->runs() : std::vector<RunRecord>{};
+  const std::size_t longer = take_longer_targets(known, expanded);
   const std::vector<Line> lines = lines_of(expanded, store, known);
   const Left left = left_of(lines, known);
   const std::size_t cores = core_count();
   const double seconds = left.core_seconds / static_cast<double>(cores);
-  const std::vector<std::string> notes = notes_of(expanded);
+  std::vector<std::string> notes = notes_of(expanded);
+  if (longer > 0) {
+    notes.push_back(
+        fmt::format("{} runs were asked for more cycles before; `run` continues them to "
+                    "these",
+                    longer));
+  }
   if (context.json) {
     return print_json({{"experiment", expanded.experiment},
                        {"scale", expanded.scale},

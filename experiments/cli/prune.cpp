@@ -140,7 +140,7 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
     return say("diverged", "DIVERGED: " + replay.divergence->message);
   }
   return say("regenerated",
-             fmt::format("the same state and the same file again, from {} ({} steps)",
+             fmt::format("recomputed from {} ({} steps): the same state, the same bytes",
                          replay.from ? fmt::format("cycle {:g}", replay.from->cycle)
                                      : std::string("the beginning of its stage"),
                          replay.steps));

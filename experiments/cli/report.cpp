@@ -83,13 +83,14 @@ void add_report(CLI::App& app, Context& context) {
   sub->add_option("--run", packings.runs, "Show these runs in 3D instead of the default")
       ->type_name("RUN");
   add_count(*sub, "--runs-per-experiment", packings.runs_per_experiment,
-            "Runs in 3D: the last of each variant, so many of them")
+            "Number of runs shown in 3D: the last of each variant")
       ->capture_default_str();
   add_count(*sub, "--frames", packings.frames, "Checkpoints of each run in 3D, evenly spread", "N",
             1, 100000)
       ->capture_default_str();
   add_number(*sub, "--packings-mb", command->megabytes,
-             "Room for all of them; fewer are taken where they would not fit", "MB", 0, 1000)
+             "Limit for all packings in 3D; fewer checkpoints are taken where they would not fit",
+             "MB", 0, 1000)
       ->capture_default_str();
   sub->add_option("--accuracy", command->accuracy,
                   "Folder that `bench accuracy --out` wrote: adds its diagrams")

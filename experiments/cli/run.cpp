@@ -78,6 +78,10 @@ void report(const CampaignResult& result, Context& context) {
                 {"not_begun", result.blocked},
                 {"damaged", result.damaged},
                 {"messages", result.messages}});
+  } else if (result.completed + result.already + result.failed + result.interrupted +
+                 result.blocked ==
+             0) {
+    fmt::print("nothing is left to compute\n");
   } else {
     fmt::print(
         "{} stages computed, {} were done already, {} failed, {} interrupted, {} not begun\n",

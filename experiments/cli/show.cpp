@@ -197,6 +197,14 @@ std::optional<FigureRecord> find_record(const Store& store, const std::string& n
   return std::move(found.front());
 }
 
+// "S4" or "drag/S4" of a figure that the store has no record of.
+void require_not_undrawn(const std::string& name) {
+  const std::string figure = std::filesystem::path(name).filename().string();
+  if (find_figure(figure) == nullptr || std::filesystem::exists(name)) return;
+  throw NotFound(
+      fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, figure));
+}
+
 // Neither a run nor a checkpoint has a dot or a slash in its name.
 bool is_file_name(const std::string& name) {
   return name.find_first_of("./") != std::string::npos;
@@ -205,6 +213,7 @@ bool is_file_name(const std::string& name) {
 void show(const std::string& name, Context& context) {
   const Store store(context.store, Access::read);
   if (const auto figure = find_record(store, name)) return show_figure(store, *figure, context);
+  require_not_undrawn(name);
   if (is_file_name(name)) return show_published(store, name, context);
   if (name.size() >= 4) {
     if (const auto checkpoint = store.find_checkpoint(name)) {

@@ -159,8 +159,11 @@ void print(const FigureLineage& lineage) {
        scale.empty() ? "base" : cut(scale, 50), text_at(facts, "analysis_version"));
   tell("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at), lineage.record.seq,
        by);
+  std::size_t widest = 0;
+  for (const auto& [name, sha256] : lineage.outputs)
+    widest = std::max(widest, cut(name, 66).size());
   for (const auto& [name, sha256] : lineage.outputs) {
-    tell("  {:<12}{}\n", cut(name, 66), sha256);
+    tell("  {:<{}}  {}\n", cut(name, 66), widest, sha256);
   }
   print_manifests(lineage);
   for (const FigureInput& input : lineage.inputs) {

@@ -188,7 +188,8 @@ void print_tables(const View& view) {
   std::map<std::string, std::vector<Row>> tables;
   std::map<RunState, std::size_t> count;
   for (const auto& [run, first] : view.runs) {
-    const std::string name = first.experiment + " at scale " + first.scale;
+    const std::string name =
+        first.experiment + " at scale " + (first.scale.empty() ? "base" : first.scale);
     if (!tables.contains(name)) experiments.push_back(name);
     const Shown shown{run, view.queued(run)};
     Row& row = tables[name].emplace_back(

@@ -143,16 +143,14 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
   }
   tell("{} events, {} checkpoints ({}), {} orphans: {}\nhead {} {}\n", report.events,
        report.checkpoints, format_bytes(static_cast<double>(report.bytes)), report.orphans,
-       report.ok() ? "all as it was written" : "DAMAGED", report.head.seq, report.head.hash);
+       report.ok() ? "nothing was changed" : "DAMAGED", report.head.seq, report.head.hash);
   if (measures.kept > 0) {
-    tell("measures of {} of {} checkpoints were computed again\n", measures.computed,
-         measures.kept);
+    tell("recomputed the measures of {} of {} checkpoints\n", measures.computed, measures.kept);
   }
   if (report.ok()) {
     tell(
-        "Keep the head elsewhere; `verify --against {}:{:.8}...` proves later that the log only "
-        "grew.\n",
-        report.head.seq, report.head.hash);
+        "Keep the head elsewhere; `verify --against SEQ HASH` proves later that the log only "
+        "grew.\n");
   }
 }
 

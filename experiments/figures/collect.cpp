@@ -15,6 +15,7 @@
 
 #include "analysis/own_figure.hpp"
 #include "core/drive.hpp"
+#include "experiments/figures/own_end.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/suggest.hpp"
@@ -35,12 +36,11 @@ std::vector<std::uint64_t> asked_steps(const Store& store, const CollectedRun& r
 }
 
 /// Those of a figure: at whole cycles or, within the cycles that it names, also at the phases that
-/// the experiment asks for. Not beyond the end that the experiment asks for: another experiment may
-/// have extended the run, and an interruption leaves checkpoints of its own. A figure that measures
-/// nothing gets the last one only.
+/// the experiment asks for. Not beyond the run's end for this experiment; and an interruption
+/// leaves checkpoints of its own. A figure that measures nothing gets the last one only.
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
                                              const CollectedRun& run) {
-  double first = 0, last = static_cast<double>(run.membership.target_cycles);
+  double first = 0, last = run.end;
   std::vector<std::uint64_t> phases;
   if (figure.within) {
     first = static_cast<double>(figure.within->front());
@@ -137,7 +137,7 @@ std::size_t missing_of(const CollectedRun& run) {
 
 std::size_t missing_within(const Store& store, const std::array<std::uint64_t, 2>& cycles,
                            const CollectedRun& run) {
-  const double end = std::min(run.run.cycle, static_cast<double>(run.membership.target_cycles));
+  const double end = std::min(run.run.cycle, run.end);
   auto asked = asked_steps(store, run, static_cast<double>(cycles[0]),
                            std::min(end, static_cast<double>(cycles[1])));
   for (const CheckpointRecord& record : run.checkpoints) std::erase(asked, record.step);
@@ -170,6 +170,32 @@ std::vector<std::string> never_made(const Store& store, const Figure& figure,
             ? "these runs are of LAMMPS, which does not repeat bits: `run` and `resume` leave "
               "them out, and the checkpoints cannot be made later"
             : "`shearcell run` with the manifest, or `shearcell resume RUN`, computes them"));
+  }
+  return notes;
+}
+
+/// Leaves out the runs that have no checkpoint yet, and names them and those that are not finished.
+std::vector<std::string> unfinished(std::vector<CollectedRun>& runs) {
+  std::set<std::string> not_begun, going_on;
+  for (const CollectedRun& run : runs) {
+    const std::string name = fmt::format("{} seed {}", run.name, run.membership.seed);
+    if (run.checkpoints.empty()) {
+      not_begun.insert(name);
+    } else if (run.run.state != RunState::completed && run.checkpoints.back().cycle < run.end) {
+      going_on.insert(name);
+    }
+  }
+  std::erase_if(runs, [](const CollectedRun& run) { return run.checkpoints.empty(); });
+  std::vector<std::string> notes;
+  if (!not_begun.empty()) {
+    notes.push_back(fmt::format("{} runs have no checkpoint yet and are left out: {}",
+                                not_begun.size(), some_of(not_begun)));
+  }
+  if (!going_on.empty()) {
+    notes.push_back(
+        fmt::format("{} runs are not finished and count as if they ended where they are: "
+                    "{}",
+                    going_on.size(), some_of(going_on)));
   }
   return notes;
 }
@@ -278,7 +304,7 @@ std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures) {
 }
 
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
-                           const CollectOptions& options) {
+                           const CollectOptions& options, const MeasureOptions& measuring) {
   const std::vector<RegisteredManifest> manifests = newest_manifests(store);
   std::map<std::string, std::string> newest;  // SHA-256 by experiment
   for (const RegisteredManifest& manifest : manifests)
@@ -288,7 +314,8 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     if (run.kind == "prepare") continue;
     for (const Membership& membership : run.memberships) {
       if (!wanted.experiment.empty() && membership.experiment != wanted.experiment) continue;
-      if (options.scale && membership.scale != *options.scale) continue;
+      const std::string scale = membership.scale.empty() ? "base" : membership.scale;
+      if (options.scale && scale != *options.scale) continue;
       const bool is_current = newest[membership.experiment] == membership.manifest;
       (is_current ? current : older).push_back({run, membership, {}});
     }
@@ -297,7 +324,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     throw NotFound(fmt::format(
         "no run of the store belongs to figure {}{}{}", wanted.path(),
         options.scale ? " at scale " + *options.scale : "",
-        older.empty() ? "; run a manifest that lists it under `figures` first"
+        older.empty() ? options.scale ? "" : "; run a manifest that lists it under `figures` first"
                       : " as the manifest was registered last; run it, or use --all-versions"));
   }
   CollectedRuns collected;
@@ -314,11 +341,14 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) name_variants(manifests, collected);
   for (CollectedRun& run : collected.runs) {
+    run.end = measured ? own_end(store, run.run, run.membership, measuring)
+                       : static_cast<double>(run.membership.target_cycles);
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }
   if (measured) {
-    for (std::string& note : never_made(store, wanted.figure, collected.runs))
-      collected.notes.push_back(std::move(note));
+    std::ranges::move(unfinished(collected.runs), std::back_inserter(collected.notes));
+    std::ranges::move(never_made(store, wanted.figure, collected.runs),
+                      std::back_inserter(collected.notes));
   }
   return collected;
 }

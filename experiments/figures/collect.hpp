@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/figure.hpp"
+#include "experiments/figures/measure.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/store.hpp"
 
@@ -45,12 +46,14 @@ struct CollectedRun {
   std::vector<CheckpointRecord> checkpoints;  ///< at whole cycles
   std::string name = {};                      ///< of its variant, for people
   bool named = false;                         ///< by a label of the manifest
+  double end = 0;                             ///< own_end()
 };
 
 struct CollectedRuns {
   std::string scale;  ///< one figure never mixes scales
   std::vector<CollectedRun> runs;
-  std::vector<std::string> notes;  ///< runs that were left out, checkpoints that were never made
+  /// Runs that were left out or are not finished, checkpoints that were never made.
+  std::vector<std::string> notes;
 };
 
 struct CollectOptions {
@@ -62,8 +65,8 @@ struct CollectOptions {
 /// of them have the same variant and seed, and no run comes twice: counted twice, it would make
 /// errors too small. (A figure of every experiment has it once per experiment.) Runs of older
 /// versions are named in the notes, or have a variant of their own, "fluid=cell,manifest=1f2e3d4c".
-/// Throws NotFound if there is no such run.
+/// Each has its checkpoints up to own_end(). Throws NotFound if there is no such run.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
-                           const CollectOptions& options);
+                           const CollectOptions& options, const MeasureOptions& measuring = {});
 
 }  // namespace shearcell

@@ -50,7 +50,9 @@ class Measuring {
     look_up();
     for (std::size_t i = 0; i < distinct_.size(); ++i) {
       const bool lacks = std::ranges::any_of(results_[i], &json::is_null);
-      if (options_.fresh || lacks) todo_.push_back(i);
+      // Of a pruned checkpoint what is kept is all there is.
+      const bool again = options_.fresh && distinct_[i]->state != CheckpointState::pruned;
+      if (again || lacks) todo_.push_back(i);
     }
     outcome_.kept = distinct_.size() - todo_.size();
     UnreadCheckpoints unread;

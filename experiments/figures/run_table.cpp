@@ -12,6 +12,7 @@
 
 #include "analysis/onset.hpp"
 #include "experiments/figures/more_measures.hpp"
+#include "experiments/figures/own_end.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/registered.hpp"
@@ -188,9 +189,10 @@ std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per
   return columns;
 }
 
-std::vector<CheckpointRecord> checkpoints_of(const Store& store, const SelectedRun& selected) {
+std::vector<CheckpointRecord> checkpoints_of(const Store& store, const SelectedRun& selected,
+                                             const MeasureOptions& options) {
   std::vector<CheckpointRecord> found = store.checkpoints(selected.run.id, true);
-  const auto end = static_cast<double>(selected.membership.target_cycles);
+  const double end = own_end(store, selected.run, selected.membership, options);
   std::erase_if(found, [&](const CheckpointRecord& c) {
     return c.state == CheckpointState::rejected || c.cycle > end;
   });
@@ -212,7 +214,7 @@ Selected select_and_measure(const Store& store, const RunSelection& selection,
   all.runs = select_runs(store, selection);
   std::erase_if(all.runs, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
   for (const SelectedRun& run : all.runs) {
-    std::ranges::move(checkpoints_of(store, run), std::back_inserter(all.records));
+    std::ranges::move(checkpoints_of(store, run, options), std::back_inserter(all.records));
     all.ends.push_back(all.records.size());
   }
   MeasuredCheckpoints measured = measure_checkpoints(store, all.records, measures, options);

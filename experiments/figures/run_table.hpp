@@ -30,7 +30,7 @@ struct RunTable : MeasureOutcome {
 };
 
 /// Rows in the order of declaration, then by cycle. Settled packings are not among the runs.
-/// Checkpoints count up to the length that the experiment asks for; rejected ones do not. Onsets
+/// Checkpoints count up to own_end(); rejected ones do not. Onsets
 /// come from the checkpoints at whole cycles, as in the figures. Throws NotFound as select_runs().
 /// With `ledger` it also has the energy of each cycle, which is simulated again for that.
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,

@@ -59,7 +59,7 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
     for (const Membership& m : newest_memberships(run)) {
       // Not by &&: each has to see every value.
       bool passes = experiment.passes(m.experiment);
-      passes &= scale.passes(m.scale);
+      passes &= scale.passes(m.scale.empty() ? "base" : m.scale);
       passes &= variant.passes(m.variant);
       passes &= seed.passes(std::to_string(m.seed));
       passes &=

@@ -232,7 +232,7 @@ Node read_document(string_view text, string_view file) {
   try {
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(builder)) {
-      refuse(file, {1, 1}, "the manifest is empty", "It needs at least `experiment` and `base`.");
+      refuse(file, {1, 1}, "the manifest is empty", "It needs at least `experiment`.");
     }
     parser.HandleNextDocument(builder);
   } catch (const YAML::Exception& error) {

@@ -5,12 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numeric>
 
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/filter.hpp"
+#include "experiments/manifest/own_check.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -29,7 +31,7 @@ constexpr std::string_view kDefaultScale = "desk";
 
 Scale choose_scale(const Manifest& manifest, const std::optional<std::string>& wanted) {
   if (manifest.scales.empty()) {
-    if (!wanted) return manifest.base;
+    if (!wanted || *wanted == "base") return manifest.base;
     refuse(manifest, "scale", "the manifest has no scales", printable(*wanted), "Leave it out.");
   }
   const std::string name = wanted.value_or(std::string(kDefaultScale));
@@ -38,8 +40,8 @@ Scale choose_scale(const Manifest& manifest, const std::optional<std::string>& w
   const std::vector<std::string_view> names = names_of(manifest.scales);
   const std::string known = fmt::format("It has {}.", fmt::join(names, ", "));
   if (!wanted) {
-    refuse(manifest, "scale", fmt::format("there is no scale {} to take by default", name), "",
-           fmt::format("Name one. {}", known));
+    refuse(manifest, "scale", fmt::format("there is no scale {}, the default", name), "",
+           fmt::format("Name one with --scale. {}", known));
   }
   refuse(manifest, "scale", with_nearest("is unknown", name, names), printable(name), known);
 }
@@ -97,6 +99,12 @@ void warn_of_variant(const Variant& variant, const ExpandOptions& options, Plan&
         "gravity off, raise pressure_Pa, move the top wall, or choose a lower cell "
         "(height_over_width).",
         p.pressure_Pa, p.grains));
+  }
+  if (const double overlap = expected_overlap(p); overlap > p.max_overlap_diameters) {
+    warn(
+        fmt::format("grains will overlap by {:.2g} d on average; the run fails at "
+                    "max_overlap_diameters ({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
+                    overlap, p.max_overlap_diameters));
   }
   if (!stiffens) {
     if (const auto advice = time_step_advice(shear_time_step(p), "steps_per_cycle")) warn(*advice);
@@ -219,6 +227,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
   }
   name_variants(manifest, plan);
+  std::ranges::move(own_warnings(manifest, scale), std::back_inserter(plan.warnings));
   without_effect.warn(manifest.file, plan);
   return plan;
 }

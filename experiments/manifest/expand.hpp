@@ -15,7 +15,7 @@
 namespace shearcell {
 
 struct ExpandOptions {
-  std::optional<std::string> scale = {};     ///< default: `desk`, or the base without scales
+  std::optional<std::string> scale = {};     ///< default: `desk`, or `base` without scales
   std::optional<std::uint64_t> cycles = {};  ///< instead of the manifest's
   std::optional<std::uint64_t> seeds = {};   ///< how many; of a listed set the first ones
   std::vector<std::string> variants = {};  ///< only those with these swept values, as "fluid=cell"

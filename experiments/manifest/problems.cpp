@@ -70,7 +70,7 @@ void Entry::reject_unknown(std::span<const string_view> allowed) const {
   if (near.missing_unit) {
     reject_key("is written without its unit", fmt::format("Write {}.", near.name));
   } else if (!near.name.empty()) {
-    reject_key("is an unknown key", fmt::format("The nearest is {}.", near.name));
+    reject_key("is an unknown key", fmt::format("Did you mean {}?", near.name));
   } else if (allowed.size() <= sections.size()) {
     reject_key("is an unknown key", fmt::format("Known here: {}.", fmt::join(allowed, ", ")));
   } else {

@@ -34,8 +34,9 @@ json read_selector(const Entry& in) {
   Node map{Node::Kind::map, in.key.at};
   string_view rest = in.key.text;
   while (!rest.empty()) {
-    const string_view part = rest.substr(0, rest.find(','));
+    string_view part = rest.substr(0, rest.find(','));
     rest.remove_prefix(std::min(rest.size(), part.size() + 1));
+    part.remove_prefix(std::min(part.size(), part.find_first_not_of(' ')));
     const std::size_t equal = part.find('=');
     if (equal == part.npos) {
       in.problems.add(in.key.at, in.path, "does not select variants", shown(in.key),

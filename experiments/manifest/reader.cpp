@@ -135,7 +135,7 @@ std::span<const ManifestKey> manifest_keys() {
           "follows one, pause included, default none"),
       part<&Scale::until, read_until>(
           "until", "{crystalline_percent: 10, extra_cycles: 15}",
-          "ends a run so many cycles after the measure reaches the value; default: at `cycles`"),
+          "ends a run `extra_cycles` after the measure reaches the value; default: at `cycles`"),
       {"scales", "{smoke: {grains: 600, seeds: 2, cycles: 5}}",
        "named sizes, which override the keys above; default `desk`", read_scales},
   }};

@@ -13,6 +13,7 @@
 #include "analysis/figure.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "provenance/io/read_number.hpp"
 
 namespace shearcell {
 namespace {
@@ -53,7 +54,8 @@ std::string short_text(const json& value, const std::string& key,
 /// "A=0.05 rad", "fluid=cell".
 std::string setting_text(const std::string& key, const json& variant,
                          const std::vector<json>& variants) {
-  if (!variant.contains(key)) return "no " + key;
+  // `--engine lammps` adds the key to some of the runs.
+  if (!variant.contains(key)) return key == "engine" ? "engine=shearcell" : "no " + key;
   const Field* field = find_field(key);
   const std::string value = short_text(variant.at(key), key, variants);
   if (field == nullptr || field->symbol.empty()) return key + "=" + value;
@@ -78,6 +80,21 @@ std::string name_of_variant(const json& variant, const std::vector<json>& varian
     if (!named.contains(key)) parts.push_back(setting_text(key, variant, variants));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// "key=value" without spaces around it, a number as this program writes it: "1.28e-2" is "0.0128".
+std::string same_spelling(std::string_view part) {
+  const auto trimmed = [](std::string_view text) {
+    const auto first = text.find_first_not_of(' ');
+    if (first == text.npos) return std::string_view();
+    return text.substr(first, text.find_last_not_of(' ') - first + 1);
+  };
+  const std::size_t equal = part.find('=');
+  if (equal == part.npos) return std::string(trimmed(part));
+  const std::string_view value = trimmed(part.substr(equal + 1));
+  const auto number = read_number<double>(value);
+  return fmt::format("{}={}", trimmed(part.substr(0, equal)),
+                     number ? fmt::format("{}", *number) : value);
 }
 
 void apply(const std::string& key, const Setting& setting, Parameters& parameters) {
@@ -130,7 +147,7 @@ bool has_values(const std::string& wanted, const std::string& variant) {
   const auto parts_of = [](const std::string& list) {
     std::set<std::string> parts;
     std::istringstream text(list);
-    for (std::string part; std::getline(text, part, ',');) parts.insert(part);
+    for (std::string part; std::getline(text, part, ',');) parts.insert(same_spelling(part));
     return parts;
   };
   return std::ranges::includes(parts_of(variant), parts_of(wanted));

@@ -106,7 +106,7 @@ std::string figures_html(const ReportData& data, const ReportExperiment& experim
     names += fmt::format(" <a href=\"#figure-{}\">{}</a>", escape_html(figure.id),
                          escape_html(figure.name));
   }
-  for (const std::string& name : experiment.unmade) names += " " + escape_html(name);
+  for (const std::string& name : experiment.unmade) names += fmt::format(" {}", escape_html(name));
   return counts_html({{"done", "✓", "made", experiment.figures.size()},
                       {"failed", "✗", "cannot be made", experiment.unmade.size()}}) +
          (names.empty() ? "" : "<p>" + names.substr(1) + "</p>");

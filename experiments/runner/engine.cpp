@@ -127,8 +127,7 @@ std::vector<std::string> lammps_caveats() {
   return {
       "LAMMPS computes the shear alone; packings are placed and settled by this program, and "
       "shared. bench engines --settle has LAMMPS settle the same grains.",
-      "Same scene, same scheme, equal up to rounding: not the same bits, and other ones for "
-      "another number of processes.",
+      "Results equal ours up to rounding; the bits differ, also between numbers of processes.",
       "These runs have ids of their own. verify --replay, regenerate and prune leave them out.",
       "The watchdog sees their checkpoints, not every 1024th step; a grain whose centre reaches a "
       "wall's plane ends a run."};

@@ -115,8 +115,20 @@ TEST(Compare, MissingCheckpointsShortRunsAndFewRunsAreThreeSentences) {
   EXPECT_EQ(verdict.ruling, Ruling::undecided);
   EXPECT_NE(verdict.note.find("more than a quarter of the runs are left out"), std::string::npos);
   verdict = compare(equal, early_phi(), pointers(group(2, 0)), pointers(b));
-  EXPECT_EQ(verdict.note, "2 and 8 independent runs; too few runs: 2 of at least 3");
-  EXPECT_EQ(compare(equal, early_phi(), {}, pointers(b)).note, "there are no such runs");
+  EXPECT_EQ(verdict.note, "2 and 8 independent runs; too few runs: 2; at least 3 are needed");
+  EXPECT_EQ(compare(equal, early_phi(), {}, pointers(b)).note,
+            "there are no such runs, or they differ in another swept parameter too");
+}
+
+TEST(Compare, PairsMustHoldMostRuns) {
+  const Runs a = group(8, 0);
+  Runs b = group(8, 0);
+  for (std::size_t k = 5; k < 8; ++k) b[k] = group(8, 0, 0, 11)[k];
+  const Verdict verdict = compare(equal, early_phi(), pointers(a), pointers(b));
+  EXPECT_FALSE(verdict.estimate.has_value());
+  EXPECT_EQ(verdict.note,
+            "5 pairs of runs that share a packing; more than a quarter of the runs have no "
+            "partner");
 }
 
 TEST(CompareWaits, CountsRunsThatEndBefore) {

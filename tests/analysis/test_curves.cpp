@@ -48,8 +48,20 @@ TEST(Curves, AreNamedAndStyledByWhatVaries) {
   EXPECT_EQ(titles.size(), 6U);
   EXPECT_TRUE(titles.contains("fluid=cell, b=0.002 kg/s"));
   EXPECT_EQ(looks.size(), 6U);
-  EXPECT_EQ(find_figure("S2")->make(two_parameters()).verdicts.at(0).note, "there are no such runs")
+  EXPECT_EQ(find_figure("S2")->make(two_parameters()).verdicts.at(0).note,
+            "there are no such runs, or they differ in another swept parameter too")
       << "three variants have fluid=still";
+}
+
+// `run --engine lammps` adds runs to an experiment; its claims are on the runs that it states.
+TEST(Curves, AnotherEnginesRunsChangeNoVerdict) {
+  std::vector<FigureRun> runs = two_variants();
+  const nlohmann::json before = to_json(find_figure("S2")->make(runs).verdicts);
+  runs.push_back(runs.back());
+  runs.back().labels["engine"] = "lammps";
+  runs.back().variant += ",engine=lammps";
+  EXPECT_EQ(to_json(find_figure("S2")->make(runs).verdicts), before);
+  EXPECT_EQ(s2(runs)[0].chart.series.size(), s2(two_variants())[0].chart.series.size() + 1);
 }
 
 TEST(Curves, KeepTheStylesOfTheSupplementForItsOwnVariants) {

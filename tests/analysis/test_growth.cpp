@@ -136,6 +136,9 @@ TEST(CriticalSize, IntervalComesFromTheRuns) {
   EXPECT_NEAR(found.interval.high - found.interval.low, 2 * 2.015 * std::sqrt(0.8 / 6), 0.4);
   EXPECT_EQ(found.runs, 6U);
   EXPECT_FALSE(critical_size(std::span(runs).first(2)).has_value());
+  const GrowthBySize nearly_flat = {{1, {600, 400, 0}}, {10, {601, 399, 0}}};
+  EXPECT_LT(fit_growth(std::vector{nearly_flat})->critical_size().value(), 1);
+  EXPECT_FALSE(critical_size(std::vector(3, nearly_flat)).has_value()) << "less than a grain";
   const Estimate band = fitted_delta_rho(runs, 15).value();
   EXPECT_LT(band.interval.low, 0);
   EXPECT_GT(band.interval.high, 0);

@@ -209,6 +209,21 @@ TEST(SizeExponent, NeedsTwoSizesAtOnePhi) {
   EXPECT_FALSE(size_exponent(pointers(apart)));
 }
 
+// Many selections have onsets in the large cells alone: an exponent without an upper bound.
+TEST(SizeExponent, OnsetsInLargeCellsAloneLeaveTheLowerEnd) {
+  std::vector<FigureRun> runs;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    runs.push_back(waiting(1000, seed, seed == 1 ? 9 : 0, 30));
+    runs.push_back(waiting(3000, seed, static_cast<int>(3 + seed), 30));
+  }
+  const auto found = size_exponent(pointers(runs));
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(std::isinf(found->interval.high));
+  EXPECT_GT(found->interval.low, 0);
+  runs[0] = waiting(1000, 1, 0, 30);
+  EXPECT_FALSE(size_exponent(pointers(runs))) << "none in the small ones";
+}
+
 TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
   std::vector<FigureRun> runs;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {

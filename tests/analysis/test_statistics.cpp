@@ -104,6 +104,18 @@ TEST(Bootstrapped, HasTheLengthOfStudentsIntervalForAMean) {
   }
 }
 
+TEST(Bootstrapped, InfiniteValuesMoveTheirEndAlone) {
+  const std::vector<double> values = {0, 0, 0, 1, 1, 1};
+  const auto half = [&](std::span<const std::size_t> selection) -> std::optional<double> {
+    const auto mean = mean_over(values)(selection);
+    return *mean > 0.7 ? std::numeric_limits<double>::infinity() : *mean;
+  };
+  const Estimate found = bootstrapped(6, half).value();
+  EXPECT_TRUE(std::isinf(found.interval.high));
+  EXPECT_EQ(found.interval.low, bootstrapped(6, mean_over(values))->interval.low);
+  EXPECT_TRUE(bootstrap_error(6, half).has_value());
+}
+
 TEST(Bootstrapped, SelectionsWithoutAValueWidenIt) {
   const std::vector<double> values = {0, 0, 0, 1, 1, 1};
   const Estimate found =

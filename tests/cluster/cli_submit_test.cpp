@@ -188,8 +188,7 @@ TEST_F(Submit, WorkLeavesFailedRunsAlone) {
   manifest_ = write("f.yaml", tiny_manifest("  max_overlap_diameters: 1.0e-6\n"));
   const std::string task = submitted() + "/task-1";
   expect(3, {"work", "--store", task});
-  expect(3, {"work", "--store", task, "--leave-failed"},
-         {"0 stages computed, 0 were done already, 0 failed"});
+  expect(3, {"work", "--store", task, "--leave-failed"}, {"nothing is left to compute"});
 }
 
 // Beside a task's store lies what others put there.
@@ -220,7 +219,7 @@ TEST_F(Submit, KeptMeasuresComeAlong) {
   expect(0, {"work", "--store", task});
   expect(0, {"merge", task});
   // There is no gnuplot in this PATH.
-  expect(1, {"figures", "S2", "--out", "."}, {"0 of them measured now"});
+  expect(1, {"figures", "S2", "--out", "."}, {"0 of them newly measured"});
 }
 
 TEST_F(Submit, WorkNeedsAStore) {

@@ -43,7 +43,7 @@ TEST_F(Care, PruneShowsFirstAndRegenerateBringsBack) {
   expect(0, {"show", sha}, {"pruned; `shearcell regenerate"});
   EXPECT_EQ(json({"show", sha, "--json"}).at("state"), "pruned");
   for (const auto& checkpoint : done.at("checkpoints")) {
-    expect(0, {"regenerate", checkpoint.at("sha256")}, {"the same file again"});
+    expect(0, {"regenerate", checkpoint.at("sha256")}, {"the same bytes"});
   }
   EXPECT_EQ(objects(), files);
   expect(0, {"figures", "S2"});

@@ -95,9 +95,10 @@ TEST_F(DrawFigure, ASeedCountsOncePerVariant) {
   again.id = std::string(64, 'a');
   store_.declare_run(again);
   const CollectedRuns collected = collect_runs(store_, kS2, {});
-  EXPECT_EQ(distinct_runs(collected).size(), 2U);
-  ASSERT_EQ(collected.notes.size(), 1U);
+  EXPECT_EQ(distinct_runs(collected).size(), 1U);
+  ASSERT_EQ(collected.notes.size(), 2U);
   EXPECT_TRUE(has(collected.notes[0], "is left out"));
+  EXPECT_TRUE(has(collected.notes[1], "1 runs have no checkpoint yet"));
 }
 
 TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {

@@ -98,7 +98,7 @@ std::vector<Case> forged_states() {
            measures("scalars", [](json& m) { m = "none"; }), "derived.sqlite"),
       told("measures_untouched", "verify", 0, measures("scalars", [](json&) {}), "4 of 4"),
       told("measures_of_garbage", "verify", 0, at("derived.sqlite", written("garbage")),
-           "all as it was written"),
+           "nothing was changed"),
   };
 }
 
@@ -189,7 +189,7 @@ std::vector<Case> other_faults() {
       told("lease_without_end_to_merge", "merge shearcell-store --store other", 0, lease(0)),
       told("lease_that_is_over", "status", 0, lease(61), "3 stages"),
       told("clock_went_back", "show S2", 0, figure_in_the_future, "made      20"),
-      told("clock_went_back_verified", "verify", 0, figure_in_the_future, "all as it was"),
+      told("clock_went_back_verified", "verify", 0, figure_in_the_future, "nothing was changed"),
   };
 }
 

@@ -33,12 +33,12 @@ std::vector<Case> damaged_logs() {
       told("journal_of_garbage", "status", 0, at("store.sqlite-journal", written("not a journal")),
            "completed"),
       told(
-          "store_is_a_file", "status", 4,
+          "store_is_a_file", "status", 2,
           [](const fs::path& store) {
             fs::remove_all(store);
             write_bytes(store, "x");
           },
-          "a store is a folder", "name another store"),
+          "a store is a folder", "name another one"),
       told("store_is_missing", "status", 2, removed, "there is no store here", "shearcell run"),
       told("of_another_program", "status", 4, sql("PRAGMA application_id=1"),
            "belongs to another program"),
@@ -57,7 +57,7 @@ std::vector<Case> damaged_logs() {
            "which no store of schema", kBackup),
       told("table_of_a_stranger", "verify", 4, sql("CREATE TABLE stranger(a)"), "'stranger'",
            kBackup),
-      told("statistics_for_the_planner", "verify", 0, sql("ANALYZE"), "all as it was written"),
+      told("statistics_for_the_planner", "verify", 0, sql("ANALYZE"), "nothing was changed"),
       told("index_that_computes", "status", 4, sql("CREATE INDEX i ON runs(abs(grains))"), "'i'",
            kBackup),
       told("value_of_70_MB", "status", 4,
@@ -161,7 +161,7 @@ std::vector<Case> damaged_tables() {
                     [](auto& m) {
                       for (int i = 0; i < 100; ++i) m = {m};
                     }),
-           "4 of them measured now"),
+           "4 of them newly measured"),
       told("measures_in_a_folder", "figures S2", 0, at("derived.sqlite", folder_instead),
            "measures cannot be cached"),
       told("measures_through_a_link", "figures S2", 0, at("derived.sqlite", link_instead),

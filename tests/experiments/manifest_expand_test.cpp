@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A manifest expands into the runs that it says, in its order, none lost and none doubled.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -182,8 +183,8 @@ TEST(Expand, RefusesOptionsThatDoNotFit) {
   const Manifest manifest =
       parse("experiment: a\nbase: {}\nseeds: [4]\nscales: {smoke: {cycles: 1}, paper: {}}\n");
   EXPECT_EQ(message(manifest, {}),
-            "test.yaml: scale: there is no scale desk to take by default. Name one. It has smoke, "
-            "paper.");
+            "test.yaml: scale: there is no scale desk, the default. Name one with --scale. It has "
+            "smoke, paper.");
   EXPECT_EQ(message(manifest, {.scale = "smok"}),
             "test.yaml: scale: is unknown, the nearest is smoke (got smok). It has smoke, paper.");
   EXPECT_EQ(message(manifest, {.scale = "smoke", .seeds = 2}),
@@ -204,6 +205,49 @@ TEST(Expand, WarnsOfACellThatThePressureCannotLift) {
   EXPECT_TRUE(warnings("grains: 30000").empty()) << "loaded with the weight as well";
   EXPECT_TRUE(warnings("grains: 30000, gravity_m_per_s2: 0").empty());
   EXPECT_TRUE(warnings("grains: 30000, moving_wall: top").empty());
+}
+
+TEST(Expand, SelectsVariantsByValueNotBySpelling) {
+  const Manifest manifest =
+      parse("experiment: e\nbase: {grains: 600}\nsweep: {grid: {drag_kg_per_s: [1.28e-2, 0.1]}}\n");
+  for (const char* wanted :
+       {"drag_kg_per_s=1.28e-2", "drag_kg_per_s=0.01280", " drag_kg_per_s = .0128 "}) {
+    const Plan plan = expand(manifest, {.variants = {wanted}});
+    ASSERT_FALSE(plan.runs.empty());
+    for (const PlannedRun& run : plan.runs) EXPECT_EQ(run.variant, "drag_kg_per_s=0.0128");
+  }
+  EXPECT_THROW(expand(manifest, {.variants = {"drag_kg_per_s=0.0129"}}), ManifestError);
+}
+
+TEST(Expand, WarnsOfPlotsAndClaimsThatCannotBeMade) {
+  const auto warnings = [](const std::string& own) {
+    return plan_of("cycles: 3",
+                   "sweep: {grid: {fluid: [still, cell], walls: [rough, smooth]}}\n" + own)
+        .warnings;
+  };
+  const auto claim = [&](const std::string& sides, int cycle) {
+    return warnings(
+        fmt::format("claims: [{{name: same, compare: phi, margin: 1, at_cycle: {}, "
+                    "between: [{}]}}]\n",
+                    cycle, sides));
+  };
+  const std::string sides = "{fluid: still, walls: rough}, {fluid: cell, walls: rough}";
+  EXPECT_TRUE(claim(sides, 3).empty());
+  ASSERT_EQ(claim(sides, 4).size(), 1U);
+  EXPECT_TRUE(
+      test::has(claim(sides, 4)[0], "claim same: it asks for cycle 4, and the runs have 3"));
+  ASSERT_EQ(claim("{fluid: still}, {fluid: cell, walls: rough}", 3).size(), 1U);
+  EXPECT_TRUE(test::has(claim("{fluid: still}, {fluid: cell, walls: rough}", 3)[0],
+                        "2 variants have fluid=still"));
+  for (const auto& [plot, problem] :
+       {std::pair("y: phi, by: fluid", "average over the values of walls"),
+        std::pair("y: phi, x: drag_kg_per_s, at_cycle: 50", "it asks for cycle 50"),
+        std::pair("y: phi, at_cycle: 2", "at_cycle has no effect")}) {
+    const auto found = warnings(fmt::format("plots: [{{name: own, {}}}]\n", plot));
+    ASSERT_EQ(found.size(), 1U) << plot;
+    EXPECT_TRUE(test::has(found[0], problem)) << found[0];
+  }
+  EXPECT_TRUE(warnings("plots: [{name: own, y: phi, at_cycle: 3, x: drag_kg_per_s}]\n").empty());
 }
 
 TEST(Expand, WarnsOfKeysThatNoVariantFeels) {

@@ -6,6 +6,8 @@
 #include <thread>
 
 #include "analysis/derived_measures.hpp"
+#include "experiments/figures/draw.hpp"
+#include "experiments/figures/run_table.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/derived.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -171,6 +173,25 @@ TEST_F(UntilTest, OfTwoExperimentsTheLongestCounts) {
   }
   EXPECT_EQ(resume(store_).completed, 2U);
   expect_end(store_, 5);
+}
+
+// Its figures and tables are the same whether or not another experiment continues its runs.
+TEST_F(UntilTest, AnExperimentEndsItsRunsInItsFiguresToo) {
+  const WantedFigure s2{*find_figure("S2"), "tiny"};
+  RunSelection tiny;
+  tiny.experiments = {"tiny"};
+  const auto rows = [&] { return to_csv(run_table(store_, tiny, RowPer::checkpoint, {})); };
+  compute(store_, manifest(until()));
+  const nlohmann::json alone = compute_figure(store_, s2, {}).lineage;
+  const std::string table = rows();
+  std::string twin = tiny_manifest("  cycles: 6\n");
+  twin.replace(twin.find("tiny"), 4, "twin");
+  EXPECT_EQ(compute(store_, twin).completed, 1U);
+  expect_end(store_, 6);
+  EXPECT_EQ(compute_figure(store_, s2, {}).lineage, alone);
+  EXPECT_EQ(rows(), table);
+  std::filesystem::remove(store_.folder() / DerivedCache::kFile);
+  EXPECT_EQ(compute_figure(store_, s2, {}).lineage, alone) << "measured again";
 }
 
 TEST_F(UntilTest, IsTheSameAfterInterruptionsWithinCycles) {

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/figures/own_end.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "analysis/derived_measures.hpp"
+#include "experiments/runner/asks.hpp"
+#include "experiments/runner/run_end.hpp"
+
+namespace shearcell {
+namespace {
+
+/// The checkpoints by which the run would have ended for this experiment alone.
+std::vector<MeasuredCycle> measured_at(const Store& store, const RunRecord& run, double cadence,
+                                       const MeasureOptions& options) {
+  std::vector<CheckpointRecord> records = store.checkpoints(run.id, true);
+  std::erase_if(records, [&](const CheckpointRecord& record) {
+    return record.state == CheckpointState::rejected || std::fmod(record.cycle, cadence) != 0;
+  });
+  const DerivedMeasure scalars = scalar_measures();
+  const auto found = measure_checkpoints(store, records, std::span(&scalars, 1),
+                                         {.workers = options.workers, .report = options.report});
+  std::vector<MeasuredCycle> measured;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    if (found.results[k].front().is_null()) continue;  // it cannot be read
+    measured.push_back({records[k].cycle, read_results(std::span(&scalars, 1), found.results[k])});
+  }
+  return measured;
+}
+
+}  // namespace
+
+double own_end(const Store& store, const RunRecord& run, const Membership& membership,
+               const MeasureOptions& options) {
+  const auto target = static_cast<double>(membership.target_cycles);
+  if (run.memberships.size() < 2) return target;  // nobody else can have continued it
+  const RunAsk ask = ask_of(store, run.id, membership);
+  if (!ask.until) return target;
+  const auto cadence = static_cast<double>(ask.checkpoint_every);
+  const auto measured = measured_at(store, run, cadence, options);
+  const auto ended =
+      ended_early(std::span(&ask, 1), measured, std::numeric_limits<double>::infinity());
+  if (!ended) return target;
+  const double end =
+      ended->at("reached_at_cycle").get<double>() + static_cast<double>(ask.until->extra_cycles);
+  return std::min(target, std::ceil(end / cadence) * cadence);
+}
+
+}  // namespace shearcell
