@@ -26,7 +26,7 @@ $series0 << EOD
 0.1,20,,
 EOD
 $series1 << EOD
-0.0833,2.68763741,,1.31607039
+0.0833,2.16462811,,0.767511432
 0.1,14.5515718,,3.5930398
 EOD
 plot keyentry with linespoints lc rgb '#888888' lw 1.2 dt 2 pt 6 ps 0.4 title 'supplement', \

@@ -14,9 +14,9 @@ data = 'S2b.csv'
 set label '(b)' at screen 0.015, screen 0.96 left front
 set xlabel 'volume fraction  {/:Italic ϕ}'
 set ylabel 'percentage crystalline  [%]'
-set xtics 0.02
+set xtics 0.01
 set format x '%.2f'
-set ytics 20
+set ytics 10
 set format y '%.0f'
 set xrange [*:*]
 set yrange [0:*]
@@ -40,30 +40,9 @@ $series0 << EOD
 0.667164345,23.6512458,0.000282745657,2.89942605
 0.668961907,21.4718366,0.000156475965,1.67301367
 0.67049421,25.2738852,0.00017401535,1.70024827
-0.672758458,25.9945473,0.000185170992,1.5370312
-0.674924798,26.1124122,,
-0.676093947,27.2300469,,
+0.672538999,25.6908925,0.000307173667,1.83846877
 0.679057073,38.527555,0.000123021635,2.33016744
-0.681507771,33.450601,,
-0.683485926,32.9909011,,
-0.68548583,43.7374632,0.000420675485,1.73572757
-0.687188548,45.1547585,,
-0.689064489,45.4517521,0.000292979289,4.08215129
-0.691376871,44.1753891,0.000411048415,3.48897078
-0.693557336,51.3793103,,
-0.694791233,49.833037,0.000432821177,2.90151964
-0.697092414,56.685217,0.000863078789,1.57206887
-0.698068205,52.7251865,,
-0.700438758,56.9369726,4.3644866e-05,3.04012446
-0.705663927,61.4002521,0.000286892921,3.90761561
-0.707716132,57.1225071,,
-0.708855739,63.266958,5.3169971e-05,3.25260662
-0.710169219,59.5387244,,
-0.714335441,67.1249706,0.00028184273,6.13289548
-0.717139565,74.3870993,,
-0.718948588,73.7384748,0.000459160567,1.70333572
-0.721491555,69.4374029,,
-0.722349996,75.877193,,
+0.685906505,45.4731907,,
 EOD
 $series1 << EOD
 0.637503724,0.088365243,,
@@ -92,7 +71,7 @@ plot keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 9 ps 0.4 title '{/:Ita
      $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
      $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
      $series1 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series1 every 5 using 1:2 with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series1 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle, \
      $series0 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 9 ps 0.4 notitle, \
-     $series0 every 5 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 9 ps 0.4 notitle
+     $series0 every 2 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 9 ps 0.4 notitle
 set output

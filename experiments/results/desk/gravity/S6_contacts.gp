@@ -14,9 +14,9 @@ data = 'S6_contacts.csv'
 set label '(d)' at screen 0.015, screen 0.96 left front
 set xlabel 'volume fraction  {/:Italic ϕ}'
 set ylabel 'contacts per grain'
-set xtics 0.02
+set xtics 0.01
 set format x '%.2f'
-set ytics 0.5
+set ytics 0.2
 set format y '%.1f'
 set xrange [*:*]
 set yrange [*:*]
@@ -41,27 +41,8 @@ $series0 << EOD
 0.667172598,6.94660256,0.000684166436,0.254551282
 0.669094893,6.71057692,,
 0.670205545,6.92990385,4.15942081e-05,0.288557692
-0.67270421,6.72951923,,
-0.674924798,6.77980769,,
-0.676093947,6.79634615,,
+0.672045833,6.76326923,,
 0.679057073,7.55192308,0.000123021635,0.178076923
-0.681507771,6.97,,
-0.683485926,7.00673077,,
-0.685065154,7.62384615,,
-0.687188548,7.55269231,,
-0.688923711,7.36038462,0.000445033994,0.291538462
-0.691376871,7.41798077,0.000411048415,0.0852884615
-0.693557336,8.07192308,,
-0.694791233,7.68967949,0.000432821177,0.150821973
-0.696229335,7.90423077,,
-0.698068205,7.76942308,,
-0.700438758,7.96,4.3644866e-05,0.137692308
-0.705663927,8.07995192,0.000286892921,0.181971154
-0.707716132,8.08326923,,
-0.708908909,7.93134615,,
-0.714617284,8.27865385,,
-0.717139565,8.39451923,,
-0.718489427,8.52615385,,
 EOD
 $series1 << EOD
 0.637667731,6.46125,0.000146372442,0.00336538462
@@ -98,20 +79,7 @@ $series2 << EOD
 0.664553827,6.90673077,,
 0.671805095,7.06711538,,
 0.679622026,7.10336538,0.000326687121,0.0670192308
-0.683635746,7.05346154,,
 0.684293245,6.82980769,,
-0.691296344,7.38942308,,
-0.698038157,7.31307692,,
-0.703570135,7.41826923,,
-0.70597541,7.56346154,,
-0.707935633,7.55442308,,
-0.708633313,7.68317308,0.000427716653,0.189519231
-0.710771111,7.60163462,,
-0.712906771,7.63057692,,
-0.715125382,8.19014423,0.000422692648,0.620240385
-0.7164119,8.10681319,0.000214009815,0.577994505
-0.71835061,8.08179087,0.000299717004,0.69890625
-0.720600996,8.79711538,,
 EOD
 $series3 << EOD
 0.63751927,6.32528846,0.000136361766,0.000673076923
@@ -139,12 +107,8 @@ plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '{/:Ita
      $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
      $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
      $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
-     $series3 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series3 every 2 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series2 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series2 every 2 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series1 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 4 ps 0.4 notitle, \
-     $series1 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 4 ps 0.4 notitle, \
-     $series0 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series0 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle
+     $series3 every 1 using 1:2 with linespoints lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 notitle, \
+     $series2 every 1 using 1:2 with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series1 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 4 ps 0.4 notitle, \
+     $series0 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle
 set output

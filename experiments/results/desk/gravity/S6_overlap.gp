@@ -14,7 +14,7 @@ data = 'S6_overlap.csv'
 set label '(e)' at screen 0.015, screen 0.96 left front
 set xlabel 'volume fraction  {/:Italic ϕ}'
 set ylabel 'mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]'
-set xtics 0.02
+set xtics 0.01
 set format x '%.2f'
 set ytics 0.0005
 set format y '%.4f'
@@ -41,27 +41,8 @@ $series0 << EOD
 0.667172598,0.00367529424,0.000684166436,8.61271741e-05
 0.669094893,0.00370590408,,
 0.670205545,0.00369148633,4.15942081e-05,4.34128794e-05
-0.67270421,0.00363804031,,
-0.674924798,0.00352241968,,
-0.676093947,0.00367527189,,
+0.672045833,0.00361317196,,
 0.679057073,0.00364551336,0.000123021635,0.000162549969
-0.681507771,0.00348053902,,
-0.683485926,0.00367746954,,
-0.685065154,0.00363055837,,
-0.687188548,0.00339221747,,
-0.688923711,0.00345200282,0.000445033994,7.80639633e-05
-0.691376871,0.00342019307,0.000411048415,0.000175060685
-0.693557336,0.00343083654,,
-0.694791233,0.00340480862,0.000432821177,0.000105643078
-0.696229335,0.00341945119,,
-0.698068205,0.00330960731,,
-0.700438758,0.00322385595,4.3644866e-05,3.98956219e-05
-0.705663927,0.00332958594,0.000286892921,7.69377214e-05
-0.707716132,0.00322116063,,
-0.708908909,0.00320635893,,
-0.714617284,0.00329694247,,
-0.717139565,0.00304572379,,
-0.718489427,0.0031064678,,
 EOD
 $series1 << EOD
 0.637667731,0.00298420729,0.000146372442,1.91978825e-05
@@ -98,20 +79,7 @@ $series2 << EOD
 0.664553827,0.00371978318,,
 0.671805095,0.00388093868,,
 0.679622026,0.00337054099,0.000326687121,7.67039907e-05
-0.683635746,0.00335448988,,
 0.684293245,0.00305393546,,
-0.691296344,0.00311816261,,
-0.698038157,0.00302773274,,
-0.703570135,0.00332792738,,
-0.70597541,0.00331235559,,
-0.707935633,0.00315479996,,
-0.708633313,0.00295680569,0.000427716653,5.49666031e-05
-0.710771111,0.00298991257,,
-0.712906771,0.00284508993,,
-0.715125382,0.00303037471,0.000422692648,0.000216541212
-0.7164119,0.00308779844,0.000214009815,0.000130754803
-0.71835061,0.00296987451,0.000299717004,0.000129397631
-0.720600996,0.00272290383,,
 EOD
 $series3 << EOD
 0.63751927,0.00321718189,0.000136361766,3.03353173e-05
@@ -139,12 +107,8 @@ plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '{/:Ita
      $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
      $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
      $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
-     $series3 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series3 every 2 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series2 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series2 every 2 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series1 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 4 ps 0.4 notitle, \
-     $series1 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 4 ps 0.4 notitle, \
-     $series0 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series0 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle
+     $series3 every 1 using 1:2 with linespoints lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 notitle, \
+     $series2 every 1 using 1:2 with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series1 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 4 ps 0.4 notitle, \
+     $series0 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle
 set output

@@ -14,9 +14,9 @@ data = 'B5c.csv'
 set label '(c)' at screen 0.015, screen 0.96 left front
 set xlabel 'volume fraction  {/:Italic ϕ}'
 set ylabel 'percentage crystalline  [%]'
-set xtics 0.02
+set xtics 0.01
 set format x '%.2f'
-set ytics 20
+set ytics 10
 set format y '%.0f'
 set xrange [*:*]
 set yrange [0:*]
@@ -39,28 +39,8 @@ $series0 << EOD
 0.667172598,24.5365477,0.000684166436,6.98107539
 0.669094893,19.7183099,,
 0.670205545,24.6304393,4.15942081e-05,4.03272471
-0.67270421,22.9473494,,
-0.674924798,26.1124122,,
-0.676093947,27.2300469,,
+0.672045833,22.036385,,
 0.679057073,38.527555,0.000123021635,2.33016744
-0.681507771,33.450601,,
-0.683485926,32.9909011,,
-0.685065154,42.0017356,,
-0.687188548,45.1547585,,
-0.688923711,42.8689861,0.000445033994,5.47538473
-0.691376871,44.1753891,0.000411048415,3.48897078
-0.693557336,51.3793103,,
-0.694791233,49.833037,0.000432821177,2.90151964
-0.696229335,55.1131481,,
-0.698068205,52.7251865,,
-0.700438758,56.9369726,4.3644866e-05,3.04012446
-0.705663927,61.4002521,0.000286892921,3.90761561
-0.707716132,57.1225071,,
-0.708908909,60.0143513,,
-0.710169219,59.5387244,,
-0.714617284,73.2578661,,
-0.717139565,74.3870993,,
-0.718489427,75.4418105,,
 EOD
 $series1 << EOD
 0.637503724,0.088365243,,
@@ -88,8 +68,6 @@ plot keyentry with linespoints lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'contin
      keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title 'periodically paused shear', \
      $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
      $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
-     $series1 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series1 every 2 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series0 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series0 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle
+     $series1 every 1 using 1:2 with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series0 every 1 using 1:2 with linespoints lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle
 set output

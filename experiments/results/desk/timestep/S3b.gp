@@ -14,9 +14,9 @@ data = 'S3b.csv'
 set label '(b)' at screen 0.015, screen 0.96 left front
 set xlabel 'volume fraction  {/:Italic ϕ}'
 set ylabel 'percentage crystalline  [%]'
-set xtics 0.02
+set xtics 0.01
 set format x '%.2f'
-set ytics 20
+set ytics 10
 set format y '%.0f'
 set xrange [*:*]
 set yrange [0:*]
@@ -40,30 +40,10 @@ $series0 << EOD
 0.667242538,22.3112227,0.000163776416,1.84443872
 0.669152649,21.707759,0.000225994243,1.31721078
 0.670588372,25.7518328,0.000261173831,1.50457845
-0.672579514,25.8467465,0.000221731867,1.09684891
-0.674394923,27.8905069,0.000178636875,2.13401535
-0.676093947,27.2300469,,
+0.67241492,25.6190054,0.000250146847,1.30197983
+0.674218297,28.4832051,3.78062835e-05,2.89921724
 0.679057073,38.527555,0.000123021635,2.33016744
-0.681507771,33.450601,,
-0.683485926,32.9909011,,
-0.68548583,43.7374632,0.000420675485,1.73572757
-0.687188548,45.1547585,,
-0.689064489,45.4517521,0.000292979289,4.08215129
-0.691376871,44.1753891,0.000411048415,3.48897078
-0.693557336,51.3793103,,
-0.694791233,49.833037,0.000432821177,2.90151964
-0.697092414,56.685217,0.000863078789,1.57206887
-0.698068205,52.7251865,,
-0.700438758,56.9369726,4.3644866e-05,3.04012446
-0.705663927,61.4002521,0.000286892921,3.90761561
-0.707716132,57.1225071,,
-0.708855739,63.266958,5.3169971e-05,3.25260662
-0.710169219,59.5387244,,
-0.714335441,67.1249706,0.00028184273,6.13289548
-0.717139565,74.3870993,,
-0.718948588,73.7384748,0.000459160567,1.70333572
-0.721491555,69.4374029,,
-0.722349996,75.877193,,
+0.685906505,45.4731907,,
 EOD
 $series1 << EOD
 0.637483676,0.0393024468,0.000203263439,0.0259714738
@@ -143,11 +123,11 @@ plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 9 ps 0.4 title '4.4×1
      $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
      $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
      $series3 using 1:2 with lines lc rgb '#e69f00' lw 1.2 pt 4 ps 0.4 notitle, \
-     $series3 every 5 using 1:2 with points lc rgb '#e69f00' lw 1.2 pt 4 ps 0.4 notitle, \
+     $series3 every 2 using 1:2 with points lc rgb '#e69f00' lw 1.2 pt 4 ps 0.4 notitle, \
      $series2 using 1:2 with lines lc rgb '#cc79a7' lw 1.2 pt 13 ps 0.4 notitle, \
-     $series2 every 5 using 1:2 with points lc rgb '#cc79a7' lw 1.2 pt 13 ps 0.4 notitle, \
+     $series2 every 2 using 1:2 with points lc rgb '#cc79a7' lw 1.2 pt 13 ps 0.4 notitle, \
      $series1 using 1:2 with lines lc rgb '#009e73' lw 1.2 pt 11 ps 0.4 notitle, \
-     $series1 every 5 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 11 ps 0.4 notitle, \
+     $series1 every 2 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 11 ps 0.4 notitle, \
      $series0 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 9 ps 0.4 notitle, \
-     $series0 every 5 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 9 ps 0.4 notitle
+     $series0 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 9 ps 0.4 notitle
 set output
