@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A measure against packing fraction: runs that reach the same phi at different cycles are averaged
+// A measure against volume fraction: runs that reach the same phi at different cycles are averaged
 // where they have the same phi.
 #pragma once
 

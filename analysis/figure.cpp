@@ -30,7 +30,7 @@ std::vector<Figure> make_figures() {
   return {
       {"table1", "Table I beside the parameters of every experiment", figure_table1,
        FigureForm::table},
-      of_groups("S1", "Packing fraction in the limit of hard grains", figure_s1, {"pressure_at"}),
+      of_groups("S1", "Volume fraction in the limit of hard grains", figure_s1, {"pressure_at"}),
       of_curves("S2", "Still fluid and fluid that moves with the cell", figure_s2, {"fluid"}),
       of_curves("S3", "Time steps", figure_s3, {"steps_per_cycle"}),
       of_curves("S4", "Moving bottom wall and moving top wall", figure_s4,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The packing fraction at which crystallization begins, by the two methods of supplement C.
+// The volume fraction at which crystallization begins, by the two methods of supplement C.
 #pragma once
 
 #include <cstddef>

@@ -31,7 +31,7 @@ struct Geometry {
 };
 
 /// Width L [d] of a cell of height_over_width * L by L by L that holds the grains at the nominal
-/// packing fraction. Rough walls take up a layer of 0.175 d each: the volume of their grains.
+/// volume fraction. Rough walls take up a layer of 0.175 d each: the volume of their grains.
 double cell_width(const Geometry& geometry);
 
 /// Called about every millisecond of a long placement; may throw to give it up.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs grouped into the curves of a figure, and the panels that draw such curves: one curve per
-// variant, averaged over runs, against the cycle or against the packing fraction.
+// variant, averaged over runs, against the cycle or against the volume fraction.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures S5a, S5b and S6: packing fraction at the onset of crystallization against amplitude, by
+// Figures S5a, S5b and S6: volume fraction at the onset of crystallization against amplitude, by
 // both methods, against the size of the system, and with and without gravity. Supplement C and D.
 #include <fmt/format.h>
 

@@ -90,8 +90,8 @@ CycleRange parse_cycles(const std::string& text) {
     if (part.empty() && k < 3) continue;
     const auto value = read_number<double>(part);
     if (k >= 3 || !value || !(*value >= 0 && std::isfinite(*value))) {
-      throw std::invalid_argument("--cycles takes A:B or A:B:STEP, such as 0:60 or ::10 (got " +
-                                  text + ")");
+      throw std::invalid_argument(
+          "--cycles takes A, A:B or A:B:STEP, such as 1.25, 0:60 or ::10 (got " + text + ")");
     }
     *values[k] = *value;
   }
@@ -288,7 +288,7 @@ void add_export(CLI::App& app, Context& context) {
       ->required()
       ->type_name("PATH");
   command->add_option("--cycles", options->cycles, "Checkpoints of these cycles (default: all)")
-      ->type_name("A:B[:STEP]");
+      ->type_name("A[:B[:STEP]]");
   command->add_flag("--metres", options->metres, "Extended XYZ in SI units, not in diameters");
   command->add_option("--license", options->licence, "URI of the licence of the data")
       ->type_name("URI")

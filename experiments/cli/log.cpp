@@ -15,8 +15,10 @@ std::string gist(const Event& event) {
   for (const char* key : {"why", "error", "cycle", "attempt", "experiment", "path", "kind"}) {
     if (!body.contains(key)) continue;
     const nlohmann::json& value = body[key];
-    return fmt::format("{} {:.60}", key,
-                       value.is_string() ? value.get<std::string>() : value.dump());
+    const std::string text = value.is_string()         ? value.get<std::string>()
+                             : value.is_number_float() ? fmt::format("{:.6g}", value.get<double>())
+                                                       : value.dump();
+    return fmt::format("{} {:.60}", key, text);
   }
   return "";
 }

@@ -103,9 +103,9 @@ void print_numerics(const std::vector<Line>& lines) {
     if (std::ranges::count(rows, row) == 0) rows.push_back(std::move(row));
   }
   fmt::print("\n");
-  print_table({"stage", "variant", "steps/cycle", "time step [s]", "/ contact time",
-               "/ stability limit", "expected overlap [d]"},
-              rows);
+  // The mean overlap that is to be expected.
+  print_table(
+      {"stage", "variant", "steps/cycle", "dt [s]", "dt/contact", "dt/limit", "overlap [d]"}, rows);
 }
 
 // A run goes on to the longest target that it was ever declared with; returns how many do.

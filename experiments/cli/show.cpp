@@ -116,8 +116,8 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   if (const std::string why = describe_end(end_of(store, run)); !why.empty())
     tell("ended    {}\n", why);
   for (const Membership& m : run.memberships) {
-    tell("part of  {} ({}) {} seed {}\n", m.experiment, m.scale.empty() ? "base" : m.scale,
-         m.variant, m.seed);
+    tell("part of  {} ({}) {} seed {}, manifest {:.8}\n", m.experiment,
+         m.scale.empty() ? "base" : m.scale, m.variant, m.seed, m.manifest);
     const nlohmann::json given = overrides_of(store, run, m);
     for (const auto& [key, values] : given.items()) {
       tell("         given at the command line: {} {} (manifest: {})\n", key,

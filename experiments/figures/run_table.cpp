@@ -121,7 +121,7 @@ void add_onset(const std::string& method, const std::string& meaning, OnsetMetho
   add("_cycle", "cycle of that onset", [](const RunOnset& found) {
     return found.observed == Observed::yes ? json(found.cycle) : json();
   });
-  add("_phi", "packing fraction at that onset", [](const RunOnset& found) {
+  add("_phi", "volume fraction at that onset", [](const RunOnset& found) {
     return found.observed == Observed::yes ? json(found.phi) : json();
   });
 }

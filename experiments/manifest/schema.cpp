@@ -136,7 +136,7 @@ std::span<const Field> schema() {
       row("height_over_width", "", "1", &P::height_over_width, from(0.1, 100), kPrepare,
           "nominal height of the cell over its width L (E)"),
       row("nominal_packing_fraction", "", "1", &P::nominal_packing_fraction, from(1e-9, 0.74),
-          kPrepare, "packing fraction at which N grains fill the nominal cell; fixes L"),
+          kPrepare, "volume fraction at which N grains fill the nominal cell; fixes L"),
       row("wall_grain_area_fraction", "", "1", &P::wall_grain_area_fraction, from(0, 0.53),
           kPrepare,
           "area fraction of a rough wall covered by wall grains; random sequential addition jams "
@@ -152,7 +152,7 @@ std::span<const Field> schema() {
           kPrepare, "drag constant of the moving wall per area"),
       // Preparation.
       row("fill_packing_fraction", "", "1", &P::fill_packing_fraction, from(1e-9, 0.35), kPrepare,
-          "packing fraction of the random sequential addition that settling starts from; it jams "
+          "volume fraction of the random sequential addition that settling starts from; it jams "
           "at 0.384"),
       row("settle_time_step_s", "", "s", &P::settle_time_step_s, from(1e-15, 1), kPrepare,
           "time step while settling; not tied to that of the shear, so that variants of the latter "

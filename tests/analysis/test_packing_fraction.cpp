@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Overlaps, packing fractions and interior grains compared with numbers worked out by hand;
+// Overlaps, volume fractions and interior grains compared with numbers worked out by hand;
 // test_mechanics.cpp compares overlaps with sums over all pairs.
 #include <gtest/gtest.h>
 

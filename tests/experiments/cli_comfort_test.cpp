@@ -245,7 +245,7 @@ TEST_F(BenchAccuracy, SaysWhatIsWrongBeforeItMeasures) {
 TEST_F(BenchAccuracy, PlanPrintsTimeStepsAndWarns) {
   const std::string head = "experiment: a\nbase: {grains: 600, cycles: 1, ";
   const std::string sound = write("sound.yaml", head + "steps_per_cycle: 45600}\n");
-  EXPECT_EQ(expect(0, {"plan", sound}, {"0.355", "expected overlap"}).err, "");
+  EXPECT_EQ(expect(0, {"plan", sound}, {"0.355", "overlap [d]"}).err, "");
   const nlohmann::json stage = json({"plan", sound, "--json"}).at("stages").at(1);
   EXPECT_NEAR(stage.at("time_step").at("over_contact_time"), 0.1129, 1e-4);
   EXPECT_NEAR(stage.at("expected_overlap_d"), 3.797e-3, 1e-5);

@@ -101,7 +101,7 @@ class Checkpoint:
                 return {name: every[name + "/value"][0, : self.grains] for name in GRAIN_MEASURES}
 
     q6 = _of_grains("q6", "(N,) bond order of each grain, Eq. S1.")
-    phi_local = _of_grains("phi_local", "(N,) local packing fraction.")
+    phi_local = _of_grains("phi_local", "(N,) local volume fraction.")
     overlap = _of_grains("overlap", "(N,) largest overlap of each grain [d].")
     contacts = _of_grains("contacts", "(N,) contacts with grains and wall grains.")
     pressure_Pa = _of_grains("grain_pressure_Pa", "(N,) of a grain's contacts, over its cell [Pa].")
