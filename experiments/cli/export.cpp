@@ -17,6 +17,7 @@
 #include "experiments/export/formats.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
+#include "experiments/runner/progress.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/io/temporary_folder.hpp"
 #include "provenance/ro_crate.hpp"
@@ -119,9 +120,8 @@ std::vector<CheckpointRecord> chosen(const Store& store, const RunRecord& run,
         run.id, cycles.empty() ? "of any number" : cycles));
   }
   if (pruned > 0) {
-    tell_stderr(
-        "run {:.8}: {} pruned checkpoints are left out; `shearcell regenerate` makes them\n",
-        run.id, pruned);
+    tell_stderr("run {:.8}: left out: {} (pruned; `shearcell regenerate` makes them again)\n",
+                run.id, counted(pruned, "checkpoint"));
   }
   return records;
 }
@@ -254,7 +254,8 @@ void export_runs(const ExportOptions& options, Context& context) {
   for (Exported& one : done) {
     if (single) one.out = options.out;
     if (context.json) continue;
-    tell("run {:.12}: {} files in {}\n", one.run.run.id, one.files.size(), one.out.string());
+    tell("run {:.12}: {} in {}\n", one.run.run.id, counted(one.files.size(), "file"),
+         one.out.string());
   }
   if (!context.json) return;
   const nlohmann::json list = json_list(done, [&](const Exported& one) -> nlohmann::json {

@@ -8,6 +8,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/draw.hpp"
+#include "experiments/runner/progress.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/plain_file.hpp"
 
@@ -66,10 +67,10 @@ void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
   if (incomplete && context.exit_code == kDone) context.exit_code = kOtherError;
   list.push_back(facts(result));
   if (context.json) return;
-  tell("{}{}{} ({} scale): {} runs, {} checkpoints, {} of them newly measured\n", result.experiment,
+  tell("{}{}{} ({} scale): {}, {}, {} of them newly measured\n", result.experiment,
        result.experiment.empty() ? "" : "/", result.name,
-       result.scale.empty() ? "base" : result.scale, result.runs, result.checkpoints,
-       result.measured);
+       result.scale.empty() ? "base" : result.scale, counted(result.runs, "run"),
+       counted(result.checkpoints, "checkpoint"), result.measured);
   for (const auto& file : result.files) tell("  {}\n", file.string());
   print_verdicts(result);
 }

@@ -287,10 +287,8 @@ void plan(const std::string& manifest, const ExpandOptions& options, Context& co
   const double seconds = left.core_seconds / static_cast<double>(cores);
   std::vector<std::string> notes = notes_of(expanded);
   if (longer > 0) {
-    notes.push_back(
-        fmt::format("{} runs were asked for more cycles before; `run` continues them to "
-                    "these",
-                    longer));
+    notes.push_back(fmt::format("`run` continues {} to a larger number of cycles, asked for before",
+                                counted(longer, "run")));
   }
   if (context.json) {
     return print_json({{"experiment", expanded.experiment},
@@ -306,8 +304,9 @@ void plan(const std::string& manifest, const ExpandOptions& options, Context& co
                        {"particle_steps_per_second_and_core", left.rate.particle_steps_per_second},
                        {"rate_measured", left.rate.measured}});
   }
-  fmt::print("{} at scale {}: {} runs, {} stages\n\n", expanded.experiment,
-             expanded.scale.empty() ? "base" : expanded.scale, expanded.runs.size(), lines.size());
+  fmt::print("{} at scale {}: {}, {}\n\n", expanded.experiment,
+             expanded.scale.empty() ? "base" : expanded.scale, counted(expanded.runs.size(), "run"),
+             counted(lines.size(), "stage"));
   print_table({"run", "stage", "variant", "seed", "N", "cycle", "state", ""}, lines, row);
   print_numerics(lines);
   fmt::print(

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/runner/progress.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
@@ -74,7 +75,7 @@ void prune(const PruneOptions& options, Context& context) {
   for (CheckpointRecord& left : store.prune_leftovers()) records.push_back(std::move(left));
   if (!context.json) {
     print_plan(store, records);
-    fmt::print("{} checkpoints, {}\n", records.size(), format_bytes(bytes_of(records)));
+    fmt::print("{}, {}\n", counted(records.size(), "checkpoint"), format_bytes(bytes_of(records)));
   }
   const bool go = !records.empty() && (options.yes || (!context.json && agreed()));
   const std::uint64_t freed = go ? store.prune(records) : 0;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/runner/progress.hpp"
 #include "provenance/io/plain_file.hpp"
 
 namespace shearcell::cli {
@@ -63,11 +64,12 @@ void report(ReportCommand& command, Context& context) {
         "Node.\n");
   }
   if (context.json) return print_json(facts(made, command));
-  tell("{}: {}; {} experiments, {} figures, {} stages", command.out,
-       format_bytes(static_cast<double>(made.html.size())), made.experiments, made.figures,
-       made.runs);
+  tell("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(made.html.size())),
+       counted(made.experiments, "experiment"), counted(made.figures, "figure"),
+       counted(made.runs, "stage"));
   if (made.interactive) {
-    fmt::print(", {} checkpoints of {} runs in 3D", made.frames, made.packings);
+    fmt::print(", {} of {} in 3D", counted(made.frames, "checkpoint"),
+               counted(made.packings, "run"));
   }
   fmt::print("\n");
 }

@@ -11,6 +11,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/document.hpp"
+#include "experiments/runner/progress.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 
@@ -202,10 +203,10 @@ void print_check(const std::filesystem::path& file, const PublishedFile& found,
     tell("  is      {}\n  was     {}\n", found.sha256, found.recorded);
   }
   if (faults.empty()) {
-    tell("inputs    {} checkpoints, all present and right\n\n", inputs);
+    tell("inputs    {}, all present and right\n\n", counted(inputs, "checkpoint"));
     return;
   }
-  tell("inputs    {} checkpoints, {} of them not as they were\n", inputs, faults.size());
+  tell("inputs    {}, {} of them not as they were\n", counted(inputs, "checkpoint"), faults.size());
   for (const InputFault& fault : faults) tell("  {}\n  {}\n", fault.checkpoint, fault.what);
   tell("\n");
 }

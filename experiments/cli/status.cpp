@@ -175,9 +175,9 @@ nlohmann::json facts(const std::optional<Estimate>& estimate) {
 }
 
 void print(const Estimate& left) {
-  tell("left: {} stages, {:.3g} particle-steps, {} {} with {} at a time{}\n", left.work.stages,
-       left.work.particle_steps, left.at_most ? "at most" : "about",
-       format_duration(left.seconds()), left.at_a_time,
+  tell("left: {}, {:.3g} particle-steps, {} {} with {} at a time{}\n",
+       counted(left.work.stages, "stage"), left.work.particle_steps,
+       left.at_most ? "at most" : "about", format_duration(left.seconds()), left.at_a_time,
        left.running ? ": until " + local_time(left.seconds()) : "; no program computes them now");
 }
 
@@ -212,7 +212,7 @@ void print_tables(const View& view) {
   for (const auto& [state, runs_in_it] : count) {
     all += fmt::format("{}{} {}", all.empty() ? ": " : ", ", runs_in_it, name_of(state));
   }
-  tell("{} stages{}\n", view.runs.size(), all);
+  tell("{}{}\n", counted(view.runs.size(), "stage"), all);
 }
 
 /// The tables, and below them what is to be said of single runs.

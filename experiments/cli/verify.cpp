@@ -7,6 +7,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/audit.hpp"
+#include "experiments/runner/progress.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/io/read_number.hpp"
@@ -141,9 +142,10 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
   for (const Finding& finding : report.findings) {
     tell("{}: {}: {}\n", name_of_severity(finding), finding.subject, finding.message);
   }
-  tell("{} events, {} checkpoints ({}), {} orphans: {}\nhead {} {}\n", report.events,
-       report.checkpoints, format_bytes(static_cast<double>(report.bytes)), report.orphans,
-       report.ok() ? "nothing was changed" : "DAMAGED", report.head.seq, report.head.hash);
+  tell("{}, {} ({}), {}: {}\nhead {} {}\n", counted(report.events, "event"),
+       counted(report.checkpoints, "checkpoint"), format_bytes(static_cast<double>(report.bytes)),
+       counted(report.orphans, "orphan"), report.ok() ? "nothing was changed" : "DAMAGED",
+       report.head.seq, report.head.hash);
   if (measures.kept > 0) {
     tell("recomputed the measures of {} of {} checkpoints\n", measures.computed, measures.kept);
   }

@@ -21,6 +21,7 @@
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/asks.hpp"
+#include "experiments/runner/progress.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
@@ -103,11 +104,11 @@ class Chosen {
 
   std::vector<std::string> notes() {
     for (const auto& [version, variants] : left_) {
-      notes_.push_back(fmt::format(
-          "experiment {}: {} runs of another version of its manifest ({:.8}) are left out: {}; "
-          "--all-versions adds them",
-          version.first, variants.size(), version.second,
-          some_of({variants.begin(), variants.end()})));
+      notes_.push_back(
+          fmt::format("experiment {}: left out: {} of another version of its manifest ({:.8}): {}; "
+                      "--all-versions adds them",
+                      version.first, counted(variants.size(), "run"), version.second,
+                      some_of({variants.begin(), variants.end()})));
     }
     return std::move(notes_);
   }
@@ -164,8 +165,8 @@ std::vector<std::string> never_made(const Store& store, const Figure& figure,
   std::vector<std::string> notes;
   for (const auto& [of_lammps, lack] : lacks) {
     notes.push_back(fmt::format(
-        "{} checkpoints that the manifest asks for were never made (runs {}); {}", lack.checkpoints,
-        some_of(lack.runs),
+        "never made: {} that the manifest asks for (runs {}); {}",
+        counted(lack.checkpoints, "checkpoint"), some_of(lack.runs),
         of_lammps
             ? "these runs are of LAMMPS, which does not repeat bits: `run` and `resume` leave "
               "them out, and the checkpoints cannot be made later"
@@ -188,14 +189,12 @@ std::vector<std::string> unfinished(std::vector<CollectedRun>& runs) {
   std::erase_if(runs, [](const CollectedRun& run) { return run.checkpoints.empty(); });
   std::vector<std::string> notes;
   if (!not_begun.empty()) {
-    notes.push_back(fmt::format("{} runs have no checkpoint yet and are left out: {}",
-                                not_begun.size(), some_of(not_begun)));
+    notes.push_back(fmt::format("left out: {} without a checkpoint yet: {}",
+                                counted(not_begun.size(), "run"), some_of(not_begun)));
   }
   if (!going_on.empty()) {
-    notes.push_back(
-        fmt::format("{} runs are not finished and count as if they ended where they are: "
-                    "{}",
-                    going_on.size(), some_of(going_on)));
+    notes.push_back(fmt::format("not finished, and taken as if ended where they are: {}: {}",
+                                counted(going_on.size(), "run"), some_of(going_on)));
   }
   return notes;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiments/report/html.hpp"
+#include "experiments/runner/progress.hpp"
 #include "provenance/sha256.hpp"
 
 // Files of the front end (web_assets.S).
@@ -53,10 +54,6 @@ std::string head_html(const ReportData& data) {
       scripts, escape_html(data.store), std::string_view(shearcell_style, shearcell_style_end));
 }
 
-std::string count(std::size_t number, const char* one) {
-  return fmt::format("{} {}{}", number, one, number == 1 ? "" : "s");
-}
-
 std::string title_html(const ReportData& data) {
   std::set<std::string> runs;
   for (const ReportExperiment& experiment : data.experiments) {
@@ -68,8 +65,8 @@ std::string title_html(const ReportData& data) {
       "<label class=\"theme\" hidden>Colours <select id=\"theme\"><option value=\"system\">as the "
       "system</option><option value=\"light\">light</option><option "
       "value=\"dark\">dark</option></select></label>\n</header>\n",
-      escape_html(data.store), count(data.experiments.size(), "experiment"),
-      count(data.figures.size(), "figure"), count(runs.size(), "stage"), data.head.seq,
+      escape_html(data.store), counted(data.experiments.size(), "experiment"),
+      counted(data.figures.size(), "figure"), counted(runs.size(), "stage"), data.head.seq,
       escape_html(data.head.hash), escape_html(data.head.hash.substr(0, 12)),
       escape_html(data.program.value("version", "")),
       escape_html(data.program.value("commit", "")));
@@ -112,7 +109,7 @@ std::string packings_html(const ReportData& data) {
       "drawn with the diameter d, without perspective; x is the shear direction, y points up, z is "
       "periodic. Crystallites consist of interior grains, at least 1.5 d from the walls. Drag to "
       "turn; click, then use the wheel to zoom.</p>\n</section>\n",
-      count(data.packings.frames, "checkpoint"), count(data.packings.runs.size(), "run"),
+      counted(data.packings.frames, "checkpoint"), counted(data.packings.runs.size(), "run"),
       data.packings.largest_step);
 }
 

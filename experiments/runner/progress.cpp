@@ -25,6 +25,10 @@ std::string describe(const StageStatus& status) {
 
 }  // namespace
 
+std::string counted(std::size_t number, std::string_view one) {
+  return fmt::format("{} {}{}", number, one, number == 1 ? "" : "s");
+}
+
 std::string format_duration(double seconds) {
   constexpr double year = 365.25 * 86400;
   if (!std::isfinite(seconds)) return "?";

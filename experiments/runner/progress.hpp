@@ -42,6 +42,9 @@ class Progress {
   std::map<std::string, std::chrono::steady_clock::time_point> said_at_;
 };
 
+/// "1 run", "2 runs".
+std::string counted(std::size_t number, std::string_view one);
+
 /// "7 s", "4 min 05 s", "1 h 02 min", "3 d 07 h" or "12 years".
 std::string format_duration(double seconds);
 

@@ -98,7 +98,7 @@ TEST_F(DrawFigure, ASeedCountsOncePerVariant) {
   EXPECT_EQ(distinct_runs(collected).size(), 1U);
   ASSERT_EQ(collected.notes.size(), 2U);
   EXPECT_TRUE(has(collected.notes[0], "is left out"));
-  EXPECT_TRUE(has(collected.notes[1], "1 runs have no checkpoint yet"));
+  EXPECT_TRUE(has(collected.notes[1], "left out: 1 run without a checkpoint yet"));
 }
 
 TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {
@@ -171,8 +171,7 @@ TEST_F(DrawFigure, TheNoteOnMissingCheckpointsSaysWhichRunsCannotMakeThem) {
   }
   const std::vector<std::string> notes = collect_runs(store_, kS2, {}).notes;
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_TRUE(
-      has(notes[0], "1 checkpoints that the manifest asks for were never made (runs bbbbbbbb)"));
+  EXPECT_TRUE(has(notes[0], "never made: 1 checkpoint that the manifest asks for (runs bbbbbbbb)"));
   EXPECT_TRUE(has(notes[0], "LAMMPS"));
   EXPECT_FALSE(has(notes[0], "computes them"));
 }
