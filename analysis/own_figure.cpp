@@ -48,16 +48,6 @@ Axis axis_of(const std::string& key) {
   return named_axis(key, "1");
 }
 
-/// "drag_kg_per_s=0.001, fluid=still".
-std::string words_of(const nlohmann::json& values) {
-  std::string text;
-  for (const auto& [key, value] : values.items()) {
-    text += (text.empty() ? "" : ", ") + key + "=" +
-            (value.is_string() ? value.get<std::string>() : value.dump());
-  }
-  return text;
-}
-
 /// The checkpoint at a cycle, or the last one; null if there is none.
 const Measures* measures_at(const FigureRun& run, const std::optional<std::uint64_t>& cycle) {
   if (run.checkpoints.empty()) return nullptr;
@@ -267,6 +257,15 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> run
 }
 
 }  // namespace
+
+std::string words_of(const nlohmann::json& values) {
+  std::string text;
+  for (const auto& [key, value] : values.items()) {
+    text += (text.empty() ? "" : ", ") + key + "=" +
+            (value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return text;
+}
 
 bool is_measure(std::string_view name) {
   return find_measure(name) != nullptr || find_curve_measure(name) != nullptr;

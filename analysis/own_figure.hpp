@@ -42,6 +42,9 @@ struct ClaimSpec {
   bool operator==(const ClaimSpec&) const = default;
 };
 
+/// "fluid=still, walls=rough" of parameters and their values.
+std::string words_of(const nlohmann::json& values);
+
 /// Whether there is a scalar or curve measure of that name.
 bool is_measure(std::string_view name);
 

@@ -7,9 +7,9 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <set>
 
 #include "analysis/measures.hpp"
+#include "analysis/own_figure.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -42,14 +42,6 @@ std::size_t count_of(const json& where, const Variants& variants) {
       return get_value(*find_field(item.key()), p) == item.value();
     });
   }));
-}
-
-std::string words_of(const json& where) {
-  std::string words;
-  for (const auto& [key, value] : where.items()) {
-    words += fmt::format("{}{}={}", words.empty() ? "" : ",", key, value_text(value));
-  }
-  return words;
 }
 
 /// A swept key over which the plot would average: two variants have the same curve and x.
