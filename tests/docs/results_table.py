@@ -30,7 +30,7 @@ HEADLINES = [
     ("C", "C: the critical size at A = 0.0833", "critical size [grains], A = 0.0833", "about 16"),
     ("C", "C: the critical size at A = 0.1", "critical size [grains], A = 0.1", "about 20"),
     ("S6", "D: the onset at A = 0.0833 rad is the same", "phi at the onset, without less with gravity", "equal"),
-    ("walls", "walls: between rough ones the onset", "phi at the onset, A = 0.0833", "0.646 +- 0.001"),
+    ("S5a", "C: the onset at A = 0.05 rad", "phi at the onset, A = 0.05", "0.646 +- 0.001"),
     ("nucleation", "title: the rate", "exponent of the nucleation rate against the volume, less 1", "homogeneous: 0"),
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper less the lower third", "more near the top"),
 ]
