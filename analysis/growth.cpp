@@ -67,19 +67,18 @@ std::optional<GrowthFit> fit(const Eigen::ArrayXd& log_size, const Eigen::ArrayX
 
 /// Interval of what `value` computes from the fit to a selection of runs.
 template <class Value>
-std::optional<Estimate> over_selections(std::span<const GrowthBySize> runs, Vanished vanished,
-                                        const Value& value) {
-  const Cases cases = cases_of(runs, vanished);
-  return bootstrapped(runs.size(), [&](std::span<const std::size_t> selection) {
-    Eigen::ArrayXd grew = Eigen::ArrayXd::Zero(cases.log_size.size());
-    Eigen::ArrayXd shrank = grew;
-    for (const std::size_t run : selection) {
-      grew += cases.grew.col(static_cast<Eigen::Index>(run));
-      shrank += cases.shrank.col(static_cast<Eigen::Index>(run));
-    }
-    const std::optional<GrowthFit> found = fit(cases.log_size, grew, shrank);
-    return found ? value(*found) : std::nullopt;
-  });
+std::optional<Estimate> over_selections(const Cases& cases, const Value& value) {
+  return bootstrapped(static_cast<std::size_t>(cases.grew.cols()),
+                      [&](std::span<const std::size_t> selection) {
+                        Eigen::ArrayXd grew = Eigen::ArrayXd::Zero(cases.log_size.size());
+                        Eigen::ArrayXd shrank = grew;
+                        for (const std::size_t run : selection) {
+                          grew += cases.grew.col(static_cast<Eigen::Index>(run));
+                          shrank += cases.shrank.col(static_cast<Eigen::Index>(run));
+                        }
+                        const std::optional<GrowthFit> found = fit(cases.log_size, grew, shrank);
+                        return found ? value(*found) : std::nullopt;
+                      });
 }
 
 }  // namespace
@@ -172,15 +171,16 @@ std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs, Vanished
 }
 
 std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs, Vanished vanished) {
+  const Cases cases = cases_of(runs, vanished);
   const auto found =
-      over_selections(runs, vanished, [](const GrowthFit& fit) { return fit.critical_size(); });
-  const auto largest = static_cast<double>(cases_of(runs, vanished).log_size.size());
+      over_selections(cases, [](const GrowthFit& fit) { return fit.critical_size(); });
+  const auto largest = static_cast<double>(cases.log_size.size());
   if (!found || found->value < 1 || found->value > largest) return std::nullopt;
   return found;
 }
 
 std::optional<Estimate> fitted_delta_rho(std::span<const GrowthBySize> runs, double size) {
-  return over_selections(runs, Vanished::shrank, [size](const GrowthFit& fit) {
+  return over_selections(cases_of(runs, Vanished::shrank), [size](const GrowthFit& fit) {
     return std::optional<double>(fit.delta_rho(size));
   });
 }

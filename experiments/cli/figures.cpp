@@ -150,9 +150,9 @@ void add_figures(CLI::App& app, Context& context) {
   add_common_options(*command, context);
   command->footer(
       R"(Draws each figure once for every experiment that lists it, and the plots and claims of their
-manifests. Writes CSV, SVG, PDF and the gnuplot script of each panel, NAME.caption.txt, NAME.verdict.json (verdicts
-on claims) and NAME.lineage.json (the checkpoints behind it). Caches measures in the store's
-derived.sqlite, which you may delete at any time.
+manifests. Writes CSV, SVG, PDF and the gnuplot script of each panel, NAME.caption.txt,
+NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints behind it). Caches
+measures in the store's derived.sqlite, which you may delete at any time.
 Figures and the keys that they compare (some have a curve for each value of other keys too):
 )" + list_of_figures() +
       "Examples:\n  shearcell figures S2 --out figures\n"
