@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plan`: the runs of a manifest, which of them are done, and what the rest costs.
+// `plan`: the runs of manifests, which of them are done, and what the rest costs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -124,6 +124,30 @@ std::size_t take_longer_targets(const std::vector<RunRecord>& known, Plan& plan)
   return longer;
 }
 
+// The runs of several manifests, each once: as long as the experiment that asks for most of it.
+Plan joined(const std::vector<Plan>& plans) {
+  std::vector<std::string> experiments;
+  Plan all;
+  all.scale = plans.front().scale;
+  std::map<std::string, std::size_t> places;  // of a run in all.runs, by its id
+  for (const Plan& plan : plans) {
+    experiments.push_back(plan.experiment);
+    for (const PlannedRun& run : plan.runs) {
+      const auto [place, fresh] = places.try_emplace(run.last.key, all.runs.size());
+      if (fresh) {
+        all.runs.push_back(run);
+        continue;
+      }
+      PlannedRun& known = all.runs[place->second];
+      const bool longer = run.target_cycles > known.target_cycles;
+      if (known.ends_early && (longer || !run.ends_early)) known.ends_early = run.ends_early;
+      known.target_cycles = std::max(known.target_cycles, run.target_cycles);
+    }
+  }
+  all.experiment = fmt::format("{}", fmt::join(experiments, ", "));
+  return all;
+}
+
 // Notes on runs that this machine cannot hold, and on runs by another engine.
 std::vector<std::string> notes_of(const Plan& plan) {
   std::vector<std::string> notes;
@@ -174,10 +198,12 @@ nlohmann::json left_until(const std::vector<Line>& lines) {
 }
 
 void print_until(const std::vector<Line>& lines, double at_most) {
-  const auto asks = std::ranges::find_if(
-      lines, [](const Line& line) { return line.run->ends_early.has_value(); });
-  if (asks == lines.end()) return;
-  fmt::print("      `until` ({}): ", describe(*asks->run->ends_early));
+  std::set<std::string> ends;
+  for (const Line& line : lines) {
+    if (line.run->ends_early) ends.insert(describe(*line.run->ends_early));
+  }
+  if (ends.empty()) return;
+  fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (const nlohmann::json left = left_until(lines); left.is_null()) {
     fmt::print("less, by how much is known once such a run has ended\n");
   } else {
@@ -199,7 +225,7 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
       line.novelty = known.novelty(*stage);
       if (const RunRecord* record = known.find(stage->key)) {
         line.cycle = record->cycle;
-        add_shares(*record, plan.experiment, line);
+        add_shares(*record, run.experiment, line);
         const bool done = !cycle_to_continue(run, *stage, record, &*store);
         line.state = done ? "done" : record->attempts > 0 ? name_of(record->state) : "to do";
         if (line.state == "completed") line.state = "to extend";
@@ -276,8 +302,19 @@ Row row(const Line& line) {
           remark(line)};
 }
 
-void plan(const std::string& manifest, const ExpandOptions& options, Context& context) {
-  Plan expanded = load_manifests({manifest}, options).plans.front();
+void print_stages(const std::vector<Line>& lines, bool of_several_experiments) {
+  Row header = {"run", "stage", "variant", "seed", "N", "cycle", "state", ""};
+  if (of_several_experiments) header.insert(header.begin() + 2, "experiment");
+  print_table(header, lines, [&](const Line& line) {
+    Row cells = row(line);
+    if (of_several_experiments) cells.insert(cells.begin() + 2, line.run->experiment);
+    return cells;
+  });
+}
+
+void plan(const std::vector<std::string>& manifests, const ExpandOptions& options,
+          Context& context) {
+  Plan expanded = joined(load_manifests(manifests, options).plans);
   const std::optional<Store> store = open_if_there(context.store);
   const auto known = store ? store->runs() : std::vector<RunRecord>{};
   const std::size_t longer = take_longer_targets(known, expanded);
@@ -307,7 +344,7 @@ void plan(const std::string& manifest, const ExpandOptions& options, Context& co
   fmt::print("{} at scale {}: {}, {}\n\n", expanded.experiment,
              expanded.scale.empty() ? "base" : expanded.scale, counted(expanded.runs.size(), "run"),
              counted(lines.size(), "stage"));
-  print_table({"run", "stage", "variant", "seed", "N", "cycle", "state", ""}, lines, row);
+  print_stages(lines, manifests.size() > 1);
   print_numerics(lines);
   fmt::print(
       "\nleft: {:.3g} particle-steps, about {} on {} cores at {:.0f} M particle-steps/s each ({}),"
@@ -323,18 +360,21 @@ void plan(const std::string& manifest, const ExpandOptions& options, Context& co
 }  // namespace
 
 void add_plan(CLI::App& app, Context& context) {
-  auto manifest = std::make_shared<std::string>();
+  auto manifests = std::make_shared<std::vector<std::string>>();
   auto options = std::make_shared<ExpandOptions>();
   CLI::App* command = app.add_subcommand(
-      "plan", "Show the runs of a manifest, what is done, and the cost of the rest");
-  command->add_option("manifest", *manifest, "YAML manifest")->required();
+      "plan", "Show the runs of manifests, what is done, and the cost of the rest");
+  command->add_option("manifest", *manifests, "YAML manifests")->required();
   add_expand_options(*command, *options);
   add_engine_option(*command, *options);
   add_common_options(*command, context);
   command->footer(
       "For each new run, prints the values in which it differs from the nearest known one.\n"
-      "Examples:\n  shearcell plan experiments/drag.yaml --scale paper");
-  command->callback([manifest, options, &context] { plan(*manifest, *options, context); });
+      "Runs that several of the manifests share are counted once.\n"
+      "Examples:\n"
+      "  shearcell plan experiments/drag.yaml --scale paper\n"
+      "  shearcell plan experiments/*.yaml --scale paper       # all of a campaign");
+  command->callback([manifests, options, &context] { plan(*manifests, *options, context); });
 }
 
 }  // namespace shearcell::cli

@@ -98,7 +98,7 @@ class Campaign {
       const JobState before = parent_state(j);
       if (before == JobState::ended || error_ || stop_requested()) {
         job.state = JobState::ended;
-        ++result_.blocked;
+        ++(was_done(jobs_[j]) ? result_.already : result_.blocked);
       } else if (held) {
         if (look == kNone && Clock::now() >= job.look_at) look = j;
       } else if (before == JobState::done) {
@@ -106,6 +106,15 @@ class Campaign {
       }
     }
     return look;
+  }
+
+  // Of a job that is not looked at any more.
+  bool was_done(const StageJob& job) const {
+    try {
+      return stage_done(store_, store_.run(job.id));
+    } catch (const std::exception&) {
+      return false;  // whoever computes it next will say why
+    }
   }
 
   JobState parent_state(std::size_t j) const {

@@ -158,6 +158,17 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
                         R"([{"field": "amplitude_rad", "value": 0.1, "store_has": 0.0833}])"));
   expect(0, {"plan", "twin.yaml", "--cycles", "1"},
          {"also in tiny", "new: amplitude_rad 0.1 (store has 0.0833)"});
+
+  // Both: the shared run counts once, as long as the one that asks for more of it.
+  twin.replace(twin.find("cycles: 2"), 9, "cycles: 4");
+  write("twin.yaml", twin);
+  const auto both = json({"plan", "m.yaml", "twin.yaml", "--json"});
+  EXPECT_EQ(both.at("experiment"), "tiny, twin");
+  EXPECT_EQ(both.at("runs"), 3);
+  EXPECT_EQ(both.at("stages").size(), 4U);
+  EXPECT_EQ(stage(both, "shear", 1).at("cycles"), 4);
+  EXPECT_EQ(both.at("particle_steps_left"), 300.0 * (3 + 1 + 4) * 10000);
+  expect(0, {"plan", "m.yaml", "twin.yaml"}, {"experiment", "tiny, twin at scale", "3 runs"});
 }
 
 class Sharing : public Care {

@@ -79,6 +79,16 @@ TEST_F(Interruption, BeforeTheFirstStageBeginsNothing) {
   EXPECT_EQ(resume(store_).completed, 3U);
 }
 
+TEST_F(Interruption, LeavesNothingUnbegunThatWasDoneBefore) {
+  const std::string text = tiny_manifest("", kBothFluids);
+  compute(store_, text);
+  request_stop(true);
+  const CampaignResult result = compute(store_, text);
+  request_stop(false);
+  EXPECT_EQ(result.already, 3U);
+  EXPECT_EQ(result.blocked, 0U);
+}
+
 // Two programs at once on one store share the work, and nothing is mixed up.
 TEST_F(Interruption, ByAnotherProgramOnTheSameStoreLeavesNoTrace) {
   const std::string text = tiny_manifest("  cycles: 4\n", kBothFluids);
