@@ -214,9 +214,13 @@ class Campaign {
     progress_.begin(job.name);
     const StageOutcome outcome = run_stage(store_, job.id, options_of(job));
     switch (outcome) {
-      case StageOutcome::completed:
-        finish(job, &CampaignResult::completed, done_text(job), true);
+      case StageOutcome::completed: {
+        // An experiment may ask for no more than what another made.
+        const bool computed = store_.run(job.id).particle_steps > run.particle_steps;
+        finish(job, computed ? &CampaignResult::completed : &CampaignResult::already,
+               done_text(job), true);
         return JobState::done;
+      }
       case StageOutcome::interrupted:
         finish(job, &CampaignResult::interrupted, "interrupted", false);
         return JobState::ended;
