@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace shearcell {
@@ -65,20 +66,52 @@ std::optional<GrowthFit> fit(const Eigen::ArrayXd& log_size, const Eigen::ArrayX
   return GrowthFit{theta[0] - theta[1] * mean, theta[1]};
 }
 
-/// Interval of what `value` computes from the fit to a selection of runs.
+/// Interval of what `value` computes from the counts of a selection of runs, added up.
 template <class Value>
 std::optional<Estimate> over_selections(const Cases& cases, const Value& value) {
   return bootstrapped(static_cast<std::size_t>(cases.grew.cols()),
-                      [&](std::span<const std::size_t> selection) {
+                      [&](std::span<const std::size_t> selection) -> std::optional<double> {
                         Eigen::ArrayXd grew = Eigen::ArrayXd::Zero(cases.log_size.size());
                         Eigen::ArrayXd shrank = grew;
                         for (const std::size_t run : selection) {
                           grew += cases.grew.col(static_cast<Eigen::Index>(run));
                           shrank += cases.shrank.col(static_cast<Eigen::Index>(run));
                         }
-                        const std::optional<GrowthFit> found = fit(cases.log_size, grew, shrank);
-                        return found ? value(*found) : std::nullopt;
+                        return value(grew, shrank);
                       });
+}
+
+/// The same of what `value` computes from the fit.
+template <class Value>
+std::optional<Estimate> over_fits(const Cases& cases, const Value& value) {
+  return over_selections(cases, [&](const Eigen::ArrayXd& grew, const Eigen::ArrayXd& shrank) {
+    const std::optional<GrowthFit> found = fit(cases.log_size, grew, shrank);
+    return found ? value(*found) : std::nullopt;
+  });
+}
+
+/// Pools neighbouring sizes until the share that grew rises from pool to pool; the smallest size of
+/// the first pool of which more than half grew. Infinite if there is none.
+double first_that_grows(const Eigen::ArrayXd& grew, const Eigen::ArrayXd& shrank) {
+  struct Pool {
+    double size, grew, all;
+  };
+  std::vector<Pool> pools;
+  for (Eigen::Index k = 0; k < grew.size(); ++k) {
+    if (!(grew[k] + shrank[k] > 0)) continue;
+    pools.push_back({static_cast<double>(k + 1), grew[k], grew[k] + shrank[k]});
+    while (pools.size() > 1) {
+      const Pool last = pools.back();
+      Pool& before = pools[pools.size() - 2];
+      if (last.grew * before.all > before.grew * last.all) break;
+      before.grew += last.grew;
+      before.all += last.all;
+      pools.pop_back();
+    }
+  }
+  const auto found =
+      std::ranges::find_if(pools, [](const Pool& pool) { return 2 * pool.grew > pool.all; });
+  return found == pools.end() ? std::numeric_limits<double>::infinity() : found->size;
 }
 
 }  // namespace
@@ -172,15 +205,24 @@ std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs, Vanished
 
 std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs, Vanished vanished) {
   const Cases cases = cases_of(runs, vanished);
-  const auto found =
-      over_selections(cases, [](const GrowthFit& fit) { return fit.critical_size(); });
+  const auto found = over_fits(cases, [](const GrowthFit& fit) { return fit.critical_size(); });
   const auto largest = static_cast<double>(cases.log_size.size());
   if (!found || found->value < 1 || found->value > largest) return std::nullopt;
   return found;
 }
 
+std::optional<Estimate> monotone_critical_size(std::span<const GrowthBySize> runs) {
+  const auto found = over_selections(
+      cases_of(runs, Vanished::shrank),
+      [](const Eigen::ArrayXd& grew, const Eigen::ArrayXd& shrank) -> std::optional<double> {
+        return first_that_grows(grew, shrank);
+      });
+  if (!found || !(found->value > 1)) return std::nullopt;
+  return found;
+}
+
 std::optional<Estimate> fitted_delta_rho(std::span<const GrowthBySize> runs, double size) {
-  return over_selections(cases_of(runs, Vanished::shrank), [size](const GrowthFit& fit) {
+  return over_fits(cases_of(runs, Vanished::shrank), [size](const GrowthFit& fit) {
     return std::optional<double>(fit.delta_rho(size));
   });
 }

@@ -76,6 +76,11 @@ std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs,
 std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs,
                                       Vanished vanished = Vanished::shrank);
 
+/// The same without an assumed curve: the smallest size from which on delta_rho > 0, if delta_rho
+/// may only rise with size (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). Interval and sizes as
+/// of critical_size(); none if all sizes grow, or none does.
+std::optional<Estimate> monotone_critical_size(std::span<const GrowthBySize> runs);
+
 /// The fitted delta_rho at `size` and its interval.
 std::optional<Estimate> fitted_delta_rho(std::span<const GrowthBySize> runs, double size);
 

@@ -5,9 +5,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -82,44 +80,43 @@ Interval poisson_interval(std::size_t events) {
 
 /// One run's share of the likelihood in one stratum: an amplitude and a bin of phi.
 struct Share {
-  std::size_t stratum;
   double cycles;
   double log_size;
   bool event;
 };
 
-using Strata = std::map<std::size_t, std::vector<const Share*>>;
+using Strata = std::map<std::pair<double, std::int64_t>, std::vector<Share>>;
 
-/// Derivative of the log likelihood by the exponent, with each stratum's c at its maximum: the sum
-/// over events of ln N less its mean over the stratum, weighted by cycles N^a.
-double score(const Strata& strata, double exponent) {
-  double sum = 0;
+struct Likelihood {
+  double logarithm = 0;  ///< up to a constant
+  double score = 0;      ///< its derivative by the exponent, which falls with the exponent
+};
+
+/// Of the exponent, with each stratum's c at its maximum. The score is the sum over events of ln N
+/// less its mean over the stratum, weighted by cycles N^a.
+Likelihood likelihood(const Strata& strata, double exponent) {
+  Likelihood sum;
   for (const auto& [stratum, shares] : strata) {
     double weights = 0, weighted = 0, logs = 0, events = 0;
-    for (const Share* share : shares) {
-      const double weight = share->cycles * std::exp(exponent * share->log_size);
+    for (const Share& share : shares) {
+      const double weight = share.cycles * std::exp(exponent * share.log_size);
       weights += weight;
-      weighted += weight * share->log_size;
-      logs += share->event ? share->log_size : 0;
-      events += share->event ? 1 : 0;
+      weighted += weight * share.log_size;
+      logs += share.event ? share.log_size : 0;
+      events += share.event ? 1 : 0;
     }
-    if (events > 0 && weights > 0) sum += logs - events * weighted / weights;
+    if (!(events > 0 && weights > 0)) continue;
+    sum.logarithm += exponent * logs - events * std::log(weights);
+    sum.score += logs - events * weighted / weights;
   }
   return sum;
 }
 
-/// The exponent of maximum likelihood; the score falls with it. Infinite where all events are in
-/// the largest or the smallest cells; none where no bin compares two sizes.
-std::optional<double> most_likely(const Strata& strata) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  double low = -10, high = 10;
-  const bool rises = score(strata, low) > 1e-9, falls = score(strata, high) < -1e-9;
-  if (!rises && !falls) return std::nullopt;
-  if (!falls) return infinite;
-  if (!rises) return -infinite;
-  for (int halving = 0; halving < 40; ++halving) {
+/// Where `falls`, which is true from some point between the ends on, begins to be true.
+double bisected(double low, double high, const auto& falls) {
+  for (int halving = 0; halving < 60; ++halving) {
     const double middle = (low + high) / 2;
-    (score(strata, middle) > 0 ? low : high) = middle;
+    (falls(middle) ? high : low) = middle;
   }
   return (low + high) / 2;
 }
@@ -209,27 +206,38 @@ std::vector<NucleationRate> nucleation_rates(RunGroup runs) {
 }
 
 std::optional<Estimate> size_exponent(RunGroup runs) {
-  std::map<std::pair<double, std::int64_t>, std::size_t> strata;
-  std::vector<std::vector<Share>> shares;
+  Strata strata;
+  std::size_t counted = 0;
   for (const FigureRun* run : runs) {
-    std::vector<Share> of_run;
-    for (const auto& [bin, stay] : stays_of(*run)) {
+    const Stays stays = stays_of(*run);
+    counted += stays.empty() ? 0 : 1;
+    for (const auto& [bin, stay] : stays) {
       if (!(stay.grain_cycles > 0)) continue;
-      const auto stratum =
-          strata.emplace(std::pair(number_of(*run, "amplitude_rad"), bin), strata.size());
-      of_run.push_back({stratum.first->second, stay.cycles,
-                        std::log(stay.grain_cycles / stay.cycles), stay.events > 0});
+      strata[{number_of(*run, "amplitude_rad"), bin}].push_back(
+          {stay.cycles, std::log(stay.grain_cycles / stay.cycles), stay.events > 0});
     }
-    if (!of_run.empty()) shares.push_back(std::move(of_run));
   }
-  if (shares.size() < least_runs) return std::nullopt;
-  return bootstrapped(shares.size(), [&](std::span<const std::size_t> selected) {
-    Strata by_stratum;
-    for (const std::size_t run : selected) {
-      for (const Share& share : shares[run]) by_stratum[share.stratum].push_back(&share);
-    }
-    return most_likely(by_stratum);
-  });
+  constexpr double widest = 30;  // N^30 is still a number
+  const bool bounded =
+      likelihood(strata, -widest).score > 1e-9 && likelihood(strata, widest).score < -1e-9;
+  if (counted < least_runs || !bounded) return std::nullopt;
+  const double value = bisected(
+      -widest, widest, [&](double exponent) { return likelihood(strata, exponent).score < 0; });
+  const boost::math::chi_squared one_parameter(1);
+  const double least = likelihood(strata, value).logarithm -
+                       boost::math::quantile(one_parameter, confidence_level) / 2;
+  const auto unlikely = [&](double exponent) {
+    return likelihood(strata, exponent).logarithm < least;
+  };
+  const Interval interval = {
+      bisected(-widest, value, [&](double exponent) { return !unlikely(exponent); }),
+      bisected(value, widest, unlikely)};
+  const double error =
+      (interval.high - interval.low) / (2 * normal_quantile((1 + confidence_level) / 2));
+  return Estimate{.value = value,
+                  .interval = interval,
+                  .runs = counted,
+                  .spread = error * std::sqrt(static_cast<double>(counted))};
 }
 
 }  // namespace shearcell

@@ -56,9 +56,10 @@ struct NucleationRate {
 std::vector<NucleationRate> nucleation_rates(RunGroup runs);
 
 /// The exponent a of rate = c(amplitude, phi) N_inves^a, by maximum likelihood: onsets are a
-/// Poisson process with a constant c in each bin of phi at each amplitude. Interval by bootstrap
-/// over runs. None if no bin with an event has runs of two sizes, if all events are in the largest
-/// or the smallest cells, or for fewer than least_runs runs.
+/// Poisson process with a constant c in each bin of phi at each amplitude. Interval of the profile
+/// likelihood, since a run has one event at most (D. R. Cox and D. Oakes, Analysis of Survival
+/// Data, 1984). None if no bin with an event has runs of two sizes, if all events are
+/// in the largest or the smallest cells that they could be in, or for fewer than least_runs runs.
 std::optional<Estimate> size_exponent(RunGroup runs);
 
 }  // namespace shearcell

@@ -115,8 +115,4 @@ inline constexpr Margin margin_wall_delay = {
     "cycle of 20 % crystalline grains, rough walls against smooth, log2 of the ratio", 1, "",
     "smooth walls that matter halve the time"};
 
-inline constexpr Margin margin_size_exponent = {
-    "exponent of the rate of nucleation against N_inves", 1.0 / 6, "",
-    "half of what separates the volume (1) from the area of the walls (2/3)"};
-
 }  // namespace shearcell

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -56,10 +57,14 @@ std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs) {
 }
 
 std::optional<double> median_wait(std::span<const Waiting> runs) {
-  for (const SurvivalStep& step : kaplan_meier(runs)) {
-    if (step.survival <= 0.5 + 1e-12) return step.cycle;
-  }
-  return std::nullopt;
+  constexpr double rounding = 1e-12;
+  const std::vector<SurvivalStep> steps = kaplan_meier(runs);
+  const auto reached = std::ranges::find_if(
+      steps, [](const SurvivalStep& step) { return step.survival <= 0.5 + rounding; });
+  if (reached == steps.end()) return std::nullopt;
+  const auto next = std::next(reached);
+  const bool half = reached->survival > 0.5 - rounding && next != steps.end();
+  return half ? (reached->cycle + next->cycle) / 2 : reached->cycle;
 }
 
 double log_rank(std::span<const Waiting> a, std::span<const Waiting> b) {

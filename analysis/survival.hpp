@@ -26,8 +26,9 @@ struct SurvivalStep {
 /// Stat. Assoc. 53, 457 (1958).
 std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs);
 
-/// The first cycle after which at most half of the runs still wait; none if more than half do at
-/// the end.
+/// The first cycle after which less than half of the runs still wait; the middle of the cycles
+/// between which exactly half do, as the median of an even number of values. None if more than half
+/// wait at the end.
 std::optional<double> median_wait(std::span<const Waiting> runs);
 
 /// The log-rank statistic: events of `a` observed and expected if both groups wait alike, over the

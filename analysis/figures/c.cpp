@@ -41,17 +41,19 @@ struct AmplitudeGrowth {
   std::optional<GrowthFit> fit;
   std::optional<Estimate> critical;          ///< interval of the fit's critical size
   std::optional<Estimate> without_vanished;  ///< the same if those that vanished are left out
+  std::optional<Estimate> monotone;          ///< without an assumed curve
 };
 
 std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs) {
   std::vector<AmplitudeGrowth> all;
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
-    AmplitudeGrowth one{amplitude, &published_nearest(amplitude), members, {}, {}, {}, {}, {}};
+    AmplitudeGrowth one{amplitude, &published_nearest(amplitude), members, {}, {}, {}, {}, {}, {}};
     one.runs = followed(members, one.published->n_bin);
     one.onset_cycle = median_wait(waits_for_onset(members));
     one.fit = fit_growth(one.runs);
     one.critical = critical_size(one.runs);
     one.without_vanished = critical_size(one.runs, Vanished::left_out);
+    one.monotone = monotone_critical_size(one.runs);
     all.push_back(std::move(one));
   }
   return all;
@@ -153,13 +155,17 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
                    "without_vanished_low_grains",
                    "without_vanished_high_grains",
                    "without_vanished_standard_error_grains",
+                   "monotone_grains",
+                   "monotone_low_grains",
+                   "monotone_high_grains",
+                   "monotone_standard_error_grains",
                    "logistic_slope",
                    "supplement_grains",
                    "runs"};
   for (const AmplitudeGrowth& one : all) {
     TableRow& row =
         table.rows.emplace_back(TableRow{one.amplitude, one.published->n_bin, one.onset_cycle});
-    for (const auto& size : {one.critical, one.without_vanished}) {
+    for (const auto& size : {one.critical, one.without_vanished, one.monotone}) {
       std::ranges::move(cells_of(size), std::back_inserter(row));
     }
     row.insert(row.end(), {one.fit ? TableValue(one.fit->slope) : TableValue(),
@@ -249,6 +255,7 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   if (one.onset_cycle) note += fmt::format(", onset at cycle {:.3g} (median)", *one.onset_cycle);
   if (relative) {
     note += fmt::format("; {:.3g} grains", one.critical->value);
+    if (one.monotone) note += fmt::format(", {} without an assumed curve", one.monotone->value);
     relative = mapped(*one.critical, [&](double size) { return size / published - 1; });
     relative->spread /= published;
   } else {

@@ -118,16 +118,29 @@ FigureTable rate_table(const Groups& groups) {
   return table;
 }
 
+/// The exponent of a rate that is proportional to the area of the walls, N^(2/3), against N_inves,
+/// of which small cells have a smaller share: from the smallest cells to the largest.
+double exponent_of_walls(std::span<const FigureRun> runs) {
+  const auto sizes = runs_by(runs, "grains");
+  const auto& [smallest, in_smallest] = *sizes.begin();
+  const auto& [largest, in_largest] = *sizes.rbegin();
+  return 2.0 / 3 * std::log(largest / smallest) /
+         std::log(interior_grains(in_largest) / interior_grains(in_smallest));
+}
+
+/// The margin is half of what separates the volume from the walls.
 Verdict rate_follows_volume(std::span<const FigureRun> runs) {
+  const double walls = exponent_of_walls(runs);
   const std::vector<const FigureRun*> all = pointers(runs);
   std::optional<Estimate> excess = size_exponent(all);
   if (excess) excess = mapped(*excess, [](double exponent) { return exponent - 1; });
-  return decide({"title: the rate of nucleation is proportional to the volume, not to the area of "
-                 "the walls",
-                 margin_size_exponent.value},
-                "exponent of the rate against N_inves less 1", excess, all.size(),
-                excess ? "maximum likelihood in bins of phi, bootstrap over runs"
-                       : "runs of two sizes with onsets at the same phi are needed");
+  return decide(
+      {"title: the rate of nucleation is proportional to the volume, not to the area of "
+       "the walls",
+       (1 - walls) / 2},
+      "exponent of the rate against N_inves less 1", excess, all.size(),
+      excess ? fmt::format("maximum likelihood in bins of phi; walls would give {:.2f}", walls - 1)
+             : "runs of two sizes with onsets at the same phi are needed");
 }
 
 }  // namespace

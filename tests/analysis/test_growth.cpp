@@ -144,6 +144,20 @@ TEST(CriticalSize, IntervalComesFromTheRuns) {
   EXPECT_GT(band.interval.high, 0);
 }
 
+TEST(MonotoneCriticalSize, IsWhereTheShareThatGrowsPassesAHalf) {
+  const auto size = [](const GrowthBySize& counts) {
+    return monotone_critical_size(std::vector(3, counts));
+  };
+  EXPECT_EQ(size({{1, {1, 9, 0}}, {2, {4, 6, 0}}, {3, {3, 7, 0}}, {5, {8, 2, 0}}})->value, 5);
+  EXPECT_EQ(size({{1, {1, 9, 0}}, {2, {7, 3, 0}}, {3, {4, 6, 0}}, {5, {8, 2, 0}}})->value, 2)
+      << "2 and 3 together: 11 of 20";
+  EXPECT_FALSE(size({{1, {6, 4, 0}}, {2, {7, 3, 0}}}).has_value()) << "all sizes grow";
+  EXPECT_FALSE(size({{1, {4, 6, 0}}, {2, {5, 5, 0}}}).has_value()) << "none grows";
+  std::vector<GrowthBySize> runs;
+  for (int run = 0; run < 6; ++run) runs.push_back(logistic_growth(15, 2));
+  EXPECT_NEAR(monotone_critical_size(runs)->value, 15, 1.1);
+}
+
 TEST(BinnedGrowth, LeavesOutWhatIsRarelySeen) {
   GrowthBySize counts;
   counts[1] = {1, 9, 0};

@@ -209,8 +209,8 @@ TEST(SizeExponent, NeedsTwoSizesAtOnePhi) {
   EXPECT_FALSE(size_exponent(pointers(apart)));
 }
 
-// Many selections have onsets in the large cells alone: an exponent without an upper bound.
-TEST(SizeExponent, OnsetsInLargeCellsAloneLeaveTheLowerEnd) {
+// By one onset of six small runs, and none.
+TEST(SizeExponent, OnsetsInLargeCellsAloneGiveNone) {
   std::vector<FigureRun> runs;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     runs.push_back(waiting(1000, seed, seed == 1 ? 9 : 0, 30));
@@ -218,8 +218,9 @@ TEST(SizeExponent, OnsetsInLargeCellsAloneLeaveTheLowerEnd) {
   }
   const auto found = size_exponent(pointers(runs));
   ASSERT_TRUE(found);
-  EXPECT_TRUE(std::isinf(found->interval.high));
   EXPECT_GT(found->interval.low, 0);
+  EXPECT_GT(found->interval.high - found->value, found->value - found->interval.low)
+      << "one onset says less of how rare they are in small cells than of how frequent";
   runs[0] = waiting(1000, 1, 0, 30);
   EXPECT_FALSE(size_exponent(pointers(runs))) << "none in the small ones";
 }
@@ -237,6 +238,7 @@ TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
   ASSERT_EQ(result.verdicts.size(), 1U);
   ASSERT_TRUE(result.verdicts[0].estimate);
   EXPECT_NEAR(*result.verdicts[0].estimate, 0, 0.15);
+  EXPECT_NEAR(result.verdicts[0].margin, 1.0 / 6, 1e-12) << "all grains are interior ones here";
   EXPECT_TRUE(find_figure("nucleation")->make(std::span(runs.data(), 1)).verdicts.empty());
 }
 

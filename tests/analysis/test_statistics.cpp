@@ -168,6 +168,8 @@ TEST(KaplanMeier, OfTheRemissionTimes) {
   EXPECT_EQ(median_wait(treated), 23);
   EXPECT_EQ(median_wait(untreated), 8);
   EXPECT_FALSE(median_wait(waits({3, -4, -5})).has_value());
+  EXPECT_EQ(median_wait(waits({2, 3, 7, 9})), 5) << "the middle of an even number";
+  EXPECT_EQ(median_wait(waits({2, 3, -7, -9})), 3) << "no later event";
 }
 
 TEST(LogRank, OfTheRemissionTimes) {

@@ -48,6 +48,8 @@ TEST(Verdict, SaysHowManyRunsWouldDecide) {
   };
   EXPECT_FALSE(needed(between(-1, 1)).has_value()) << "decided";
   EXPECT_EQ(needed(between(-3, 3, 4, 2)), runs_to_resolve(between(0, 0, 4, 2), 2, true));
+  EXPECT_EQ(needed(between(1, 2.5, 4, 2)), runs_to_resolve(between(0, 0, 4, 2), 0.25, false))
+      << "not zero, so a truth of zero is not asked about";
   EXPECT_EQ(needed(between(1, 2.5, 40, 2)), runs_to_resolve(between(0, 0, 4, 2), 0.25, false))
       << "enough runs for most truths, but the estimate is near the margin";
 }

@@ -27,15 +27,18 @@ HEADLINES = [
     ("S3", "time step: the onset is the same for steps of 1.0e-4", "phi at the onset, time step 1.0e-4 s less 4.4e-5 s", "not asked"),
     ("B5", "B.5: at cycles", "phi gained by pauses", "higher"),
     ("S4", "B.6: phi is the same at cycles", "phi, moving top less moving bottom wall", "equal"),
+    ("C", "C: the critical size at A = 0.05", "critical size [grains], A = 0.05", "about 10"),
+    ("C", "C: the critical size at A = 0.0667", "critical size [grains], A = 0.0667", "about 13"),
     ("C", "C: the critical size at A = 0.0833", "critical size [grains], A = 0.0833", "about 16"),
     ("C", "C: the critical size at A = 0.1", "critical size [grains], A = 0.1", "about 20"),
     ("S6", "D: the onset at A = 0.0833 rad is the same", "phi at the onset, without less with gravity", "equal"),
     ("S5a", "C: the onset at A = 0.05 rad", "phi at the onset, A = 0.05", "0.646 +- 0.001"),
-    ("nucleation", "title: the rate", "exponent of the nucleation rate against the volume, less 1", "homogeneous: 0"),
+    ("S5b", "C: the onset for N_inves >= 6000", "phi at the onset, N_inves >= 6000", "0.646 +- 0.001"),
+    ("nucleation", "title: the rate", "exponent of the nucleation rate against N_inves, less 1", "homogeneous: 0"),
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper less the lower third", "more near the top"),
 ]
 # Where README.md takes them from; of several verdicts on a claim, the one with the most runs, or else the first here.
-SOURCES = ("paper", "desk")
+SOURCES = ("paper", "decide", "desk")
 
 # How a quantity of a verdict is shown: the pattern of its name, what converts its value, and a unit.
 SHOWN = [
