@@ -26,7 +26,7 @@ enum class Scalars { own, mechanics };
 /// Calls visit(kept name, value) for each.
 template <Scalars kWhich, class AnyMeasures, class Visit>
 void for_each_kept(AnyMeasures& measures, const Visit& visit) {
-  for (const auto& [name, unit, meaning, member] : all_scalar_measures()) {
+  for (const auto& [name, unit, meaning, member] : kept_scalar_measures()) {
     if constexpr (kWhich == Scalars::mechanics) {
       const auto* mechanical = std::get_if<MechanicalMember>(&member);
       if (mechanical != nullptr) visit(mechanical->kept, measures.mechanics.*mechanical->value);

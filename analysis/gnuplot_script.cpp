@@ -71,11 +71,35 @@ struct Extent {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
 
-  void take(double value, const std::optional<double>& error) {
-    low = std::min({low, value, value - error.value_or(0)});
+  void take(double value, const std::optional<double>& error, bool positive = false) {
+    const double end = value - error.value_or(0);
+    low = std::min({low, value, positive && end <= 0 ? value : end});
     high = std::max({high, value, value + error.value_or(0)});
   }
 };
+
+/// For a logarithmic axis of two decades or less: 1, 2 and 5 times a power of ten, or more values
+/// where few of these lie within.
+std::vector<std::string> ticks_of_decades(const Extent& data) {
+  std::vector<std::string> ticks;
+  const bool narrow = data.high < 4 * data.low;
+  const double power =
+      std::pow(10, std::floor(std::log10(narrow ? (data.high - data.low) / 2 : data.low)));
+  if (!(power > 0) || !std::isfinite(power)) return {digits(data.low)};
+  if (narrow) {
+    const double step = power * ((data.high - data.low) / power > 5 ? 2 : 1);
+    for (double at = std::ceil(data.low / step - 1e-9); at * step <= data.high * (1 + 1e-9); ++at) {
+      ticks.push_back(digits(at * step));
+    }
+    return ticks;
+  }
+  for (double decade = power; decade <= data.high; decade *= 10) {
+    for (const double at : {decade, 2 * decade, 5 * decade}) {
+      if (at >= data.low && at <= data.high) ticks.push_back(digits(at));
+    }
+  }
+  return ticks;
+}
 
 /// The commands for one chart. The data are written into the script, so that it draws the same
 /// points as the report.
@@ -84,10 +108,13 @@ class Script {
   explicit Script(const FigureTable& table) : chart_(table.chart) {
     for (const Series& series : chart_.series) {
       points_.push_back(points_of(table, series));
-      for (ChartPoint& p : points_.back()) {
-        p.x += series.shift;
-        x_.take(p.x, p.x_error);
-        y_.take(p.y, p.y_error);
+      for (ChartPoint& p : points_.back()) p.x += series.shift;
+      std::erase_if(points_.back(), [this](const ChartPoint& p) {
+        return (chart_.x.log && !(p.x > 0)) || (chart_.y.log && !(p.y > 0));
+      });
+      for (const ChartPoint& p : points_.back()) {
+        x_.take(p.x, p.x_error, chart_.x.log);
+        y_.take(p.y, p.y_error, chart_.y.log);
       }
       longest_ = std::max(longest_, points_.back().size());
     }
@@ -129,8 +156,10 @@ class Script {
 
   void ticks(const char* name, const Axis& axis, const Extent& data) {
     if (axis.log) add("set logscale {}\n", name);
-    if (axis.log && data.high > 10 * data.low) {
+    if (axis.log && data.high > 100 * data.low) {
       add("set format {0} '10^{{%T}}'\nset m{0}tics 10\n", name);
+    } else if (axis.log) {
+      add("unset m{0}tics\nset {0}tics ({1})\n", name, fmt::join(ticks_of_decades(data), ","));
     }
     if (axis.whole && data.high <= 10) add("set {0}tics 1\nunset m{0}tics\n", name);
     if (axis.log || axis.whole) return;

@@ -30,7 +30,7 @@ void find_crystallites(const VoronoiDiagram& diagram, Analysis& analysis) {
 
 }  // namespace
 
-std::span<const ScalarMeasure> all_scalar_measures() {
+std::span<const ScalarMeasure> kept_scalar_measures() {
   using M = Measures;
   using F = Mechanics;
   using U = MechanicalUnits;
@@ -50,7 +50,7 @@ std::span<const ScalarMeasure> all_scalar_measures() {
        &M::contacts_per_grain},
       {"crystallites", "1", "number of crystallites of interior grains", &M::crystallites},
       {"largest_crystallite", "1", "grains in the largest crystallite", &M::largest_crystallite},
-      {"pressure_Pa", "Pa", "mean normal stress of interior grains, from contacts",
+      {"contact_pressure_Pa", "Pa", "mean normal stress of interior grains, from contacts",
        MechanicalMember{"pressure_k_per_d", &F::pressure, &U::stress_Pa}},
       {"deviator_Pa", "Pa", "sqrt(s:s / 2) of the deviatoric stress s of interior grains",
        MechanicalMember{"deviator_k_per_d", &F::deviator, &U::stress_Pa}},
@@ -137,6 +137,10 @@ std::span<const ScalarMeasure> all_scalar_measures() {
        "change of all elastic, kinetic and gravitational energy and of the load's in that cycle",
        NumberOf{"ledger"}}};
   return measures;
+}
+
+std::span<const ScalarMeasure> all_scalar_measures() {
+  return kept_scalar_measures().subspan(1);
 }
 
 std::string_view ScalarMeasure::derived() const {

@@ -3,17 +3,22 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 
 #include "analysis/figure.hpp"
 #include "analysis/statistics.hpp"
+#include "core/named.hpp"
 
 namespace shearcell {
 
 /// A run is censored when its onset lies outside of what was observed. `unclear`: it is within, but
 /// the method finds no phi.
-enum class Observed { yes, never, before_start, unclear };
+enum class Observed : std::uint8_t { yes, never, before_start, unclear };
+template <>
+inline constexpr auto kNames<Observed> = names_in_order<Observed>("observed", "never",
+                                                                  "before_start", "unclear");
 
 struct RunOnset {
   Observed observed = Observed::never;

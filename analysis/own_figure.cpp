@@ -17,7 +17,7 @@
 namespace shearcell {
 namespace {
 
-/// "phi_profile" and "", "pressure" and "Pa" of "pressure_Pa".
+/// "phi_profile" and "", "deviator" and "Pa" of "deviator_Pa".
 MeasureColumn column_of(std::string_view measure, std::string_view of, Quantity quantity = {}) {
   std::string name(measure);
   std::string unit(of == "%" ? "percent" : of == "1" ? "" : of == "d^2" ? "d2" : of);
@@ -35,7 +35,8 @@ MeasureColumn scalar_column(std::string_view name) {
 Axis named_axis(std::string_view measure, std::string_view unit) {
   std::string name = column_of(measure, unit).name;
   std::ranges::replace(name, '_', ' ');
-  return {.name = std::move(name), .unit = unit == "1" ? Text() : Text(std::string(unit))};
+  if (unit == "1") return {.name = std::move(name)};
+  return {.name = std::move(name), .unit = Text(unit == "d^2" ? "d²" : std::string(unit))};
 }
 
 Axis axis_of(const std::string& key) {
@@ -261,8 +262,10 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> run
 std::string words_of(const nlohmann::json& values) {
   std::string text;
   for (const auto& [key, value] : values.items()) {
-    text += (text.empty() ? "" : ", ") + key + "=" +
-            (value.is_string() ? value.get<std::string>() : value.dump());
+    const std::string shown = value.is_string()         ? value.get<std::string>()
+                              : value.is_number_float() ? fmt::format("{}", value.get<double>())
+                                                        : value.dump();
+    text += (text.empty() ? "" : ", ") + key + "=" + shown;
   }
   return text;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/team.hpp"
 
+#include "core/memory.hpp"
 #include "core/threads.hpp"
 
 #if defined(__x86_64__)
@@ -35,7 +36,7 @@ void wait_for_change(const std::atomic<std::uint32_t>& number, std::uint32_t see
 }  // namespace
 
 Team::Team(std::size_t threads)
-    : spins_(threads <= std::thread::hardware_concurrency() ? kSpins : kSpinsWithFewCores),
+    : spins_(threads <= usable_cores() ? kSpins : kSpinsWithFewCores),
       workers_(start_threads(threads, [this](std::size_t k) { work_until_stopped(k); })) {
   most_.resize(size());
 }

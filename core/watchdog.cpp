@@ -207,7 +207,7 @@ void check_grains(const WatchTask& task) {
                              "The grains are too soft for this load, or the time step is too "
                              "large: raise the stiffness, lower the pressure, or use a smaller "
                              "time step. If they are merely compressed, raise the limit "
-                             "(max_overlap_diameters)");
+                             "(max_overlap_diameters; while settling it is 0.5 d at least)");
     }
   }
   check_time_step(task);

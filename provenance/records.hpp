@@ -16,7 +16,7 @@ namespace shearcell {
 /// The place of a run in an experiment. A run shared by two experiments has two of them.
 struct Membership {
   std::string experiment;
-  std::string scale;
+  std::string scale;                                 ///< "" where the manifest has none
   std::string variant;                               ///< the swept values: "drag=still"
   nlohmann::json labels = nlohmann::json::object();  ///< swept key -> value
   std::uint64_t seed = 0;
@@ -35,6 +35,11 @@ struct Membership {
     field("checkpoint_every", m.checkpoint_every);
   }
 };
+
+/// What people call a scale: "base" for that of a manifest that has none.
+inline std::string scale_name(const std::string& scale) {
+  return scale.empty() ? "base" : scale;
+}
 
 /// One stage of a run, from the expansion of a manifest.
 struct RunDeclaration {

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 #include <memory>
-#include <thread>
 
 #include "analysis/plot.hpp"
+#include "core/memory.hpp"
 #include "experiments/bench/accuracy/accuracy.hpp"
 #include "experiments/bench/engines.hpp"
 #include "experiments/bench/speed.hpp"
@@ -197,7 +197,7 @@ void measure(const accuracy::Options& options, const std::string& out, Context& 
 void add_accuracy(CLI::App& bench, Context& context) {
   auto options = std::make_shared<accuracy::Options>();
   auto out = std::make_shared<std::string>();
-  options->jobs = std::max(1U, std::thread::hardware_concurrency());
+  options->jobs = usable_cores();
   CLI::App* command = bench.add_subcommand(
       "accuracy", "Measure error against cost of integrators, time steps and stiffness");
   command->add_flag("--quick", options->quick,

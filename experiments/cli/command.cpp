@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <thread>
 
+#include "core/memory.hpp"
 #include "provenance/io/read_number.hpp"
 
 namespace shearcell::cli {
@@ -29,7 +29,9 @@ CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const c
 }
 
 void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
-  add_each(command, "--variant", variants, "Only runs with these swept values, as fluid=cell",
+  add_each(command, "--variant", variants,
+           "Only runs with this swept value, as fluid=cell; several values of one key are "
+           "alternatives, and those of other keys must fit too",
            "KEY=V");
 }
 
@@ -43,7 +45,8 @@ CLI::IsMember is_name() {
 void add_expand_options(CLI::App& command, ExpandOptions& options) {
   command.add_option("--scale", options.scale, "Named size (default: desk)");
   add_count(command, "--cycles", options.cycles, "Cycles instead of the manifest's");
-  add_count(command, "--seeds", options.seeds, "Number of seeds instead of the manifest's");
+  add_count(command, "--seeds", options.seeds, "Number of seeds instead of the manifest's", "N", 1,
+            UINT64_MAX);
   add_variant_option(command, options.variants);
 }
 
@@ -71,12 +74,8 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths,
   return loaded;
 }
 
-std::size_t core_count() {
-  return std::max(1U, std::thread::hardware_concurrency());
-}
-
 MeasureOptions measure_options() {
-  return {.workers = core_count(), .report = terminal_counter("measuring checkpoint")};
+  return {.workers = usable_cores(), .report = terminal_counter("measuring checkpoint")};
 }
 
 std::string unfit_count(const std::string& text, std::uint64_t low, std::uint64_t high) {

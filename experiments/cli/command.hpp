@@ -87,9 +87,6 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths, const Expa
 /// --experiment, --scale, --variant and --seed, each as often as wanted; with `states`, --state.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);
 
-/// Cores of this machine, at least 1.
-std::size_t core_count();
-
 /// All cores; progress on standard error if that is a terminal.
 MeasureOptions measure_options();
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `doctor`: checks the machine for everything that the program can use, and measures its speed.
 #include <fmt/format.h>
-#include <sched.h>
 #include <sys/vfs.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 #include <fstream>
 #include <memory>
 
+#include "core/memory.hpp"
 #include "experiments/bench/speed.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/cost.hpp"
@@ -37,8 +37,7 @@ fs::path place_of(const std::string& store) {
 }
 
 Check cores() {
-  cpu_set_t set;
-  const int usable = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+  const std::size_t usable = usable_cores();
   return {"cores", fmt::format("{} usable", usable), "ok",
           fmt::format("`run` computes {} runs at a time", usable)};
 }

@@ -90,7 +90,8 @@ CycleRange parse_cycles(const std::string& text) {
   for (std::string part; std::getline(parts, part, ':'); ++k) {
     if (part.empty() && k < 3) continue;
     const auto value = read_number<double>(part);
-    if (k >= 3 || !value || !(*value >= 0 && std::isfinite(*value))) {
+    const bool fits = value && std::isfinite(*value) && *value >= (k == 2 ? 1e-9 : 0);
+    if (k >= 3 || !fits || (k == 1 && *value < range.first)) {
       throw std::invalid_argument(
           "--cycles takes A, A:B or A:B:STEP, such as 1.25, 0:60 or ::10 (got " + text + ")");
     }
@@ -172,6 +173,7 @@ std::string check_uri(const std::string& text) {
 
 /// The named runs, or else those of the filters; packings only by name.
 std::vector<SelectedRun> wanted(const Store& store, const ExportOptions& options) {
+  parse_cycles(options.cycles);  // or throw once, not for each run
   std::vector<SelectedRun> runs;
   for (const std::string& prefix : options.runs) {
     RunRecord run = store.find_run(prefix);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "core/memory.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/draw.hpp"
 #include "experiments/runner/progress.hpp"
@@ -68,9 +69,8 @@ void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
   list.push_back(facts(result));
   if (context.json) return;
   tell("{}{}{} ({} scale): {}, {}, {} of them newly measured\n", result.experiment,
-       result.experiment.empty() ? "" : "/", result.name,
-       result.scale.empty() ? "base" : result.scale, counted(result.runs, "run"),
-       counted(result.checkpoints, "checkpoint"), result.measured);
+       result.experiment.empty() ? "" : "/", result.name, scale_name(result.scale),
+       counted(result.runs, "run"), counted(result.checkpoints, "checkpoint"), result.measured);
   for (const auto& file : result.files) tell("  {}\n", file.string());
   print_verdicts(result);
 }
@@ -90,7 +90,7 @@ void figures(FigureArguments& options, Context& context) {
   };
   for (const std::string& problem : wanted.unknown) complain_of(problem);
   FigureOptions& how = options.how;
-  how.workers = core_count();
+  how.workers = usable_cores();
   how.report = terminal_counter("measuring checkpoint");
   nlohmann::json list = nlohmann::json::array();
   std::set<std::string> told;

@@ -280,7 +280,7 @@ std::string measure_reference() {
       "are "
       "those of `--per run`.\n\n"
       "| column | use | meaning |\n|---|---|---|\n";
-  for (const TableColumn& column : table_columns(RowPer::run)) {
+  for (const TableColumn& column : table_columns()) {
     const bool plots = std::ranges::any_of(
         all_scalar_measures(),
         [&](const ScalarMeasure& measure) { return measure.name == column.name; });

@@ -124,30 +124,6 @@ std::size_t take_longer_targets(const std::vector<RunRecord>& known, Plan& plan)
   return longer;
 }
 
-// The runs of several manifests, each once: as long as the experiment that asks for most of it.
-Plan joined(const std::vector<Plan>& plans) {
-  std::vector<std::string> experiments;
-  Plan all;
-  all.scale = plans.front().scale;
-  std::map<std::string, std::size_t> places;  // of a run in all.runs, by its id
-  for (const Plan& plan : plans) {
-    experiments.push_back(plan.experiment);
-    for (const PlannedRun& run : plan.runs) {
-      const auto [place, fresh] = places.try_emplace(run.last.key, all.runs.size());
-      if (fresh) {
-        all.runs.push_back(run);
-        continue;
-      }
-      PlannedRun& known = all.runs[place->second];
-      const bool longer = run.target_cycles > known.target_cycles;
-      if (known.ends_early && (longer || !run.ends_early)) known.ends_early = run.ends_early;
-      known.target_cycles = std::max(known.target_cycles, run.target_cycles);
-    }
-  }
-  all.experiment = fmt::format("{}", fmt::join(experiments, ", "));
-  return all;
-}
-
 // Notes on runs that this machine cannot hold, and on runs by another engine.
 std::vector<std::string> notes_of(const Plan& plan) {
   std::vector<std::string> notes;
@@ -320,7 +296,7 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
   const std::size_t longer = take_longer_targets(known, expanded);
   const std::vector<Line> lines = lines_of(expanded, store, known);
   const Left left = left_of(lines, known);
-  const std::size_t cores = core_count();
+  const std::size_t cores = usable_cores();
   const double seconds = left.core_seconds / static_cast<double>(cores);
   std::vector<std::string> notes = notes_of(expanded);
   if (longer > 0) {
@@ -341,9 +317,8 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
                        {"particle_steps_per_second_and_core", left.rate.particle_steps_per_second},
                        {"rate_measured", left.rate.measured}});
   }
-  fmt::print("{} at scale {}: {}, {}\n\n", expanded.experiment,
-             expanded.scale.empty() ? "base" : expanded.scale, counted(expanded.runs.size(), "run"),
-             counted(lines.size(), "stage"));
+  fmt::print("{} at scale {}: {}, {}\n\n", expanded.experiment, scale_name(expanded.scale),
+             counted(expanded.runs.size(), "run"), counted(lines.size(), "stage"));
   print_stages(lines, manifests.size() > 1);
   print_numerics(lines);
   fmt::print(

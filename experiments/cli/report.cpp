@@ -6,6 +6,7 @@
 
 #include <memory>
 
+#include "core/memory.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/progress.hpp"
 #include "provenance/io/plain_file.hpp"
@@ -50,7 +51,7 @@ void report(ReportCommand& command, Context& context) {
   options.packings.budget = static_cast<std::size_t>(command.megabytes * 1e6);
   if (!command.accuracy.empty()) options.accuracy = command.accuracy;
   for (std::string& run : options.packings.runs) run = store.find_run(run).id;
-  options.workers = core_count();
+  options.workers = usable_cores();
   options.measured = terminal_counter("measuring checkpoint");
   options.packed = terminal_counter("packing checkpoint");
   const Report made = make_report(store, options);
@@ -102,7 +103,7 @@ void add_report(CLI::App& app, Context& context) {
   add_common_options(*sub, context);
   sub->footer(
       R"(The file needs no network: figures to zoom and read values from, verdicts, runs, lineage, and
-packings in 3D with their positions rounded to 16 bits an axis. The store is only read.
+packings in 3D with their positions rounded to 16 bits an axis. Of the store, only the measures that it keeps change.
 Examples:
   shearcell report --out report.html
   shearcell report --run 3f9a --frames 200 --out one-run.html

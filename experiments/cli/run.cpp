@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "core/memory.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/stop.hpp"
@@ -25,7 +26,7 @@ struct RunOptions {
 std::size_t workers(const RunOptions& options) {
   if (options.jobs > 0) return options.jobs;
   const std::size_t each = std::max(options.parallel.threads, options.parallel.ranks);
-  return std::max<std::size_t>(1, core_count() / each);
+  return std::max<std::size_t>(1, usable_cores() / each);
 }
 
 void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options,

@@ -116,8 +116,8 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   if (const std::string why = describe_end(end_of(store, run)); !why.empty())
     tell("ended    {}\n", why);
   for (const Membership& m : run.memberships) {
-    tell("part of  {} ({}) {} seed {}, manifest {:.8}\n", m.experiment,
-         m.scale.empty() ? "base" : m.scale, m.variant, m.seed, m.manifest);
+    tell("part of  {} ({}) {} seed {}, manifest {:.8}\n", m.experiment, scale_name(m.scale),
+         m.variant, m.seed, m.manifest);
     const nlohmann::json given = overrides_of(store, run, m);
     for (const auto& [key, values] : given.items()) {
       tell("         given at the command line: {} {} (manifest: {})\n", key,
@@ -237,7 +237,8 @@ void add_show(CLI::App& app, Context& context) {
   command->footer(
       R"(For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and the
 SHA-256 of every checkpoint in it. For a file (CSV, SVG or lineage): checks that it is what the
-store recorded and that every checkpoint behind it is intact; exit code 4 if not.
+store recorded and that every checkpoint behind it is intact; exit code 4 if not. Pruned
+checkpoints are counted, and are no fault.
 Examples:
   shearcell show 3f9a
   shearcell show drag/S2

@@ -157,7 +157,7 @@ void print(const FigureLineage& lineage) {
   }
   const std::string scale = text_at(facts, "scale");
   tell("figure    {}, {} scale, analysis version {}\n", cut(lineage.record.name, 40),
-       scale.empty() ? "base" : cut(scale, 50), text_at(facts, "analysis_version"));
+       cut(scale_name(scale), 50), text_at(facts, "analysis_version"));
   tell("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at), lineage.record.seq,
        by);
   std::size_t widest = 0;

@@ -11,6 +11,7 @@
 #include <set>
 #include <thread>
 
+#include "core/memory.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/queue_view.hpp"
 #include "experiments/runner/cost.hpp"
@@ -150,7 +151,7 @@ std::optional<Estimate> estimate(const View& view) {
   }
   if (made.work.stages == 0) return std::nullopt;
   made.running = running > 0;
-  made.at_a_time = std::min(made.running ? running : core_count(), made.work.stages);
+  made.at_a_time = std::min(made.running ? running : usable_cores(), made.work.stages);
   return made;
 }
 
@@ -188,8 +189,7 @@ void print_tables(const View& view) {
   std::map<std::string, std::vector<Row>> tables;
   std::map<RunState, std::size_t> count;
   for (const auto& [run, first] : view.runs) {
-    const std::string name =
-        first.experiment + " at scale " + (first.scale.empty() ? "base" : first.scale);
+    const std::string name = first.experiment + " at scale " + scale_name(first.scale);
     if (!tables.contains(name)) experiments.push_back(name);
     const Shown shown{run, view.queued(run)};
     Row& row = tables[name].emplace_back(

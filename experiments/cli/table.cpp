@@ -37,6 +37,10 @@ void table(const TableOptions& options, Context& context) {
     tell_stderr("{} rows of {} columns in {}\n", made.rows.size(), made.columns.size(),
                 options.out);
   }
+  if (made.older_versions > 0) {
+    tell_stderr("left out: {} of another version of the manifest; --all-versions adds them\n",
+                counted(made.older_versions, "run"));
+  }
   for (const auto* messages : {&made.damage, &made.pruned}) {
     for (const std::string& line : *messages) {
       tell_stderr("not measured: {}\n", line);
@@ -50,7 +54,7 @@ void table(const TableOptions& options, Context& context) {
 
 std::string columns_text() {
   std::string text;
-  for (const TableColumn& column : table_columns(RowPer::run)) {
+  for (const TableColumn& column : table_columns()) {
     text += fmt::format("  {:<37} {}\n", column.name, column.meaning);
   }
   return text;
@@ -63,6 +67,8 @@ void add_table(CLI::App& app, Context& context) {
   CLI::App* command =
       app.add_subcommand("table", "Write runs and their measures as one table, CSV or JSON");
   add_selection_options(*command, options->selection);
+  command->add_flag("--all-versions", options->selection.all_versions,
+                    "Runs of older versions of a manifest too");
   CLI::Option* per =
       command->add_option("--per", options->per, "One row for each checkpoint or each run")
           ->check(CLI::IsMember({"checkpoint", "run"}))

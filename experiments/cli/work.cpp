@@ -3,20 +3,17 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
-#include <stop_token>
-#include <thread>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/queue_view.hpp"
 #include "experiments/runner/audit.hpp"
+#include "experiments/runner/repeated.hpp"
 #include "experiments/runner/stop.hpp"
 
 namespace shearcell::cli {
@@ -37,26 +34,16 @@ struct WorkOptions {
 constexpr seconds kReportEvery{10};
 constexpr seconds kSaveEvery{300};
 
-/// Does something every so often, beside the work, until it goes away.
-class Repeated {
- public:
-  Repeated(seconds interval, std::function<void()> deed)
-      : thread_([this, interval, deed = std::move(deed)](const std::stop_token& stop) {
-          std::unique_lock lock(mutex_);
-          while (!wake_.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
-            try {
-              deed();
-            } catch (const std::exception& problem) {
-              tell_stderr("shearcell: {}; tried again in {} s\n", problem.what(), interval.count());
-            }
-          }
-        }) {}
-
- private:
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
-  std::jthread thread_;  // last, so that it ends before what it uses
-};
+/// The deed of a Repeated; when it fails, that is told, and it is tried again next time.
+std::function<void()> tried(std::function<void()> deed, seconds interval) {
+  return [interval, deed = std::move(deed)] {
+    try {
+      deed();
+    } catch (const std::exception& problem) {
+      tell_stderr("shearcell: {}; tried again in {} s\n", problem.what(), interval.count());
+    }
+  };
+}
 
 /// The store that is worked on: the task's own, or a copy on the node's disk that is folded back.
 class WorkStore {
@@ -120,9 +107,9 @@ void work(const WorkOptions& options, Context& context) {
   bool failed_before = false;
   {
     tell();
-    const Repeated reports(kReportEvery, tell);
+    const Repeated reports(kReportEvery, tried(tell, kReportEvery));
     std::optional<Repeated> saves;
-    if (place.is_copy()) saves.emplace(kSaveEvery, [&] { place.save(); });
+    if (place.is_copy()) saves.emplace(kSaveEvery, tried([&] { place.save(); }, kSaveEvery));
     std::vector<StageJob> jobs = unfinished(store, {});
     if (options.leave_failed) failed_before = leave_failed(store, jobs);
     Progress progress(jobs.size());

@@ -29,31 +29,17 @@ std::optional<double> left_of(const PlannedRun& run, const StageSpec& stage,
 std::vector<Bundle> work_left(const std::vector<Plan>& plans, const Store* store) {
   std::map<std::string, RunRecord> known;
   for (RunRecord& run : runs_of(store)) known.emplace(run.id, run);
-  // Two manifests may ask for one run; the longer one decides.
-  std::map<std::string, const PlannedRun*> longest;
-  for (const Plan& plan : plans) {
-    for (const PlannedRun& run : plan.runs) {
-      const PlannedRun*& kept = longest[run.last.key];
-      if (kept == nullptr || run.target_cycles > kept->target_cycles) kept = &run;
-    }
-  }
   std::vector<Bundle> bundles;
   std::map<std::string, std::size_t> places;  // of each packing in bundles
-  std::set<std::string> seen;
-  for (const Plan& plan : plans) {
-    for (const PlannedRun& planned : plan.runs) {
-      if (!seen.insert(planned.last.key).second) continue;
-      const PlannedRun& run = *longest.at(planned.last.key);
-      const auto left = left_of(run, run.last, known, store);
-      if (!left) continue;
-      const auto [place, fresh] = places.try_emplace(run.prepare.key, bundles.size());
-      if (fresh) {
-        bundles.push_back(
-            {run.prepare.key, {}, left_of(run, run.prepare, known, store).value_or(0)});
-      }
-      bundles[place->second].runs.push_back(run.last.key);
-      bundles[place->second].particle_steps += *left;
+  for (const PlannedRun& run : joined(plans).runs) {
+    const auto left = left_of(run, run.last, known, store);
+    if (!left) continue;
+    const auto [place, fresh] = places.try_emplace(run.prepare.key, bundles.size());
+    if (fresh) {
+      bundles.push_back({run.prepare.key, {}, left_of(run, run.prepare, known, store).value_or(0)});
     }
+    bundles[place->second].runs.push_back(run.last.key);
+    bundles[place->second].particle_steps += *left;
   }
   return bundles;
 }

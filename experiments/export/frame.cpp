@@ -108,10 +108,7 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
   const nlohmann::json parameters =
       resolved.is_object() ? resolved.value("parameters", nlohmann::json()) : nlohmann::json();
   for (const auto& [key, value] : parameters.items()) {
-    // `grains` is a measure too.
-    const bool known =
-        std::ranges::any_of(frame.scalars, [&](const auto& scalar) { return scalar.first == key; });
-    if (!known && (value.is_number() || value.is_string())) frame.facts.emplace_back(key, value);
+    if (value.is_number() || value.is_string()) frame.facts.emplace_back(key, value);
   }
 }
 

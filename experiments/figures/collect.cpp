@@ -313,7 +313,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     if (run.kind == "prepare") continue;
     for (const Membership& membership : run.memberships) {
       if (!wanted.experiment.empty() && membership.experiment != wanted.experiment) continue;
-      const std::string scale = membership.scale.empty() ? "base" : membership.scale;
+      const std::string scale = scale_name(membership.scale);
       if (options.scale && scale != *options.scale) continue;
       const bool is_current = newest[membership.experiment] == membership.manifest;
       (is_current ? current : older).push_back({run, membership, {}});

@@ -195,8 +195,7 @@ std::string caption(const FigureSummary& summary, const std::map<std::string, st
   for (const auto& [variant, count] : runs) counts.push_back(fmt::format("{}: {}", variant, count));
   return fmt::format("{} Runs: {}. Experiment {}, scale {}.",
                      caption_of(fmt::format("Figure {}. {}", summary.name, summary.title), tables),
-                     fmt::join(counts, ", "), summary.experiment,
-                     summary.scale.empty() ? "base" : summary.scale);
+                     fmt::join(counts, ", "), summary.experiment, scale_name(summary.scale));
 }
 
 }  // namespace

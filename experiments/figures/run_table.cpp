@@ -95,7 +95,8 @@ std::vector<Column> measures(bool ledger) {
                                   [](const CheckpointRecord& c) { return number(c.time_s); }));
   columns.insert(columns.end(),
                  {observable("cell_height_d", "distance of the bottom and top wall"),
-                  observable("largest_overlap_d", "largest overlap of two grains"),
+                  observable("largest_overlap_d",
+                             "largest overlap of two grains, or of a grain and a wall grain"),
                   observable("kinetic_energy_per_grain_m_d2_per_s2",
                              "mean kinetic energy; m is the mass of a grain"),
                   observable("wall_force_imbalance", "net force on the moving wall over its load"),
@@ -114,10 +115,8 @@ void add_onset(const std::string& method, const std::string& meaning, OnsetMetho
                          return value(find(*row.history, critical_size_for(*row.history)));
                        }});
   };
-  add("", "observed, never or before_start: " + meaning, [](const RunOnset& found) {
-    constexpr const char* names[] = {"observed", "never", "before_start"};
-    return json(names[static_cast<int>(found.observed)]);
-  });
+  add("", "observed, never, before_start or unclear: " + meaning,
+      [](const RunOnset& found) { return json(name_of(found.observed)); });
   add("_cycle", "cycle of that onset", [](const RunOnset& found) {
     return found.observed == Observed::yes ? json(found.cycle) : json();
   });
@@ -142,8 +141,8 @@ std::vector<Column> ends() {
       columns.end(),
       {of_run("state", "declared, running, interrupted, failed or completed",
               [](const SelectedRun& s) { return name_of(s.run.state); }),
-       of_run("state_hash", "hash of the newest state; equal states have equal hashes",
-              [](const SelectedRun& s) { return s.run.state_hash; }),
+       of_checkpoint("state_hash", "hash of this state; equal states have equal hashes",
+                     [](const CheckpointRecord& c) { return c.state_hash; }),
        of_run("target_cycles", "length that the experiment asks for",
               [](const SelectedRun& s) { return s.membership.target_cycles; }),
        of_run("wall_time_s", "time that the run took to compute, over all attempts",
@@ -167,12 +166,16 @@ json swept_value(const Field& field, const SelectedRun& selected) {
 
 /// The columns that tell runs apart.
 std::vector<Column> columns_of_runs(const std::vector<SelectedRun>& runs,
-                                    const VariantNames& variants) {
-  std::set<std::string> swept;
+                                    const VariantNames& variants, bool all_versions) {
+  std::set<std::string> swept = {"grains"};  // of every table
   for (const SelectedRun& run : runs) {
     for (const auto& [key, value] : run.membership.labels.items()) swept.insert(key);
   }
   std::vector<Column> columns = names(variants);
+  if (all_versions) {
+    columns.push_back(of_run("manifest", "SHA-256 of the manifest",
+                             [](const SelectedRun& s) { return s.membership.manifest; }));
+  }
   for (const Field& field : schema()) {
     if (!swept.contains(std::string(field.name))) continue;
     columns.push_back({{std::string(field.name), std::string(field.doc)},
@@ -182,8 +185,8 @@ std::vector<Column> columns_of_runs(const std::vector<SelectedRun>& runs,
 }
 
 std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per,
-                                const VariantNames& variants, bool ledger) {
-  std::vector<Column> columns = columns_of_runs(runs, variants);
+                                const VariantNames& variants, bool ledger, bool all_versions) {
+  std::vector<Column> columns = columns_of_runs(runs, variants, all_versions);
   std::ranges::move(measures(ledger), std::back_inserter(columns));
   if (per == RowPer::run) std::ranges::move(ends(), std::back_inserter(columns));
   return columns;
@@ -213,6 +216,7 @@ Selected select_and_measure(const Store& store, const RunSelection& selection,
   Selected all;
   all.runs = select_runs(store, selection);
   std::erase_if(all.runs, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
+  if (!selection.all_versions) table.older_versions = drop_older_versions(store, all.runs);
   for (const SelectedRun& run : all.runs) {
     std::ranges::move(checkpoints_of(store, run, options), std::back_inserter(all.records));
     all.ends.push_back(all.records.size());
@@ -282,7 +286,8 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
                    const MeasureOptions& options, bool ledger) {
   RunTable table;
   const Selected all = select_and_measure(store, selection, table_measures(), options, table);
-  const std::vector<Column> columns = columns_for(all.runs, per, VariantNames(store), ledger);
+  const std::vector<Column> columns =
+      columns_for(all.runs, per, VariantNames(store), ledger, selection.all_versions);
   std::vector<decltype(Measures::numbers)> energies;
   if (ledger) energies = energies_of(store, all, per, options);
   table.columns.assign(columns.begin(), columns.end());
@@ -315,7 +320,8 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
   const std::array measures = {derived_measure(measure.derived)};
   RunTable table;
   const Selected all = select_and_measure(store, selection, measures, options, table);
-  std::vector<Column> columns = columns_of_runs(all.runs, VariantNames(store));
+  std::vector<Column> columns =
+      columns_of_runs(all.runs, VariantNames(store), selection.all_versions);
   std::ranges::move(which_checkpoint(), std::back_inserter(columns));
   table.columns.assign(columns.begin(), columns.end());
   table.columns.push_back({std::string(measure.x), ""});
@@ -339,8 +345,9 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
   return table;
 }
 
-std::vector<TableColumn> table_columns(RowPer per) {
-  const std::vector<Column> columns = columns_for({}, per, VariantNames({}, {}), true);
+std::vector<TableColumn> table_columns() {
+  const std::vector<Column> columns =
+      columns_for({}, RowPer::run, VariantNames({}, {}), true, false);
   return {columns.begin(), columns.end()};
 }
 

@@ -27,6 +27,7 @@ inline constexpr auto kNames<RowPer> = names_in_order<RowPer>("checkpoint", "run
 struct RunTable : MeasureOutcome {
   std::vector<TableColumn> columns;
   std::vector<std::vector<nlohmann::json>> rows;  ///< null: it does not apply or is not known
+  std::size_t older_versions = 0;                 ///< runs left out for drop_older_versions()
 };
 
 /// Rows in the order of declaration, then by cycle. Settled packings are not among the runs.
@@ -50,7 +51,7 @@ std::optional<Measures> read_table_measures(std::span<const nlohmann::json> resu
 
 /// Every column, those of a ledger included, except those of swept parameters, which are named as
 /// in a manifest.
-std::vector<TableColumn> table_columns(RowPer per);
+std::vector<TableColumn> table_columns();
 
 /// Names and values of what is known of one checkpoint, in the order of the columns.
 std::vector<std::pair<TableColumn, nlohmann::json>> facts_of(

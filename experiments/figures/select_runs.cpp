@@ -5,11 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <tuple>
+#include <utility>
 
 #include "experiments/manifest/filter.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "experiments/runner/registered.hpp"
 
 namespace shearcell {
 namespace {
@@ -53,13 +56,13 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
   std::vector<std::string> seeds;
   for (const std::uint64_t seed : selection.seeds) seeds.push_back(std::to_string(seed));
   Filter experiment(selection.experiments), scale(selection.scales), seed(seeds);
-  Filter variant(selection.variants, has_values);
+  Filter variant(selection.variants, has_values, keys_of);
   std::vector<SelectedRun> selected;
   for (const RunRecord& run : store.runs()) {
     for (const Membership& m : newest_memberships(run)) {
       // Not by &&: each has to see every value.
       bool passes = experiment.passes(m.experiment);
-      passes &= scale.passes(m.scale.empty() ? "base" : m.scale);
+      passes &= scale.passes(scale_name(m.scale));
       passes &= variant.passes(m.variant);
       passes &= seed.passes(std::to_string(m.seed));
       passes &=
@@ -72,6 +75,23 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
   require_found("variant", variant);
   require_found("seed", seed);
   return selected;
+}
+
+std::size_t drop_older_versions(const Store& store, std::vector<SelectedRun>& runs) {
+  std::map<std::string, std::size_t> version;  // by the manifest's SHA-256
+  std::size_t registered = 0;
+  for (const RegisteredManifest& manifest : registered_manifests(store)) {
+    version[manifest.sha256] = ++registered;
+  }
+  const auto place = [](const Membership& m) { return std::pair(m.experiment, m.scale); };
+  std::map<std::pair<std::string, std::string>, std::size_t> newest;
+  for (const auto& [run, m] : runs) {
+    newest[place(m)] = std::max(newest[place(m)], version[m.manifest]);
+  }
+  return std::erase_if(runs, [&](const SelectedRun& selected) {
+    const Membership& m = selected.membership;
+    return version[m.manifest] < newest[place(m)];
+  });
 }
 
 }  // namespace shearcell

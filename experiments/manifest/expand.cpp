@@ -182,7 +182,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   Plan plan{manifest.experiment, scale.name, {}, {}};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
   WithoutEffect without_effect(scale);
-  Filter wanted(options.variants, has_values);
+  Filter wanted(options.variants, has_values, keys_of);
   const std::string manifest_sha = sha256_hex(manifest.text);
   for_each_variant(scale, [&](const Variant& variant) {
     const Parameters& p = variant.parameters;
@@ -226,10 +226,38 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     refuse(manifest, "variant", "no variant has these values", printable(*missing),
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
   }
+  if (plan.runs.empty()) {
+    refuse(manifest, "variant", "no variant has all of these values",
+           printable(fmt::format("{}", fmt::join(options.variants, " and "))),
+           fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
+  }
   name_variants(manifest, plan);
   std::ranges::move(own_warnings(manifest, scale), std::back_inserter(plan.warnings));
   without_effect.warn(manifest.file, plan);
   return plan;
+}
+
+Plan joined(std::span<const Plan> plans) {
+  std::vector<std::string> experiments;
+  Plan all;
+  all.scale = plans.front().scale;
+  std::map<std::string, std::size_t> places;  // of a run in all.runs, by its id
+  for (const Plan& plan : plans) {
+    experiments.push_back(plan.experiment);
+    for (const PlannedRun& run : plan.runs) {
+      const auto [place, fresh] = places.try_emplace(run.last.key, all.runs.size());
+      if (fresh) {
+        all.runs.push_back(run);
+        continue;
+      }
+      PlannedRun& known = all.runs[place->second];
+      const bool longer = run.target_cycles > known.target_cycles;
+      if (known.ends_early && (longer || !run.ends_early)) known.ends_early = run.ends_early;
+      known.target_cycles = std::max(known.target_cycles, run.target_cycles);
+    }
+  }
+  all.experiment = fmt::format("{}", fmt::join(experiments, ", "));
+  return all;
 }
 
 bool asks_for_lammps(const Plan& plan) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,10 @@ struct Plan {
 
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
+
+/// The runs of several manifests, one or more, each once: as long as the experiment that asks for
+/// most of it, and with an early end only if all have one.
+Plan joined(std::span<const Plan> plans);
 
 /// Whether LAMMPS computes any of its runs.
 bool asks_for_lammps(const Plan& plan);

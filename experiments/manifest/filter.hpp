@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -9,20 +10,25 @@
 
 namespace shearcell {
 
-/// Passes the values that fit one of those wanted, or all when none is; remembers what it has seen.
+/// Passes the values that fit one of those wanted of each kind, or all when none is wanted;
+/// remembers what it has seen.
 class Filter {
  public:
   using Fits = bool (*)(const std::string& wanted, const std::string& value);
+  using Kind = std::string (*)(const std::string& wanted);
 
   explicit Filter(
       std::vector<std::string> wanted,
-      Fits fits = [](const std::string& one, const std::string& value) { return one == value; })
-      : wanted_(std::move(wanted)), fits_(fits) {}
+      Fits fits = [](const std::string& one, const std::string& value) { return one == value; },
+      Kind kind = [](const std::string&) { return std::string(); })
+      : wanted_(std::move(wanted)), fits_(fits), kind_(kind) {}
 
   bool passes(const std::string& value) {
     if (wanted_.empty()) return true;
     seen_.push_back(value);
-    return std::ranges::any_of(wanted_, [&](const auto& one) { return fits_(one, value); });
+    std::map<std::string, bool> fits;  // by kind
+    for (const std::string& one : wanted_) fits[kind_(one)] |= fits_(one, value);
+    return std::ranges::all_of(fits, [](const auto& kind) { return kind.second; });
   }
 
   /// The first of those wanted that no value fitted, or null.
@@ -47,6 +53,7 @@ class Filter {
  private:
   std::vector<std::string> wanted_;
   Fits fits_;
+  Kind kind_;
   std::vector<std::string> seen_;
 };
 

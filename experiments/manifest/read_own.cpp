@@ -169,6 +169,9 @@ PlotSpec read_plot(const Entry& in, const Manifest& manifest) {
   if (const Field* field = is_measure(plot.x) ? nullptr : find_field(plot.x)) {
     plot.x_symbol = field->symbol;
     if (!field->symbol.empty() && field->unit != "1") plot.x_unit = field->unit;
+    if (get_value(*field, Parameters{}).is_string()) {
+      x->reject_value("is not a number", "Take `by` for a curve of each of its values.");
+    }
   }
   return plot;
 }

@@ -97,6 +97,14 @@ std::string same_spelling(std::string_view part) {
                      number ? fmt::format("{}", *number) : value);
 }
 
+/// "a=1" and "b=2" of "b=2,a=1.0".
+std::set<std::string> parts_of(const std::string& list) {
+  std::set<std::string> parts;
+  std::istringstream text(list);
+  for (std::string part; std::getline(text, part, ',');) parts.insert(same_spelling(part));
+  return parts;
+}
+
 void apply(const std::string& key, const Setting& setting, Parameters& parameters) {
   set_value(*find_field(key), setting.value, parameters);
 }
@@ -144,13 +152,13 @@ json Variant::labels() const {
 }
 
 bool has_values(const std::string& wanted, const std::string& variant) {
-  const auto parts_of = [](const std::string& list) {
-    std::set<std::string> parts;
-    std::istringstream text(list);
-    for (std::string part; std::getline(text, part, ',');) parts.insert(same_spelling(part));
-    return parts;
-  };
   return std::ranges::includes(parts_of(variant), parts_of(wanted));
+}
+
+std::string keys_of(const std::string& wanted) {
+  std::string keys;
+  for (const std::string& part : parts_of(wanted)) keys += part.substr(0, part.find('=')) + ",";
+  return keys;
 }
 
 std::uint64_t variant_count(const Sweep& sweep) {

@@ -42,6 +42,10 @@ struct Variant {
 /// "fluid=cell,amplitude_rad=0.1".
 bool has_values(const std::string& wanted, const std::string& variant);
 
+/// "amplitude_rad,fluid," of "fluid=cell,amplitude_rad=0.1". Values of the same keys are
+/// alternatives; those of other keys must fit too.
+std::string keys_of(const std::string& wanted);
+
 /// Whether the variant (swept keys and values) has all values of the label.
 bool selects(const VariantLabel& label, const nlohmann::json& variant);
 

@@ -43,7 +43,8 @@ const Membership* membership_in(const RunRecord& run, const std::string& experim
                                 const std::optional<std::string>& scale) {
   const Membership* found = nullptr;
   for (const Membership& member : run.memberships) {
-    if (member.experiment == experiment && (!scale || member.scale == *scale)) found = &member;
+    if (member.experiment == experiment && (!scale || scale_name(member.scale) == *scale))
+      found = &member;
   }
   return found;
 }

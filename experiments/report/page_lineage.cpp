@@ -148,7 +148,7 @@ std::string run_html(const RunLineage& stage) {
     html += row("member of", fmt::format("{1} at scale {2}, {3}, seed {4}, manifest <a "
                                          "href=\"#manifest-{0}\">{0}</a>",
                                          brief(member.manifest), escape_html(member.experiment),
-                                         escape_html(member.scale.empty() ? "base" : member.scale),
+                                         escape_html(scale_name(member.scale)),
                                          escape_html(member.variant), member.seed));
   }
   if (!run.error.empty()) html += row("error", escape_html(run.error));
@@ -173,7 +173,7 @@ std::string lineage_html(const ReportData& data, const ReportFigure& figure) {
       "comes from</summary>\n<dl>\n",
       escape_html(figure.id));
   html += row("log", fmt::format("event {}, {}", data.head.seq, code(data.head.hash)));
-  html += row("scale", escape_html(scale.empty() ? "base" : scale));
+  html += row("scale", escape_html(scale_name(scale)));
   html += row("inputs", fmt::format("{} runs, {} checkpoints; analysis version {}",
                                     figure.summary.runs, figure.summary.checkpoints,
                                     escape_html(text_at(facts, "analysis_version"))));

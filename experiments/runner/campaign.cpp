@@ -10,13 +10,13 @@
 #include <exception>
 #include <mutex>
 #include <set>
-#include <stop_token>
 #include <thread>
 
 #include "core/filling.hpp"
 #include "core/threads.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/registered.hpp"
+#include "experiments/runner/repeated.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
@@ -35,28 +35,6 @@ constexpr std::chrono::milliseconds kLook{500};
 // A run that slips away so often, while nobody holds it, has a fault of its own.
 constexpr int kMostLosses = 20;
 
-// Shows every now and then that this program is alive, while simulations take their time.
-class Heartbeat {
- public:
-  explicit Heartbeat(Store& store)
-      : thread_([this, &store](const std::stop_token& stop) {
-          const std::chrono::duration<double> interval(store.lease_seconds() / 4);
-          std::unique_lock lock(mutex_);
-          while (!wake_.wait_for(lock, stop, interval, [&stop] { return stop.stop_requested(); })) {
-            try {
-              store.renew_leases();
-            } catch (const std::exception&) {
-              // Tried again soon; meanwhile the log alone decides whose records count.
-            }
-          }
-        }) {}
-
- private:
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
-  std::jthread thread_;  // last, so that it ends before what it uses
-};
-
 class Campaign {
  public:
   Campaign(Store& store, const std::vector<StageJob>& jobs, Progress& progress,
@@ -68,7 +46,14 @@ class Campaign {
         states_(jobs.size()) {}
 
   CampaignResult run(std::size_t workers) {
-    const Heartbeat heartbeat(store_);
+    // Shows that this program is alive, while simulations take their time.
+    const Repeated heartbeat(std::chrono::duration<double>(store_.lease_seconds() / 4), [this] {
+      try {
+        store_.renew_leases();
+      } catch (const std::exception&) {
+        // Tried again soon; meanwhile the log alone decides whose records count.
+      }
+    });
     {
       const auto threads = start_threads(workers, [this](std::size_t) { work(); });
       work();
@@ -201,6 +186,7 @@ class Campaign {
       if (was_held) {
         finish(job, &CampaignResult::elsewhere, "done by another program", true);
       } else {
+        progress_.count();
         const std::lock_guard lock(mutex_);
         ++result_.already;
       }
@@ -214,13 +200,12 @@ class Campaign {
     progress_.begin(job.name);
     const StageOutcome outcome = run_stage(store_, job.id, options_of(job));
     switch (outcome) {
-      case StageOutcome::completed: {
-        // An experiment may ask for no more than what another made.
-        const bool computed = store_.run(job.id).particle_steps > run.particle_steps;
-        finish(job, computed ? &CampaignResult::completed : &CampaignResult::already,
-               done_text(job), true);
+      case StageOutcome::completed:
+        finish(job, &CampaignResult::completed, done_text(job), true);
         return JobState::done;
-      }
+      case StageOutcome::already:
+        finish(job, &CampaignResult::already, done_text(job), true);
+        return JobState::done;
       case StageOutcome::interrupted:
         finish(job, &CampaignResult::interrupted, "interrupted", false);
         return JobState::ended;

@@ -79,6 +79,11 @@ void Progress::end(const std::string& name, const std::string& how, bool done) {
   if (terminal_) draw();
 }
 
+void Progress::count() {
+  const std::lock_guard lock(mutex_);
+  ++done_;
+}
+
 void Progress::drop(const std::string& name) {
   const std::lock_guard lock(mutex_);
   running_.erase(name);

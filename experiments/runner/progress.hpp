@@ -23,6 +23,8 @@ class Progress {
   void update(const std::string& name, const StageStatus& status);
   /// `done` counts it among the stages that are done.
   void end(const std::string& name, const std::string& how, bool done);
+  /// Counts a stage that was done before among those that are done.
+  void count();
   /// The stage is left to another program.
   void drop(const std::string& name);
   /// A permanent line, unless progress is off.

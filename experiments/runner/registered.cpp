@@ -9,9 +9,6 @@
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
-namespace {
-
-// In the order of registration; a version that was run again after another one comes again.
 std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   std::vector<RegisteredManifest> found;
   for (const Event& event : store.events()) {
@@ -29,8 +26,6 @@ std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   }
   return found;
 }
-
-}  // namespace
 
 std::optional<Manifest> read(const RegisteredManifest& manifest) {
   try {

@@ -22,6 +22,10 @@ struct RegisteredManifest {
   std::string text;
 };
 
+/// In the order of registration; a version that was run again after another one comes again. Throws
+/// StoreDamaged for an event that does not hold a manifest.
+std::vector<RegisteredManifest> registered_manifests(const Store& store);
+
 /// Its labels, plots and claims; nothing if this version of the program cannot read it.
 std::optional<Manifest> read(const RegisteredManifest& manifest);
 
@@ -41,7 +45,7 @@ class VariantNames {
 };
 
 /// The version of each experiment that was registered last, in the order in which the experiments
-/// were first registered. Throws StoreDamaged for an event that does not hold a manifest.
+/// were first registered.
 std::vector<RegisteredManifest> newest_manifests(const Store& store);
 
 }  // namespace shearcell

@@ -81,6 +81,9 @@ class Attempt {
     });
   }
 
+  /// Whether a checkpoint was recorded.
+  bool computed() const { return computed_; }
+
  private:
   StageOutcome guarded(const std::function<StageOutcome()>& compute) {
     try {
@@ -163,6 +166,7 @@ class Attempt {
     const auto steps = static_cast<double>(engine.evaluations() - recorded_evaluations_);
     const CheckpointRecord recorded = store_.record_checkpoint(
         id(), checkpoint, {recorded_.seconds(), steps * static_cast<double>(plan_.run.grains)});
+    computed_ = true;
     if (end_) end_->add(recorded, checkpoint);
     recorded_.restart();
     recorded_evaluations_ = engine.evaluations();
@@ -192,6 +196,7 @@ class Attempt {
   const StageOptions& options_;
   StagePlan plan_;
   std::optional<RunEnd> end_;  ///< where an experiment asks for `until`
+  bool computed_ = false;
   std::uint64_t first_step_ = 0, recorded_evaluations_ = 0, reported_evaluations_ = 0;
   Stopwatch started_, recorded_, reported_;
 };
@@ -207,14 +212,17 @@ bool newest_is_sound(const Store& store, const RunRecord& run) {
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options) {
   try {
     RunRecord run = store.run(id);
-    StageOutcome outcome = StageOutcome::completed;
+    bool computed = false;
     if (run.state != RunState::completed || !newest_is_sound(store, run)) {
-      outcome = Attempt(store, std::move(run), options).run();
+      Attempt attempt(store, std::move(run), options);
+      const StageOutcome outcome = attempt.run();
       run = store.run(id);
+      if (outcome != StageOutcome::completed || run.state != RunState::completed) return outcome;
+      computed = attempt.computed();
     }
-    if (outcome != StageOutcome::completed || run.state != RunState::completed) return outcome;
     const std::vector<std::uint64_t> missing = missing_checkpoints(store, run);
-    return missing.empty() ? outcome : Attempt(store, std::move(run), options).fill(missing);
+    if (!missing.empty()) return Attempt(store, std::move(run), options).fill(missing);
+    return computed ? StageOutcome::completed : StageOutcome::already;
   } catch (const RunHeld&) {
     return StageOutcome::held;
   } catch (const Interrupted&) {

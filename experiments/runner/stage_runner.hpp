@@ -10,9 +10,11 @@
 
 namespace shearcell {
 
-/// How a stage ended in this process. `held`: another program holds it, and nothing was begun.
-/// `lost`: another program took its lease, completed it or recorded a later state meanwhile.
-enum class StageOutcome : std::uint8_t { completed, interrupted, failed, held, lost };
+/// How a stage ended in this process. `already`: it is completed, and nothing was left to compute,
+/// since the experiment asks for no more than what is there. `held`: another program holds it, and
+/// nothing was begun. `lost`: another program took its lease, completed it or recorded a later
+/// state meanwhile.
+enum class StageOutcome : std::uint8_t { completed, already, interrupted, failed, held, lost };
 
 /// The progress of a running stage.
 struct StageStatus {

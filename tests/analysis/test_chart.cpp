@@ -101,6 +101,30 @@ TEST(GnuplotScript, TicksHaveOneNumberOfDecimals) {
   EXPECT_NE(script_for(0, 20).find("set xtics 5\nset format x '%.0f'"), std::string::npos);
 }
 
+// gnuplot alone would label none of these.
+TEST(GnuplotScript, LogarithmicAxesOfTwoDecadesOrLessHaveTicks) {
+  const auto script_for = [](double low, double high) {
+    return gnuplot_script({.name = "t",
+                           .columns = {},
+                           .rows = {},
+                           .chart = {.x = {.log = true},
+                                     .series = {{.points = {{0, 3}, {low, 1, low}, {high, 2}}}}}});
+  };
+  const auto has = [](const std::string& script, const char* part) {
+    EXPECT_NE(script.find(part), std::string::npos) << part << "\nin\n" << script;
+  };
+  has(script_for(0.0032, 0.0041), "set xtics (0.0032,0.0034,0.0036,0.0038,0.004)\n");
+  has(script_for(3, 70), "set xtics (5,10,20,50)\n");
+  has(script_for(3, 700), "set format x '10^{%T}'");
+  has(script_for(3, 70), "EOD\n3,1,3,\n70,2,,\nEOD\n");  // no point at zero
+  const std::string none =
+      gnuplot_script({.name = "t",
+                      .columns = {},
+                      .rows = {},
+                      .chart = {.y = {.log = true}, .series = {{.points = {{1, 0}, {2, 0}}}}}});
+  has(none, "no data");
+}
+
 TEST(Chart, TheCaptionNamesPanelsErrorsAndLines) {
   Chart chart{.x = {.name = "cycle"},
               .y = {.name = "overlap", .unit = "d"},

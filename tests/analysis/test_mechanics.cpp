@@ -237,14 +237,14 @@ TEST(Mechanics, ComesBackBitByBitAndInSIUnits) {
   EXPECT_EQ(std::memcmp(&back.mechanics, &found.measures.mechanics, sizeof(Mechanics)), 0);
   EXPECT_THROW(derived_measure("mechanics").read(nlohmann::json::object(), back), AnalysisError);
 
-  EXPECT_TRUE(std::isnan(find_measure("pressure_Pa")->of(back))) << "k and d are unknown";
+  EXPECT_TRUE(std::isnan(find_measure("contact_pressure_Pa")->of(back))) << "k and d are unknown";
   EXPECT_EQ(find_measure("coordination")->of(back), back.mechanics.coordination);
   back.units = mechanical_units(654, 2e-5, 3e-3, 9.81);
   const auto expect = [&](const char* name, double value) {
     EXPECT_NEAR(find_measure(name)->of(back), value, 1e-12 * std::fabs(value)) << name;
   };
   const Mechanics& m = back.mechanics;
-  expect("pressure_Pa", m.pressure * 654 / 3e-3);
+  expect("contact_pressure_Pa", m.pressure * 654 / 3e-3);
   expect("force_bottom_y_N", m.force_bottom_y * 654 * 3e-3);
   expect("elastic_energy_per_grain_J", m.elastic_energy * 654 * 9e-6);
   expect("kinetic_energy_per_grain_J", m.kinetic_energy * 2e-5 * 9e-6);

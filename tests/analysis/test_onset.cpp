@@ -62,6 +62,15 @@ TEST(OnsetBySlope, NeverWithoutCrystallization) {
   EXPECT_EQ(onset_by_slope(logistic(0.66, 20), 16).observed, Observed::never);
 }
 
+// Two checkpoints are too few for a slope, though the largest crystallite is critical in one.
+TEST(OnsetBySlope, UnclearWithoutAWindow) {
+  FigureRun run = logistic(0.646);
+  run.checkpoints = {run.checkpoints[0], run.checkpoints[60]};
+  const RunOnset found = onset_by_slope(run, 16);
+  EXPECT_EQ(found.observed, Observed::unclear);
+  EXPECT_EQ(name_of(found.observed), "unclear");
+}
+
 TEST(Onset, CountsCensoredRuns) {
   const std::vector<FigureRun> runs = {logistic(0.645), logistic(0.647), logistic(0.646),
                                        logistic(0.66, 10)};

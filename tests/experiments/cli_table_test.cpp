@@ -25,7 +25,7 @@ TEST_F(CommandLineTable, HasARowForEachCheckpointAndEachRun) {
   for (const auto& row : rows) {
     const nlohmann::json shown = json({"show", row.at("checkpoint"), "--json"});
     EXPECT_EQ(shown.at("run"), row.at("run"));
-    for (const char* key : {"cycle", "phi", "grains", "mean_overlap_d", "cell_height_d"}) {
+    for (const char* key : {"cycle", "phi", "mean_overlap_d", "cell_height_d"}) {
       EXPECT_EQ(shown.at("measures").at(key), row.at(key)) << key;
     }
     EXPECT_EQ(row.at("variant"), "fluid=" + row.at("fluid").get<std::string>());
@@ -63,7 +63,7 @@ TEST_F(CommandLineTable, HasARowForEachValueOfACurve) {
     ++layers;
   }
   ASSERT_GT(layers, 5);
-  const double pressure = table({}).at(1).at("pressure_Pa").get<double>();
+  const double pressure = table({}).at(1).at("contact_pressure_Pa").get<double>();
   EXPECT_NEAR(mean / layers, pressure, 0.5 * pressure) << "in Pa, not in k/d";
   expect_refused({"table", "--curve", "g_of_r"}, {"pair_correlation"});
   expect_refused({"table", "--curve", "structure_factor", "--per", "run"}, {});
@@ -129,9 +129,44 @@ TEST_F(CommandLineTable, CallsVariantsByTheLabelsOfTheNewestManifest) {
   EXPECT_TRUE(in_table.contains("water at rest"));
 }
 
+TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
+  write("other.yaml",
+        tiny_manifest("  drag_kg_per_s: 2.0e-3\n", "sweep: {grid: {fluid: [still]}}\n"));
+  expect(0, {"run", "other.yaml", "--cycles", "1", "-q"});
+  const nlohmann::json rows = table({"--per", "run"});
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_FALSE(rows[0].contains("manifest"));
+  const Outcome said = expect(0, {"table", "--per", "run"});
+  EXPECT_TRUE(contains(said.err, "left out: 2 runs of another version")) << said.err;
+  const nlohmann::json all = table({"--per", "run", "--all-versions"});
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_NE(all[0].at("manifest"), all[2].at("manifest"));
+}
+
+// `grains` is the number that a table always has, and as x of a plot a parameter.
+TEST_F(CommandLineTable, ANumberOfGrainsIsAParameter) {
+  write("sizes.yaml",
+        "experiment: sizes\nbase: {cycles: 1, period_s: 1, steps_per_cycle: auto}\n"
+        "sweep: {grid: {grains: [300, 400], pressure_Pa: [700, 954]}}\n"
+        "plots: [{name: n, y: phi, x: grains, at_cycle: 1}]\n");
+  expect(0, {"run", "sizes.yaml", "-q"});
+  const Outcome printed = expect(0, {"table", "--experiment", "sizes"});
+  std::istringstream header(printed.out.substr(0, printed.out.find('\n')));
+  std::multiset<std::string> columns;
+  for (std::string column; std::getline(header, column, ',');) columns.insert(column);
+  for (const std::string& column : columns) EXPECT_EQ(columns.count(column), 1U) << column;
+  EXPECT_TRUE(columns.contains("pressure_Pa") && columns.contains("contact_pressure_Pa"));
+  expect(0, {"figures", "n", "--out", "figures"});
+  const std::string csv = read_bytes(path("figures/sizes/n.csv"));
+  for (const char* row : {"pressure_Pa=700,300,", "pressure_Pa=700,400,", "pressure_Pa=954,400,"}) {
+    EXPECT_TRUE(contains(csv, row)) << csv;
+  }
+}
+
 TEST_F(CommandLineTable, WritesTheSameAsCsvOverItsOwnFilesOnly) {
   const Outcome printed = expect(0, {"table", "--per", "run"}, {"\ntiny,,fluid=cell,"});
-  EXPECT_TRUE(printed.out.starts_with("experiment,scale,variant,run,seed,fluid,cycle,checkpoint,"))
+  EXPECT_TRUE(
+      printed.out.starts_with("experiment,scale,variant,run,seed,grains,fluid,cycle,checkpoint,"))
       << printed.out;
   for (int k = 0; k < 2; ++k) {
     expect(0, {"table", "--per", "run", "--out", "runs.csv"});

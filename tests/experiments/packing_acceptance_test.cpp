@@ -25,7 +25,7 @@ void expect_balance(Measures measures) {
   const double y = in_si("force_bottom_y_N") + in_si("force_top_y_N") + in_si("force_left_y_N") +
                    in_si("force_right_y_N");
   std::printf("forces on the walls: x %.3g N, y %.5g N (weight %.5g N); pressure %.1f Pa\n", x, y,
-              -weight, in_si("pressure_Pa"));
+              -weight, in_si("contact_pressure_Pa"));
   EXPECT_NEAR(y, -weight, 0.01 * weight);
   EXPECT_NEAR(x, 0, 0.01 * weight);
   Geometry shape;
@@ -34,8 +34,8 @@ void expect_balance(Measures measures) {
   const double load = p.pressure_Pa * width * width + weight;
   EXPECT_NEAR(-in_si("force_bottom_y_N"), load, 0.01 * load);
   // From what the top feels to what the bottom feels.
-  EXPECT_GT(in_si("pressure_Pa"), 0.9 * p.pressure_Pa);
-  EXPECT_LT(in_si("pressure_Pa"), 1.05 * load / (width * width));
+  EXPECT_GT(in_si("contact_pressure_Pa"), 0.9 * p.pressure_Pa);
+  EXPECT_LT(in_si("contact_pressure_Pa"), 1.05 * load / (width * width));
 }
 
 TEST(PackingOf2000, SettlesAndCompactsAsTheModelSays) {

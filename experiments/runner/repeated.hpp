@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Something that is done every so often beside the work.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+#include <utility>
+
+namespace shearcell {
+
+/// Calls `deed`, which must not throw, every so often in a thread of its own, until it goes away.
+class Repeated {
+ public:
+  Repeated(std::chrono::duration<double> interval, std::function<void()> deed)
+      : thread_([this, interval, deed = std::move(deed)](const std::stop_token& stop) {
+          std::unique_lock lock(mutex_);
+          while (!wake_.wait_for(lock, stop, interval, [&stop] { return stop.stop_requested(); })) {
+            deed();
+          }
+        }) {}
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread thread_;  // last, so that it ends before what it uses
+};
+
+}  // namespace shearcell
