@@ -78,8 +78,8 @@ struct Extent {
   }
 };
 
-/// For a logarithmic axis of two decades or less: 1, 2 and 5 times a power of ten, or more values
-/// where few of these lie within.
+/// For a logarithmic axis with fewer than two powers of ten: 1, 2 and 5 times a power of ten, or
+/// more values where few of these lie within.
 std::vector<std::string> ticks_of_decades(const Extent& data) {
   std::vector<std::string> ticks;
   const bool narrow = data.high < 4 * data.low;
@@ -156,7 +156,7 @@ class Script {
 
   void ticks(const char* name, const Axis& axis, const Extent& data) {
     if (axis.log) add("set logscale {}\n", name);
-    if (axis.log && data.high > 100 * data.low) {
+    if (axis.log && std::floor(std::log10(data.high)) > std::ceil(std::log10(data.low))) {
       add("set format {0} '10^{{%T}}'\nset m{0}tics 10\n", name);
     } else if (axis.log) {
       add("unset m{0}tics\nset {0}tics ({1})\n", name, fmt::join(ticks_of_decades(data), ","));

@@ -96,7 +96,7 @@ def verdicts(results):
     """(place below the results, figure, its drawing, claim) for every claim."""
     for path in sorted(results.glob("**/*.verdict.json")):
         figure = path.name.split(".")[0]
-        drawing = sorted(path.parent.glob(f"{figure}*.svg"))[0]
+        drawing = min(path.parent.glob(f"{figure}*.svg"), default=path)  # a claim of a manifest has none
         for claim in json.loads(path.read_text())["claims"]:
             yield path.parent.relative_to(results).as_posix(), figure, drawing, claim
 

@@ -26,8 +26,8 @@ $series0 << EOD
 0.1,20,,
 EOD
 $series1 << EOD
-0.0833,2.16462811,,0.767511432
-0.1,14.5515718,,3.5930398
+0.0833,2.28659674,,0.797054271
+0.1,13.9606561,,4.40155758
 EOD
 plot keyentry with linespoints lc rgb '#888888' lw 1.2 dt 2 pt 6 ps 0.4 title 'supplement', \
      keyentry with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'simulated', \

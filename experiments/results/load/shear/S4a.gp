@@ -1,46 +1,25 @@
-set terminal svg size 600,430 enhanced font 'Helvetica,14' background '#ffffff'
+set terminal svg size 325,260 enhanced font 'Helvetica,10.67' background '#ffffff'
 set encoding utf8
 set datafile separator ','
-set border 15 lw 1.2
+set border 15 lw 0.8
 set xtics in mirror scale 0.9,0.5
 set ytics in mirror scale 0.9,0.5
-set format '%h'
 set mxtics 2
 set mytics 2
 set autoscale noextend
-set key above horizontal center noautotitle Left reverse samplen 1.5 width 2
+set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'S4a.svg'
 data = 'S4a.csv'
+set label '(a)' at screen 0.015, screen 0.96 left front
 set xlabel 'shear cycle  {/:Italic n}'
 set ylabel 'volume fraction  {/:Italic ϕ}'
+set ytics 0.002
+set format y '%.3f'
 set xrange [*:*]
 set yrange [*:*]
 set offsets graph 0.03, graph 0.03, graph 0.05, graph 0.05
 $series0 << EOD
-0,0.638662222,,0.000285939526
-1,0.639512701,,0.000320130695
-2,0.640270132,,0.000173529777
-3,0.640721536,,0.000319895377
-4,0.641303273,,0.000261122692
-5,0.642105391,,0.000301406379
-6,0.642328213,,0.000222430293
-7,0.642385799,,0.000385354526
-8,0.642929739,,0.000362847317
-9,0.643275909,,0.000275337022
-10,0.643561584,,0.000372004086
-11,0.643410397,,0.000292630952
-12,0.643988727,,0.000104246595
-13,0.644298083,,0.000444037461
-14,0.644566848,,0.000223565977
-15,0.644714991,,0.000227002274
-16,0.644757185,,0.000172168353
-17,0.644812168,,0.000819452697
-18,0.645305883,,0.000733529095
-19,0.645434114,,0.000374689508
-20,0.645884806,,0.000888399621
-EOD
-$series1 << EOD
 0,0.638421942,,0.000509941255
 1,0.638776017,,0.000330141067
 2,0.639731302,,0.000211770724
@@ -63,7 +42,7 @@ $series1 << EOD
 19,0.644437105,,0.000202066058
 20,0.644333825,,0.000387189332
 EOD
-$series2 << EOD
+$series1 << EOD
 0,0.639111083,,0.00028275711
 1,0.639309576,,0.000265324247
 2,0.639920017,,0.000498411954
@@ -86,10 +65,39 @@ $series2 << EOD
 19,0.64531458,,0.00230281169
 20,0.645424084,,0.00282628497
 EOD
-plot $series0 using 1:2:4 with yerrorbars lc rgb '#d62728' lw 0.8 pt 0 notitle, \
-     $series0 using 1:2 with linespoints lc rgb '#d62728' pt 9 ps 0.6 title 'top fixed', \
-     $series1 using 1:2:4 with yerrorbars lc rgb '#d62728' lw 0.8 pt 0 notitle, \
-     $series1 using 1:2 with linespoints lc rgb '#d62728' pt 9 ps 0.6 title 'top fixed', \
-     $series2 using 1:2:4 with yerrorbars lc rgb '#000000' lw 0.8 pt 0 notitle, \
-     $series2 using 1:2 with linespoints lc rgb '#000000' pt 5 ps 0.6 title 'top moves vertically'
+$series2 << EOD
+0,0.638662222,,0.000285939526
+1,0.639512701,,0.000320130695
+2,0.640270132,,0.000173529777
+3,0.640721536,,0.000319895377
+4,0.641303273,,0.000261122692
+5,0.642105391,,0.000301406379
+6,0.642328213,,0.000222430293
+7,0.642385799,,0.000385354526
+8,0.642929739,,0.000362847317
+9,0.643275909,,0.000275337022
+10,0.643561584,,0.000372004086
+11,0.643410397,,0.000292630952
+12,0.643988727,,0.000104246595
+13,0.644298083,,0.000444037461
+14,0.644566848,,0.000223565977
+15,0.644714991,,0.000227002274
+16,0.644757185,,0.000172168353
+17,0.644812168,,0.000819452697
+18,0.645305883,,0.000733529095
+19,0.645434114,,0.000374689508
+20,0.645884806,,0.000888399621
+EOD
+plot keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 9 ps 0.4 title 'top fixed', \
+     keyentry with linespoints lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'top moves vertically', \
+     keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 title 'top fixed, {/:Italic P} on the bottom wall', \
+     $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
+     $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
+     $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
+     $series2 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 notitle, \
+     $series2 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 notitle, \
+     $series1 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series1 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series0 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 9 ps 0.4 notitle, \
+     $series0 every 2 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 9 ps 0.4 notitle
 set output
