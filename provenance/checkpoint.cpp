@@ -68,7 +68,7 @@ void put_box(const Handle& all, const Checkpoint& checkpoint, const WallPose& po
 void put_particles(const Handle& file, const Checkpoint& checkpoint) {
   const Handle particles = make_group(file, "particles");
   const Handle all = make_group(particles, "all");
-  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  const WallPose pose = pose_of(checkpoint);
   put_box(all, checkpoint, pose);
 
   const Eigen::Index grains = checkpoint.state.position.cols();

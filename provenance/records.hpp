@@ -52,6 +52,9 @@ struct RunDeclaration {
   Membership membership;
 };
 
+/// Checkpoints in a list: those whose file is there, pruned ones too, or rejected ones too.
+enum class Listed { recorded, and_pruned, all };
+
 /// In the order in which a merge prefers them when two attempts reached the same step.
 enum class RunState { declared, running, interrupted, failed, completed };
 

@@ -125,8 +125,9 @@ class Store {
   std::vector<Lease> leases() const;  ///< that have not lapsed
   /// The run with this prefix of the id. Throws NotFound, with the candidates if it is ambiguous.
   RunRecord find_run(std::string_view prefix) const;
-  /// In ascending order of step: the recorded ones; with `all`, rejected and pruned ones too.
-  std::vector<CheckpointRecord> checkpoints(const std::string& id, bool all = false) const;
+  /// In ascending order of step.
+  std::vector<CheckpointRecord> checkpoints(const std::string& id,
+                                            Listed listed = Listed::recorded) const;
   /// The checkpoint with this prefix of the SHA-256, in any state, if there is one. Throws
   /// NotFound, with the candidates, if it is ambiguous.
   std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;

@@ -80,15 +80,14 @@ std::optional<CheckpointRecord> Store::find_checkpoint(std::string_view prefix) 
   return found.front();
 }
 
-std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, bool all) const {
+std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, Listed listed) const {
   const std::scoped_lock guard(mutex_);
   if (query_run_ids(database_, id, 1) != std::vector{id}) throw unknown_run(id);
   auto found = query_checkpoints(database_, id);
-  if (!all) {
-    std::erase_if(found, [](const CheckpointRecord& record) {
-      return record.state != CheckpointState::recorded;
-    });
-  }
+  std::erase_if(found, [listed](const CheckpointRecord& record) {
+    return (record.state == CheckpointState::rejected && listed != Listed::all) ||
+           (record.state == CheckpointState::pruned && listed == Listed::recorded);
+  });
   return found;
 }
 

@@ -110,7 +110,7 @@ std::vector<CheckpointRecord> chosen(const Store& store, const RunRecord& run,
              : 0;
   std::vector<CheckpointRecord> records;
   std::size_t pruned = 0;
-  for (CheckpointRecord& record : store.checkpoints(run.id, true)) {
+  for (CheckpointRecord& record : store.checkpoints(run.id, Listed::and_pruned)) {
     if (!range.holds(record.cycle, near)) continue;
     if (record.state == CheckpointState::pruned) ++pruned;
     if (record.state == CheckpointState::recorded) records.push_back(std::move(record));

@@ -224,15 +224,10 @@ struct Left {
 
 Left left_of(const std::vector<Line>& lines, const std::vector<RunRecord>& known) {
   Left left;
-  std::map<std::pair<EngineKind, std::uint64_t>, Rate> rates;
+  const Rates rates(known);
   for (const Line& line : lines) {
-    const EngineKind engine = engine_of(line.stage->resolved);
-    const auto [entry, fresh] = rates.try_emplace({engine, line.run->parameters.grains});
-    if (fresh) {
-      entry->second =
-          expected_rate(known, engine, static_cast<double>(line.run->parameters.grains));
-    }
-    const Rate own = entry->second;
+    const Rate own =
+        rates.of(engine_of(line.stage->resolved), static_cast<double>(line.run->parameters.grains));
     left.cost.particle_steps += line.left.particle_steps;
     left.cost.bytes += line.left.bytes;
     left.core_seconds += line.left.particle_steps / own.particle_steps_per_second;

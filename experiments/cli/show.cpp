@@ -79,7 +79,7 @@ void print(const Facts& facts) {
 }
 
 void show_run(const Store& store, const RunRecord& run, Context& context) {
-  const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, true);
+  const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, Listed::all);
   const nlohmann::json engine = engine_of_run(store, run.id);
   if (context.json) {
     const auto member = [&](const Membership& m) -> nlohmann::json {

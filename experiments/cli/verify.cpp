@@ -2,7 +2,6 @@
 // `verify`: checks that the store is unchanged and, on request, that it can be recomputed.
 // `rebuild`: mends its tables.
 #include <fmt/format.h>
-#include <algorithm>
 
 #include <memory>
 
@@ -89,10 +88,7 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   nlohmann::json list = nlohmann::json::array();
   std::size_t left_out = 0;
   for (const RunRecord& run : store.runs()) {
-    if (!why_not_again(run)) continue;
-    left_out += static_cast<std::size_t>(std::ranges::count_if(
-        store.checkpoints(run.id, true),
-        [](const CheckpointRecord& c) { return c.state != CheckpointState::rejected; }));
+    if (why_not_again(run)) left_out += store.checkpoints(run.id, Listed::and_pruned).size();
   }
   if (!context.json) {
     if (left_out > 0) {

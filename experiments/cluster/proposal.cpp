@@ -86,7 +86,7 @@ Proposal propose(const std::vector<Plan>& plans, const Store* store,
   for (const Plan& plan : plans) {
     for (const PlannedRun& run : plan.runs) grains = std::max(grains, run.parameters.grains);
   }
-  made.rate = expected_rate(runs_of(store), EngineKind::shearcell, static_cast<double>(grains));
+  made.rate = Rates(runs_of(store)).of(EngineKind::shearcell, static_cast<double>(grains));
   return made;
 }
 

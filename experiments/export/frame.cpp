@@ -6,6 +6,7 @@
 
 #include "analysis/common_neighbours.hpp"
 #include "analysis/motion.hpp"
+#include "analysis/voronoi.hpp"
 #include "experiments/figures/more_measures.hpp"
 
 namespace shearcell {
@@ -21,15 +22,11 @@ void place_cell(const Checkpoint& c, const WallPose& pose, Frame& frame) {
       0, 0, c.cell.depth * d;
 }
 
-void add_grains(const Checkpoint& c, Frame& frame) {
-  const double d = c.units.diameter_m;
+void add_grains(const Checkpoint& c, const Eigen::Matrix3Xd& sites, Frame& frame) {
   for (Eigen::Index i = 0; i < c.state.position.cols(); ++i) {
-    const double periods = std::floor(c.state.position(2, i) / c.cell.depth);
-    Eigen::Vector3d r = c.state.position.col(i);
-    r.z() -= periods * c.cell.depth;
-    frame.position.col(i) = r * d;
-    frame.velocity.col(i) = c.state.velocity.col(i) * d;
-    frame.image.push_back(static_cast<std::int32_t>(periods));
+    frame.velocity.col(i) = c.state.velocity.col(i) * c.units.diameter_m;
+    const double periods = (c.state.position(2, i) - sites(2, i)) / c.cell.depth;
+    frame.image.push_back(static_cast<std::int32_t>(std::lround(periods)));
     frame.type.push_back(0);
   }
 }
@@ -75,15 +72,12 @@ void add_numbers(const Checkpoint& checkpoint, const CheckpointRecord& record,
   }
 }
 
-void add_wall_grains(const Checkpoint& c, const WallPose& pose, Frame& frame) {
-  const Eigen::Matrix3Xd positions = wall_grain_positions(c.cell, pose);
-  const auto grains = static_cast<Eigen::Index>(frame.grains);
-  for (Eigen::Index w = 0; w < positions.cols(); ++w) {
-    const WallSide side = c.cell.wall_grains[static_cast<std::size_t>(w)].side;
+void add_wall_grains(const Checkpoint& c, Frame& frame) {
+  auto particle = static_cast<Eigen::Index>(frame.grains);
+  for (const auto& [side, position] : c.cell.wall_grains) {
     const bool moves =
         side == (c.cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top);
-    frame.position.col(grains + w) = positions.col(w) * c.units.diameter_m;
-    frame.velocity.col(grains + w) =
+    frame.velocity.col(particle++) =
         Eigen::Vector3d(0, moves ? c.state.wall_velocity * c.units.diameter_m : 0.0, 0);
     frame.image.push_back(0);
     frame.type.push_back(1 + static_cast<std::int32_t>(side));
@@ -121,7 +115,7 @@ Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, con
   analysis.measures.units = mechanical_units(run.run, record);
   add_drive(run.run, record, analysis.measures);
   for (double& pressure : analysis.grains.pressure) pressure *= analysis.measures.units.stress_Pa;
-  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  const WallPose pose = pose_of(checkpoint);
   Frame frame;
   frame.step = checkpoint.state.step;
   frame.time_s = checkpoint.time_s;
@@ -130,14 +124,13 @@ Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, con
   frame.grains = static_cast<std::size_t>(checkpoint.state.position.cols());
   frame.radius = checkpoint.units.diameter_m / 2;
   frame.mass = checkpoint.units.mass_kg;
-  const auto total = checkpoint.state.position.cols() +
-                     static_cast<Eigen::Index>(checkpoint.cell.wall_grains.size());
-  frame.position.resize(3, total);
-  frame.velocity.resize(3, total);
+  const Eigen::Matrix3Xd sites = wrapped_sites(checkpoint.cell, pose, checkpoint.state.position);
+  frame.position = sites * checkpoint.units.diameter_m;
+  frame.velocity.resize(3, sites.cols());
   add_facts(record, run, analysis.measures, frame);
   place_cell(checkpoint, pose, frame);
-  add_grains(checkpoint, frame);
-  add_wall_grains(checkpoint, pose, frame);
+  add_grains(checkpoint, sites, frame);
+  add_wall_grains(checkpoint, frame);
   const auto earlier = sources == nullptr ? std::nullopt : sources->earlier(record, 1);
   add_columns(checkpoint, pose, analysis.grains, motion_since(earlier, checkpoint), frame);
   return frame;

@@ -48,11 +48,11 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
     last = std::min(last, static_cast<double>(figure.within->back()));
     phases = asked_steps(store, run, first, last);
   }
-  std::vector<CheckpointRecord> found = store.checkpoints(run.run.id, true);
+  std::vector<CheckpointRecord> found = store.checkpoints(run.run.id, Listed::and_pruned);
   std::erase_if(found, [&](const CheckpointRecord& record) {
     const bool whole = record.cycle == std::floor(record.cycle);
-    return record.state == CheckpointState::rejected || record.cycle < first ||
-           record.cycle > last || !(whole || std::ranges::binary_search(phases, record.step));
+    return record.cycle < first || record.cycle > last ||
+           !(whole || std::ranges::binary_search(phases, record.step));
   });
   if (figure.form == FigureForm::table && !found.empty()) {
     found.erase(found.begin(), --found.end());

@@ -37,8 +37,7 @@ Shear shear_of(const Store& store, const std::string& run) {
   const Parameters parameters = read_stage(record.resolved).parameters;
   Shear shear{shear_scene(parameters), drive(parameters),
               mechanical_units(record, CheckpointRecord()).kinetic_J};
-  for (CheckpointRecord& checkpoint : store.checkpoints(run, true)) {
-    if (checkpoint.state == CheckpointState::rejected) continue;
+  for (CheckpointRecord& checkpoint : store.checkpoints(run, Listed::and_pruned)) {
     if (checkpoint.step % cycle_steps(shear.drive) != 0) continue;
     shear.begins.insert_or_assign(checkpoint.step, std::move(checkpoint));
   }

@@ -17,9 +17,9 @@ namespace {
 /// The checkpoints by which the run would have ended for this experiment alone.
 std::vector<MeasuredCycle> measured_at(const Store& store, const RunRecord& run, double cadence,
                                        const MeasureOptions& options) {
-  std::vector<CheckpointRecord> records = store.checkpoints(run.id, true);
+  std::vector<CheckpointRecord> records = store.checkpoints(run.id, Listed::and_pruned);
   std::erase_if(records, [&](const CheckpointRecord& record) {
-    return record.state == CheckpointState::rejected || std::fmod(record.cycle, cadence) != 0;
+    return std::fmod(record.cycle, cadence) != 0;
   });
   const DerivedMeasure scalars = scalar_measures();
   const auto found = measure_checkpoints(store, records, std::span(&scalars, 1),

@@ -194,11 +194,9 @@ std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per
 
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const SelectedRun& selected,
                                              const MeasureOptions& options) {
-  std::vector<CheckpointRecord> found = store.checkpoints(selected.run.id, true);
+  std::vector<CheckpointRecord> found = store.checkpoints(selected.run.id, Listed::and_pruned);
   const double end = own_end(store, selected.run, selected.membership, options);
-  std::erase_if(found, [&](const CheckpointRecord& c) {
-    return c.state == CheckpointState::rejected || c.cycle > end;
-  });
+  std::erase_if(found, [&](const CheckpointRecord& c) { return c.cycle > end; });
   return found;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "analysis/voronoi.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -26,24 +28,11 @@ std::byte byte_of(const GrainField& field, double value) {
   return static_cast<std::byte>(std::lround(most * std::clamp(share, 0.0, 1.0)));
 }
 
-/// Grains, then wall grains, with z folded into the period.
-Eigen::Matrix3Xd all_positions(const Checkpoint& checkpoint, const WallPose& pose) {
-  const Eigen::Matrix3Xd& grains = checkpoint.state.position;
-  const Eigen::Matrix3Xd walls = wall_grain_positions(checkpoint.cell, pose);
-  Eigen::Matrix3Xd all(3, grains.cols() + walls.cols());
-  all << grains, walls;
-  const double depth = checkpoint.cell.depth;
-  for (Eigen::Index i = 0; i < all.cols(); ++i) {
-    all(2, i) -= depth * std::floor(all(2, i) / depth);
-  }
-  return all;
-}
-
 }  // namespace
 
 PackedFrame pack_frame(const Checkpoint& checkpoint, const WallPose& pose,
                        const GrainMeasures& grains, std::span<const GrainField> fields) {
-  const Eigen::Matrix3Xd position = all_positions(checkpoint, pose);
+  const Eigen::Matrix3Xd position = wrapped_sites(checkpoint.cell, pose, checkpoint.state.position);
   PackedFrame frame;
   frame.origin = position.rowwise().minCoeff();
   frame.step = (position.rowwise().maxCoeff() - frame.origin) / largest_word;

@@ -214,7 +214,7 @@ Frame make_frame(const Store& store, const RunRecord& run, const CheckpointRecor
                  const MeasureSources& sources) {
   const Checkpoint checkpoint = store.load_checkpoint(record);
   const Analysis analysis = analyse(checkpoint);
-  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  const WallPose pose = pose_of(checkpoint);
   const MechanicalUnits units = mechanical_units(run, record);
   const double pressure_Pa = run.resolved.value("/parameters/pressure_Pa"_json_pointer, 0.0);
   const std::vector<GrainField> fields = make_fields(

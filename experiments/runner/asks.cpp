@@ -117,8 +117,8 @@ std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunReco
       }
     }
   }
-  for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
-    if (record.state != CheckpointState::rejected) steps.erase(record.step);
+  for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::and_pruned)) {
+    steps.erase(record.step);
   }
   return {steps.begin(), steps.end()};
 }

@@ -108,23 +108,27 @@ StageBound stage_bound(const PlannedRun& run, const StageSpec& stage) {
   return {grains * steps, memory};
 }
 
-Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine, double grains) {
-  double steps = 0, seconds = 0;
+Rates::Rates(const std::vector<RunRecord>& runs) {
   for (const RunRecord& run : runs) {
-    if (engine_of(run.resolved) != engine) continue;
-    steps += run.particle_steps;
-    seconds += run.wall_seconds;
+    Sum& sum = sums_[engine_of(run.resolved)];
+    sum.steps += run.particle_steps;
+    sum.seconds += run.wall_seconds;
   }
-  if (seconds < 1) {
-    if (engine == EngineKind::lammps) return {assumed_rate(kLammpsRates, grains), false};
-    return {assumed_rate(kOurRates, grains), false};
+}
+
+Rate Rates::of(EngineKind engine, double grains) const {
+  const auto sum = sums_.find(engine);
+  if (sum != sums_.end() && sum->second.seconds >= 1) {
+    return {sum->second.steps / sum->second.seconds, true};
   }
-  return {steps / seconds, true};
+  if (engine == EngineKind::lammps) return {assumed_rate(kLammpsRates, grains), false};
+  return {assumed_rate(kOurRates, grains), false};
 }
 
 RemainingWork remaining_work(const std::vector<RunRecord>& stages,
                              const std::vector<RunRecord>& known) {
   RemainingWork work;
+  const Rates rates(known);
   std::map<std::string, double> seconds;  // of a stage and those before it, which come first
   for (const RunRecord& run : stages) {
     if (run.state == RunState::completed || run.state == RunState::failed) continue;
@@ -134,8 +138,7 @@ RemainingWork remaining_work(const std::vector<RunRecord>& stages,
     planned.target_cycles = run.target_cycles;
     const double steps =
         stage_cost(planned, {record.stage, run.id, run.parent, {}}, run.cycle).particle_steps;
-    const Rate rate =
-        expected_rate(known, record.parameters.engine, static_cast<double>(run.grains));
+    const Rate rate = rates.of(record.parameters.engine, static_cast<double>(run.grains));
     ++work.stages;
     work.particle_steps += steps;
     work.core_seconds += steps / rate.particle_steps_per_second;

@@ -2,6 +2,7 @@
 // Estimates the cost of stages before they run.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -46,9 +47,21 @@ struct Rate {
   bool measured;                     ///< in the store's own runs, or assumed
 };
 
-/// Of stages of one engine: the mean of those runs, or else what was measured elsewhere with about
-/// so many grains.
-Rate expected_rate(const std::vector<RunRecord>& runs, EngineKind engine, double grains);
+/// The rates that runs had.
+class Rates {
+ public:
+  explicit Rates(const std::vector<RunRecord>& runs);
+
+  /// Of stages of one engine: the mean of the runs, or else what was measured elsewhere with about
+  /// so many grains.
+  Rate of(EngineKind engine, double grains) const;
+
+ private:
+  struct Sum {
+    double steps = 0, seconds = 0;
+  };
+  std::map<EngineKind, Sum> sums_;
+};
 
 /// What is left of recorded stages, those that failed apart.
 struct RemainingWork {

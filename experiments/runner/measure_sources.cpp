@@ -20,8 +20,7 @@ MeasureSources::Shear MeasureSources::read_shear(const std::string& id) const {
   } catch (const std::runtime_error&) {
     return shear;  // not a run of this program
   }
-  for (CheckpointRecord& one : store_.checkpoints(id, true)) {
-    if (one.state == CheckpointState::rejected) continue;
+  for (CheckpointRecord& one : store_.checkpoints(id, Listed::and_pruned)) {
     const std::uint64_t step = one.step;
     shear.checkpoints.insert_or_assign(step, std::move(one));
   }

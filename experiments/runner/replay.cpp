@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <random>
 #include <utility>
 
@@ -163,9 +164,7 @@ std::vector<CheckpointRecord> replayable(const Store& store) {
   std::vector<CheckpointRecord> found;
   for (const RunRecord& run : store.runs()) {
     if (why_not_again(run)) continue;
-    for (CheckpointRecord& record : store.checkpoints(run.id, true)) {
-      if (record.state != CheckpointState::rejected) found.push_back(std::move(record));
-    }
+    std::ranges::move(store.checkpoints(run.id, Listed::and_pruned), std::back_inserter(found));
   }
   return found;
 }

@@ -99,9 +99,8 @@ std::optional<double> expected_end(const Store& store, const Until& until) {
 
 RunEnd::RunEnd(const Store& store, const RunRecord& run, std::uint64_t step)
     : store_(store), run_(run.id), cadence_(checkpoint_cadence(run)), cache_(store.folder()) {
-  for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
-    if (record.state == CheckpointState::rejected || record.step > step) continue;
-    if (on_cadence(record.cycle)) unmeasured_.push_back(record);
+  for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::and_pruned)) {
+    if (record.step <= step && on_cadence(record.cycle)) unmeasured_.push_back(record);
   }
 }
 

@@ -168,7 +168,7 @@ Checkpoint make_checkpoint(const StagePlan& plan, const Cell& cell, const Scene&
   checkpoint.time_s = static_cast<double>(state.step) * plan.scene.time_step;
   checkpoint.theta = tilt(plan.protocol->drive(), state.step).theta;
   checkpoint.units = units(plan.stage.parameters);
-  const WallPose pose = wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
+  const WallPose pose = pose_of(checkpoint);
   const Diagnostics facts = diagnose(cell, scene, state, pose);
   checkpoint.observables = {{"kinetic_energy_per_grain_m_d2_per_s2", facts.kinetic_energy},
                             {"mean_overlap_d", facts.mean_overlap},

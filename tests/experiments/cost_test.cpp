@@ -173,7 +173,7 @@ TEST(Cost, TakesTheRateFromTheStoreOnceItHasOne) {
   run.wall_seconds = 10;
   RunRecord other = run;
   other.particle_steps = 1e8;
-  const Rate rate = expected_rate({run, other}, EngineKind::shearcell, 600);
+  const Rate rate = Rates({run, other}).of(EngineKind::shearcell, 600);
   EXPECT_TRUE(rate.measured);
   EXPECT_EQ(rate.particle_steps_per_second, 2e7);
 }
@@ -182,19 +182,19 @@ TEST(Cost, AssumesRatesThatFallWithTheNumberOfGrains) {
   for (const EngineKind engine : {EngineKind::shearcell, EngineKind::lammps}) {
     double before = 1e9;
     for (const double grains : {5200.0, 2e4, 1e5}) {
-      const Rate rate = expected_rate({}, engine, grains);
+      const Rate rate = Rates({}).of(engine, grains);
       EXPECT_FALSE(rate.measured);
       EXPECT_LT(rate.particle_steps_per_second, before);
       before = rate.particle_steps_per_second;
     }
     const auto at = [engine](double n) {
-      return expected_rate({}, engine, n).particle_steps_per_second;
+      return Rates({}).of(engine, n).particle_steps_per_second;
     };
     EXPECT_EQ(at(100), at(5200));
     EXPECT_EQ(at(1e7), at(1e8));
   }
   const auto lammps = [](double n) {
-    return expected_rate({}, EngineKind::lammps, n).particle_steps_per_second;
+    return Rates({}).of(EngineKind::lammps, n).particle_steps_per_second;
   };
   EXPECT_EQ(lammps(5200), 6.6e6);
   EXPECT_NEAR(lammps(1e5), 3.0e6, 1);

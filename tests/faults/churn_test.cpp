@@ -63,7 +63,7 @@ class Churn : public testing::Test {
     const Store store(at("one") / "store", Access::read);
     std::vector<std::string> pruned;
     for (const RunRecord& run : store.runs()) {
-      for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
+      for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::all)) {
         if (record.state == CheckpointState::pruned) pruned.push_back(record.sha256);
       }
     }
@@ -163,7 +163,7 @@ class Churn : public testing::Test {
     }
     for (const RunRecord& run : store.runs()) {
       std::set<std::uint64_t> steps;
-      for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
+      for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::all)) {
         EXPECT_TRUE(steps.insert(record.step).second) << run.id << " step " << record.step;
       }
     }
@@ -174,7 +174,7 @@ class Churn : public testing::Test {
     std::size_t compared = 0;
     for (const RunRecord& run : golden.runs()) {
       std::map<std::uint64_t, std::string> states;
-      for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
+      for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::all)) {
         states[record.step] = record.state_hash;
       }
       for (const CheckpointRecord& record : golden.checkpoints(run.id)) {

@@ -23,7 +23,7 @@ std::set<std::string> facts(const fs::path& folder) {
   const Store store(folder / "store", Access::read);
   for (const RunRecord& run : store.runs()) {
     found.insert(run.id + " " + std::string(name_of(run.state)) + " " + run.state_hash);
-    for (const CheckpointRecord& record : store.checkpoints(run.id, true)) {
+    for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::all)) {
       found.insert(record.sha256 + " " + std::string(name_of(record.state)));
     }
   }

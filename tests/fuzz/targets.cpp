@@ -178,7 +178,7 @@ void attempt_store(Work&& work) {
 
 void look_at_runs(const Store& store) {
   for (const RunRecord& run : store.runs()) {
-    attempt_store([&] { store.checkpoints(run.id, true); });
+    attempt_store([&] { store.checkpoints(run.id, Listed::all); });
     attempt_store([&] {
       const CrateFacts facts = crate_facts(store, run.id);
       ro_crate_metadata(facts, prov_json(facts).dump());

@@ -59,7 +59,7 @@ void perform(Store& store, const Act& act) {
   if (what == "prune") {
     store.prune(store.prunable({.runs = {id}, .state = {}, .keep_every = act.amount}));
   }
-  for (const CheckpointRecord& record : store.checkpoints(id, true)) {
+  for (const CheckpointRecord& record : store.checkpoints(id, Listed::all)) {
     if (record.step != act.amount) continue;
     if (what == "reject") store.reject_checkpoint(id, record.sha256, "why");
     if (what == "restore" && record.state == CheckpointState::pruned) {
@@ -130,7 +130,7 @@ void expect_told(const Store& store) {
     RC_ASSERT(run.attempts == told.attempts);
     RC_ASSERT(run.step == told.step());
     RC_ASSERT(run.particle_steps == told.particle_steps);
-    const auto checkpoints = store.checkpoints(run.id, true);
+    const auto checkpoints = store.checkpoints(run.id, Listed::all);
     RC_ASSERT(checkpoints.size() == told.checkpoints.size());
     for (const CheckpointRecord& record : checkpoints) {
       RC_ASSERT(name_of(record.state) == told.checkpoints.at(record.sha256).second);

@@ -264,7 +264,7 @@ TEST_F(MergeTest, HealsAndRespectsPruning) {
   Store other = open("other");
   fs::copy(path("b") / records[2].file, path("a") / records[2].file);
   other.merge({path("a")});
-  EXPECT_EQ(other.checkpoints(run_id(0), true).size(), 4u);
+  EXPECT_EQ(other.checkpoints(run_id(0), Listed::all).size(), 4u);
   EXPECT_EQ(other.checkpoints(run_id(0)).size(), 3u);
   EXPECT_TRUE(other.verify().ok());
 }

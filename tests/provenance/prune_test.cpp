@@ -70,7 +70,7 @@ TEST_F(PruneTest, FreesTheFilesAndKeepsTheRecords) {
   EXPECT_EQ(store_.prune(chosen), bytes);
   for (const CheckpointRecord& record : chosen) EXPECT_FALSE(there(record));
   EXPECT_EQ(cycles(store_.checkpoints(run_id(0))), (std::vector<double>{0, 3, 6}));
-  EXPECT_EQ(store_.checkpoints(run_id(0), true).size(), 7u);
+  EXPECT_EQ(store_.checkpoints(run_id(0), Listed::all).size(), 7u);
   EXPECT_EQ(store_.run(run_id(0)).step, before[0].step);
   EXPECT_EQ(store_.run(run_id(0)).state, RunState::completed);
   EXPECT_TRUE(store_.prunable({{}, {}, 3}).empty());

@@ -183,7 +183,7 @@ TEST_F(StoreTest, PassesOverADamagedNewestCheckpoint) {
 
   EXPECT_EQ(store_.newest_valid_checkpoint(id_).value().record.sha256, first.sha256);
   EXPECT_EQ(store_.checkpoints(id_).size(), 1u);
-  EXPECT_EQ(store_.checkpoints(id_, true).size(), 3u);
+  EXPECT_EQ(store_.checkpoints(id_, Listed::all).size(), 3u);
   EXPECT_EQ(store_.run(id_).step, 45600u);
   EXPECT_EQ(types("run/" + id_).back(), "CheckpointRejected");
 

@@ -60,7 +60,7 @@ TEST(WorkedExample, CommandsOfTheReadmeDoWhatItSays) {
   EXPECT_EQ(recorded, store.events().at(3).hash);
   EXPECT_EQ(computed.substr(0, 64), recorded) << "the hash of event 4";
   for (const std::string& run : {history.packing, history.sheared}) {
-    for (const CheckpointRecord& record : store.checkpoints(run, true)) {
+    for (const CheckpointRecord& record : store.checkpoints(run, Listed::all)) {
       EXPECT_NE(output.find(record.file + ": OK"), std::string::npos) << record.file;
     }
   }
