@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/figures/run_table.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -225,22 +223,40 @@ Selected select_and_measure(const Store& store, const RunSelection& selection,
   return all;
 }
 
+/// The last record of each run, and its place among all.
+std::pair<std::vector<CheckpointRecord>, std::vector<std::size_t>> last_records(
+    const Selected& all) {
+  std::vector<CheckpointRecord> records;
+  std::vector<std::size_t> places;
+  for (std::size_t r = 0; r < all.ends.size(); ++r) {
+    const std::size_t begin = r == 0 ? 0 : all.ends[r - 1];
+    if (all.ends[r] == begin) continue;
+    places.push_back(all.ends[r] - 1);
+    records.push_back(all.records[places.back()]);
+  }
+  return {std::move(records), std::move(places)};
+}
+
+/// All that a table has of the last checkpoint of each run, and of the others what an onset needs.
+Selected select_and_measure_ends(const Store& store, const RunSelection& selection,
+                                 const MeasureOptions& options, RunTable& table) {
+  Selected all = select_and_measure(store, selection, table_measures().first(1), options, table);
+  const auto [records, places] = last_records(all);
+  MeasuredCheckpoints last = measure_checkpoints(store, records, table_measures(), options);
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    all.results[places[n]] = std::move(last.results[n]);
+  }
+  return all;
+}
+
 /// Of the records that have a row: all, or the last one of each run.
 std::vector<decltype(Measures::numbers)> energies_of(const Store& store, const Selected& all,
                                                      RowPer per, const MeasureOptions& options) {
-  std::vector<CheckpointRecord> with_row;
-  std::vector<std::size_t> place;
-  std::size_t next = 0;
-  for (const std::size_t end : all.ends) {
-    for (; next < end; ++next) {
-      if (per == RowPer::run && next + 1 < end) continue;
-      with_row.push_back(all.records[next]);
-      place.push_back(next);
-    }
-  }
-  auto found = cycle_energies(store, with_row, options);
+  if (per == RowPer::checkpoint) return cycle_energies(store, all.records, options);
+  const auto [records, places] = last_records(all);
+  auto found = cycle_energies(store, records, options);
   std::vector<decltype(Measures::numbers)> energies(all.records.size());
-  for (std::size_t n = 0; n < place.size(); ++n) energies[place[n]] = std::move(found[n]);
+  for (std::size_t n = 0; n < places.size(); ++n) energies[places[n]] = std::move(found[n]);
   return energies;
 }
 
@@ -256,13 +272,6 @@ FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
   return history;
 }
 
-std::string csv_cell(const json& value) {
-  if (value.is_null()) return "";
-  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
-  if (!value.is_string()) return value.dump();
-  return csv_field(value.get<std::string>());
-}
-
 }  // namespace
 
 std::span<const DerivedMeasure> table_measures() {
@@ -274,7 +283,7 @@ std::span<const DerivedMeasure> table_measures() {
 std::optional<Measures> read_table_measures(std::span<const json> results, const RunRecord& run,
                                             const CheckpointRecord& checkpoint) {
   if (results.front().is_null()) return std::nullopt;
-  Measures measures = read_results(table_measures(), results);
+  Measures measures = read_results(table_measures().first(results.size()), results);
   measures.units = mechanical_units(run, checkpoint);
   add_drive(run, checkpoint, measures);
   return measures;
@@ -283,7 +292,9 @@ std::optional<Measures> read_table_measures(std::span<const json> results, const
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, bool ledger) {
   RunTable table;
-  const Selected all = select_and_measure(store, selection, table_measures(), options, table);
+  const Selected all = per == RowPer::run
+                           ? select_and_measure_ends(store, selection, options, table)
+                           : select_and_measure(store, selection, table_measures(), options, table);
   const std::vector<Column> columns =
       columns_for(all.runs, per, VariantNames(store), ledger, selection.all_versions);
   std::vector<decltype(Measures::numbers)> energies;
@@ -356,33 +367,6 @@ std::vector<std::pair<TableColumn, json>> facts_of(const CheckpointRecord& recor
     facts.emplace_back(column, column.cell({nullptr, &record, found}));
   }
   return facts;
-}
-
-std::string to_csv(const RunTable& table) {
-  std::string text;
-  for (const TableColumn& column : table.columns) text += (text.empty() ? "" : ",") + column.name;
-  for (const std::vector<json>& row : table.rows) {
-    text += '\n';
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      if (c > 0) text += ',';
-      text += csv_cell(row[c]);
-    }
-  }
-  return text + '\n';
-}
-
-std::string to_json(const RunTable& table) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const std::vector<json>& row : table.rows) {
-    nlohmann::ordered_json& object = rows.emplace_back(nlohmann::ordered_json::object());
-    for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].name] = row[c];
-  }
-  return rows.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
-}
-
-bool is_table(std::string_view beginning) {
-  return beginning.starts_with("experiment,scale,variant,run,seed,") || beginning == "[]\n" ||
-         beginning.starts_with("[\n {\n  \"experiment\": ");
 }
 
 }  // namespace shearcell

@@ -43,7 +43,8 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
                      const MeasureOptions& options);
 
 /// What the columns need to know of a checkpoint, and the results of measure_checkpoints() for it
-/// as Measures, nothing if it could not be read. Throws AnalysisError when they are something else.
+/// as Measures, nothing if it could not be read; those of the first alone have its scalars alone.
+/// Throws AnalysisError when they are something else.
 std::span<const DerivedMeasure> table_measures();
 std::optional<Measures> read_table_measures(std::span<const nlohmann::json> results,
                                             const RunRecord& run,

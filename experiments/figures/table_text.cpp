@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A table as CSV and as JSON.
+#include <fmt/format.h>
+
+#include "analysis/chart.hpp"
+#include "experiments/figures/run_table.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+std::string csv_cell(const json& value) {
+  if (value.is_null()) return "";
+  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
+  if (!value.is_string()) return value.dump();
+  return csv_field(value.get<std::string>());
+}
+
+}  // namespace
+
+std::string to_csv(const RunTable& table) {
+  std::string text;
+  for (const TableColumn& column : table.columns) text += (text.empty() ? "" : ",") + column.name;
+  for (const std::vector<json>& row : table.rows) {
+    text += '\n';
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c > 0) text += ',';
+      text += csv_cell(row[c]);
+    }
+  }
+  return text + '\n';
+}
+
+std::string to_json(const RunTable& table) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const std::vector<json>& row : table.rows) {
+    nlohmann::ordered_json& object = rows.emplace_back(nlohmann::ordered_json::object());
+    for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].name] = row[c];
+  }
+  return rows.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
+}
+
+bool is_table(std::string_view beginning) {
+  return beginning.starts_with("experiment,scale,variant,run,seed,") || beginning == "[]\n" ||
+         beginning.starts_with("[\n {\n  \"experiment\": ");
+}
+
+}  // namespace shearcell
