@@ -104,11 +104,11 @@ TEST(GnuplotScript, TicksHaveOneNumberOfDecimals) {
 // gnuplot alone would label none of these.
 TEST(GnuplotScript, LogarithmicAxesWithFewPowersOfTenHaveTicks) {
   const auto script_for = [](double low, double high) {
-    return gnuplot_script({.name = "t",
-                           .columns = {},
-                           .rows = {},
-                           .chart = {.x = {.log = true},
-                                     .series = {{.points = {{0, 3}, {low, 1}, {high, 2}}}}}});
+    return gnuplot_script(
+        {.name = "t",
+         .columns = {},
+         .rows = {},
+         .chart = {.x = {.log = true}, .series = {{.points = {{0, 3}, {low, 1}, {high, 2}}}}}});
   };
   const auto has = [](const std::string& script, const char* part) {
     EXPECT_NE(script.find(part), std::string::npos) << part << "\nin\n" << script;
