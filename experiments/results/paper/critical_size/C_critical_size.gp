@@ -19,17 +19,19 @@ set format x '%.2f'
 set ytics 5
 set format y '%.0f'
 set xrange [0:0.12]
-set yrange [0:*]
-set offsets 0, 0, graph 0.05, 0
+set yrange [*:*]
+set offsets 0, 0, graph 0.05, graph 0.05
 $series0 << EOD
+0.05,10,,
 0.0667,13,,
 0.0833,16,,
 0.1,20,,
 EOD
 $series1 << EOD
-0.0667,10.1332401,,4.13072199
-0.0833,4.00012465,,1.05265134
-0.1,15.7191717,,2.02528008
+0.05,5.45361754,,12.194609
+0.0667,15.6943971,,4.47256795
+0.0833,6.51165426,,7.82417801
+0.1,21.7726754,,3.61340304
 EOD
 plot keyentry with linespoints lc rgb '#888888' lw 1.2 dt 2 pt 6 ps 0.4 title 'supplement', \
      keyentry with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'simulated', \

@@ -17,8 +17,8 @@ set ylabel 'onsets per grain and cycle'
 set xtics 0.002
 set format x '%.3f'
 set logscale y
-set format y '10^{%T}'
-set mytics 10
+unset mytics
+set ytics (2e-06,5e-06,1e-05,2e-05,5e-05)
 set xrange [*:*]
 set yrange [*:*]
 set offsets graph 0.03, graph 0.03, graph 0.05, graph 0.05
