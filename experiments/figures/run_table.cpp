@@ -206,9 +206,8 @@ struct Selected {
   std::vector<std::vector<json>> results;
 };
 
-Selected select_and_measure(const Store& store, const RunSelection& selection,
-                            std::span<const DerivedMeasure> measures, const MeasureOptions& options,
-                            RunTable& table) {
+Selected select(const Store& store, const RunSelection& selection, const MeasureOptions& options,
+                RunTable& table) {
   Selected all;
   all.runs = select_runs(store, selection);
   std::erase_if(all.runs, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
@@ -217,46 +216,54 @@ Selected select_and_measure(const Store& store, const RunSelection& selection,
     std::ranges::move(checkpoints_of(store, run, options), std::back_inserter(all.records));
     all.ends.push_back(all.records.size());
   }
-  MeasuredCheckpoints measured = measure_checkpoints(store, all.records, measures, options);
-  all.results = std::move(measured.results);
-  static_cast<MeasureOutcome&>(table) = std::move(measured);
+  all.results.resize(all.records.size());
   return all;
 }
 
-/// The last record of each run, and its place among all.
-std::pair<std::vector<CheckpointRecord>, std::vector<std::size_t>> last_records(
-    const Selected& all) {
+/// Places among the records of those that have a row: all, or the last one of each run; or of those
+/// that have none.
+std::vector<std::size_t> places(const Selected& all, RowPer per, bool with_row = true) {
+  std::vector<std::size_t> found;
+  std::size_t next = 0;
+  for (const std::size_t end : all.ends) {
+    for (; next < end; ++next) {
+      const bool has_row = per == RowPer::checkpoint || next + 1 == end;
+      if (has_row == with_row) found.push_back(next);
+    }
+  }
+  return found;
+}
+
+std::vector<CheckpointRecord> records_at(const Selected& all, std::span<const std::size_t> places) {
   std::vector<CheckpointRecord> records;
-  std::vector<std::size_t> places;
-  for (std::size_t r = 0; r < all.ends.size(); ++r) {
-    const std::size_t begin = r == 0 ? 0 : all.ends[r - 1];
-    if (all.ends[r] == begin) continue;
-    places.push_back(all.ends[r] - 1);
-    records.push_back(all.records[places.back()]);
-  }
-  return {std::move(records), std::move(places)};
+  for (const std::size_t place : places) records.push_back(all.records[place]);
+  return records;
 }
 
-/// All that a table has of the last checkpoint of each run, and of the others what an onset needs.
-Selected select_and_measure_ends(const Store& store, const RunSelection& selection,
-                                 const MeasureOptions& options, RunTable& table) {
-  Selected all = select_and_measure(store, selection, table_measures().first(1), options, table);
-  const auto [records, places] = last_records(all);
-  MeasuredCheckpoints last = measure_checkpoints(store, records, table_measures(), options);
+/// Measures the records at these places, and adds what could not be measured to the table's list.
+void measure_at(const Store& store, std::span<const std::size_t> places,
+                std::span<const DerivedMeasure> measures, const MeasureOptions& options,
+                Selected& all, RunTable& table) {
+  if (places.empty()) return;
+  MeasuredCheckpoints found =
+      measure_checkpoints(store, records_at(all, places), measures, options);
   for (std::size_t n = 0; n < places.size(); ++n) {
-    all.results[places[n]] = std::move(last.results[n]);
+    all.results[places[n]] = std::move(found.results[n]);
   }
-  return all;
+  std::ranges::move(found.damage, std::back_inserter(table.damage));
+  std::ranges::move(found.pruned, std::back_inserter(table.pruned));
+  std::ranges::sort(table.damage);
+  std::ranges::sort(table.pruned);
+  if (!found.cache_trouble.empty()) table.cache_trouble = found.cache_trouble;
 }
 
-/// Of the records that have a row: all, or the last one of each run.
+/// Of the records that have a row.
 std::vector<decltype(Measures::numbers)> energies_of(const Store& store, const Selected& all,
                                                      RowPer per, const MeasureOptions& options) {
-  if (per == RowPer::checkpoint) return cycle_energies(store, all.records, options);
-  const auto [records, places] = last_records(all);
-  auto found = cycle_energies(store, records, options);
+  const std::vector<std::size_t> with_row = places(all, per);
+  auto found = cycle_energies(store, records_at(all, with_row), options);
   std::vector<decltype(Measures::numbers)> energies(all.records.size());
-  for (std::size_t n = 0; n < places.size(); ++n) energies[places[n]] = std::move(found[n]);
+  for (std::size_t n = 0; n < with_row.size(); ++n) energies[with_row[n]] = std::move(found[n]);
   return energies;
 }
 
@@ -292,9 +299,10 @@ std::optional<Measures> read_table_measures(std::span<const json> results, const
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, bool ledger) {
   RunTable table;
-  const Selected all = per == RowPer::run
-                           ? select_and_measure_ends(store, selection, options, table)
-                           : select_and_measure(store, selection, table_measures(), options, table);
+  Selected all = select(store, selection, options, table);
+  measure_at(store, places(all, per), table_measures(), options, all, table);
+  // An onset needs no more of the others than their scalars.
+  measure_at(store, places(all, per, false), table_measures().first(1), options, all, table);
   const std::vector<Column> columns =
       columns_for(all.runs, per, VariantNames(store), ledger, selection.all_versions);
   std::vector<decltype(Measures::numbers)> energies;
@@ -328,7 +336,8 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
                      const MeasureOptions& options) {
   const std::array measures = {derived_measure(measure.derived)};
   RunTable table;
-  const Selected all = select_and_measure(store, selection, measures, options, table);
+  Selected all = select(store, selection, options, table);
+  measure_at(store, places(all, RowPer::checkpoint), measures, options, all, table);
   std::vector<Column> columns =
       columns_of_runs(all.runs, VariantNames(store), selection.all_versions);
   std::ranges::move(which_checkpoint(), std::back_inserter(columns));
