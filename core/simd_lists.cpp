@@ -173,7 +173,8 @@ HWY_INLINE void find_planes(const PruneTask& t, std::size_t block) {
 
 // The kept neighbours of one block, per lane, before they are interleaved.
 struct Kept {
-  std::int32_t rows[kLanes][kMostNeighbours + 64];
+  // write_block pads a row behind its wall grains up to the other slots of the longest lane.
+  std::int32_t rows[kLanes][2 * kMostNeighbours + 64];
   std::size_t count[kLanes], wall[kLanes];
   std::size_t other_slots, wall_slots;  // of the longest lane
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/team.hpp"
 
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "core/threads.hpp"
 
 #if defined(__x86_64__)

@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <utility>
 
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/descriptor.hpp"
 #include "provenance/sha256.hpp"

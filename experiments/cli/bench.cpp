@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "analysis/plot.hpp"
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "experiments/bench/accuracy/accuracy.hpp"
 #include "experiments/bench/engines.hpp"
 #include "experiments/bench/speed.hpp"

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "provenance/io/read_number.hpp"
 
 namespace shearcell::cli {

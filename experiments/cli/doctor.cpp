@@ -10,7 +10,7 @@
 #include <fstream>
 #include <memory>
 
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "experiments/bench/speed.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/cost.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <set>
 
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/draw.hpp"
 #include "experiments/runner/progress.hpp"

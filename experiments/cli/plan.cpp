@@ -11,7 +11,7 @@
 #include <optional>
 #include <set>
 
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/cost.hpp"

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/progress.hpp"
 #include "provenance/io/plain_file.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <set>
 
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/stop.hpp"

@@ -11,7 +11,7 @@
 #include <set>
 #include <thread>
 
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/queue_view.hpp"
 #include "experiments/runner/cost.hpp"

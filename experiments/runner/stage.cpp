@@ -9,7 +9,7 @@
 #include "core/diagnostics.hpp"
 #include "core/drive.hpp"
 #include "core/filling.hpp"
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/asks.hpp"
 #include "experiments/runner/cost.hpp"

@@ -14,6 +14,7 @@
 #include "core/linked_cells.hpp"
 #include "core/neighbour_lists.hpp"
 #include "core/random.hpp"
+#include "core/simulation.hpp"
 #include "tests/core/random_scenes.hpp"
 
 namespace shearcell {
@@ -146,6 +147,40 @@ PROPERTY(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId, 300
       RC_ASSERT(found_row(lists, walls, grains, kernels->lanes, g) ==
                 expected_row(points, walls, cell.depth, g));
     }
+  }
+}
+
+// A damaged checkpoint can hold such a state. Lists are cut off at kMostNeighbours: grain 0 has
+// that many grains of the moving wall, the others of its vector as many grains.
+TEST(NeighbourLists, OfACollapsedCellAreTheSameInAllKernels) {
+  constexpr std::uint32_t kCrowd = kMostNeighbours + 50;
+  const auto near = [](double x, double y, std::uint32_t i) -> Eigen::Vector3d {
+    const auto u = uniform_pair({i, 0, 0, 0}, 1);
+    return {x + 0.1 * u[0], y + 0.1 * u[1], 2 + 0.1 * uniform_pair({i, 1, 0, 0}, 1)[0]};
+  };
+  Cell cell;
+  cell.width = cell.top = 8;
+  cell.depth = 4;
+  State state;
+  state.position.resize(3, 1 + kCrowd);
+  state.velocity.setZero(3, 1 + kCrowd);
+  state.position.col(0) = Eigen::Vector3d(2, 0.6, 2);
+  for (std::uint32_t i = 0; i < kCrowd; ++i) {
+    cell.wall_grains.push_back({WallSide::bottom, near(2, -0.1, i)});
+    state.position.col(1 + i) = near(6, 4, i);
+  }
+  Scene scene;
+  scene.stiffness = 1;
+  EngineSettings settings;
+  settings.lists.sort_memory = false;
+  settings.kernels = &scalar_kernels();
+  const Eigen::Matrix3Xd expected = Simulation(cell, scene, state, settings).forces().on_grain;
+  EXPECT_GT(expected(1, 0), 100);  // a thousand overlaps of about 0.3 d
+  for (const Simd simd : kEverySimd) {
+    settings.kernels = find_kernels(simd);
+    if (settings.kernels == nullptr) continue;
+    EXPECT_EQ(Simulation(cell, scene, state, settings).forces().on_grain, expected)
+        << settings.kernels->name;
   }
 }
 

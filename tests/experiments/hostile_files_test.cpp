@@ -11,7 +11,7 @@
 #include <cstring>
 #include <map>
 
-#include "core/memory.hpp"
+#include "core/machine.hpp"
 #include "tests/experiments/damage.hpp"
 #include "tests/experiments/program.hpp"
 

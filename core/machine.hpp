@@ -6,7 +6,9 @@
 #include <sched.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <thread>
 
 namespace shearcell {
 
@@ -19,8 +21,10 @@ inline double machine_memory() {
 /// container.
 inline std::size_t usable_cores() {
   cpu_set_t set;
-  const bool known = sched_getaffinity(0, sizeof set, &set) == 0;
-  return known ? static_cast<std::size_t>(CPU_COUNT(&set)) : 1;
+  const bool known = sched_getaffinity(0, sizeof set, &set) == 0;  // fails beyond 1024 cores
+  const auto cores =
+      known ? static_cast<unsigned>(CPU_COUNT(&set)) : std::thread::hardware_concurrency();
+  return std::max(1U, cores);
 }
 
 }  // namespace shearcell
