@@ -6,6 +6,9 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
+
+#include "analysis/error.hpp"
 
 namespace shearcell {
 namespace {
@@ -132,6 +135,10 @@ bool ConvexCell::clip(const HalfSpace& plane) {
   }
   if (cut_.empty()) return false;
 
+  if (planes_.size() == most_planes) {
+    throw AnalysisError("a Voronoi cell has more than " + std::to_string(most_planes) +
+                        " neighbours: these grains are no packing");
+  }
   if (planes_.size() == stride_) grow_tables();
   const auto index = static_cast<std::uint16_t>(planes_.size());
   planes_.push_back(plane);

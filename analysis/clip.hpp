@@ -36,6 +36,10 @@ HalfSpace bisector_to(const Eigen::Vector3d& site);
 /// The side of a plane with unit `normal` at signed distance `offset` from the origin.
 HalfSpace plane_at(const Eigen::Vector3d& normal, double offset);
 
+/// More planes than the cell of a grain of any packing has. The tables grow as its square, and a
+/// corner's number, below twice as many, has 16 bits.
+inline constexpr std::size_t most_planes = 4096;
+
 /// Reuse one object for many cells: it keeps its memory. Not for use by two threads at once.
 class ConvexCell {
  public:
@@ -43,7 +47,7 @@ class ConvexCell {
   void reset(const std::array<HalfSpace, 6>& box);
 
   /// Intersects with a half-space. True when it cut; the plane then has the next index after the
-  /// box and the cuts before.
+  /// box and the cuts before. Throws AnalysisError for more than most_planes.
   bool clip(const HalfSpace& plane);
 
   const HalfSpace& plane(std::size_t p) const { return planes_[p]; }

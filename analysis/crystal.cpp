@@ -76,7 +76,8 @@ std::vector<std::int32_t> unpacked(const json& result, const char* key) {
   return values;
 }
 
-/// Ascending ids, each in a crystallite that exists, and as many in each as its size says.
+/// Ascending ids, each in a crystallite that exists, which has at least one grain, and as many in
+/// each as its size says; places that can be drawn.
 void check(const CrystalliteMap& map) {
   if (map.label.size() != map.grain.size()) refuse("labels and grains differ in number");
   if (map.centre.size() != map.size.size()) refuse("centres and sizes differ in number");
@@ -89,6 +90,11 @@ void check(const CrystalliteMap& map) {
     ++count[label];
   }
   if (count != map.size) refuse("sizes do not count the grains");
+  if (std::ranges::count(count, 0) > 0) refuse("a crystallite without grains");
+  const bool finite =
+      std::ranges::all_of(map.centre, [](const auto& c) { return c.allFinite(); }) &&
+      std::isfinite(map.width) && std::isfinite(map.top - map.bottom);
+  if (!(finite && map.width > 0 && map.top > map.bottom)) refuse("they lie in no cell");
 }
 
 }  // namespace

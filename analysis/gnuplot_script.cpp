@@ -85,7 +85,8 @@ std::vector<std::string> ticks_of_decades(const Extent& data) {
   const bool narrow = data.high < 4 * data.low;
   const double power =
       std::pow(10, std::floor(std::log10(narrow ? (data.high - data.low) / 2 : data.low)));
-  if (!(power > 0) || !std::isfinite(power)) return {digits(data.low)};
+  const bool one_value = data.high - data.low < 1e-8 * data.low;  // but for rounding
+  if (one_value || !(power > 0) || !std::isfinite(power)) return {digits(data.low)};
   if (narrow) {
     const double step = power * ((data.high - data.low) / power > 5 ? 2 : 1);
     for (double at = std::ceil(data.low / step - 1e-9); at * step <= data.high * (1 + 1e-9); ++at) {
@@ -351,12 +352,12 @@ std::string gnuplot_script(const FigureTable& table) {
   const bool words = !table.text.rows.empty();
   const Chart& chart = table.chart;
   return fmt::format(
-      "{}{},{} enhanced font 'Helvetica,{}' background '#ffffff'\n{}set output '{}.svg'\ndata = "
-      "'{}.csv'\n{}set output\n",
+      "{}{},{} enhanced font 'Helvetica,{}' background '#ffffff'\n{}set output '{}.svg'\n{}set "
+      "output\n",
       gnuplot_script_beginning,
       words ? width_of(table.text) : (chart.wide ? double_width : column_width),
       words ? height_of(table.text) : height_of(chart), words ? 14 : type_size, style, table.name,
-      table.name, words ? text_table_commands(table.text) : Script(table).text());
+      words ? text_table_commands(table.text) : Script(table).text());
 }
 
 }  // namespace shearcell

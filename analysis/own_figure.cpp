@@ -191,6 +191,7 @@ FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves)
   const std::array<MeasureColumn, 2> both = {scalar_column(plot.y), scalar_column(plot.x)};
   FigureTable table = against_cycle(plot.name, curves, both, {});
   table.chart.series = series_of(curves, columns_against(column_name(both[1], "mean"), both[0]));
+  table.chart.note.clear();  // of lines that are not drawn
   return table;
 }
 

@@ -72,11 +72,11 @@ void require_own_files(const FigureTable& table, const std::filesystem::path& fo
 
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder) {
   require_plain_name(table.name);
-  std::filesystem::path svg = folder / (table.name + ".svg");
+  std::filesystem::path svg = folder / (table.name + ".svg"), pdf = folder / (table.name + ".pdf");
+  for (const auto& old : {svg, pdf}) std::filesystem::remove(old);  // of other data
   const std::string script = table.name + ".gp";
   write_output(folder / script, gnuplot_script(table));
   const TemporaryFolder apart;
-  write_csv(table, apart.path());
   write_output(apart.path() / script, gnuplot_script(table));
 
   // -d keeps a user's own defaults out of the figure.
@@ -88,7 +88,6 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
   }
   auto drawn = drawing(*outcome, apart.path() / svg.filename());
   if (!drawn) {
-    std::filesystem::remove(svg);  // of other data
     throw AnalysisError("gnuplot could not draw " + table.name + ":\n" + outcome->messages);
   }
   write_output(svg, with_spaces_kept(std::move(*drawn)));
@@ -106,7 +105,6 @@ std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path&
   if (!outcome) return std::nullopt;
   const auto drawn = drawing(*outcome, made);
   if (!drawn) {
-    std::filesystem::remove(pdf);
     throw AnalysisError("rsvg-convert could not read " + svg.string() + ":\n" + outcome->messages);
   }
   write_output(pdf, *drawn);

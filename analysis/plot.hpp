@@ -24,10 +24,10 @@ inline constexpr std::string_view gnuplot_script_beginning = "set terminal svg s
 /// it, drawings by that script.
 void require_own_files(const FigureTable& table, const std::filesystem::path& folder);
 
-/// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` in that
-/// folder draws it again from the table that write_csv() puts there). Returns the path of the SVG.
-/// The same table gives the same bytes with the same gnuplot. Drawings are made in a temporary
-/// folder, so that several programs may write to one folder and no cut file is left there.
+/// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` draws it
+/// again). Deletes an SVG and PDF of that name first. Returns the path of the SVG. The same table
+/// gives the same bytes with the same gnuplot. Drawings are made in a temporary folder, so that
+/// several programs may write to one folder and no cut file is left there.
 ///
 /// Throws AnalysisError if gnuplot is missing (naming the package to install) or fails (with its
 /// message); the script stays.

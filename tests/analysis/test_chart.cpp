@@ -116,6 +116,7 @@ TEST(GnuplotScript, LogarithmicAxesWithFewPowersOfTenHaveTicks) {
   has(script_for(0.0032, 0.0041), "set xtics (0.0032,0.0034,0.0036,0.0038,0.004)\n");
   has(script_for(3, 70), "set xtics (5,10,20,50)\n");
   has(script_for(3, 700), "set format x '10^{%T}'");
+  has(script_for(0.3, 0.30000000000000004), "set xtics (0.3)\n");
   has(script_for(3, 70), "EOD\n3,1,,\n70,2,,\nEOD\n");  // no point at zero
   const std::string none =
       gnuplot_script({.name = "t",

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "analysis/clip.hpp"
+#include "analysis/error.hpp"
 
 namespace shearcell {
 namespace {
@@ -51,6 +52,20 @@ TEST(ConvexCell, NothingLeft) {
   EXPECT_EQ(cell.corners(), 0U);
   std::vector<double> areas;
   EXPECT_EQ(cell.measure(areas), 0);
+}
+
+TEST(ConvexCell, RefusesMorePlanesThanItsTablesHold) {
+  ConvexCell cell;
+  cell.reset(cube(2));
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  const auto cut_by_spheres_planes = [&] {
+    for (int n = 0; n < 5000; ++n) {
+      const Eigen::Vector3d direction(normal(random), normal(random), normal(random));
+      cell.clip(plane_at(direction.normalized(), 1));
+    }
+  };
+  EXPECT_THROW(cut_by_spheres_planes(), AnalysisError);
 }
 
 TEST(ConvexCell, OctahedronOfManyEqualPlanes) {

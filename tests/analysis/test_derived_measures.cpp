@@ -100,6 +100,18 @@ TEST(DerivedMeasures, CrystallitesThatDoNotFitTogetherAreRefused) {
   labels[3] = 0x80;
   bad["label"] = nlohmann::json::binary(labels);
   EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a negative label";
+  bad = good;
+  std::vector<std::uint8_t> sizes = good.at("size").get_binary();
+  sizes.insert(sizes.end(), 4, 0);
+  bad["size"] = nlohmann::json::binary(sizes);
+  bad["centre_d"].push_back({1, 2, 3});
+  EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a crystallite without grains";
+  bad = good;
+  bad["centre_d"][0][1] = std::nan("");
+  EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a centre that is no place";
+  bad = good;
+  bad["width_d"] = 0;
+  EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a cell without width";
 }
 
 TEST(DerivedMeasures, OtherBytesAreRefused) {

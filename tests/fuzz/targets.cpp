@@ -8,7 +8,9 @@
 #include "analysis/crystal.hpp"
 #include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"
+#include "analysis/growth.hpp"
 #include "analysis/measures.hpp"
+#include "analysis/nucleation.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/lines.hpp"
@@ -142,7 +144,16 @@ void take_measures(Input input) {
   attempt<AnalysisError>([&] {
     const nlohmann::json result = decode_result(std::as_bytes(input));
     attempt<AnalysisError>([&] { read_measures(result); });
-    attempt<AnalysisError>([&] { read_crystallite_map(result); });
+    attempt<AnalysisError>([&] {
+      FigureRun run;
+      CheckpointMeasures& checkpoint = run.checkpoints.emplace_back();
+      checkpoint.crystallites = read_crystallite_map(result);
+      GrowthBySize counts;
+      follow(*checkpoint.crystallites, *checkpoint.crystallites, counts);
+      fit_growth({&counts, 1}, Vanished::shrank);
+      const std::vector<double> places = nucleus_places(run, CellAxis::y);
+      density({&places, 1}, 10);
+    });
   });
 }
 

@@ -11,7 +11,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.5 width 2
 set bars 0.5
 set output 'accuracy-collision-speed.svg'
-data = 'accuracy-collision-speed.csv'
 set title 'Two grains collide: speed after it' font ',12'
 set xlabel 'seconds per cycle of 600 sheared grains'
 set ylabel 'relative error'

@@ -11,7 +11,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.5 width 2
 set bars 0.5
 set output 'accuracy-seeds.svg'
-data = 'accuracy-seeds.csv'
 set xlabel 'time step  [2/ω_{max}]'
 set ylabel 'volume fraction  {/:Italic ϕ}'
 set xrange [*:*]

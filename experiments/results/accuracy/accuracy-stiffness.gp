@@ -11,7 +11,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.5 width 2
 set bars 0.5
 set output 'accuracy-stiffness.svg'
-data = 'accuracy-stiffness.csv'
 set xlabel 'seconds per cycle of 600 sheared grains'
 set ylabel 'bias of the volume fraction'
 set logscale x

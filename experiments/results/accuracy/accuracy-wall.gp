@@ -11,7 +11,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.5 width 2
 set bars 0.5
 set output 'accuracy-wall.svg'
-data = 'accuracy-wall.csv'
 set title 'One grain swings on a wall: position, in amplitudes' font ',12'
 set xlabel 'seconds per cycle of 600 sheared grains'
 set ylabel 'relative error'

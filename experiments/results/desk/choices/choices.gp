@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'choices.svg'
-data = 'choices.csv'
 set xlabel 'shear cycle  {/:Italic n}'
 set ylabel 'volume fraction  {/:Italic ϕ}'
 set ytics 0.002

@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'S6_onset.svg'
-data = 'S6_onset.csv'
 set label '(b)' at screen 0.015, screen 0.96 left front
 set xlabel 'amplitude  {/:Italic A}  [rad]'
 set ylabel 'onset  {/:Italic ϕ}'

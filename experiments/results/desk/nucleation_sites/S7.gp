@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'S7.svg'
-data = 'S7.csv'
 set label '(a)' at screen 0.015, screen 0.96 left front
 set xlabel 'position  {/:Italic x}/{/:Italic w},  {/:Italic y}/{/:Italic h}'
 set ylabel 'probability density  {/:Italic P}'

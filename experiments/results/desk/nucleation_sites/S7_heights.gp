@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'S7_heights.svg'
-data = 'S7_heights.csv'
 set label '(b)' at screen 0.015, screen 0.96 left front
 set xlabel 'position  {/:Italic y}/{/:Italic h},  {/:Italic y}/1.675 {/:Italic L}'
 set ylabel 'probability density  {/:Italic P}'

@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'S7_stiffness.svg'
-data = 'S7_stiffness.csv'
 set label '(c)' at screen 0.015, screen 0.96 left front
 set xlabel 'position  {/:Italic y}/{/:Italic h}'
 set ylabel 'probability density  {/:Italic P}'

@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'nucleation_a.svg'
-data = 'nucleation_a.csv'
 set label '(a)' at screen 0.015, screen 0.96 left front
 set xlabel 'shear cycle  {/:Italic n}'
 set ylabel 'share of runs without an onset'

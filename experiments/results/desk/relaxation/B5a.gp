@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'B5a.svg'
-data = 'B5a.csv'
 set label '(a)' at screen 0.015, screen 0.96 left front
 set xlabel 'shear cycle  {/:Italic n}'
 set ylabel 'volume fraction  {/:Italic ϕ}'

@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'B5c.svg'
-data = 'B5c.csv'
 set label '(c)' at screen 0.015, screen 0.96 left front
 set xlabel 'volume fraction  {/:Italic ϕ}'
 set ylabel 'percentage crystalline  [%]'

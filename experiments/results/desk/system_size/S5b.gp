@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'S5b.svg'
-data = 'S5b.csv'
 set xlabel 'grains  {/:Italic N}'
 set ylabel 'onset  {/:Italic ϕ}'
 set xtics 5000

@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'C.svg'
-data = 'C.csv'
 set label '(a)' at screen 0.015, screen 0.96 left front
 set xlabel 'crystallite size  [grains]'
 set ylabel '{/:Italic Δρ} = {/:Italic ρ}_{g} − {/:Italic ρ}_{s}'

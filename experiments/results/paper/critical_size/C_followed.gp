@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'C_followed.svg'
-data = 'C_followed.csv'
 set label '(d)' at screen 0.015, screen 0.96 left front
 set xlabel 'cycles that crystallites are followed'
 set ylabel 'critical size  [grains]'

@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'S5a.svg'
-data = 'S5a.csv'
 set xlabel 'amplitude  {/:Italic A}  [rad]'
 set ylabel 'onset  {/:Italic ϕ}'
 set xtics 0.02

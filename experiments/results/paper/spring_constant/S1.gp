@@ -10,7 +10,6 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
 set output 'S1.svg'
-data = 'S1.csv'
 set xlabel 'mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]'
 set ylabel 'volume fraction  {/:Italic ϕ}'
 set logscale x
