@@ -37,10 +37,7 @@ void table(const TableOptions& options, Context& context) {
     tell_stderr("{} rows of {} columns in {}\n", made.rows.size(), made.columns.size(),
                 options.out);
   }
-  if (made.older_versions > 0) {
-    tell_stderr("left out: {} of another version of the manifest; --all-versions adds them\n",
-                counted(made.older_versions, "run"));
-  }
+  for (const std::string& note : made.notes) tell_stderr("{}\n", note);
   for (const auto* messages : {&made.damage, &made.pruned}) {
     for (const std::string& line : *messages) {
       tell_stderr("not measured: {}\n", line);

@@ -10,7 +10,6 @@
 #include <map>
 #include <ranges>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "analysis/own_figure.hpp"
@@ -22,6 +21,7 @@
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/asks.hpp"
 #include "experiments/runner/progress.hpp"
+#include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
@@ -59,70 +59,6 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
   }
   return found;
 }
-
-/// "fluid=still, fluid=cell and 3 more".
-std::string some_of(const std::set<std::string>& names) {
-  constexpr std::size_t most = 3;
-  const std::string first = fmt::format("{}", fmt::join(names | std::views::take(most), ", "));
-  return names.size() > most ? fmt::format("{} and {} more", first, names.size() - most) : first;
-}
-
-/// Runs of one figure, each run once and each seed of a variant once.
-class Chosen {
- public:
-  explicit Chosen(bool all_versions) : all_versions_(all_versions) {}
-
-  void take(CollectedRun run) {
-    const Membership& m = run.membership;
-    if (!ids_.emplace(m.experiment, run.run.id).second) return;
-    const auto [place, first] =
-        places_.try_emplace({m.experiment, m.variant, m.seed}, runs_.size());
-    if (first) {
-      runs_.push_back(std::move(run));
-      return;
-    }
-    // The same manifest meant another run to another version of the program.
-    CollectedRun& known = runs_[place->second];
-    notes_.push_back(fmt::format(
-        "experiment {}: run {:.8} ({}, seed {}) is left out: the manifest was later declared with "
-        "run {:.8} in its place",
-        m.experiment, known.run.id, m.variant, m.seed, run.run.id));
-    known = std::move(run);
-  }
-
-  void take_older(CollectedRun run) {
-    Membership& m = run.membership;
-    if (ids_.contains({m.experiment, run.run.id})) return;
-    if (!all_versions_) {
-      left_[{m.experiment, m.manifest}].push_back(m.variant);
-      return;
-    }
-    m.labels["manifest"] = m.manifest.substr(0, 8);
-    m.variant += fmt::format(",manifest={:.8}", m.manifest);
-    take(std::move(run));
-  }
-
-  std::vector<std::string> notes() {
-    for (const auto& [version, variants] : left_) {
-      notes_.push_back(
-          fmt::format("experiment {}: left out: {} of another version of its manifest ({:.8}): {}; "
-                      "--all-versions adds them",
-                      version.first, counted(variants.size(), "run"), version.second,
-                      some_of({variants.begin(), variants.end()})));
-    }
-    return std::move(notes_);
-  }
-  std::vector<CollectedRun> runs() { return std::move(runs_); }
-
- private:
-  bool all_versions_;
-  std::vector<CollectedRun> runs_;
-  std::set<std::pair<std::string, std::string>> ids_;  // experiment, run
-  std::map<std::tuple<std::string, std::string, std::uint64_t>, std::size_t> places_;
-  // Variants of the runs that were left out, by experiment and manifest.
-  std::map<std::pair<std::string, std::string>, std::vector<std::string>> left_;
-  std::vector<std::string> notes_;
-};
 
 std::size_t missing_of(const CollectedRun& run) {
   if (run.run.kind != "shear" || run.checkpoints.empty()) return 0;
@@ -243,6 +179,36 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRu
   }
 }
 
+/// Runs of any version of the manifest, settled packings not among them. Throws NotFound for none.
+std::vector<SelectedRun> runs_of(const Store& store, const WantedFigure& wanted,
+                                 const CollectOptions& options) {
+  std::vector<SelectedRun> found = select_runs(store, {});
+  std::erase_if(found, [&](const SelectedRun& s) {
+    const Membership& m = s.membership;
+    return s.run.kind == "prepare" ||
+           (!wanted.experiment.empty() && m.experiment != wanted.experiment) ||
+           (options.scale && scale_name(m.scale) != *options.scale);
+  });
+  if (found.empty()) {
+    throw NotFound(fmt::format("no run of the store belongs to figure {}{}", wanted.path(),
+                               options.scale
+                                   ? " at scale " + *options.scale
+                                   : "; run a manifest that lists it under `figures` first"));
+  }
+  return found;
+}
+
+/// The scale at which the newest manifests declared a run last; of older ones if they have none.
+std::string last_scale(const std::vector<SelectedRun>& runs,
+                       const std::vector<RegisteredManifest>& manifests) {
+  const auto is_newest = [&](const SelectedRun& run) {
+    return std::ranges::find(manifests, run.membership.manifest, &RegisteredManifest::sha256) !=
+           manifests.end();
+  };
+  const auto last = std::ranges::find_if(runs.rbegin(), runs.rend(), is_newest);
+  return (last == runs.rend() ? runs.back() : *last).membership.scale;
+}
+
 }  // namespace
 
 std::string WantedFigure::path() const {
@@ -305,38 +271,22 @@ std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures) {
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const CollectOptions& options, const MeasureOptions& measuring) {
   const std::vector<RegisteredManifest> manifests = newest_manifests(store);
-  std::map<std::string, std::string> newest;  // SHA-256 by experiment
-  for (const RegisteredManifest& manifest : manifests)
-    newest[manifest.experiment] = manifest.sha256;
-  std::vector<CollectedRun> current, older;
-  for (const RunRecord& run : store.runs()) {
-    if (run.kind == "prepare") continue;
-    for (const Membership& membership : run.memberships) {
-      if (!wanted.experiment.empty() && membership.experiment != wanted.experiment) continue;
-      const std::string scale = scale_name(membership.scale);
-      if (options.scale && scale != *options.scale) continue;
-      const bool is_current = newest[membership.experiment] == membership.manifest;
-      (is_current ? current : older).push_back({run, membership, {}});
-    }
-  }
-  if (current.empty() && (older.empty() || !options.all_versions)) {
-    throw NotFound(fmt::format(
-        "no run of the store belongs to figure {}{}{}", wanted.path(),
-        options.scale ? " at scale " + *options.scale : "",
-        older.empty() ? options.scale ? "" : "; run a manifest that lists it under `figures` first"
-                      : " as the manifest was registered last; run it, or use --all-versions"));
-  }
   CollectedRuns collected;
-  collected.scale = (current.empty() ? older : current).back().membership.scale;
-  Chosen chosen(options.all_versions);
-  for (CollectedRun& run : current) {
-    if (run.membership.scale == collected.scale) chosen.take(std::move(run));
+  std::vector<SelectedRun> selected = runs_of(store, wanted, options);
+  collected.scale =
+      options.scale ? selected.front().membership.scale : last_scale(selected, manifests);
+  std::erase_if(selected,
+                [&](const SelectedRun& s) { return s.membership.scale != collected.scale; });
+  NewestRuns newest = newest_runs(store, std::move(selected), options.all_versions);
+  collected.notes = std::move(newest.notes);
+  for (SelectedRun& run : newest.runs) {
+    Membership& m = run.membership;
+    if (collected.runs.size() >= newest.newest) {
+      m.labels["manifest"] = m.manifest.substr(0, 8);
+      m.variant += fmt::format(",manifest={:.8}", m.manifest);
+    }
+    collected.runs.push_back({std::move(run)});
   }
-  for (CollectedRun& run : older) {
-    if (run.membership.scale == collected.scale) chosen.take_older(std::move(run));
-  }
-  collected.runs = chosen.runs();
-  collected.notes = chosen.notes();
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) name_variants(manifests, collected);
   for (CollectedRun& run : collected.runs) {

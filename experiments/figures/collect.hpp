@@ -8,7 +8,7 @@
 
 #include "analysis/figure.hpp"
 #include "experiments/figures/measure.hpp"
-#include "experiments/runner/registered.hpp"
+#include "experiments/figures/select_runs.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -40,13 +40,11 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
 std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures);
 
 /// One run of a figure.
-struct CollectedRun {
-  RunRecord run;
-  Membership membership;
-  std::vector<CheckpointRecord> checkpoints;  ///< at whole cycles
-  std::string name = {};                      ///< of its variant, for people
-  bool named = false;                         ///< by a label of the manifest
-  double end = 0;                             ///< own_end()
+struct CollectedRun : SelectedRun {
+  std::vector<CheckpointRecord> checkpoints = {};  ///< at whole cycles
+  std::string name = {};                           ///< of its variant, for people
+  bool named = false;                              ///< by a label of the manifest
+  double end = 0;                                  ///< own_end()
 };
 
 struct CollectedRuns {
@@ -61,11 +59,10 @@ struct CollectOptions {
   bool all_versions = false;         ///< runs of older versions of the manifest too
 };
 
-/// The runs of the experiment, as the newest version of its manifest has them, at one scale. No two
-/// of them have the same variant and seed, and no run comes twice: counted twice, it would make
-/// errors too small. (A figure of every experiment has it once per experiment.) Runs of older
-/// versions are named in the notes, or have a variant of their own, "fluid=cell,manifest=1f2e3d4c".
-/// Each has its checkpoints up to own_end(). Throws NotFound if there is no such run.
+/// The newest_runs() of the experiment at one scale. (A figure of every experiment has a run once
+/// per experiment.) Those of older versions of the manifest have a variant of their own,
+/// "fluid=cell,manifest=1f2e3d4c". Each has its checkpoints up to own_end(). Throws NotFound if
+/// there is no such run.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const CollectOptions& options, const MeasureOptions& measuring = {});
 

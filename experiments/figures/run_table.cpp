@@ -209,9 +209,9 @@ struct Selected {
 Selected select(const Store& store, const RunSelection& selection, const MeasureOptions& options,
                 RunTable& table) {
   Selected all;
-  all.runs = select_runs(store, selection);
-  std::erase_if(all.runs, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
-  if (!selection.all_versions) table.older_versions = drop_older_versions(store, all.runs);
+  NewestRuns newest = newest_runs(store, select_runs(store, selection), selection.all_versions);
+  all.runs = std::move(newest.runs);
+  table.notes = std::move(newest.notes);
   for (const SelectedRun& run : all.runs) {
     std::ranges::move(checkpoints_of(store, run, options), std::back_inserter(all.records));
     all.ends.push_back(all.records.size());

@@ -27,10 +27,10 @@ inline constexpr auto kNames<RowPer> = names_in_order<RowPer>("checkpoint", "run
 struct RunTable : MeasureOutcome {
   std::vector<TableColumn> columns;
   std::vector<std::vector<nlohmann::json>> rows;  ///< null: it does not apply or is not known
-  std::size_t older_versions = 0;                 ///< runs left out for drop_older_versions()
+  std::vector<std::string> notes;                 ///< of newest_runs()
 };
 
-/// Rows in the order of declaration, then by cycle. Settled packings are not among the runs.
+/// Rows in the order of declaration, then by cycle. The runs are newest_runs().
 /// Checkpoints count up to own_end(); rejected ones do not. Onsets
 /// come from the checkpoints at whole cycles, as in the figures. Throws NotFound as select_runs().
 /// With `ledger` it also has the energy of each cycle, which is simulated again for that.

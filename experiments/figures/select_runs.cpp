@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <map>
+#include <ranges>
 #include <tuple>
 #include <utility>
 
 #include "experiments/manifest/filter.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "experiments/runner/progress.hpp"
 #include "experiments/runner/registered.hpp"
 
 namespace shearcell {
@@ -28,8 +30,20 @@ void require_found(const char* what, const Filter& filter) {
                                              : "did you mean " + nearest + "?"));
 }
 
+/// When each version of a manifest was registered last, by its SHA-256: larger is newer.
+using Versions = std::map<std::string, std::size_t>;
+
+Versions versions_of(const Store& store) {
+  Versions versions;
+  std::size_t registered = 0;
+  for (const RegisteredManifest& manifest : registered_manifests(store)) {
+    versions[manifest.sha256] = ++registered;
+  }
+  return versions;
+}
+
 /// Of a run that an edited manifest declared again, the newest place alone.
-std::vector<Membership> newest_memberships(const RunRecord& run) {
+std::vector<Membership> newest_memberships(const RunRecord& run, Versions& versions) {
   const auto place = [](const Membership& m) {
     return std::tie(m.experiment, m.scale, m.variant, m.seed);
   };
@@ -38,12 +52,31 @@ std::vector<Membership> newest_memberships(const RunRecord& run) {
     const auto same = std::ranges::find(newest, place(m), place);
     if (same == newest.end()) {
       newest.push_back(m);
-    } else {
+    } else if (versions[m.manifest] >= versions[same->manifest]) {
       *same = m;
     }
   }
   if (newest.empty()) newest.emplace_back();
   return newest;
+}
+
+using ExperimentScale = std::pair<std::string, std::string>;
+ExperimentScale experiment_scale(const Membership& m) {
+  return {m.experiment, m.scale};
+}
+
+/// Moves the runs of older versions behind the others; how many the others are.
+std::size_t sort_by_version(const Store& store, std::vector<SelectedRun>& runs) {
+  Versions versions = versions_of(store);
+  std::map<ExperimentScale, std::size_t> newest;
+  for (const auto& [run, m] : runs) {
+    std::size_t& known = newest[experiment_scale(m)];
+    known = std::max(known, versions[m.manifest]);
+  }
+  const auto older = std::ranges::stable_partition(runs, [&](const SelectedRun& run) {
+    return versions[run.membership.manifest] == newest[experiment_scale(run.membership)];
+  });
+  return runs.size() - older.size();
 }
 
 }  // namespace
@@ -58,8 +91,9 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
   Filter experiment(selection.experiments), scale(selection.scales), seed(seeds);
   Filter variant(selection.variants, has_values, keys_of);
   std::vector<SelectedRun> selected;
+  Versions versions = versions_of(store);
   for (const RunRecord& run : store.runs()) {
-    for (const Membership& m : newest_memberships(run)) {
+    for (const Membership& m : newest_memberships(run, versions)) {
       // Not by &&: each has to see every value.
       bool passes = experiment.passes(m.experiment);
       passes &= scale.passes(scale_name(m.scale));
@@ -77,21 +111,51 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
   return selected;
 }
 
-std::size_t drop_older_versions(const Store& store, std::vector<SelectedRun>& runs) {
-  std::map<std::string, std::size_t> version;  // by the manifest's SHA-256
-  std::size_t registered = 0;
-  for (const RegisteredManifest& manifest : registered_manifests(store)) {
-    version[manifest.sha256] = ++registered;
+NewestRuns newest_runs(const Store& store, std::vector<SelectedRun> selected, bool all_versions) {
+  std::erase_if(selected, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
+  const std::size_t newest = sort_by_version(store, selected);
+  NewestRuns chosen;
+  std::set<std::pair<ExperimentScale, std::string>> taken;  // with the run's id
+  using Seed = std::tuple<ExperimentScale, std::string, std::string, std::uint64_t>;
+  std::map<Seed, std::size_t> places;                        // by manifest, variant and seed
+  std::map<ExperimentScale, std::vector<std::string>> left;  // variants
+  for (std::size_t k = 0; k < selected.size(); ++k) {
+    SelectedRun& run = selected[k];
+    const Membership& m = run.membership;
+    if (k == newest) chosen.newest = chosen.runs.size();
+    if (k >= newest && !all_versions) {
+      left[experiment_scale(m)].push_back(m.variant);
+      continue;
+    }
+    if (!taken.emplace(experiment_scale(m), run.run.id).second) continue;
+    const auto [place, first] = places.try_emplace(
+        {experiment_scale(m), m.manifest, m.variant, m.seed}, chosen.runs.size());
+    if (first) {
+      chosen.runs.push_back(std::move(run));
+      continue;
+    }
+    // The same manifest meant another run to another version of the program.
+    SelectedRun& known = chosen.runs[place->second];
+    chosen.notes.push_back(fmt::format(
+        "experiment {}: run {:.8} ({}, seed {}) is left out: the manifest was later declared with "
+        "run {:.8} in its place",
+        m.experiment, known.run.id, m.variant, m.seed, run.run.id));
+    known = std::move(run);
   }
-  const auto place = [](const Membership& m) { return std::pair(m.experiment, m.scale); };
-  std::map<std::pair<std::string, std::string>, std::size_t> newest;
-  for (const auto& [run, m] : runs) {
-    newest[place(m)] = std::max(newest[place(m)], version[m.manifest]);
+  if (newest == selected.size()) chosen.newest = chosen.runs.size();
+  for (const auto& [where, variants] : left) {
+    chosen.notes.push_back(fmt::format(
+        "experiment {}: left out: {} of another version of its manifest: {}; --all-versions adds "
+        "them",
+        where.first, counted(variants.size(), "run"), some_of({variants.begin(), variants.end()})));
   }
-  return std::erase_if(runs, [&](const SelectedRun& selected) {
-    const Membership& m = selected.membership;
-    return version[m.manifest] < newest[place(m)];
-  });
+  return chosen;
+}
+
+std::string some_of(const std::set<std::string>& names) {
+  constexpr std::size_t most = 3;
+  const std::string first = fmt::format("{}", fmt::join(names | std::views::take(most), ", "));
+  return names.size() > most ? fmt::format("{} and {} more", first, names.size() - most) : first;
 }
 
 }  // namespace shearcell

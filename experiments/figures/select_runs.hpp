@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ struct RunSelection {
   std::vector<std::string> variants;
   std::vector<std::uint64_t> seeds;
   std::vector<std::string> states;  ///< names of RunState
-  bool all_versions = false;        ///< in a table: runs of older versions of a manifest too
+  bool all_versions = false;        ///< newest_runs(): those of older versions of a manifest too
 };
 
 struct SelectedRun {
@@ -32,8 +33,20 @@ struct SelectedRun {
 /// and names those that it has.
 std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& selection);
 
-/// Drops the runs of older versions of an experiment's manifest at a scale; returns how many.
-std::size_t drop_older_versions(const Store& store, std::vector<SelectedRun>& runs);
+struct NewestRuns {
+  std::vector<SelectedRun> runs;
+  std::size_t newest = 0;          ///< how many are of newest versions; the others are behind them
+  std::vector<std::string> notes;  ///< what was left out
+};
+
+/// Of each experiment at each scale the runs of the newest version of its manifest that has any
+/// there; with `all_versions` those of older versions too. Settled packings are left out.
+/// Each run comes once, and each seed of a variant once: counted twice, it would make errors too
+/// small.
+NewestRuns newest_runs(const Store& store, std::vector<SelectedRun> selected, bool all_versions);
+
+/// "fluid=still, fluid=cell, fluid=none and 3 more".
+std::string some_of(const std::set<std::string>& names);
 
 /// A run that no experiment declared, as a damaged store may hold it, has an empty membership.
 Membership first_membership(const RunRecord& run);

@@ -244,12 +244,15 @@ TEST_F(Plot, ABadScriptSaysWhatGnuplotSaid) {
   EXPECT_NE(trouble_with(table).find("could not draw S2a"), std::string::npos);
 }
 
-TEST_F(Plot, MissingGnuplotNamesThePackageAndKeepsTheData) {
+TEST_F(Plot, MissingGnuplotNamesThePackageAndKeepsTheDataAndNoOlderDrawing) {
+  const fs::path svg = draw(s2(two_variants())[0]);
+  convert_to_pdf(svg);
   const std::string before = std::getenv("PATH") != nullptr ? std::getenv("PATH") : "";
   setenv("PATH", "/nonexistent", 1);
   const std::string message = trouble_with(s2(two_variants())[0]);
   setenv("PATH", before.c_str(), 1);
   EXPECT_NE(message.find("gnuplot-nox"), std::string::npos) << message;
+  EXPECT_FALSE(fs::exists(fs::path(svg).replace_extension(".pdf")));
 }
 
 TEST_F(Plot, NamesThatAreNoFileNamesAreRefused) {

@@ -88,6 +88,15 @@ TEST_F(DrawFigure, TakesTheNewestVersionOfTheManifest) {
       << "no run comes twice";
 }
 
+TEST_F(DrawFigure, AnEditedManifestThatRanAtOneScaleLeavesTheRunsOfTheOther) {
+  const std::string scales = "scales: {short: {cycles: 1}, long: {cycles: 2}}\n";
+  compute(store_, tiny_manifest("", kBothFluids + scales), {.scale = "long"});
+  compute(store_, tiny_manifest("  pressure_Pa: 700\n", scales), {.scale = "short"});
+  EXPECT_EQ(collect_runs(store_, kS2, {}).scale, "short");
+  EXPECT_EQ(distinct_runs(collect_runs(store_, kS2, {.scale = "long"})).size(), 2U);
+  EXPECT_EQ(newest_runs(store_, select_runs(store_, {}), false).runs.size(), 3U) << "in a table";
+}
+
 // Another version of the program may resolve one manifest to other runs.
 TEST_F(DrawFigure, ASeedCountsOncePerVariant) {
   compute(store_, tiny_manifest("", kBothFluids));
@@ -99,6 +108,7 @@ TEST_F(DrawFigure, ASeedCountsOncePerVariant) {
   ASSERT_EQ(collected.notes.size(), 2U);
   EXPECT_TRUE(has(collected.notes[0], "is left out"));
   EXPECT_TRUE(has(collected.notes[1], "left out: 1 run without a checkpoint yet"));
+  EXPECT_EQ(newest_runs(store_, select_runs(store_, {}), false).runs.size(), 2U) << "in a table";
 }
 
 TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {
