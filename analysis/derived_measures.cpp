@@ -176,6 +176,10 @@ void read_curves(const json& result, Measures& measures) {
   }
 }
 
+void read_crystallites(const json& result, Measures& measures) {
+  measures.crystallite_map = read_crystallite_map(result);
+}
+
 /// kRead, with an error for people where the result is not what it was kept as.
 template <void (*kRead)(const json&, Measures&)>
 void checked(const json& result, Measures& measures) {
@@ -209,7 +213,7 @@ std::vector<DerivedMeasure> make_all() {
   return {{"scalars", criteria(), scalars_of<Scalars::own>, checked<read_scalars<Scalars::own>>},
           {"mechanics", interior(), scalars_of<Scalars::mechanics>,
            checked<read_scalars<Scalars::mechanics>>},
-          {"crystallites", criteria(), crystallites_of},
+          {"crystallites", criteria(), crystallites_of, read_crystallites},
           {"lattices", interior(), lattices_of, checked<read_numbers>},
           {"motion",
            with(criteria(), {{"neighbour_d", motion_neighbour_d}, {"reversible_d", reversible_d}}),
@@ -237,20 +241,6 @@ const DerivedMeasure& derived_measure(std::string_view name) {
   const auto found = std::ranges::find(all, name, &DerivedMeasure::name);
   if (found == all.end()) throw std::logic_error("no such measure: " + std::string(name));
   return *found;
-}
-
-const DerivedMeasure& scalar_measures() {
-  return derived_measure("scalars");
-}
-
-const DerivedMeasure& crystallite_measure() {
-  return derived_measure("crystallites");
-}
-
-Measures read_measures(const json& result) {
-  Measures measures;
-  scalar_measures().read(result, measures);
-  return measures;
 }
 
 std::vector<std::byte> encode_result(const json& result) {

@@ -36,27 +36,18 @@ struct DerivedMeasure {
   std::string name;
   nlohmann::json parameters;
   nlohmann::json (*from)(const MeasureInput& input);
-  /// Adds a result to the measures; null where it is read by a function of its own. Throws
-  /// AnalysisError for a result of something else.
-  void (*read)(const nlohmann::json& result, Measures& measures) = nullptr;
+  /// Adds a result to the measures. Throws AnalysisError for a result of something else.
+  void (*read)(const nlohmann::json& result, Measures& measures);
   std::vector<std::uint64_t> earlier = {};  ///< cycles back to the other checkpoints it needs
 
   /// Name and parameters as one text: equal texts, equal computation.
   std::string key() const { return name + " " + parameters.dump(); }
 };
 
-/// Every result that can be kept.
+/// Every result that can be kept: "scalars" are those of `Measures` itself.
 std::span<const DerivedMeasure> all_derived_measures();
 /// The one of that name, which must exist.
 const DerivedMeasure& derived_measure(std::string_view name);
-
-/// All scalars of `Measures` itself.
-const DerivedMeasure& scalar_measures();
-/// What scalar_measures() gave. Throws AnalysisError when it is not that.
-Measures read_measures(const nlohmann::json& result);
-
-/// The CrystalliteMap of a checkpoint; read_crystallite_map() reads it back.
-const DerivedMeasure& crystallite_measure();
 
 /// CBOR (RFC 8949): every double and integer exactly, equal results in equal bytes.
 std::vector<std::byte> encode_result(const nlohmann::json& result);

@@ -14,19 +14,18 @@ using Make = FigureResult (*)(std::span<const FigureRun>);
 using Keys = std::vector<std::string>;
 
 /// A curve for each variant; `keys` are what they compare.
-Figure of_curves(const char* name, const char* title, Make make, Keys keys) {
-  return {name, title, make, FigureForm::curves, std::move(keys)};
+Figure of_curves(const char* name, const char* title, Make make, Keys keys,
+                 std::vector<std::string> needs = {}) {
+  return {name, title, make, FigureForm::curves, std::move(keys), std::move(needs)};
 }
 
 /// Averages over the variants that have the same values of `keys`.
 Figure of_groups(const char* name, const char* title, Make make, Keys keys,
-                 bool crystallites = false) {
-  return {name, title, make, FigureForm::groups, std::move(keys), crystallites};
+                 std::vector<std::string> needs = {}) {
+  return {name, title, make, FigureForm::groups, std::move(keys), std::move(needs)};
 }
 
 std::vector<Figure> make_figures() {
-  Figure b5 = of_curves("B5", "Continuous and periodically paused shear", figure_b5, {"protocol"});
-  b5.at_rest = true;
   return {
       {"table1", "Table I beside the parameters of every experiment", figure_table1,
        FigureForm::table},
@@ -40,11 +39,13 @@ std::vector<Figure> make_figures() {
       of_curves("S6", "Shear with and without gravity", figure_s6,
                 {"amplitude_rad", "gravity_m_per_s2"}),
       of_groups("S7", "Where crystallites nucleate", figure_s7,
-                {"amplitude_rad", "stiffness_N_per_m"}, true),
-      of_groups("C", "Growth of crystallites by size", figure_c, {"amplitude_rad"}, true),
+                {"amplitude_rad", "stiffness_N_per_m"}, {"crystallites"}),
+      of_groups("C", "Growth of crystallites by size", figure_c, {"amplitude_rad"},
+                {"crystallites"}),
       of_groups("nucleation", "Runs without an onset, and the rate of nucleation",
                 figure_nucleation, {"amplitude_rad", "grains"}),
-      std::move(b5),
+      of_curves("B5", "Continuous and periodically paused shear", figure_b5, {"protocol"},
+                {"at_rest"}),
       of_curves("walls", "Rough and smooth walls", figure_walls, {"walls"}),
       of_curves("choices", "Mass and drag of the moving wall, and other wall grains",
                 figure_choices,
@@ -57,10 +58,6 @@ const std::vector<Figure>& figures() {
 }
 
 }  // namespace
-
-bool Figure::needs_derived(std::string_view measure) const {
-  return std::ranges::find(derived, measure) != derived.end();
-}
 
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
   for (const nlohmann::json* values : {&run.labels, &run.parameters}) {

@@ -14,18 +14,15 @@
 #include <vector>
 
 #include "analysis/chart.hpp"
-#include "analysis/crystal.hpp"
 #include "analysis/measures.hpp"
 #include "analysis/verdict.hpp"
 
 namespace shearcell {
 
 struct CheckpointMeasures {
-  double cycle = 0;  ///< cycles since the stage began
-  std::uint64_t step = 0;
+  double cycle = 0;    ///< cycles since the stage began
   std::string sha256;  ///< of the checkpoint file
   Measures measures;
-  std::optional<CrystalliteMap> crystallites;  ///< where the figure needs them
   /// Observable of that name, which a stiffening records; NaN if absent.
   double stiffness_N_per_m = std::numeric_limits<double>::quiet_NaN();
 };
@@ -61,15 +58,12 @@ struct Figure {
   std::function<FigureResult(std::span<const FigureRun> runs)> make;
   FigureForm form = FigureForm::curves;
   std::vector<std::string> keys = {};  ///< parameters that its curves compare
-  bool crystallites = false;           ///< needs where the crystallites are
-  bool at_rest = false;                ///< needs phi_at_rest of cycles 1 to early_cycles
-  /// Names of the derived measures that it needs besides the scalars (derived_measures.hpp).
-  std::vector<std::string> derived = {};
+  /// Names of what it needs besides the scalars: derived measures (derived_measures.hpp), "ledger",
+  /// and "at_rest", which is phi_at_rest of cycles 1 to early_cycles.
+  std::vector<std::string> needs = {};
   /// Needs the checkpoints of these cycles, first to last, those at phases of a cycle included;
   /// other figures are of whole cycles.
   std::optional<std::array<std::uint64_t, 2>> within = {};
-
-  bool needs_derived(std::string_view measure) const;
 };
 
 /// The value of a parameter, swept or not; null if the run has no such key.

@@ -151,8 +151,9 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
 GrowthBySize growth_of(const FigureRun& run, std::int64_t cycles) {
   std::map<std::int64_t, const CrystalliteMap*> maps;
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
-    if (!checkpoint.crystallites || std::floor(checkpoint.cycle) != checkpoint.cycle) continue;
-    maps[static_cast<std::int64_t>(checkpoint.cycle)] = &*checkpoint.crystallites;
+    if (!checkpoint.measures.crystallite_map || std::floor(checkpoint.cycle) != checkpoint.cycle)
+      continue;
+    maps[static_cast<std::int64_t>(checkpoint.cycle)] = &*checkpoint.measures.crystallite_map;
   }
   GrowthBySize counts;
   for (const auto& [cycle, map] : maps) {

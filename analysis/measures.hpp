@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +44,7 @@ struct Measures {
   /// What else was asked for (derived_measures.hpp), by the names of the measures.
   std::map<std::string, double, std::less<>> numbers;
   std::map<std::string, MeasuredCurve, std::less<>> curves;
+  std::optional<CrystalliteMap> crystallite_map;
 };
 
 /// A member of Mechanics.

@@ -126,8 +126,8 @@ double bisected(double low, double high, const auto& falls) {
 std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis) {
   std::vector<double> places;
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
-    if (!checkpoint.crystallites) continue;
-    const CrystalliteMap& map = *checkpoint.crystallites;
+    if (!checkpoint.measures.crystallite_map) continue;
+    const CrystalliteMap& map = *checkpoint.measures.crystallite_map;
     for (std::size_t c = 0; c < map.size.size(); ++c) {
       if (map.size[c] < nucleus_smallest || map.size[c] > nucleus_largest) continue;
       places.push_back(place(map, map.centre[c], axis));
@@ -140,8 +140,8 @@ std::vector<double> nucleus_births(const FigureRun& run, CellAxis axis) {
   std::vector<double> places;
   std::set<std::int32_t> known;  // grains that have been in a nucleus
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
-    if (!checkpoint.crystallites) continue;
-    const CrystalliteMap& map = *checkpoint.crystallites;
+    if (!checkpoint.measures.crystallite_map) continue;
+    const CrystalliteMap& map = *checkpoint.measures.crystallite_map;
     std::vector<std::int32_t> seen(map.size.size());
     for (std::size_t k = 0; k < map.grain.size(); ++k) {
       if (known.contains(map.grain[k])) ++seen[static_cast<std::size_t>(map.label[k])];

@@ -292,9 +292,9 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
                   if (plot.log_y) table.chart.y.low = {};
                   return FigureResult{{std::move(table)}, {}};
                 }};
-  if (measured != nullptr) figure.derived.emplace_back(measured->derived);
+  if (measured != nullptr) figure.needs.emplace_back(measured->derived);
   for (const std::string& name : {plot.x, plot.y}) {
-    if (const ScalarMeasure* one = find_measure(name)) figure.derived.emplace_back(one->derived());
+    if (const ScalarMeasure* one = find_measure(name)) figure.needs.emplace_back(one->derived());
   }
   figure.within = plot.cycles;
   if (!plot.by.empty()) {
@@ -307,7 +307,7 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
 Figure claim_figure(const ClaimSpec& claim) {
   Figure figure{claim.name, "",
                 [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
-  figure.derived.emplace_back(find_measure(claim.compare)->derived());
+  figure.needs.emplace_back(find_measure(claim.compare)->derived());
   return figure;
 }
 

@@ -46,7 +46,8 @@ double smallest_width(RunGroup runs) {
   double width = std::numeric_limits<double>::infinity();
   for (const FigureRun* run : runs) {
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
-      if (checkpoint.crystallites) width = std::min(width, checkpoint.crystallites->width);
+      if (checkpoint.measures.crystallite_map)
+        width = std::min(width, checkpoint.measures.crystallite_map->width);
     }
   }
   return width;

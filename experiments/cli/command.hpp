@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "experiments/figures/measure.hpp"
 #include "experiments/figures/select_runs.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/campaign.hpp"
+#include "experiments/runner/measure.hpp"
 #include "experiments/runner/terminal.hpp"
 #include "provenance/store.hpp"
 

@@ -8,6 +8,7 @@
 #include "analysis/error.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/lineage.hpp"
+#include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
@@ -43,10 +44,10 @@ nlohmann::json engine_of_run(const Store& store, const std::string& run) {
 using Facts = std::vector<std::pair<TableColumn, nlohmann::json>>;
 
 /// As `table` has them, measured now if the store does not keep them.
-Facts measures_of(const Store& store, const CheckpointRecord& record) {
-  MeasuredCheckpoints found;
+Facts facts_at(const Store& store, const CheckpointRecord& record) {
+  MeasuredPackings found;
   try {
-    found = measure_checkpoints(store, {&record, 1}, table_measures(), {});
+    found = measures_of(store, {&record, 1}, table_measures(), {});
   } catch (const AnalysisError& problem) {  // as a failed run may leave it
     tell_stderr("not measured: {}\n", problem.what());
     return facts_of(record, std::nullopt);
@@ -54,13 +55,12 @@ Facts measures_of(const Store& store, const CheckpointRecord& record) {
   for (const auto* messages : {&found.damage, &found.pruned}) {
     for (const std::string& line : *messages) tell_stderr("not measured: {}\n", line);
   }
-  return facts_of(record,
-                  read_table_measures(found.results.front(), store.run(record.run), record));
+  return facts_of(record, found.measures.front());
 }
 
 Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& checkpoints) {
   for (auto c = checkpoints.rbegin(); c != checkpoints.rend(); ++c) {
-    if (c->state != CheckpointState::rejected) return measures_of(store, *c);
+    if (c->state != CheckpointState::rejected) return facts_at(store, *c);
   }
   return {};
 }
@@ -173,13 +173,13 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
     nlohmann::json all = checkpoint_facts(record);
     all["grains"] = grains;
     all["wall_grains"] = wall_grains;
-    all["measures"] = as_json(measures_of(store, record));
+    all["measures"] = as_json(facts_at(store, record));
     return print_json(all);
   }
   print_head(record, fmt::format("{} ({}, hash verified)", record.file,
                                  format_bytes(static_cast<double>(record.size))));
   tell("grains      {} and {} wall grains\n", grains, wall_grains);
-  print(measures_of(store, record));
+  print(facts_at(store, record));
 }
 
 // The newest record of "drag/S2", or of "S2" where one experiment has that figure.

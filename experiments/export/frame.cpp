@@ -65,7 +65,8 @@ void add_columns(const Checkpoint& c, const WallPose& pose, const GrainMeasures&
 /// What `table` measures besides an Analysis; only its scalars.
 void add_numbers(const Checkpoint& checkpoint, const CheckpointRecord& record,
                  MeasureSources& sources, Analysis& analysis) {
-  for (const DerivedMeasure& measure : table_measures()) {
+  for (const std::string& name : table_measures()) {
+    const DerivedMeasure& measure = derived_measure(name);
     sources.key(record, measure);
     const auto result = sources.measure(record, checkpoint, analysis, measure);
     if (result) measure.read(*result, analysis.measures);

@@ -263,7 +263,8 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
 
 std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures) {
   std::ranges::stable_sort(figures, {}, [](const WantedFigure& wanted) {
-    return std::pair(!wanted.figure.crystallites, wanted.figure.form == FigureForm::table);
+    return std::pair(std::ranges::count(wanted.figure.needs, "crystallites") == 0,
+                     wanted.figure.form == FigureForm::table);
   });
   return figures;
 }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "analysis/figure.hpp"
-#include "experiments/figures/measure.hpp"
 #include "experiments/figures/select_runs.hpp"
+#include "experiments/runner/measure.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {

@@ -15,71 +15,31 @@
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/runner/host.hpp"
-#include "provenance/derived.hpp"
 #include "provenance/io/plain_file.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
 namespace {
 
-std::vector<DerivedMeasure> needed(const Figure& figure) {
-  if (figure.form == FigureForm::table) return {};
-  std::vector<DerivedMeasure> measures = {scalar_measures()};
-  for (const std::string& name : figure.derived) {
-    if (name == "drive" || name == "ledger") continue;  // more_measures.hpp
-    if (std::ranges::find(measures, name, &DerivedMeasure::name) == measures.end()) {
-      measures.push_back(derived_measure(name));
-    }
-  }
-  if (figure.crystallites) measures.push_back(crystallite_measure());
-  return measures;
-}
-
-/// Measures of the checkpoints of all runs, one after the other; empty if one cannot be read.
-std::vector<std::optional<CheckpointMeasures>> measures_of(const Store& store, const Figure& figure,
-                                                           const std::vector<CollectedRun>& inputs,
-                                                           const MeasureOptions& options,
-                                                           MeasureOutcome& outcome) {
+/// Measures of the checkpoints of all runs, one after the other.
+std::vector<std::optional<Measures>> measures_of_all(const Store& store, const Figure& figure,
+                                                     const std::vector<CollectedRun>& inputs,
+                                                     const MeasureOptions& options,
+                                                     MeasureOutcome& outcome) {
   std::vector<CheckpointRecord> records;
   for (const CollectedRun& input : inputs) {
     records.insert(records.end(), input.checkpoints.begin(), input.checkpoints.end());
   }
-  const std::vector<DerivedMeasure> measures = needed(figure);
-  MeasuredCheckpoints found = measure_checkpoints(store, records, measures, options);
-  std::vector<std::optional<CheckpointMeasures>> measured;
-  try {
-    for (auto& results : found.results) {
-      std::optional<CheckpointMeasures>& one = measured.emplace_back();
-      if (std::ranges::any_of(results, &nlohmann::json::is_null)) continue;
-      one.emplace();
-      one->measures = read_results(measures, results);
-      if (figure.crystallites) {
-        one->crystallites = read_crystallite_map(results.back());
-      }
-      results.clear();  // JSON takes more memory than the measures
-    }
-  } catch (const AnalysisError& problem) {
-    throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
-                        problem.what() + "); delete it, or measure again with --fresh");
-  }
-  if (figure.at_rest) {
-    const std::vector<double> phi = phi_at_rest(store, records, options);
-    for (std::size_t i = 0; i < measured.size(); ++i) {
-      if (measured[i]) measured[i]->measures.phi_at_rest = phi[i];
-    }
-  }
-  if (figure.needs_derived("ledger")) {
-    auto energies = cycle_energies(store, records, options);
-    for (std::size_t i = 0; i < measured.size(); ++i) {
-      if (measured[i]) measured[i]->measures.numbers.merge(energies[i]);
-    }
-  }
+  if (figure.form == FigureForm::table) return {records.size(), Measures()};
+  std::vector<std::string> names = figure.needs;
+  names.insert(names.begin(), "scalars");
+  MeasuredPackings found = measures_of(store, records, names, options);
   outcome = std::move(found);
-  return measured;
+  return std::move(found.measures);
 }
 
 std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
-                                   std::vector<std::optional<CheckpointMeasures>> measured) {
+                                   std::vector<std::optional<Measures>> measured) {
   std::vector<FigureRun> runs;
   std::size_t next = 0;
   for (const CollectedRun& input : inputs) {
@@ -93,14 +53,12 @@ std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
                   input.membership.seed,
                   {}};
     for (const CheckpointRecord& record : input.checkpoints) {
-      std::optional<CheckpointMeasures>& one = measured[next++];
+      std::optional<Measures>& one = measured[next++];
       if (!one) continue;
-      CheckpointMeasures& checkpoint = run.checkpoints.emplace_back(std::move(*one));
+      CheckpointMeasures& checkpoint = run.checkpoints.emplace_back();
+      checkpoint.measures = std::move(*one);
       checkpoint.cycle = record.cycle;
-      checkpoint.step = record.step;
       checkpoint.sha256 = record.sha256;
-      checkpoint.measures.units = mechanical_units(input.run, record);
-      add_drive(input.run, record, checkpoint.measures);
       const auto stiffness = record.observables.find("stiffness_N_per_m");
       if (stiffness != record.observables.end()) checkpoint.stiffness_N_per_m = stiffness->second;
     }
@@ -212,7 +170,7 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   summary.notes = std::move(collected.notes);
   summary.scale = collected.scale;
   const std::vector<FigureRun> runs =
-      figure_runs(collected.runs, measures_of(store, figure, collected.runs, options, summary));
+      figure_runs(collected.runs, measures_of_all(store, figure, collected.runs, options, summary));
   require_told_apart(wanted, runs);
   summary.runs = runs.size();
   for (const FigureRun& run : runs) {

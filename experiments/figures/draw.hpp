@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "experiments/figures/collect.hpp"
-#include "experiments/figures/measure.hpp"
+#include "experiments/runner/measure.hpp"
 
 namespace shearcell {
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/figures/more_measures.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
 #include <utility>
 
+#include "analysis/error.hpp"
 #include "analysis/published.hpp"
 #include "core/drive.hpp"
 #include "core/trigonometry.hpp"
@@ -13,6 +15,7 @@
 #include "experiments/manifest/identity.hpp"
 #include "protocols/ledger.hpp"
 #include "protocols/rest.hpp"
+#include "provenance/derived.hpp"
 
 namespace shearcell {
 namespace {
@@ -55,7 +58,64 @@ std::vector<nlohmann::json> results_of(const DerivedMeasure& measure, const Stor
   return results;
 }
 
+/// The derived measures among the names, each once.
+std::vector<DerivedMeasure> derived_among(std::span<const std::string> names) {
+  std::vector<DerivedMeasure> measures;
+  for (const std::string& name : names) {
+    if (name == "drive" || name == "ledger" || name == "at_rest") continue;
+    if (std::ranges::find(measures, name, &DerivedMeasure::name) == measures.end()) {
+      measures.push_back(derived_measure(name));
+    }
+  }
+  return measures;
+}
+
+Measures read_kept(std::span<const DerivedMeasure> measures,
+                   std::span<const nlohmann::json> results) {
+  try {
+    return read_results(measures, results);
+  } catch (const AnalysisError& problem) {
+    throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
+                        problem.what() + "); delete it, or measure again with --fresh");
+  }
+}
+
 }  // namespace
+
+MeasuredPackings measures_of(const Store& store, std::span<const CheckpointRecord> records,
+                             std::span<const std::string> names, const MeasureOptions& options) {
+  const std::vector<DerivedMeasure> derived = derived_among(names);
+  MeasuredCheckpoints found = measure_checkpoints(store, records, derived, options);
+  MeasuredPackings made;
+  std::map<std::string, RunRecord> runs;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    std::optional<Measures>& one = made.measures.emplace_back();
+    if (found.results[i].front().is_null()) continue;
+    one = read_kept(derived, found.results[i]);
+    found.results[i].clear();  // JSON takes more memory than the measures
+    const auto [run, first] = runs.try_emplace(records[i].run);
+    if (first) run->second = store.run(records[i].run);
+    one->units = mechanical_units(run->second, records[i]);
+    add_drive(run->second, records[i], *one);
+  }
+  static_cast<MeasureOutcome&>(made) = std::move(found);
+  const auto asks_for = [&](const char* name) {
+    return std::ranges::find(names, name) != names.end();
+  };
+  if (asks_for("at_rest")) {
+    const std::vector<double> phi = phi_at_rest(store, records, options);
+    for (std::size_t i = 0; i < phi.size(); ++i) {
+      if (made.measures[i]) made.measures[i]->phi_at_rest = phi[i];
+    }
+  }
+  if (asks_for("ledger")) {
+    auto energies = cycle_energies(store, records, options);
+    for (std::size_t i = 0; i < energies.size(); ++i) {
+      if (made.measures[i]) made.measures[i]->numbers.merge(energies[i]);
+    }
+  }
+  return made;
+}
 
 void add_drive(const RunRecord& run, const CheckpointRecord& checkpoint, Measures& measures) {
   if (run.kind != name_of(Stage::shear)) return;
@@ -101,7 +161,8 @@ std::vector<decltype(Measures::numbers)> cycle_energies(const Store& store,
                           {"dissipation", sum.dissipation()},
                           {"stored", sum.stored()}};
   };
-  const DerivedMeasure measure{"ledger_of_next_cycle", {{"stride", kLedgerStride}}, nullptr};
+  const DerivedMeasure measure{
+      "ledger_of_next_cycle", {{"stride", kLedgerStride}}, nullptr, nullptr};
   const auto found = results_of(measure, store, begins, simulating);
   std::vector<decltype(Measures::numbers)> energies(records.size());
   for (std::size_t n = 0; n < begins.size(); ++n) {
@@ -133,13 +194,13 @@ std::vector<double> phi_at_rest(const Store& store, std::span<const CheckpointRe
     checkpoint.state =
         rested(checkpoint.cell, scenes.at(record.run), std::move(checkpoint.state), kRest);
   };
-  DerivedMeasure measure = scalar_measures();
+  DerivedMeasure measure = derived_measure("scalars");
   measure.name = "scalars_at_rest";
   measure.parameters["rest_s"] = kRest;
   const auto found = results_of(measure, store, early, resting);
   std::vector<double> phi(records.size(), std::nan(""));
   for (std::size_t n = 0; n < early.size(); ++n) {
-    if (!found[n].is_null()) phi[place[n]] = read_measures(found[n]).phi;
+    if (!found[n].is_null()) phi[place[n]] = read_kept({&measure, 1}, {&found[n], 1}).phi;
   }
   return phi;
 }

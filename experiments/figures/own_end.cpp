@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/derived_measures.hpp"
+#include "experiments/figures/more_measures.hpp"
 #include "experiments/runner/asks.hpp"
 #include "experiments/runner/run_end.hpp"
 
@@ -21,13 +21,12 @@ std::vector<MeasuredCycle> measured_at(const Store& store, const RunRecord& run,
   std::erase_if(records, [&](const CheckpointRecord& record) {
     return std::fmod(record.cycle, cadence) != 0;
   });
-  const DerivedMeasure scalars = scalar_measures();
-  const auto found = measure_checkpoints(store, records, std::span(&scalars, 1),
-                                         {.workers = options.workers, .report = options.report});
+  const std::string scalars = "scalars";
+  const auto found = measures_of(store, records, {&scalars, 1},
+                                 {.workers = options.workers, .report = options.report});
   std::vector<MeasuredCycle> measured;
   for (std::size_t k = 0; k < records.size(); ++k) {
-    if (found.results[k].front().is_null()) continue;  // it cannot be read
-    measured.push_back({records[k].cycle, read_results(std::span(&scalars, 1), found.results[k])});
+    if (found.measures[k]) measured.push_back({records[k].cycle, *found.measures[k]});
   }
   return measured;
 }

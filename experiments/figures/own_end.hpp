@@ -2,7 +2,7 @@
 // Where a run ends for one of the experiments that share it.
 #pragma once
 
-#include "experiments/figures/measure.hpp"
+#include "experiments/runner/measure.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {

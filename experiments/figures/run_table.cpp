@@ -198,12 +198,12 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const SelectedR
   return found;
 }
 
-/// Runs with their checkpoints, one after the other, and the results of each.
+/// Runs with their checkpoints, one after the other, and the measures of each.
 struct Selected {
   std::vector<SelectedRun> runs;
   std::vector<CheckpointRecord> records;
   std::vector<std::size_t> ends;  // of each run in the records
-  std::vector<std::vector<json>> results;
+  std::vector<std::optional<Measures>> measures;
 };
 
 Selected select(const Store& store, const RunSelection& selection, const MeasureOptions& options,
@@ -216,7 +216,7 @@ Selected select(const Store& store, const RunSelection& selection, const Measure
     std::ranges::move(checkpoints_of(store, run, options), std::back_inserter(all.records));
     all.ends.push_back(all.records.size());
   }
-  all.results.resize(all.records.size());
+  all.measures.resize(all.records.size());
   return all;
 }
 
@@ -234,37 +234,22 @@ std::vector<std::size_t> places(const Selected& all, RowPer per, bool with_row =
   return found;
 }
 
-std::vector<CheckpointRecord> records_at(const Selected& all, std::span<const std::size_t> places) {
-  std::vector<CheckpointRecord> records;
-  for (const std::size_t place : places) records.push_back(all.records[place]);
-  return records;
-}
-
 /// Measures the records at these places, and adds what could not be measured to the table's list.
 void measure_at(const Store& store, std::span<const std::size_t> places,
-                std::span<const DerivedMeasure> measures, const MeasureOptions& options,
-                Selected& all, RunTable& table) {
+                std::span<const std::string> names, const MeasureOptions& options, Selected& all,
+                RunTable& table) {
   if (places.empty()) return;
-  MeasuredCheckpoints found =
-      measure_checkpoints(store, records_at(all, places), measures, options);
+  std::vector<CheckpointRecord> records;
+  for (const std::size_t place : places) records.push_back(all.records[place]);
+  MeasuredPackings found = measures_of(store, records, names, options);
   for (std::size_t n = 0; n < places.size(); ++n) {
-    all.results[places[n]] = std::move(found.results[n]);
+    all.measures[places[n]] = std::move(found.measures[n]);
   }
   std::ranges::move(found.damage, std::back_inserter(table.damage));
   std::ranges::move(found.pruned, std::back_inserter(table.pruned));
   std::ranges::sort(table.damage);
   std::ranges::sort(table.pruned);
   if (!found.cache_trouble.empty()) table.cache_trouble = found.cache_trouble;
-}
-
-/// Of the records that have a row.
-std::vector<decltype(Measures::numbers)> energies_of(const Store& store, const Selected& all,
-                                                     RowPer per, const MeasureOptions& options) {
-  const std::vector<std::size_t> with_row = places(all, per);
-  auto found = cycle_energies(store, records_at(all, with_row), options);
-  std::vector<decltype(Measures::numbers)> energies(all.records.size());
-  for (std::size_t n = 0; n < with_row.size(); ++n) energies[with_row[n]] = std::move(found[n]);
-  return energies;
 }
 
 FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
@@ -281,32 +266,22 @@ FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
 
 }  // namespace
 
-std::span<const DerivedMeasure> table_measures() {
-  static const std::array measures = {scalar_measures(), derived_measure("mechanics"),
-                                      derived_measure("lattices"), derived_measure("motion")};
-  return measures;
-}
-
-std::optional<Measures> read_table_measures(std::span<const json> results, const RunRecord& run,
-                                            const CheckpointRecord& checkpoint) {
-  if (results.front().is_null()) return std::nullopt;
-  Measures measures = read_results(table_measures().first(results.size()), results);
-  measures.units = mechanical_units(run, checkpoint);
-  add_drive(run, checkpoint, measures);
-  return measures;
+std::span<const std::string> table_measures() {
+  static const std::array<std::string, 4> names = {"scalars", "mechanics", "lattices", "motion"};
+  return names;
 }
 
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, bool ledger) {
   RunTable table;
   Selected all = select(store, selection, options, table);
-  measure_at(store, places(all, per), table_measures(), options, all, table);
+  std::vector<std::string> names(table_measures().begin(), table_measures().end());
+  if (ledger) names.emplace_back("ledger");
+  measure_at(store, places(all, per), names, options, all, table);
   // An onset needs no more of the others than their scalars.
   measure_at(store, places(all, per, false), table_measures().first(1), options, all, table);
   const std::vector<Column> columns =
       columns_for(all.runs, per, VariantNames(store), ledger, selection.all_versions);
-  std::vector<decltype(Measures::numbers)> energies;
-  if (ledger) energies = energies_of(store, all, per, options);
   table.columns.assign(columns.begin(), columns.end());
   const auto add = [&](const Row& row) {
     std::vector<json>& cells = table.rows.emplace_back();
@@ -316,9 +291,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
   for (std::size_t r = 0; r < all.runs.size(); ++r) {
     std::vector<Row> rows;
     for (; next < all.ends[r]; ++next) {
-      Row& row = rows.emplace_back(Row{&all.runs[r], &all.records[next]});
-      row.measures = read_table_measures(all.results[next], all.runs[r].run, all.records[next]);
-      if (ledger && row.measures) row.measures->numbers.merge(energies[next]);
+      rows.push_back({&all.runs[r], &all.records[next], std::move(all.measures[next])});
     }
     if (per == RowPer::checkpoint) {
       for (const Row& row : rows) add(row);
@@ -334,10 +307,10 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
 
 RunTable curve_table(const Store& store, const RunSelection& selection, const CurveMeasure& measure,
                      const MeasureOptions& options) {
-  const std::array measures = {derived_measure(measure.derived)};
+  const std::string derived(measure.derived);
   RunTable table;
   Selected all = select(store, selection, options, table);
-  measure_at(store, places(all, RowPer::checkpoint), measures, options, all, table);
+  measure_at(store, places(all, RowPer::checkpoint), {&derived, 1}, options, all, table);
   std::vector<Column> columns =
       columns_of_runs(all.runs, VariantNames(store), selection.all_versions);
   std::ranges::move(which_checkpoint(), std::back_inserter(columns));
@@ -348,9 +321,8 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
   for (std::size_t r = 0; r < all.runs.size(); ++r) {
     for (; next < all.ends[r]; ++next) {
       const Row row{&all.runs[r], &all.records[next]};
-      Measures found = read_results(measures, all.results[next]);
-      found.units = mechanical_units(all.runs[r].run, all.records[next]);
-      const MeasuredCurve curve = measure.of(found);
+      if (!all.measures[next]) continue;
+      const MeasuredCurve curve = measure.of(*all.measures[next]);
       std::vector<json> cells;
       for (const Column& column : columns) cells.push_back(column.cell(row));
       for (std::size_t i = 0; i < curve.x.size(); ++i) {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/figures/measure.hpp"
 #include "experiments/figures/select_runs.hpp"
+#include "experiments/runner/measure.hpp"
 
 namespace shearcell {
 
@@ -42,13 +42,9 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
 RunTable curve_table(const Store& store, const RunSelection& selection, const CurveMeasure& measure,
                      const MeasureOptions& options);
 
-/// What the columns need to know of a checkpoint, and the results of measure_checkpoints() for it
-/// as Measures, nothing if it could not be read; those of the first alone have its scalars alone.
-/// Throws AnalysisError when they are something else.
-std::span<const DerivedMeasure> table_measures();
-std::optional<Measures> read_table_measures(std::span<const nlohmann::json> results,
-                                            const RunRecord& run,
-                                            const CheckpointRecord& checkpoint);
+/// Names for measures_of() of what the columns show of a checkpoint; those of the first alone are
+/// its scalars.
+std::span<const std::string> table_measures();
 
 /// Every column, those of a ledger included, except those of swept parameters, which are named as
 /// in a manifest.

@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/derived_measures.hpp"
-#include "analysis/error.hpp"
-#include "provenance/errors.hpp"
+#include "experiments/runner/measure.hpp"
 
 namespace shearcell {
 namespace {
@@ -29,10 +28,6 @@ bool all_reached(std::span<const RunAsk> asks, std::span<const MeasuredCycle> me
   return std::ranges::all_of(asks, [&](const RunAsk& ask) {
     return !ask.until || first_reached(measured, ask.until) != measured.end();
   });
-}
-
-DerivedKey key_of(const CheckpointRecord& record, const DerivedMeasure& measure) {
-  return {record.sha256, measure.key(), analysis_version};
 }
 
 }  // namespace
@@ -98,59 +93,30 @@ std::optional<double> expected_end(const Store& store, const Until& until) {
 }
 
 RunEnd::RunEnd(const Store& store, const RunRecord& run, std::uint64_t step)
-    : store_(store), run_(run.id), cadence_(checkpoint_cadence(run)), cache_(store.folder()) {
+    : store_(store), run_(run.id), cadence_(checkpoint_cadence(run)) {
   for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::and_pruned)) {
-    if (record.step <= step && on_cadence(record.cycle)) unmeasured_.push_back(record);
+    if (record.step <= step) add(record);
   }
 }
 
-void RunEnd::add(const CheckpointRecord& record, const Checkpoint& checkpoint) {
-  if (!on_cadence(record.cycle)) return;
-  if (unmeasured_.empty() && !all_reached(asks_of(store_, run_), measured_)) {
-    measured_.push_back({record.cycle, measure(record, checkpoint)});
-  } else {
-    unmeasured_.push_back(record);
-  }
+void RunEnd::add(const CheckpointRecord& record) {
+  const bool on_cadence = std::fmod(record.cycle, static_cast<double>(cadence_)) == 0;
+  if (on_cadence) records_.push_back(record);
 }
 
 std::optional<json> RunEnd::ended() {
-  if (unmeasured_.empty() && measured_.empty()) return std::nullopt;
-  const double now = unmeasured_.empty() ? measured_.back().cycle : unmeasured_.back().cycle;
+  if (records_.empty()) return std::nullopt;
   const std::vector<RunAsk> asks = asks_of(store_, run_);
-  auto next = unmeasured_.begin();
-  for (; next != unmeasured_.end() && !all_reached(asks, measured_); ++next) {
-    if (const auto measures = measures_of(*next)) measured_.push_back({next->cycle, *measures});
+  // The crystallites come from the same analysis, and figures need them.
+  static const std::array measures = {derived_measure("scalars"), derived_measure("crystallites")};
+  for (; next_ < records_.size() && !all_reached(asks, measured_); ++next_) {
+    const CheckpointRecord& record = records_[next_];
+    const auto found = measure_checkpoints(store_, std::span(&record, 1), measures, {});
+    const std::vector<json>& results = found.results.front();
+    if (results.front().is_null()) continue;  // it cannot be read
+    measured_.push_back({record.cycle, read_results(measures, results)});
   }
-  unmeasured_.erase(unmeasured_.begin(), next);
-  return ended_early(asks, measured_, now);
-}
-
-std::optional<Measures> RunEnd::measures_of(const CheckpointRecord& record) {
-  const DerivedKey key = key_of(record, scalar_measures());
-  try {
-    if (const auto kept = cache_.get(std::span(&key, 1)).front()) {
-      return read_measures(decode_result(*kept));
-    }
-  } catch (const AnalysisError&) {
-    // Measured again and replaced.
-  }
-  const auto checkpoint = store_.load_if_readable(record);
-  return checkpoint ? std::optional(measure(record, *checkpoint)) : std::nullopt;
-}
-
-Measures RunEnd::measure(const CheckpointRecord& record, const Checkpoint& checkpoint) {
-  const Analysis analysis = analyse(checkpoint);
-  std::vector<DerivedObject> objects;
-  for (const DerivedMeasure* measure : {&scalar_measures(), &crystallite_measure()}) {
-    objects.push_back(
-        {key_of(record, *measure), encode_result(measure->from({analysis, &checkpoint}))});
-  }
-  cache_.put(objects);
-  return analysis.measures;
-}
-
-bool RunEnd::on_cadence(double cycle) const {
-  return std::fmod(cycle, static_cast<double>(cadence_)) == 0;
+  return ended_early(asks, measured_, records_.back().cycle);
 }
 
 }  // namespace shearcell

@@ -6,8 +6,8 @@
 // an interruption or `phases` leaves, have no part in it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
@@ -15,7 +15,6 @@
 
 #include "analysis/measures.hpp"
 #include "experiments/runner/asks.hpp"
-#include "provenance/derived.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -50,23 +49,19 @@ class RunEnd {
   RunEnd(const Store& store, const RunRecord& run, std::uint64_t step);
 
   /// A checkpoint that has just been recorded.
-  void add(const CheckpointRecord& record, const Checkpoint& checkpoint);
+  void add(const CheckpointRecord& record);
 
   /// Why the run ends at its last checkpoint, as ended_early(). Measures what an experiment that
   /// came meanwhile needs.
   std::optional<nlohmann::json> ended();
 
  private:
-  std::optional<Measures> measures_of(const CheckpointRecord& record);
-  Measures measure(const CheckpointRecord& record, const Checkpoint& checkpoint);
-  bool on_cadence(double cycle) const;
-
   const Store& store_;
   std::string run_;
   std::uint64_t cadence_;
-  DerivedCache cache_;
+  std::vector<CheckpointRecord> records_;  ///< on the cadence
+  std::size_t next_ = 0;                   ///< in records_: the first that is not in measured_
   std::vector<MeasuredCycle> measured_;
-  std::vector<CheckpointRecord> unmeasured_;  ///< after measured_
 };
 
 }  // namespace shearcell

@@ -151,6 +151,7 @@ class Attempt {
   // Completes the run when what is recorded is all that the experiments ask for.
   bool ends_early() {
     const auto why = end_ ? end_->ended() : std::nullopt;
+    recorded_.restart();  // measuring is not computing
     if (why) complete(*why);
     return why.has_value();
   }
@@ -167,7 +168,7 @@ class Attempt {
     const CheckpointRecord recorded = store_.record_checkpoint(
         id(), checkpoint, {recorded_.seconds(), steps * static_cast<double>(plan_.run.grains)});
     computed_ = true;
-    if (end_) end_->add(recorded, checkpoint);
+    if (end_) end_->add(recorded);
     recorded_.restart();
     recorded_evaluations_ = engine.evaluations();
   }

@@ -76,7 +76,7 @@ FigureRun nucleated(double stiffness) {
   map.width = 10;
   map.bottom = 1;
   map.top = 17;
-  run.checkpoints[0].crystallites = map;
+  run.checkpoints[0].measures.crystallite_map = map;
   return run;
 }
 
@@ -127,7 +127,7 @@ FigureRun biased_walks(std::uint32_t seed) {
       walk.size += uniform_pair({seed, n, k, 2}, 7)[0] < grows ? 1 : -1;
       if (walk.size == 0) walk = {walk.start, walk.first_grain + 10'000, walk.start};
     }
-    run.checkpoints[n].crystallites = testing::map_of(crystallites);
+    run.checkpoints[n].measures.crystallite_map = testing::map_of(crystallites);
   }
   return run;
 }

@@ -45,7 +45,7 @@ TEST(Follow, BothOfTwoThatMergeGrow) {
 TEST(GrowthOf, PairsAreTheStatedCyclesApart) {
   FigureRun run = made_up_run("fluid", "still", 1, 3, [](int, Measures&) {});
   for (CheckpointMeasures& c : run.checkpoints) {
-    c.crystallites = map_of({grain_ids(0, 2 + static_cast<std::int32_t>(c.cycle))});
+    c.measures.crystallite_map = map_of({grain_ids(0, 2 + static_cast<std::int32_t>(c.cycle))});
   }
   const GrowthBySize two = growth_of(run, 2);
   ASSERT_EQ(two.size(), 2U);

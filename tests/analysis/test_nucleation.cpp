@@ -34,7 +34,8 @@ CrystalliteMap one_crystallite(std::int32_t size, double x, double y, std::int32
 FigureRun run_with(std::span<const CrystalliteMap> maps) {
   FigureRun run =
       made_up_run("fluid", "still", 1, static_cast<int>(maps.size()) - 1, [](int, Measures&) {});
-  for (std::size_t k = 0; k < maps.size(); ++k) run.checkpoints[k].crystallites = maps[k];
+  for (std::size_t k = 0; k < maps.size(); ++k)
+    run.checkpoints[k].measures.crystallite_map = maps[k];
   return run;
 }
 

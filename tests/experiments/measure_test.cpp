@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures of checkpoints are kept, and a figure is the same from kept or computed measures.
-#include "experiments/figures/measure.hpp"
+#include "experiments/runner/measure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -122,7 +122,7 @@ TEST_F(Measure, FreshNamesWhatWasKeptDifferently) {
   make("first");
   const CheckpointRecord victim = records().at(2);
   DerivedCache kept(store_.folder());
-  const DerivedKey key{victim.sha256, scalar_measures().key(), analysis_version};
+  const DerivedKey key{victim.sha256, derived_measure("scalars").key(), analysis_version};
   nlohmann::json wrong = decode_result(kept.get(std::span(&key, 1)).at(0).value());
   wrong["phi"] = 0.5;
   const DerivedObject object{key, encode_result(wrong)};
@@ -139,7 +139,8 @@ TEST_F(Measure, FreshNamesWhatWasKeptDifferently) {
 TEST_F(Measure, OtherContentUnderARightHashIsRefused) {
   make("first");
   DerivedCache kept(store_.folder());
-  DerivedObject object{{records().at(0).sha256, scalar_measures().key(), analysis_version}, {}};
+  DerivedObject object{{records().at(0).sha256, derived_measure("scalars").key(), analysis_version},
+                       {}};
   object.content = {std::byte{0xff}, std::byte{0}};
   kept.put(std::span(&object, 1));
   EXPECT_EQ(make("second").measured, 1U);
@@ -155,9 +156,9 @@ TEST_F(Measure, ResultsComeInTheOrderOfTheRecordsWhateverTheWorkers) {
   std::vector<CheckpointRecord> all = records();
   all.push_back(all.front());  // a run that two experiments share
   const std::vector<DerivedMeasure> two = {
-      scalar_measures(), {"grains", nlohmann::json::object(), [](const MeasureInput& input) {
-                            return nlohmann::json(input.analysis.grains.phi_local);
-                          }}};
+      derived_measure("scalars"),
+      {"grains", nlohmann::json::object(),
+       [](const MeasureInput& input) { return nlohmann::json(input.analysis.grains.phi_local); }}};
   const MeasuredCheckpoints one = measure_checkpoints(store_, all, two, {1, true, {}});
   const MeasuredCheckpoints many = measure_checkpoints(store_, all, two, {4, true, {}});
   const MeasuredCheckpoints kept = measure_checkpoints(store_, all, two, {2, false, {}});

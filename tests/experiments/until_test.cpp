@@ -139,7 +139,8 @@ TEST_F(UntilTest, EndsTheRunSaysWhyAndKeepsTheMeasures) {
   DerivedCache cache(store_.folder());
   for (const CheckpointRecord& record : store_.checkpoints(run.id)) {
     const bool before = record.cycle < static_cast<double>(end_);
-    for (const DerivedMeasure* measure : {&scalar_measures(), &crystallite_measure()}) {
+    for (const DerivedMeasure* measure :
+         {&derived_measure("scalars"), &derived_measure("crystallites")}) {
       const DerivedKey key{record.sha256, measure->key(), analysis_version};
       EXPECT_EQ(cache.get(std::span(&key, 1)).front().has_value(), before) << record.cycle;
     }

@@ -185,7 +185,7 @@ std::vector<std::string> measure_seeds() {
   const CrystalliteMap map{{3, 5}, {0, 0}, {2}, {Eigen::Vector3d(1, 2, 3)}, 12, 0, 20};
   Analysis analysis;
   return {as_string(encode_result(to_json(map))),
-          as_string(encode_result(scalar_measures().from({analysis})))};
+          as_string(encode_result(derived_measure("scalars").from({analysis})))};
 }
 
 }  // namespace shearcell::fuzz

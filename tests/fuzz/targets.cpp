@@ -143,13 +143,16 @@ void take_published(Input input) {
 void take_measures(Input input) {
   attempt<AnalysisError>([&] {
     const nlohmann::json result = decode_result(std::as_bytes(input));
-    attempt<AnalysisError>([&] { read_measures(result); });
+    attempt<AnalysisError>([&] {
+      Measures measures;
+      derived_measure("scalars").read(result, measures);
+    });
     attempt<AnalysisError>([&] {
       FigureRun run;
       CheckpointMeasures& checkpoint = run.checkpoints.emplace_back();
-      checkpoint.crystallites = read_crystallite_map(result);
+      checkpoint.measures.crystallite_map = read_crystallite_map(result);
       GrowthBySize counts;
-      follow(*checkpoint.crystallites, *checkpoint.crystallites, counts);
+      follow(*checkpoint.measures.crystallite_map, *checkpoint.measures.crystallite_map, counts);
       fit_growth({&counts, 1}, Vanished::shrank);
       const std::vector<double> places = nucleus_places(run, CellAxis::y);
       density({&places, 1}, 10);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/figures/measure.hpp"
+#include "experiments/runner/measure.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -178,7 +178,7 @@ UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
 Measures read_results(std::span<const DerivedMeasure> measures, std::span<const json> results) {
   Measures found;
   for (std::size_t m = 0; m < measures.size(); ++m) {
-    if (!results[m].is_null() && measures[m].read != nullptr) measures[m].read(results[m], found);
+    if (!results[m].is_null()) measures[m].read(results[m], found);
   }
   return found;
 }
