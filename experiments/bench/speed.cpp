@@ -108,12 +108,11 @@ Packing repeated(const Packing& one, std::size_t copies) {
 }
 
 // The pressure of Table I cannot lift the column of a cell with more than 18,200 grains: beyond
-// that, the smallest number of equal parts along the depth.
+// that, the smallest number of equal parts along the depth, with at least so many grains in all.
 Packing prepare(std::size_t grains) {
-  std::size_t parts = (grains + 18199) / 18200;
-  while (grains % parts != 0) ++parts;
+  const std::size_t parts = (grains + 18199) / 18200;
   Parameters parameters;
-  parameters.grains = grains / parts;
+  parameters.grains = (grains + parts - 1) / parts;
   Packing made = bench::pressed_packing(parameters, 1);
   Simulation simulation(made.cell, made.scene, made.state);
   simulation.advance(Drive{}, 2000);  // under the grains' weight too
@@ -194,6 +193,7 @@ void measure_size(std::size_t grains, const SpeedOptions& options,
   };
   say("pressing a packing");
   const Packing made = prepare(grains);
+  grains = static_cast<std::size_t>(made.state.position.cols());
   const std::size_t first = results.size();
   for (const Simd simd : kEverySimd) {
     const Kernels* kernels = find_kernels(simd);

@@ -128,6 +128,18 @@ TEST(Speed, NoKernelIsFasterThanTheMachine) {
   }
 }
 
+// A prime number of grains beyond those that the pressure can lift: two packings side by side.
+TEST(Speed, OfAnyNumberOfGrainsBeyondOneColumn) {
+  const SpeedResult result = measure_speed({.sizes = {18211},
+                                            .threads = {1},
+                                            .repeats = 1,
+                                            .seconds_per_repeat = 0.01,
+                                            .report = {}})
+                                 .front();
+  EXPECT_EQ(result.grains, 18212U);
+  EXPECT_GT(result.median_rate, 0);
+}
+
 TEST(HardCases, HaveUniqueNamesAndExpectations) {
   std::set<std::string> names;
   for (const stability::HardCase& hard : stability::hard_cases()) {
