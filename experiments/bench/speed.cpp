@@ -13,10 +13,8 @@
 #include "provenance/checkpoint.hpp"
 #include "provenance/io/clock.hpp"
 
-namespace shearcell {
+namespace shearcell::bench {
 namespace {
-
-using bench::Packing;
 
 // The engine has no clock, so its kernels are timed from outside: a table of functions that call
 // those of the kernel in use and add up their times. One simulation at a time, one thread.
@@ -113,7 +111,7 @@ Packing prepare(std::size_t grains) {
   const std::size_t parts = (grains + 18199) / 18200;
   Parameters parameters;
   parameters.grains = (grains + parts - 1) / parts;
-  Packing made = bench::pressed_packing(parameters, 1);
+  Packing made = pressed_packing(parameters, 1);
   Simulation simulation(made.cell, made.scene, made.state);
   simulation.advance(Drive{}, 2000);  // under the grains' weight too
   made.state = simulation.state();
@@ -155,14 +153,14 @@ void measure_shares(const Packing& made, const Kernels& kernels, std::uint64_t s
 // After measure_shares.
 void measure_limits(std::size_t lanes, SpeedResult& result) {
   const double slots = times.slots / times.blocks;
-  const bench::StepWork work = result.work = bench::step_work(lanes, slots);
+  const StepWork work = result.work = step_work(lanes, slots);
   const auto threads = static_cast<double>(result.threads);
-  result.arithmetic_limit = 1e-6 * threads * bench::peak_operations(lanes) / work.vector_operations;
+  result.arithmetic_limit = 1e-6 * threads * peak_operations(lanes) / work.vector_operations;
   // More than any cache holds is read no slower.
   constexpr double kMostRead = 1 << 28;
   const double arrays = work.footprint * static_cast<double>(result.grains);
   const auto read = static_cast<std::size_t>(std::min(arrays, kMostRead));
-  result.memory_limit = 1e-6 * threads * bench::read_bandwidth(read) / work.bytes;
+  result.memory_limit = 1e-6 * threads * read_bandwidth(read) / work.bytes;
 }
 
 void measure_rate(const Packing& made, const EngineSettings& settings, const SpeedOptions& options,
@@ -229,4 +227,4 @@ std::vector<SpeedResult> measure_speed(const SpeedOptions& options) {
   return all;
 }
 
-}  // namespace shearcell
+}  // namespace shearcell::bench

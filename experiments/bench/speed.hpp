@@ -9,8 +9,7 @@
 
 #include "core/kernel.hpp"
 
-namespace shearcell {
-namespace bench {
+namespace shearcell::bench {
 
 // How fast the kernel could run at most on this machine: its counted operations at the measured
 // peak of the vector units, and its counted bytes at the measured speed of reading.
@@ -37,8 +36,6 @@ double peak_operations(std::size_t lanes);
 /// Bytes per second read from an array of `bytes`.
 double read_bandwidth(std::size_t bytes);
 
-}  // namespace bench
-
 struct SpeedOptions {
   std::vector<std::size_t> sizes = {600, 2000, 5200, 18200, 100000};
   std::vector<std::size_t> threads = {1};
@@ -62,7 +59,7 @@ struct SpeedResult {
   /// What a particle-step does at least, and the rates that this machine's vector units and its
   /// caches or memory would allow, as measured on one core and multiplied by
   /// the threads.
-  bench::StepWork work = {};
+  StepWork work = {};
   double arithmetic_limit = 0, memory_limit = 0;
   std::string state_hash = {};  ///< after 200 steps; the same for all results of one size
 };
@@ -74,4 +71,4 @@ struct SpeedResult {
 /// are measured with one thread.
 std::vector<SpeedResult> measure_speed(const SpeedOptions& options);
 
-}  // namespace shearcell
+}  // namespace shearcell::bench
