@@ -38,8 +38,7 @@ auto timed(double& total, Call&& call) {
   return result;
 }
 
-void sample_parts(StepTask task, double (*step)(const StepTask&, std::size_t, std::size_t),
-                  std::size_t first, std::size_t last) {
+void sample_parts(StepTask task, std::size_t first, std::size_t last) {
   const Stopwatch watch;
   const std::size_t room = padded(task.grains);
   times.elsewhere.resize(8 * room);
@@ -54,7 +53,7 @@ void sample_parts(StepTask task, double (*step)(const StepTask&, std::size_t, st
     task.velocity[axis] = velocity;
   }
   task.moving_wall_force_y = times.elsewhere.data() + 7 * room;
-  const auto again = [&] { return step(task, first, last); };
+  const auto again = [&] { return times.inner->step(task, first, last); };
   timed(times.whole, again);
   std::vector<std::uint8_t> near(task.neighbours.near + first, task.neighbours.near + last);
   for (std::uint8_t& bits : near) bits &= static_cast<std::uint8_t>(~kNearWall);
@@ -66,20 +65,14 @@ void sample_parts(StepTask task, double (*step)(const StepTask&, std::size_t, st
   times.sampled += watch.seconds();
 }
 
-template <int kGravity, int kFlow>
-double timed_step(const StepTask& task, std::size_t first, std::size_t last) {
-  const auto step = times.inner->step[kGravity][kFlow];
-  if (++times.calls % 16 == 0) sample_parts(task, step, first, last);
-  return timed(times.step, [&] { return step(task, first, last); });
-}
-
 Kernels timed_kernels(const Kernels& inner) {
   times = {};
   times.inner = &inner;
-  return {inner.name,
-          inner.lanes,
-          inner.sum_contacts,
-          {{timed_step<0, 0>, timed_step<0, 1>}, {timed_step<1, 0>, timed_step<1, 1>}},
+  return {inner.name, inner.lanes,
+          [](const StepTask& task, std::size_t first, std::size_t last) {
+            if (++times.calls % 16 == 0) sample_parts(task, first, last);
+            return timed(times.step, [&] { return times.inner->step(task, first, last); });
+          },
           [](const SearchTask& task, std::size_t first, std::size_t last) {
             return timed(times.search, [&] { return times.inner->search(task, first, last); });
           },
@@ -193,9 +186,7 @@ void measure_size(std::size_t grains, const SpeedOptions& options,
   const Packing made = prepare(grains);
   grains = static_cast<std::size_t>(made.state.position.cols());
   const std::size_t first = results.size();
-  for (const Simd simd : kEverySimd) {
-    const Kernels* kernels = find_kernels(simd);
-    if (kernels == nullptr) continue;
+  for (const Kernels* kernels : kernels_here()) {
     for (const std::size_t threads : options.threads) {
       SpeedResult result{.grains = grains, .simd = kernels->name, .threads = threads};
       say(fmt::format("{}, {} thread{}", kernels->name, threads, threads == 1 ? "" : "s"));

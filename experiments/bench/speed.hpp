@@ -29,7 +29,7 @@ struct StepWork {
 /// Work of a kernel with `lanes` grains per vector and `slots` neighbour slots per block, averaged.
 StepWork step_work(std::size_t lanes, double slots);
 
-/// Vector operations per second in vectors of `lanes` doubles: 8, 4 or 2 as find_kernels() offers
+/// Vector operations per second in vectors of `lanes` doubles: 8, 4 or 2 as kernels_here() offers
 /// them, 1 for scalars.
 double peak_operations(std::size_t lanes);
 

@@ -132,11 +132,10 @@ Answer few_grains(int count) {
   row.cell.top = 1.6;  // falls and is caught
   const State early = advanced(row, 400, drive);
   bool same = true;
-  for (const Simd simd : kEverySimd) {
+  for (const Kernels* kernels : kernels_here()) {
     EngineSettings settings;
-    settings.kernels = find_kernels(simd);
+    settings.kernels = kernels;
     settings.threads = 4;
-    if (settings.kernels == nullptr) continue;
     Simulation other = simulate(row, settings);
     other.advance(drive, 400);
     const State state = other.state();
