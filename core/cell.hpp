@@ -36,7 +36,7 @@ struct Cell {
   double bottom = 0;  ///< height of the bottom plane before it moves [d]
   double top = 0;     ///< height of the top plane before it moves [d]
   MovingWall moving = MovingWall::bottom;
-  std::vector<WallGrain> wall_grains;  ///< empty when the walls are smooth; order is permanent
+  std::vector<WallGrain> wall_grains = {};  ///< empty when the walls are smooth; order is permanent
 };
 
 /// The walls at one instant. The side walls tilt about the top wall, which is fixed in x: a wall

@@ -4,56 +4,35 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/linked_cells.hpp"
-
 namespace shearcell {
-void CellOrder::choose_grid(const Cell& cell, const WallPose& pose, double reach,
-                            std::size_t sites) {
-  // A pair at distance r is at most r sqrt(1 + tan^2) apart along x in the untilted frame.
-  const double reach_x = reach * std::sqrt(1 + pose.tan_theta * pose.tan_theta);
-  const double height = pose.top - pose.bottom;
-  const CellCounts cells =
-      count_cells({cell.width, height, cell.depth}, {reach_x, reach, reach}, sites);
-  grid_.columns = cells.x;
-  grid_.rows = cells.y;
-  grid_.layers = cells.z;
-  per_cell_ = {grid_.columns / cell.width, grid_.rows / height, grid_.layers / cell.depth};
-}
 
 // A kernel that passes through the sites in order finds most neighbours in the row of cells below,
 // its own and the one above. Strips make a row short enough that all three stay in the cache.
 void CellOrder::choose_strip(std::size_t sites) {
+  Grid& cells = grid_.cells;
   constexpr double kSitesPerRow = 1200;
-  const double line = static_cast<double>(sites) / (1.0 * grid_.rows * grid_.layers);
-  const double strip = std::min(std::max(kSitesPerRow / line, 3.0), 1.0 * grid_.layers);
-  grid_.strip = static_cast<std::int32_t>(strip);
+  const double line = static_cast<double>(sites) / (1.0 * cells.rows * cells.layers);
+  const double strip = std::min(std::max(kSitesPerRow / line, 3.0), 1.0 * cells.layers);
+  cells.strip = static_cast<std::int32_t>(strip);
   // The row above, one line more on either side, and a fifth for rows fuller than the mean. A small
   // cell is in the cache as a whole.
   constexpr std::size_t kSmall = 4000;
-  const double ahead = sites < kSmall ? 0 : 1.2 * line * (grid_.strip + 2);
+  const double ahead = sites < kSmall ? 0 : 1.2 * line * (cells.strip + 2);
   ahead_ = padded(static_cast<std::size_t>(ahead));
-}
-
-std::uint32_t CellOrder::cell_of(const double* row, const Cell& cell, const WallPose& pose) const {
-  const double x = row[0] - pose.tan_theta * (row[1] - pose.top);
-  const std::int32_t column = clamp_to_cell(x * per_cell_[0], grid_.columns);
-  const std::int32_t line = clamp_to_cell((row[1] - pose.bottom) * per_cell_[1], grid_.rows);
-  const std::int32_t layer =
-      clamp_to_cell(wrapped(row[2], cell.depth) * per_cell_[2], grid_.layers);
-  return static_cast<std::uint32_t>(line_of(grid_, line, layer) * grid_.columns + column);
 }
 
 void CellOrder::build(const Cell& cell, const WallPose& pose, double reach, const double* rows,
                       const std::vector<Site>& sites, Team& team) {
-  choose_grid(cell, pose, reach, sites.size());
+  // A pair at distance r is at most r sqrt(1 + tan^2) apart along x in the untilted frame.
+  const double reach_x = reach * std::sqrt(1 + pose.tan_theta * pose.tan_theta);
+  grid_.cells = Grid(cell, pose, {reach_x, reach, reach}, sites.size());
   choose_strip(sites.size());
-  const auto cells = static_cast<std::size_t>(grid_.columns) *
-                     static_cast<std::size_t>(grid_.rows) * static_cast<std::size_t>(grid_.layers);
+  const std::size_t cells = grid_.cells.size();
   begin_.assign(cells + 1, 0);
   cell_of_site_.resize(sites.size());
   team.run(sites.size(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t s = first; s < last; ++s) {
-      cell_of_site_[s] = cell_of(rows + sites[s].offset, cell, pose);
+      cell_of_site_[s] = grid_.cells.cell_of(rows + sites[s].offset);
     }
   });
   for (const std::uint32_t c : cell_of_site_) ++begin_[c + 1];

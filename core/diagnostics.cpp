@@ -34,19 +34,12 @@ void for_each_contact(const Cell& cell, const Eigen::Matrix3Xd& positions, const
   const auto site = [&](std::int32_t s) -> Eigen::Vector3d {
     return s < grains ? positions.col(s) : walls.col(s - grains);
   };
-  const auto untilted = [&pose](const Eigen::Vector3d& p) {
-    return p.x() - pose.tan_theta * (p.y() - pose.top);
-  };
-  LinkedCells near(cell.width, pose.bottom, pose.top, cell.depth,
-                   std::sqrt(1 + pose.tan_theta * pose.tan_theta),
-                   static_cast<std::size_t>(grains + walls.cols()));
-  for (auto s = static_cast<std::int32_t>(grains + walls.cols()); s-- > 0;) {
-    const Eigen::Vector3d p = site(s);
-    near.insert(s, untilted(p), p.y(), p.z());
-  }
+  const auto sites = static_cast<std::int32_t>(grains + walls.cols());
+  LinkedCells near(cell, pose, 1.0, static_cast<std::size_t>(sites));
+  for (std::int32_t s = sites; s-- > 0;) near.insert(s, site(s));
   for (std::int32_t i = 0; i < grains; ++i) {
     const Eigen::Vector3d p = site(i);
-    near.for_each_near(untilted(p), p.y(), p.z(), [&](std::int32_t j) {
+    near.for_each_near(p, [&](std::int32_t j) {
       if (j <= i) return;
       Eigen::Vector3d r = p - site(j);
       r.z() = nearest_image(r.z(), cell.depth, 1 / cell.depth);

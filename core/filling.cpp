@@ -56,21 +56,21 @@ void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side
   // Near jamming (0.547) the number of attempts diverges; a wall with fewer grains is still rough.
   const auto attempts = static_cast<std::uint64_t>(4000.0 * area);
   const std::uint32_t stream = wall_stream(side, geometry.wall_grain_draw);
-  LinkedCells near(length, 0.0, 1.0, depth, 1.0, target);
+  LinkedCells near({.width = length, .depth = depth}, {.top = 1}, 1.0, target);
   std::vector<Eigen::Vector2d> placed;
   for (std::uint64_t attempt = 0; attempt < attempts && placed.size() < target; ++attempt) {
     look_sometimes(look, attempt);
     const auto u = draw(seed, geometry.grains, stream, attempt);
     const Eigen::Vector2d p(u[0] * length, u[1] * depth);
     bool free = true;
-    near.for_each_near(p.x(), 0.5, p.y(), [&](std::int32_t j) {
+    near.for_each_near({p.x(), 0.5, p.y()}, [&](std::int32_t j) {
       const Eigen::Vector2d& q = placed[static_cast<std::size_t>(j)];
       const double dx = p.x() - q.x();
       const double dz = wrapped_difference(p.y() - q.y(), depth);
       free = free && dx * dx + dz * dz >= 1.0;
     });
     if (!free) continue;
-    near.insert(static_cast<std::int32_t>(placed.size()), p.x(), 0.5, p.y());
+    near.insert(static_cast<std::int32_t>(placed.size()), {p.x(), 0.5, p.y()});
     placed.push_back(p);
     place(p.x(), p.y(), u[2] * geometry.wall_grain_recess);
   }
@@ -158,10 +158,10 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, 
 
   // Wall grains come first in `sites`, so that one search serves both.
   std::vector<Eigen::Vector3d> sites;
-  LinkedCells near(cell.width, cell.bottom, cell.top, cell.depth, 1.0,
+  LinkedCells near(cell, {.bottom = cell.bottom, .top = cell.top}, 1.0,
                    geometry.grains + cell.wall_grains.size());
   const auto keep = [&](const Eigen::Vector3d& p) {
-    near.insert(static_cast<std::int32_t>(sites.size()), p.x(), p.y(), p.z());
+    near.insert(static_cast<std::int32_t>(sites.size()), p);
     sites.push_back(p);
   };
   for (const WallGrain& grain : cell.wall_grains) keep(grain.position);
@@ -181,7 +181,7 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, 
                               cell.bottom + 0.5 + u[1] * (cell.top - cell.bottom - 1.0),
                               u[2] * cell.depth);
       free = true;
-      near.for_each_near(p.x(), p.y(), p.z(), [&](std::int32_t j) {
+      near.for_each_near(p, [&](std::int32_t j) {
         Eigen::Vector3d r = p - sites[static_cast<std::size_t>(j)];
         r.z() = wrapped_difference(r.z(), cell.depth);
         free = free && r.squaredNorm() >= 1.0;

@@ -19,8 +19,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "core/cell.hpp"
+#include "core/grid.hpp"
 
 namespace shearcell {
 
@@ -56,8 +58,10 @@ struct NeighbourRows {
   const std::uint8_t* near = nullptr;
 };
 
-/// Input of the loops over contacts, and the check of the margins that they do on the way.
-struct ContactTask {
+/// One time step of the leapfrog, and the check of the margins at its end. With
+/// D = 1 + b dt / 2m the new velocity is velocity_factor * v + contact_kick * sum + gravity_step +
+/// fluid_step * (y - fluid_rest_height).
+struct StepTask {
   std::size_t grains = 0;
   const double* rows = nullptr;  ///< positions [d], rows of 4
   NeighbourRows neighbours;
@@ -69,37 +73,26 @@ struct ContactTask {
   /// precision, which `margin_loss` allows for.
   const float* reference[3] = {};
   double frame_height = 0;  ///< height at which that frame does not move [d]
-  double tan_theta = 0;     ///< of the tilt when the margins are checked
+  double tan_theta = 0;     ///< of the tilt at the end of the step
   double margin_loss = 0;   ///< part of every margin used up by the shear and by rounding [d]
   /// From a block to the rows that are fetched into the cache before they are needed
   /// (CellOrder::ahead()); 0 fetches none.
   std::size_t ahead = 0;
-};
-
-/// The contact sums of every grain of a range of blocks; margins are checked at `rows`.
-struct SumTask : ContactTask {
-  double* sum[3] = {};  ///< output: force over k, so an overlap times a direction [d]
-};
-
-/// One time step of the leapfrog; margins are checked at `next_rows`. With
-/// D = 1 + b dt / 2m the new velocity is velocity_factor * v + contact_kick * sum + gravity_step +
-/// fluid_step * (y - fluid_rest_height).
-struct StepTask : ContactTask {
   double* next_rows = nullptr;  ///< output: positions at the next step
   double* velocity[3] = {};     ///< [d/s], half a step before `rows` -> half a step after
   double velocity_factor = 0;   ///< (1 - b dt / 2m) / D
   double contact_kick = 0;      ///< dt k/m / D [1/s]
-  double gravity_step = 0;      ///< -dt g / D [d/s], added to v_y
-  double fluid_step = 0;        ///< dt b/m du_x/dy / D [1/s], for a fluid that moves with the walls
+  double gravity_step = -0.0;   ///< -dt g / D [d/s], added to v_y; adding -0 changes no bit
+  /// dt b/m du_x/dy / D [1/s]. In a still fluid it is 0, which changes no bit of v_x: that is never
+  /// -0, because a contact sum never is.
+  double fluid_step = 0;
   double fluid_rest_height = 0;  ///< height at which that fluid is at rest [d]
   double time_step = 0;          ///< dt [s]
 };
 
-/// Sites (grains and wall grains) ordered by the cells of a grid. The grid is cut along z into
-/// strips; within a strip x is fastest, then z, then y.
+/// Sites (grains and wall grains) ordered by the cells of a grid.
 struct CellGrid {
-  std::int32_t columns = 1, layers = 1, rows = 1;  ///< in x, z and y
-  std::int32_t strip = 1;                          ///< layers of a strip; the last may have fewer
+  Grid cells;
   const std::uint32_t* begin = nullptr;  ///< first place of each cell, and the number of sites
   const std::uint32_t* cell = nullptr;   ///< cell of the site at each place
   const double* position[3] = {};        ///< of the site at each place [d]
@@ -146,26 +139,21 @@ struct PruneTask {
   double depth = 0, per_depth = 0;
 };
 
-/// One implementation of the loops. The first two return a positive number when a grain is farther
-/// from `reference` than its margin less the margin_loss.
+/// One implementation of the loops. `step` returns a positive number when a grain is farther from
+/// `reference` than its margin less the margin_loss.
 struct Kernels {
   const char* name;
   std::size_t lanes;
-  double (*sum_contacts)(const SumTask&, std::size_t first_block, std::size_t last_block);
-  /// Indexed [gravity on][fluid moves].
-  double (*step[2][2])(const StepTask&, std::size_t first_block, std::size_t last_block);
+  double (*step)(const StepTask&, std::size_t first_block, std::size_t last_block);
   /// Returns the largest number of neighbours found; rows longer than the stride are cut off.
   std::size_t (*search)(const SearchTask&, std::size_t first_place, std::size_t last_place);
   /// Returns false, leaving the inner list unusable, when a row outgrows inner_stride.
   bool (*prune)(const PruneTask&, std::size_t first_block, std::size_t last_block);
 };
 
-enum class Simd { best, scalar, avx2, avx512, neon };
-/// Every implementation; a machine has some of them, always the scalar one.
-inline constexpr std::array kEverySimd = {Simd::avx512, Simd::avx2, Simd::neon, Simd::scalar};
-
-/// The implementation asked for; null where this machine lacks the instructions.
-const Kernels* find_kernels(Simd simd);
+/// The implementations that this machine has the instructions for, the fastest first, the scalar
+/// one last.
+std::span<const Kernels* const> kernels_here();
 
 const Kernels& scalar_kernels();
 

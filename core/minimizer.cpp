@@ -115,21 +115,19 @@ class Fire {
 
 }  // namespace
 
-Minimum minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings) {
+void minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings) {
   const Cell& cell = simulation.cell();
   const Scene& scene = simulation.scene();
   Fire fire(simulation);
-  Minimum minimum;
-  for (;;) {
+  for (std::uint64_t evaluations = 1;; ++evaluations) {
     simulation.set_state(fire.state());
     const Forces& forces = simulation.forces();
-    ++minimum.evaluations;
-    minimum.residual = residual_of(forces, cell, scene);
-    if (minimum.residual <= settings.force_tolerance) break;
-    if (minimum.evaluations % kWatchInterval == 0) simulation.check();
-    if (minimum.evaluations >= settings.most_evaluations) {
+    const double residual = residual_of(forces, cell, scene);
+    if (residual <= settings.force_tolerance) break;
+    if (evaluations % kWatchInterval == 0) simulation.check();
+    if (evaluations >= settings.most_evaluations) {
       throw NumericalFailure("the largest net force [P d^2] after the last step of a minimization",
-                             minimum.residual, settings.force_tolerance, -1, simulation.step(),
+                             residual, settings.force_tolerance, -1, simulation.step(),
                              "Raise minimize_force_tolerance, or raise the stiffness in smaller "
                              "steps (stiffness_steps_per_decade)");
     }
@@ -139,7 +137,6 @@ Minimum minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settin
   State end = fire.state();
   ++end.step;
   simulation.set_state(end);
-  return minimum;
 }
 
 double force_residual(const Cell& cell, const Scene& scene, const State& state) {

@@ -17,19 +17,15 @@ struct MinimizeSettings {
   std::uint64_t most_evaluations = 1'000'000;  ///< of the forces, before it counts as a failure
 };
 
-struct Minimum {
-  std::uint64_t evaluations = 0;
-  double residual = 0;  ///< in the units of force_tolerance
-};
-
 /// Moves the simulation to a minimum by FIRE (Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006),
 /// with the changes of Guenole et al., Comput. Mater. Sci. 175, 109584 (2020)). Velocities become
 /// zero and the step is raised by one. The result depends on the positions and the scene alone;
 /// global sums run in the order of permanent ids. Throws NumericalFailure when the tolerance is not
 /// reached or a watchdog check fails.
-Minimum minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings = {});
+void minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings = {});
 
-/// The residual of a state between upright walls, with forces summed contact by contact.
+/// What force_tolerance limits, of a state between upright walls, with forces summed contact by
+/// contact.
 double force_residual(const Cell& cell, const Scene& scene, const State& state);
 
 }  // namespace shearcell

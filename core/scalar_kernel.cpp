@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/cell_grid.hpp"
 #include "core/contact.hpp"
 #include "core/kernel.hpp"
 
@@ -53,7 +52,7 @@ void touch_plane(Sum& sum, const double* own, const WallPlane& plane) {
 }
 
 // Sum over the contacts of grain g.
-Sum contact_sum(const ContactTask& t, std::size_t g) {
+Sum contact_sum(const StepTask& t, std::size_t g) {
   const double* own = t.rows + 4 * g;
   Sum sum{0, 0, 0};
   const std::int32_t* list = t.neighbours.list + t.neighbours.begin[g];
@@ -73,7 +72,7 @@ Sum contact_sum(const ContactTask& t, std::size_t g) {
 
 // The square of the distance that a grain has moved since its list was built, less that of what is
 // left of its margin: positive when the list may miss a neighbour.
-double margin_excess(const ContactTask& t, std::size_t g, const double* at) {
+double margin_excess(const StepTask& t, std::size_t g, const double* at) {
   const double ry = double{t.reference[1][g]};
   const double wx = at[0] - std::fma(t.tan_theta, ry - t.frame_height, double{t.reference[0][g]});
   const double wy = at[1] - ry;
@@ -82,19 +81,6 @@ double margin_excess(const ContactTask& t, std::size_t g, const double* at) {
   return std::fma(-room, room, std::fma(wz, wz, std::fma(wy, wy, wx * wx)));
 }
 
-double sum_contacts(const SumTask& t, std::size_t first, std::size_t last) {
-  double excess = -1;
-  for (std::size_t g = first; g < std::min(last, t.grains); ++g) {
-    const Sum sum = contact_sum(t, g);
-    t.sum[0][g] = sum.x;
-    t.sum[1][g] = sum.y;
-    t.sum[2][g] = sum.z;
-    excess = std::max(excess, margin_excess(t, g, t.rows + 4 * g));
-  }
-  return excess;
-}
-
-template <bool kGravity, bool kFlow>
 double step(const StepTask& t, std::size_t first, std::size_t last) {
   double excess = -1;
   for (std::size_t g = first; g < std::min(last, t.grains); ++g) {
@@ -103,8 +89,8 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
     double vx = std::fma(t.contact_kick, sum.x, t.velocity_factor * t.velocity[0][g]);
     double vy = std::fma(t.contact_kick, sum.y, t.velocity_factor * t.velocity[1][g]);
     const double vz = std::fma(t.contact_kick, sum.z, t.velocity_factor * t.velocity[2][g]);
-    if constexpr (kGravity) vy += t.gravity_step;
-    if constexpr (kFlow) vx = std::fma(t.fluid_step, own[1] - t.fluid_rest_height, vx);
+    vx = std::fma(t.fluid_step, own[1] - t.fluid_rest_height, vx);
+    vy += t.gravity_step;
     t.velocity[0][g] = vx;
     t.velocity[1][g] = vy;
     t.velocity[2][g] = vz;
@@ -128,10 +114,11 @@ std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
     const double z = t.grid.position[2][place];
     std::int32_t found[kMostNeighbours];
     std::size_t count = 0;
-    std::array<PlaceRun, 9> runs;
-    const std::size_t run_count = surrounding_runs(t.grid, place, runs);
+    std::array<CellRun, 9> runs;
+    const std::size_t run_count = t.grid.cells.surrounding(t.grid.cell[place], runs);
     for (std::size_t r = 0; r < run_count; ++r) {
-      for (std::size_t p = runs[r].begin; p < runs[r].end; ++p) {
+      const std::size_t end = t.grid.begin[runs[r].end];
+      for (std::size_t p = t.grid.begin[runs[r].begin]; p < end; ++p) {
         const double dx = x - t.grid.position[0][p];
         const double dy = y - t.grid.position[1][p];
         const double dz = nearest_image(z - t.grid.position[2][p], t.depth, t.per_depth);
@@ -191,14 +178,8 @@ bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
 
 }  // namespace
 
-const Kernels& reference_kernels() {
-  static const Kernels kernels{
-      "scalar",
-      1,
-      sum_contacts,
-      {{step<false, false>, step<false, true>}, {step<true, false>, step<true, true>}},
-      search,
-      prune};
+const Kernels& scalar_table() {
+  static const Kernels kernels{"scalar", 1, step, search, prune};
   return kernels;
 }
 
@@ -211,9 +192,9 @@ namespace shearcell {
 
 const Kernels& scalar_kernels() {
 #if HWY_TARGETS & HWY_AVX2
-  if ((hwy::SupportedTargets() & HWY_AVX2) != 0) return N_AVX2::reference_kernels();
+  if ((hwy::SupportedTargets() & HWY_AVX2) != 0) return N_AVX2::scalar_table();
 #endif
-  return HWY_STATIC_DISPATCH(reference_kernels)();
+  return HWY_STATIC_DISPATCH(scalar_table)();
 }
 
 }  // namespace shearcell

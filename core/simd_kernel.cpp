@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <vector>
+
 #include "core/contact.hpp"
 #include "core/kernel.hpp"
 #include "core/simd_vectors-inl.hpp"
@@ -79,8 +81,7 @@ HWY_INLINE void touch_plane(Vectors& sum, const Vectors& own, const WallPlane& p
 }
 
 // Raises `excess` to the margin_excess of scalar_kernel.cpp for each grain of a block.
-HWY_INLINE V raise_excess(V excess, const ContactTask& t, std::size_t g, const Vectors& at,
-                          V margin) {
+HWY_INLINE V raise_excess(V excess, const StepTask& t, std::size_t g, const Vectors& at, V margin) {
   const hn::Rebind<float, D> single;
   const auto reference = [&](std::size_t axis) HWY_ATTR {
     return hn::PromoteTo(kD, hn::LoadU(single, t.reference[axis] + g));
@@ -99,7 +100,7 @@ HWY_INLINE V raise_excess(V excess, const ContactTask& t, std::size_t g, const V
 }
 
 // Sum over the contacts of one block of grains.
-HWY_INLINE Vectors contact_sum(const ContactTask& t, std::size_t block, const Vectors& own, V depth,
+HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vectors& own, V depth,
                                V per_depth) {
   Vectors sum{hn::Zero(kD), hn::Zero(kD), hn::Zero(kD)};
   const std::int32_t* list = t.neighbours.list + t.neighbours.begin[block];
@@ -127,7 +128,7 @@ HWY_INLINE Vectors contact_sum(const ContactTask& t, std::size_t block, const Ve
 
 // Positions and margins of a block. Neighbours in the next row of cells are the only rows that are
 // not in the cache yet; they follow at about the same pace, so they are fetched as a stream.
-HWY_INLINE Vectors load_block(const ContactTask& t, std::size_t g, V& margin) {
+HWY_INLINE Vectors load_block(const StepTask& t, std::size_t g, V& margin) {
   constexpr std::size_t kLine = 64 / sizeof(double);
   for (std::size_t k = 0; t.ahead != 0 && k < 4 * kLanes; k += kLine) {
     hwy::Prefetch(t.rows + 4 * (g + t.ahead) + k);  // beyond the last row it does nothing
@@ -136,24 +137,6 @@ HWY_INLINE Vectors load_block(const ContactTask& t, std::size_t g, V& margin) {
       t.rows, [&](std::size_t lane) HWY_ATTR { return 4 * (g + lane); }, margin);
 }
 
-double sum_contacts(const SumTask& t, std::size_t first, std::size_t last) {
-  const V depth = hn::Set(kD, t.depth);
-  const V per_depth = hn::Set(kD, t.per_depth);
-  V excess = hn::Set(kD, -1.0);
-  for (std::size_t block = first; block < last; ++block) {
-    const std::size_t g = block * kLanes;
-    V margin;
-    const Vectors own = load_block(t, g, margin);
-    const Vectors sum = contact_sum(t, block, own, depth, per_depth);
-    hn::StoreU(sum.x, kD, t.sum[0] + g);
-    hn::StoreU(sum.y, kD, t.sum[1] + g);
-    hn::StoreU(sum.z, kD, t.sum[2] + g);
-    excess = raise_excess(excess, t, g, own, margin);
-  }
-  return hn::GetLane(hn::MaxOfLanes(kD, excess));
-}
-
-template <bool kGravity, bool kFlow>
 double step(const StepTask& t, std::size_t first, std::size_t last) {
   const V depth = hn::Set(kD, t.depth);
   const V per_depth = hn::Set(kD, t.per_depth);
@@ -169,11 +152,9 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
     V vx = hn::MulAdd(kick, sum.x, hn::Mul(factor, hn::LoadU(kD, t.velocity[0] + g)));
     V vy = hn::MulAdd(kick, sum.y, hn::Mul(factor, hn::LoadU(kD, t.velocity[1] + g)));
     const V vz = hn::MulAdd(kick, sum.z, hn::Mul(factor, hn::LoadU(kD, t.velocity[2] + g)));
-    if constexpr (kGravity) vy = hn::Add(vy, hn::Set(kD, t.gravity_step));
-    if constexpr (kFlow) {
-      vx = hn::MulAdd(hn::Set(kD, t.fluid_step), hn::Sub(own.y, hn::Set(kD, t.fluid_rest_height)),
-                      vx);
-    }
+    vx =
+        hn::MulAdd(hn::Set(kD, t.fluid_step), hn::Sub(own.y, hn::Set(kD, t.fluid_rest_height)), vx);
+    vy = hn::Add(vy, hn::Set(kD, t.gravity_step));
     hn::StoreU(vx, kD, t.velocity[0] + g);
     hn::StoreU(vy, kD, t.velocity[1] + g);
     hn::StoreU(vz, kD, t.velocity[2] + g);
@@ -191,15 +172,10 @@ std::size_t search(const SearchTask& task, std::size_t first_place, std::size_t 
 bool prune(const PruneTask& task, std::size_t first_block, std::size_t last_block);
 
 const Kernels* kernels() {
-  static const Kernels table{
-      HWY_TARGET == HWY_AVX3   ? "AVX-512"
-      : HWY_TARGET == HWY_AVX2 ? "AVX2"
-                               : "NEON",
-      kLanes,
-      sum_contacts,
-      {{step<false, false>, step<false, true>}, {step<true, false>, step<true, true>}},
-      search,
-      prune};
+  static const Kernels table{HWY_TARGET == HWY_AVX3   ? "AVX-512"
+                             : HWY_TARGET == HWY_AVX2 ? "AVX2"
+                                                      : "NEON",
+                             kLanes, step, search, prune};
   return &table;
 }
 
@@ -211,23 +187,22 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace shearcell {
 
-const Kernels* find_kernels(Simd simd) {
+std::span<const Kernels* const> kernels_here() {
+  static const std::vector<const Kernels*> here = [] {
+    std::vector<const Kernels*> found;
 #if HWY_TARGETS & HWY_NEON  // part of every 64-bit ARM
-  if (simd == Simd::best || simd == Simd::neon) return N_NEON::kernels();
-#else
-  const auto supported = hwy::SupportedTargets();
+    found.push_back(N_NEON::kernels());
 #endif
 #if HWY_TARGETS & HWY_AVX3
-  if ((simd == Simd::best || simd == Simd::avx512) && (supported & HWY_AVX3) != 0) {
-    return N_AVX3::kernels();
-  }
+    if ((hwy::SupportedTargets() & HWY_AVX3) != 0) found.push_back(N_AVX3::kernels());
 #endif
 #if HWY_TARGETS & HWY_AVX2
-  if ((simd == Simd::best || simd == Simd::avx2) && (supported & HWY_AVX2) != 0) {
-    return N_AVX2::kernels();
-  }
+    if ((hwy::SupportedTargets() & HWY_AVX2) != 0) found.push_back(N_AVX2::kernels());
 #endif
-  return simd == Simd::best || simd == Simd::scalar ? &scalar_kernels() : nullptr;
+    found.push_back(&scalar_kernels());
+    return found;
+  }();
+  return here;
 }
 
 }  // namespace shearcell

@@ -12,7 +12,6 @@
 #include <array>
 #include <cstdint>
 
-#include "core/cell_grid.hpp"
 #include "core/kernel.hpp"
 #include "core/simd_vectors-inl.hpp"
 
@@ -73,11 +72,12 @@ HWY_INLINE std::size_t find_near(const SearchTask& t, std::size_t place,
   const V own_margin = hn::Set(kD, t.grid.margin[place]);
   // Compared as doubles, which represent every id exactly and have masks of the right size.
   const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
-  std::array<PlaceRun, 9> runs;
-  const std::size_t run_count = surrounding_runs(t.grid, place, runs);
+  std::array<CellRun, 9> runs;
+  const std::size_t run_count = t.grid.cells.surrounding(t.grid.cell[place], runs);
   std::size_t count = 0;
   for (std::size_t r = 0; r < run_count; ++r) {
-    for (std::size_t p = runs[r].begin; p < runs[r].end; p += kLanes) {
+    const std::size_t end = t.grid.begin[runs[r].end];
+    for (std::size_t p = t.grid.begin[runs[r].begin]; p < end; p += kLanes) {
       const Vectors other{hn::LoadU(kD, t.grid.position[0] + p),
                           hn::LoadU(kD, t.grid.position[1] + p),
                           hn::LoadU(kD, t.grid.position[2] + p)};
@@ -87,7 +87,7 @@ HWY_INLINE std::size_t find_near(const SearchTask& t, std::size_t place,
       const auto ids = hn::LoadU(kOffsets, t.grid.id + p);
       const auto near =
           hn::And(hn::And(hn::Lt(square, cutoff), hn::Ne(hn::PromoteTo(kD, ids), own_id)),
-                  hn::FirstN(kD, runs[r].end - p));
+                  hn::FirstN(kD, end - p));
       count = std::min(count + store_selected(ids, near, found + count), kMostNeighbours);
     }
   }

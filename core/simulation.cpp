@@ -14,20 +14,13 @@ namespace {
 // Steps between two watchdog checks, each of which costs about four steps.
 constexpr std::uint64_t kWatchInterval = 1024;
 
-const Kernels& require_kernels(const Kernels* kernels) {
-  if (kernels == nullptr) {
-    throw std::invalid_argument("this machine lacks the instructions of the kernel asked for");
-  }
-  return *kernels;
-}
-
 }  // namespace
 
 Simulation::Simulation(Cell cell, const Scene& scene, const State& state, EngineSettings settings)
     : cell_(std::move(cell)),
       scene_(scene),
       settings_(settings),
-      kernels_(require_kernels(settings.kernels)),
+      kernels_(*settings.kernels),
       team_(std::make_unique<Team>(settings.threads)),
       walls_(cell_),
       lists_(kernels_, settings.lists, cell_.depth, walls_, *team_) {
@@ -127,37 +120,42 @@ void Simulation::set_state(const State& state) {
 }
 
 // Contacts at the present positions; `tan_theta` is that of the pose at which margins are checked.
-void Simulation::set_contacts(ContactTask& task, double tan_theta) const {
-  task.rows = rows_[0].data();
-  task.tan_theta = tan_theta;
-  task.margin_loss = lists_.reference().margin_loss(tan_theta);
-  task.ahead = order_.ahead();
-  task.planes = walls_.planes(pose_);
+void Simulation::set_contacts(double tan_theta) {
+  task_.rows = rows_[0].data();
+  task_.next_rows = rows_[1].data();
+  task_.tan_theta = tan_theta;
+  task_.margin_loss = lists_.reference().margin_loss(tan_theta);
+  task_.ahead = order_.ahead();
+  task_.planes = walls_.planes(pose_);
 }
 
-// Calls a kernel, which returns the excess over the margins, for all blocks.
-template <class Call>
-double Simulation::over_blocks(Call&& call) {
+// The excess over the margins at the end of the step.
+double Simulation::over_blocks(const StepTask& task) {
   const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;
   ++evaluations_;
-  return team_->largest(blocks, call);
+  return team_->largest(blocks, [&](std::size_t first, std::size_t last) {
+    return kernels_.step(task, first, last);
+  });
 }
 
-// False when the lists were not valid.
+// A step of no time that turns sum_ from zeros into the contact sums. False when the lists were not
+// valid.
 bool Simulation::sum_contacts() {
-  SumTask task{task_, {}};
-  set_contacts(task, pose_.tan_theta);
-  for (std::size_t axis = 0; axis < 3; ++axis) task.sum[axis] = sum_[axis].data();
-  const double excess = over_blocks([&](std::size_t first, std::size_t last) {
-    return kernels_.sum_contacts(task, first, last);
-  });
-  return lists_.inner_valid(excess, pose_);
+  set_contacts(pose_.tan_theta);
+  StepTask task = task_;
+  task.velocity_factor = task.fluid_step = task.time_step = 0;
+  task.contact_kick = 1;
+  task.gravity_step = -0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    sum_[axis].assign(padded(id_.size()), 0.0);
+    task.velocity[axis] = sum_[axis].data();
+  }
+  return lists_.inner_valid(over_blocks(task), pose_);
 }
 
 const Forces& Simulation::forces() {
   const Drive upright;
   pose_ = pose_at(upright, step_);
-  for (auto& axis : sum_) axis.resize(padded(id_.size()), 0.0);
   if (counts_.builds == 0) refresh_lists(upright);
   if (!sum_contacts()) {
     refresh_lists(upright);
@@ -177,21 +175,18 @@ const Forces& Simulation::forces() {
 
 // The fluid's du/dy is Eq. S5 with the height counted from the top wall.
 void Simulation::set_fluid_step(const Drive& drive) {
-  const double rate = fluid_share(scene_.fluid) * shear_rate(drive);
+  const double share = fluid_share(scene_.fluid);
+  const double rate = share == 0 ? 0 : share * shear_rate(drive);
   task_.fluid_step =
       scene_.time_step * scene_.drag_rate * rate / (1 + 0.5 * scene_.drag_rate * scene_.time_step);
   task_.fluid_rest_height = pose_.top;
 }
 
 void Simulation::step_once(const Drive& drive) {
-  const bool fluid_moves = fluid_share(scene_.fluid) != 0 && drive.amplitude != 0;
-  if (fluid_moves) set_fluid_step(drive);
+  set_fluid_step(drive);
   WallPose next = pose_at(drive, step_ + 1);
-  set_contacts(task_, next.tan_theta);
-  task_.next_rows = rows_[1].data();
-  const auto step = kernels_.step[scene_.gravity != 0][fluid_moves];
-  const double excess =
-      over_blocks([&](std::size_t first, std::size_t last) { return step(task_, first, last); });
+  set_contacts(next.tan_theta);
+  const double excess = over_blocks(task_);
 
   if (holds_wall(drive, step_)) {
     wall_velocity_ = 0;

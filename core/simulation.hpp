@@ -30,7 +30,7 @@ namespace shearcell {
 
 /// Settings that change the speed of a simulation and not its result.
 struct EngineSettings {
-  const Kernels* kernels = find_kernels(Simd::best);
+  const Kernels* kernels = kernels_here().front();  ///< not null
   std::size_t threads = 1;
   ListSettings lists;
   WatchdogLimits limits;  ///< decide when a run fails, not what it computes before that
@@ -50,8 +50,8 @@ struct Forces {
 
 class Simulation {
  public:
-  /// Copies the state. Throws std::invalid_argument when the sizes disagree, the cell is too
-  /// shallow for the cutoffs, or the machine lacks the SIMD instructions asked for.
+  /// Copies the state. Throws std::invalid_argument when the sizes disagree or the cell
+  /// is too shallow for the cutoffs.
   Simulation(Cell cell, const Scene& scene, const State& state, EngineSettings settings = {});
 
   /// Advances by `steps` time steps. The watchdog checks a new state before its first step, and
@@ -95,9 +95,8 @@ class Simulation {
   void refresh_lists(const Drive& drive);
   void sort_memory();
   void step_once(const Drive& drive);
-  void set_contacts(ContactTask& task, double tan_theta) const;
-  template <class Call>
-  double over_blocks(Call&& call);
+  void set_contacts(double tan_theta);
+  double over_blocks(const StepTask& task);
   bool sum_contacts();
   void set_fluid_step(const Drive& drive);
   double force_on_wall() const;

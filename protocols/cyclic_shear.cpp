@@ -27,7 +27,7 @@ CyclicShear::CyclicShear(const Drive& drive, std::uint64_t cycles, std::uint64_t
 }
 
 StageProgress CyclicShear::advance(Simulation& simulation, std::uint64_t most_steps) const {
-  const std::uint64_t end = expected_steps();
+  const std::uint64_t end = last_step();
   const std::uint64_t step = simulation.step();
   const std::uint64_t due = next_checkpoint(cadences_, drive_, step);
   if (step < end) {

@@ -27,7 +27,7 @@ class CyclicShear final : public Protocol {
               std::vector<CheckpointCadence> more = {});
   Drive drive() const override { return drive_; }
   StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const override;
-  std::uint64_t expected_steps() const override { return cycles_ * cycle_steps(drive_); }
+  std::uint64_t last_step() const override { return cycles_ * cycle_steps(drive_); }
 
  private:
   Drive drive_;

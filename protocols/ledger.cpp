@@ -99,11 +99,11 @@ double drag_power(const Cell& cell, const Scene& scene, const Drive& drive, cons
 }  // namespace
 
 Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const State& start,
-              std::uint64_t steps, std::uint64_t stride, const EngineSettings& settings) {
+              std::uint64_t steps, std::uint64_t stride) {
   const auto pose_of = [&](const State& state) {
     return wall_pose(cell, tilt(drive, state.step).theta, state.wall_height);
   };
-  Simulation simulation(cell, scene, start, settings);
+  Simulation simulation(cell, scene, start);
   simulation.advance(drive, 1);
   Ledger sum;
   add_energies(cell, scene, start, simulation.state(), pose_of(start), -1, sum);

@@ -33,6 +33,6 @@ struct Ledger {
 /// as with stride 1, and the ledger takes three to four times as long as the cycle itself; with
 /// stride 16 two to three times, and an error of 1 %. Throws NumericalFailure.
 Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const State& start,
-              std::uint64_t steps, std::uint64_t stride = 1, const EngineSettings& settings = {});
+              std::uint64_t steps, std::uint64_t stride = 1);
 
 }  // namespace shearcell

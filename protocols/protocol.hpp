@@ -27,8 +27,8 @@ class Protocol {
   /// Advances by at most `most_steps`, fewer when a checkpoint is due. Throws NumericalFailure.
   virtual StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const = 0;
 
-  /// Expected length of the whole stage in steps, for estimates; 0 when unknown.
-  virtual std::uint64_t expected_steps() const = 0;
+  /// The step at which the stage ends; 0 where it depends on the state.
+  virtual std::uint64_t last_step() const = 0;
 };
 
 }  // namespace shearcell

@@ -5,13 +5,12 @@
 
 namespace shearcell {
 
-State rested(const Cell& cell, const Scene& scene, State state, double seconds,
-             const EngineSettings& settings) {
+State rested(const Cell& cell, const Scene& scene, State state, double seconds) {
   const auto steps = static_cast<std::uint64_t>(std::llround(seconds / scene.time_step));
   // The pause behind a cycle of one step.
   const Drive pause{.amplitude = 0, .steps_per_cycle = 1, .pause_steps = steps};
   state.step = 1;
-  Simulation simulation(cell, scene, state, settings);
+  Simulation simulation(cell, scene, state);
   simulation.advance(pause, steps);
   state = simulation.state();
   state.step = 0;

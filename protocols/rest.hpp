@@ -10,7 +10,6 @@ namespace shearcell {
 /// scene. Continuous shear is recorded at its largest shear rate and paused shear at the end of a
 /// pause (supplement B.5); after the same rest, measures of both can be compared. The result
 /// depends only on the arguments; its step is 0. Throws NumericalFailure.
-State rested(const Cell& cell, const Scene& scene, State state, double seconds = 0.1,
-             const EngineSettings& settings = {});
+State rested(const Cell& cell, const Scene& scene, State state, double seconds);
 
 }  // namespace shearcell

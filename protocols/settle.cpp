@@ -52,10 +52,10 @@ std::uint64_t Settle::way_steps(const Cell& cell, std::size_t grains) const {
   return look_steps_ * static_cast<std::uint64_t>(looks);
 }
 
-State pressed(const Cell& cell, const State& loose, Scene scene, const EngineSettings& settings) {
+State pressed(const Cell& cell, const State& loose, Scene scene) {
   scene.gravity = 0;
-  Simulation simulation(cell, scene, loose, settings);
-  simulation.set_overlap_limit(std::max(settings.limits.overlap, kPressingOverlap));
+  Simulation simulation(cell, scene, loose);
+  simulation.set_overlap_limit(std::max(WatchdogLimits{}.overlap, kPressingOverlap));
   const double looks = press_looks(cell, scene, simulation.grains());
   simulation.advance(Drive{}, look_steps(scene) * static_cast<std::uint64_t>(looks));
   State state = simulation.state();

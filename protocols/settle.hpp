@@ -37,7 +37,7 @@ class Settle final : public Protocol {
   Settle(const SettleParameters& parameters, const Scene& scene);
   Drive drive() const override { return {}; }
   StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const override;
-  std::uint64_t expected_steps() const override { return 0; }
+  std::uint64_t last_step() const override { return 0; }
 
   /// Steps, a multiple of the check interval, during which the wall presses without gravity: the
   /// time from the fill height to a dense packing at the speed at which the drags of the wall and
@@ -59,6 +59,6 @@ class Settle final : public Protocol {
 
 /// The grains pressed together without gravity for as long as Settle does it: a dense packing that
 /// has not come to rest. Its step is 0.
-State pressed(const Cell& cell, const State& loose, Scene scene, const EngineSettings& settings);
+State pressed(const Cell& cell, const State& loose, Scene scene);
 
 }  // namespace shearcell

@@ -26,7 +26,7 @@ class Stiffen final : public Protocol {
   Drive drive() const override { return {}; }
   /// Does one whole stiffness per call: a minimization cannot be continued from a state.
   StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const override;
-  std::uint64_t expected_steps() const override { return parameters_.steps; }
+  std::uint64_t last_step() const override { return parameters_.steps; }
 
  private:
   StiffenParameters parameters_;

@@ -18,7 +18,7 @@ Packing loose_packing(const Parameters& parameters, std::uint64_t seed) {
 
 Packing pressed_packing(const Parameters& parameters, std::uint64_t seed) {
   Packing packing = loose_packing(parameters, seed);
-  packing.state = pressed(packing.cell, packing.state, packing.scene, {});
+  packing.state = pressed(packing.cell, packing.state, packing.scene);
   packing.scene = shear_scene(parameters);
   return packing;
 }

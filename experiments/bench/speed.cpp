@@ -13,10 +13,8 @@
 #include "provenance/checkpoint.hpp"
 #include "provenance/io/clock.hpp"
 
-namespace shearcell {
+namespace shearcell::bench {
 namespace {
-
-using bench::Packing;
 
 // The engine has no clock, so its kernels are timed from outside: a table of functions that call
 // those of the kernel in use and add up their times. One simulation at a time, one thread.
@@ -40,8 +38,7 @@ auto timed(double& total, Call&& call) {
   return result;
 }
 
-void sample_parts(StepTask task, double (*step)(const StepTask&, std::size_t, std::size_t),
-                  std::size_t first, std::size_t last) {
+void sample_parts(StepTask task, std::size_t first, std::size_t last) {
   const Stopwatch watch;
   const std::size_t room = padded(task.grains);
   times.elsewhere.resize(8 * room);
@@ -56,7 +53,7 @@ void sample_parts(StepTask task, double (*step)(const StepTask&, std::size_t, st
     task.velocity[axis] = velocity;
   }
   task.moving_wall_force_y = times.elsewhere.data() + 7 * room;
-  const auto again = [&] { return step(task, first, last); };
+  const auto again = [&] { return times.inner->step(task, first, last); };
   timed(times.whole, again);
   std::vector<std::uint8_t> near(task.neighbours.near + first, task.neighbours.near + last);
   for (std::uint8_t& bits : near) bits &= static_cast<std::uint8_t>(~kNearWall);
@@ -68,20 +65,14 @@ void sample_parts(StepTask task, double (*step)(const StepTask&, std::size_t, st
   times.sampled += watch.seconds();
 }
 
-template <int kGravity, int kFlow>
-double timed_step(const StepTask& task, std::size_t first, std::size_t last) {
-  const auto step = times.inner->step[kGravity][kFlow];
-  if (++times.calls % 16 == 0) sample_parts(task, step, first, last);
-  return timed(times.step, [&] { return step(task, first, last); });
-}
-
 Kernels timed_kernels(const Kernels& inner) {
   times = {};
   times.inner = &inner;
-  return {inner.name,
-          inner.lanes,
-          inner.sum_contacts,
-          {{timed_step<0, 0>, timed_step<0, 1>}, {timed_step<1, 0>, timed_step<1, 1>}},
+  return {inner.name, inner.lanes,
+          [](const StepTask& task, std::size_t first, std::size_t last) {
+            if (++times.calls % 16 == 0) sample_parts(task, first, last);
+            return timed(times.step, [&] { return times.inner->step(task, first, last); });
+          },
           [](const SearchTask& task, std::size_t first, std::size_t last) {
             return timed(times.search, [&] { return times.inner->search(task, first, last); });
           },
@@ -108,13 +99,12 @@ Packing repeated(const Packing& one, std::size_t copies) {
 }
 
 // The pressure of Table I cannot lift the column of a cell with more than 18,200 grains: beyond
-// that, the smallest number of equal parts along the depth.
+// that, the smallest number of equal parts along the depth, with at least so many grains in all.
 Packing prepare(std::size_t grains) {
-  std::size_t parts = (grains + 18199) / 18200;
-  while (grains % parts != 0) ++parts;
+  const std::size_t parts = (grains + 18199) / 18200;
   Parameters parameters;
-  parameters.grains = grains / parts;
-  Packing made = bench::pressed_packing(parameters, 1);
+  parameters.grains = (grains + parts - 1) / parts;
+  Packing made = pressed_packing(parameters, 1);
   Simulation simulation(made.cell, made.scene, made.state);
   simulation.advance(Drive{}, 2000);  // under the grains' weight too
   made.state = simulation.state();
@@ -156,14 +146,14 @@ void measure_shares(const Packing& made, const Kernels& kernels, std::uint64_t s
 // After measure_shares.
 void measure_limits(std::size_t lanes, SpeedResult& result) {
   const double slots = times.slots / times.blocks;
-  const bench::StepWork work = result.work = bench::step_work(lanes, slots);
+  const StepWork work = result.work = step_work(lanes, slots);
   const auto threads = static_cast<double>(result.threads);
-  result.arithmetic_limit = 1e-6 * threads * bench::peak_operations(lanes) / work.vector_operations;
+  result.arithmetic_limit = 1e-6 * threads * peak_operations(lanes) / work.vector_operations;
   // More than any cache holds is read no slower.
   constexpr double kMostRead = 1 << 28;
   const double arrays = work.footprint * static_cast<double>(result.grains);
   const auto read = static_cast<std::size_t>(std::min(arrays, kMostRead));
-  result.memory_limit = 1e-6 * threads * bench::read_bandwidth(read) / work.bytes;
+  result.memory_limit = 1e-6 * threads * read_bandwidth(read) / work.bytes;
 }
 
 void measure_rate(const Packing& made, const EngineSettings& settings, const SpeedOptions& options,
@@ -194,10 +184,9 @@ void measure_size(std::size_t grains, const SpeedOptions& options,
   };
   say("pressing a packing");
   const Packing made = prepare(grains);
+  grains = static_cast<std::size_t>(made.state.position.cols());
   const std::size_t first = results.size();
-  for (const Simd simd : kEverySimd) {
-    const Kernels* kernels = find_kernels(simd);
-    if (kernels == nullptr) continue;
+  for (const Kernels* kernels : kernels_here()) {
     for (const std::size_t threads : options.threads) {
       SpeedResult result{.grains = grains, .simd = kernels->name, .threads = threads};
       say(fmt::format("{}, {} thread{}", kernels->name, threads, threads == 1 ? "" : "s"));
@@ -229,4 +218,4 @@ std::vector<SpeedResult> measure_speed(const SpeedOptions& options) {
   return all;
 }
 
-}  // namespace shearcell
+}  // namespace shearcell::bench

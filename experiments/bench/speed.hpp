@@ -9,8 +9,7 @@
 
 #include "core/kernel.hpp"
 
-namespace shearcell {
-namespace bench {
+namespace shearcell::bench {
 
 // How fast the kernel could run at most on this machine: its counted operations at the measured
 // peak of the vector units, and its counted bytes at the measured speed of reading.
@@ -30,14 +29,12 @@ struct StepWork {
 /// Work of a kernel with `lanes` grains per vector and `slots` neighbour slots per block, averaged.
 StepWork step_work(std::size_t lanes, double slots);
 
-/// Vector operations per second in vectors of `lanes` doubles: 8, 4 or 2 as find_kernels() offers
+/// Vector operations per second in vectors of `lanes` doubles: 8, 4 or 2 as kernels_here() offers
 /// them, 1 for scalars.
 double peak_operations(std::size_t lanes);
 
 /// Bytes per second read from an array of `bytes`.
 double read_bandwidth(std::size_t bytes);
-
-}  // namespace bench
 
 struct SpeedOptions {
   std::vector<std::size_t> sizes = {600, 2000, 5200, 18200, 100000};
@@ -62,15 +59,16 @@ struct SpeedResult {
   /// What a particle-step does at least, and the rates that this machine's vector units and its
   /// caches or memory would allow, as measured on one core and multiplied by
   /// the threads.
-  bench::StepWork work = {};
+  StepWork work = {};
   double arithmetic_limit = 0, memory_limit = 0;
   std::string state_hash = {};  ///< after 200 steps; the same for all results of one size
 };
 
 /// Table I in a rough cell sheared at A = 0.0833, from a packing pressed together first. Beyond
 /// N = 18200 a smaller packing is repeated along the depth, because the pressure cannot lift a
-/// higher column. Before anything is timed every kernel must give the same state after 200 steps;
-/// otherwise std::runtime_error is thrown. Shares are measured with one thread.
+/// higher column; the result has the N of the repeated packing. Before anything is timed every
+/// kernel must give the same state after 200 steps; otherwise std::runtime_error is thrown. Shares
+/// are measured with one thread.
 std::vector<SpeedResult> measure_speed(const SpeedOptions& options);
 
-}  // namespace shearcell
+}  // namespace shearcell::bench

@@ -17,13 +17,8 @@
 namespace shearcell::cli {
 namespace {
 
-// A value of a result, for JSON; with a heading also in the printed table, as `text` or as it is.
-struct Fact {
-  std::string key;
-  nlohmann::json value;
-  std::string heading = {}, text = {};
-};
-using Facts = std::vector<Fact>;
+using bench::Fact;
+using bench::Facts;
 
 std::string digits(double value, int count) {
   return fmt::format("{:.{}f}", value, count);
@@ -33,7 +28,7 @@ std::string significant(double value, int count) {
   return fmt::format("{:.{}g}", value, count);
 }
 
-Facts facts(const SpeedResult& r) {
+Facts facts(const bench::SpeedResult& r) {
   const auto percent = [](double share) { return digits(100 * share, 1); };
   return {{"N", r.grains, "N"},
           {"simd", r.simd, "SIMD"},
@@ -95,11 +90,18 @@ std::vector<Facts> all_facts(const std::vector<Result>& results) {
   return all;
 }
 
+nlohmann::json json_of(const TableValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  if (const auto* count = std::get_if<std::int64_t>(&value)) return *count;
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  return nullptr;
+}
+
 nlohmann::json json_of(const std::vector<Facts>& results) {
   nlohmann::json all = nlohmann::json::array();
   for (const Facts& result : results) {
     nlohmann::json& one = all.emplace_back();
-    for (const Fact& fact : result) one[fact.key] = fact.value;
+    for (const Fact& fact : result) one[fact.key] = json_of(fact.value);
   }
   return all;
 }
@@ -113,8 +115,12 @@ void print_facts(const std::vector<Facts>& results) {
     for (const auto& [key, value, heading, text] : result) {
       if (heading.empty()) continue;
       header.push_back(heading);
-      const std::string as_it_is = value.is_string() ? value.get<std::string>() : value.dump();
-      rows.back().push_back(text.empty() ? as_it_is : text);
+      const auto* word = std::get_if<std::string>(&value);
+      const auto* count = std::get_if<std::int64_t>(&value);
+      rows.back().push_back(!text.empty() ? text
+                            : word        ? *word
+                            : count       ? std::to_string(*count)
+                                          : "");
     }
   }
   print_table(header, rows);
@@ -125,7 +131,7 @@ void report_progress(const std::string& what) {
 }
 
 void add_speed(CLI::App& bench, Context& context) {
-  auto options = std::make_shared<SpeedOptions>();
+  auto options = std::make_shared<bench::SpeedOptions>();
   CLI::App* command = bench.add_subcommand(
       "speed",
       "Measure particle-steps per second in the sheared rough cell, and the share of each part");
@@ -142,7 +148,7 @@ void add_speed(CLI::App& bench, Context& context) {
       "  shearcell bench speed --size 18200 --threads 1 2 --json");
   command->callback([options, &context] {
     options->report = report_progress;
-    const std::vector<Facts> results = all_facts(measure_speed(*options));
+    const std::vector<Facts> results = all_facts(bench::measure_speed(*options));
     if (context.json) return print_json({{"sizes", json_of(results)}});
     print_facts(results);
     fmt::print(
@@ -154,28 +160,29 @@ void add_speed(CLI::App& bench, Context& context) {
 }
 
 nlohmann::json json_of(const accuracy::Section& section) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const std::vector<TableValue>& row : section.table.rows) {
-    nlohmann::json& values = rows.emplace_back();
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      nlohmann::json& value = values[section.table.columns[c]];
-      if (const auto* number = std::get_if<double>(&row[c])) value = *number;
-      if (const auto* count = std::get_if<std::int64_t>(&row[c])) value = *count;
-      if (const auto* text = std::get_if<std::string>(&row[c])) value = *text;
-    }
+  return {{"name", section.name}, {"title", section.title}, {"rows", json_of(section.results)}};
+}
+
+FigureTable table_of(const accuracy::Section& section) {
+  FigureTable table{.name = section.name, .columns = {}, .chart = section.chart};
+  for (const Fact& fact : section.results.at(0)) table.columns.push_back(fact.key);
+  for (const Facts& result : section.results) {
+    TableRow& row = table.rows.emplace_back();
+    for (const Fact& fact : result) row.push_back(fact.value);
   }
-  return {{"name", section.table.name}, {"title", section.title}, {"rows", rows}};
+  return table;
 }
 
 // All data before the first figure, which needs gnuplot.
 void write(const std::vector<accuracy::Section>& sections, const std::filesystem::path& folder) {
-  for (const accuracy::Section& section : sections) require_own_files(section.table, folder);
-  for (const accuracy::Section& section : sections) {
-    write_csv(section.table, folder);
-    write_output(folder / (section.table.name + ".chart.json"),
-                 chart_json(section.table).dump() + "\n");
+  std::vector<FigureTable> tables;
+  for (const accuracy::Section& section : sections) tables.push_back(table_of(section));
+  for (const FigureTable& table : tables) require_own_files(table, folder);
+  for (const FigureTable& table : tables) {
+    write_csv(table, folder);
+    write_output(folder / (table.name + ".chart.json"), chart_json(table).dump() + "\n");
   }
-  for (const accuracy::Section& section : sections) draw_svg(section.table, folder);
+  for (const FigureTable& table : tables) draw_svg(table, folder);
 }
 
 void measure(const accuracy::Options& options, const std::string& out, Context& context) {
@@ -187,7 +194,7 @@ void measure(const accuracy::Options& options, const std::string& out, Context& 
     all.push_back(json_of(section));
     if (context.json) continue;
     fmt::print("{}\n", section.title);
-    print_table(section.header, section.summary);
+    print_facts(section.summary.empty() ? section.results : section.summary);
     fmt::print("\n");
   }
   if (context.json) print_json({{"quick", options.quick}, {"sections", all}});
@@ -313,9 +320,9 @@ void add_engines(CLI::App& bench, Context& context) {
   });
 }
 
-void stability(const StabilityOptions& options, Context& context) {
+void map_cases(const stability::Options& options, Context& context) {
   nlohmann::json cases = nlohmann::json::array();
-  const std::vector<StabilityResult> results = map_stability(options);
+  const std::vector<stability::Result> results = stability::map_stability(options);
   std::size_t right = 0;
   double total = 0;
   for (const auto& [hard, outcome, seconds] : results) {
@@ -341,12 +348,12 @@ void stability(const StabilityOptions& options, Context& context) {
 }
 
 void add_stability(CLI::App& bench, Context& context) {
-  auto options = std::make_shared<StabilityOptions>();
+  auto options = std::make_shared<stability::Options>();
   CLI::App* command = bench.add_subcommand(
       "stability", "Run hard cases: each must give the right answer or be stopped with the reason");
   command->add_option("--only", options->only, "Names of cases, or their beginnings")
       ->type_name("NAME")
-      ->check(unknown_case, "");
+      ->check(stability::unknown_case, "");
   command->add_flag("--quick", options->quick, "Fewer steps in the very long cases");
   add_number(*command, "--seconds", options->seconds_per_case,
              "A case that takes longer counts as hanging", "S", 0.1, 86400);
@@ -357,7 +364,7 @@ void add_stability(CLI::App& bench, Context& context) {
       "  shearcell bench stability --only vacancy limit --json");
   command->callback([options, &context] {
     options->report = report_progress;
-    stability(*options, context);
+    map_cases(*options, context);
   });
 }
 

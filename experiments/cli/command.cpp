@@ -37,7 +37,7 @@ void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
 
 template <class Enum>
 CLI::IsMember is_name() {
-  return CLI::IsMember(std::vector<std::string>(kNameList<Enum>.begin(), kNameList<Enum>.end()));
+  return CLI::IsMember(std::vector<std::string>(kNames<Enum>.begin(), kNames<Enum>.end()));
 }
 
 }  // namespace

@@ -108,12 +108,12 @@ Check program(const std::string& name, const std::string& use, const std::string
 }
 
 Check speed() {
-  SpeedOptions options;
+  bench::SpeedOptions options;
   options.sizes = {2000};
   options.repeats = 3;
   options.seconds_per_repeat = 0.3;
-  const std::vector<SpeedResult> results = measure_speed(options);
-  const double rate = std::ranges::max(results, {}, &SpeedResult::median_rate).median_rate;
+  const std::vector<bench::SpeedResult> results = bench::measure_speed(options);
+  const double rate = std::ranges::max(results, {}, &bench::SpeedResult::median_rate).median_rate;
   const double cycle = 5200 * 45600 / (rate * 1e6);
   return {"speed", fmt::format("{:.0f} M particle-steps/s", rate), rate > 20 ? "ok" : "slow",
           fmt::format("one core; a cycle of 5200 grains takes about {:.1f} s", cycle)};

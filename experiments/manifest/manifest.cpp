@@ -92,15 +92,16 @@ nlohmann::json to_json(const Until& until) {
 }
 
 Until until_from_json(const nlohmann::json& json) {
-  for (const Named<StopMeasure>& entry : kNames<StopMeasure>) {
-    const std::string name(entry.name);
+  for (const std::string_view measure : kNames<StopMeasure>) {
+    const std::string name(measure);
     if (!json.is_object() || !json.contains(name)) continue;
     const auto extra = json.find("extra_cycles");
     if (json.size() != 2 || !json.at(name).is_number() || extra == json.end() ||
         !extra->is_number_unsigned() || *extra > StoreLimits::cycles) {
       break;
     }
-    return {entry.value, json.at(name).get<double>(), extra->get<std::uint64_t>()};
+    return {value_of<StopMeasure>(name).value(), json.at(name).get<double>(),
+            extra->get<std::uint64_t>()};
   }
   throw std::runtime_error("until: is not {MEASURE: VALUE, extra_cycles: N}, N at most 1000000");
 }

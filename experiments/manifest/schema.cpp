@@ -25,7 +25,7 @@ constexpr Identity kNoKey = {};
 template <auto Member>
 ChoiceMember choice() {
   using Enum = std::remove_reference_t<decltype(std::declval<Parameters&>().*Member)>;
-  return {kNameList<Enum>, [](const Parameters& p) { return name_of(p.*Member); },
+  return {kNames<Enum>, [](const Parameters& p) { return name_of(p.*Member); },
           [](Parameters& p, string_view name) { p.*Member = value_of<Enum>(name).value(); }};
 }
 

@@ -49,7 +49,7 @@ class LammpsEngine final : public Engine {
         state_(std::move(beginning.state)),
         first_(state_.step),
         step_(first_) {
-    const std::uint64_t end = plan.protocol->expected_steps();
+    const std::uint64_t end = plan.protocol->last_step();
     if (first_ >= end) return;
     const LammpsTask task{.cell = cell_,
                           .scene = plan.scene,
@@ -97,7 +97,7 @@ class LammpsEngine final : public Engine {
     StageProgress progress;
     const auto per_cycle = static_cast<double>(cycle_steps(plan_.protocol->drive()));
     progress.cycle = static_cast<double>(step_) / per_cycle;
-    progress.finished = state_.step >= plan_.protocol->expected_steps();
+    progress.finished = state_.step >= plan_.protocol->last_step();
     progress.checkpoint_due = progress.finished || (at_frame && step_ % stride_ == 0);
     return progress;
   }

@@ -40,7 +40,7 @@ nlohmann::json host_facts() {
       {"system", std::string(system.sysname) + " " + system.release + " " + system.machine},
       {"cpu", cpu_model()},
       {"cores", std::thread::hardware_concurrency()},
-      {"simd", find_kernels(Simd::best)->name},
+      {"simd", kernels_here().front()->name},
       {"build",
        {{"version", kBuildVersion},
         {"commit", kBuildCommit},

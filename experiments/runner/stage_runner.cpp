@@ -184,7 +184,7 @@ class Attempt {
         static_cast<double>(engine.evaluations() - reported_evaluations_) / since;
     status.grains = plan_.run.grains;
     status.step = engine.step();
-    const std::uint64_t end = plan_.protocol->expected_steps();
+    const std::uint64_t end = plan_.protocol->last_step();
     const double mean_rate = static_cast<double>(engine.step() - first_step_) / started_.seconds();
     status.seconds_left =
         end == 0 || !(mean_rate > 0) ? -1 : static_cast<double>(end - engine.step()) / mean_rate;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <numeric>
 #include <set>
 
 #include "core/cell_grid.hpp"
@@ -127,9 +126,7 @@ PROPERTY(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId, 300
   Points points =
       random_points(grains, cell, pose, *rc::gen::inRange<std::uint64_t>(0, 1000).as("seed"));
   const Snapshot now = snapshot_of(points, pose);
-  for (const Simd simd : kEverySimd) {
-    const Kernels* kernels = find_kernels(simd);
-    if (kernels == nullptr) continue;
+  for (const Kernels* kernels : kernels_here()) {
     Team team(1);
     NeighbourLists lists(*kernels, settings, cell.depth, walls, team);
     lists.set_outer_margins(now);
@@ -176,11 +173,10 @@ TEST(NeighbourLists, OfACollapsedCellAreTheSameInAllKernels) {
   settings.kernels = &scalar_kernels();
   const Eigen::Matrix3Xd expected = Simulation(cell, scene, state, settings).forces().on_grain;
   EXPECT_GT(expected(1, 0), 100);  // a thousand overlaps of about 0.3 d
-  for (const Simd simd : kEverySimd) {
-    settings.kernels = find_kernels(simd);
-    if (settings.kernels == nullptr) continue;
+  for (const Kernels* kernels : kernels_here()) {
+    settings.kernels = kernels;
     EXPECT_EQ(Simulation(cell, scene, state, settings).forces().on_grain, expected)
-        << settings.kernels->name;
+        << kernels->name;
   }
 }
 
@@ -208,26 +204,26 @@ TEST(Reference, AnAffineShearAloneMovesNothing) {
   EXPECT_NEAR(reference.moved(sheared.rows.data(), 17, pose), 0.25, rounding);
 }
 
-// One site in each cell, whose coordinates are known from its place.
-TEST(CellOrder, NeighboursOfEveryCellInStripsOfAnyWidth) {
+TEST(Grid, NeighboursOfEveryCellInStripsOfAnyWidth) {
   for (const std::int32_t layers : {1, 2, 3, 4, 7, 10}) {
     for (std::int32_t strip = 1; strip <= layers; ++strip) {
-      CellGrid grid{.columns = 4, .layers = layers, .rows = 5, .strip = strip};
-      const std::int32_t cells = grid.columns * grid.layers * grid.rows;
-      std::vector<std::uint32_t> place(static_cast<std::size_t>(cells) + 1);
-      std::iota(place.begin(), place.end(), 0);
-      grid.begin = grid.cell = place.data();
+      Grid grid;
+      grid.columns = 4;
+      grid.layers = layers;
+      grid.rows = 5;
+      grid.strip = strip;
       std::map<std::size_t, std::array<std::int32_t, 3>> cell_at;  // column, row, layer
       for (std::int32_t row = 0; row < grid.rows; ++row) {
         for (std::int32_t layer = 0; layer < layers; ++layer) {
           for (std::int32_t column = 0; column < grid.columns; ++column) {
-            const std::int32_t at = line_of(grid, row, layer) * grid.columns + column;
-            ASSERT_TRUE(at >= 0 && at < cells);
+            const std::int32_t at = grid.line_of(row, layer) * grid.columns + column;
+            ASSERT_GE(at, 0);
+            ASSERT_LT(static_cast<std::size_t>(at), grid.size());
             cell_at[static_cast<std::size_t>(at)] = {column, row, layer};
           }
         }
       }
-      ASSERT_EQ(cell_at.size(), static_cast<std::size_t>(cells));  // each place once
+      ASSERT_EQ(cell_at.size(), grid.size());  // each place once
       for (const auto& [at, own] : cell_at) {
         std::multiset<std::size_t> expected, found;
         for (const auto& [other_at, other] : cell_at) {
@@ -236,8 +232,8 @@ TEST(CellOrder, NeighboursOfEveryCellInStripsOfAnyWidth) {
                             std::min(dz, layers - dz) <= 1;
           if (near) expected.insert(other_at);
         }
-        std::array<PlaceRun, 9> runs;
-        const std::size_t count = surrounding_runs(grid, at, runs);
+        std::array<CellRun, 9> runs;
+        const std::size_t count = grid.surrounding(static_cast<std::uint32_t>(at), runs);
         for (std::size_t r = 0; r < count; ++r) {
           for (std::size_t p = runs[r].begin; p < runs[r].end; ++p) found.insert(p);
         }
@@ -249,17 +245,17 @@ TEST(CellOrder, NeighboursOfEveryCellInStripsOfAnyWidth) {
 
 TEST(LinkedCells, VisitEveryPointNearbyOnceInShallowCellsToo) {
   for (const double depth : {1.0, 2.0, 3.0, 3.9, 7.0}) {
-    LinkedCells near(4, 0, 4, depth, 1.0, 50);
+    LinkedCells near({.width = 4, .depth = depth}, {.top = 4}, 1.0, 50);
     for (std::int32_t i = 0; i < 50; ++i) {
       const auto u = uniform_pair({static_cast<std::uint32_t>(i), 0, 0, 0}, 5);
-      near.insert(i, 4 * u[0], 4 * u[1], depth * (i % 7) / 7.0);
+      near.insert(i, {4 * u[0], 4 * u[1], depth * (i % 7) / 7.0});
     }
     std::multiset<std::int32_t> seen;
-    near.for_each_near(2, 2, 0.1, [&](std::int32_t i) { seen.insert(i); });
+    near.for_each_near({2, 2, 0.1}, [&](std::int32_t i) { seen.insert(i); });
     for (const std::int32_t i : seen) EXPECT_EQ(seen.count(i), 1U) << depth;
     EXPECT_FALSE(seen.empty());
     // Wild coordinates land somewhere, and nothing breaks.
-    near.insert(50, std::nan(""), 1e300, -1e300);
+    near.insert(50, {std::nan(""), 1e300, -1e300});
   }
 }
 

@@ -50,8 +50,8 @@ inline Drive any_drive() {
 /// Any instructions that the machine has, and ways to keep the lists.
 inline EngineSettings any_engine() {
   EngineSettings settings;
-  const int simd = *rc::gen::element(0, 1, 2, 3).as("best, scalar, AVX2 or AVX-512");
-  if (find_kernels(Simd{simd}) != nullptr) settings.kernels = find_kernels(Simd{simd});
+  settings.kernels = kernels_here()[*rc::gen::inRange<std::size_t>(0, kernels_here().size())
+                                         .as("kernel, the fastest first")];
   settings.limits.overlap = settings.limits.escape = 1;  // small cells driven hard
   settings.lists.inner_cutoff = any_number("inner cutoff", 1.02, 1.2);
   settings.lists.outer_cutoff = settings.lists.inner_cutoff + any_number("outer beyond", 0.02, 0.1);

@@ -15,15 +15,14 @@ using test::Sheared;
 TEST(Reproducible, AnyInstructionsAndAnyLists) {
   const Sheared start = pressed(601, 9000);
   const State golden = advanced(start, 700);
-  for (const Simd simd : kEverySimd) {
-    if (find_kernels(simd) == nullptr) continue;
+  for (const Kernels* kernels : kernels_here()) {
     for (const double inner : {1.03, 1.05, 1.1, 1.2, 1.3}) {
       EngineSettings settings;
-      settings.kernels = find_kernels(simd);
+      settings.kernels = kernels;
       settings.lists.inner_cutoff = inner;
       settings.lists.outer_cutoff = settings.lists.widest_cutoff = inner + 0.05;
       EXPECT_TRUE(same_bits(golden, advanced(start, 700, settings)))
-          << find_kernels(simd)->name << " at cutoff " << inner;
+          << kernels->name << " at cutoff " << inner;
     }
   }
   for (const std::size_t threads : {2U, 3U}) {

@@ -8,8 +8,8 @@
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/objects.hpp"
-#include "provenance/sha256.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/frame.hpp"
 
 namespace shearcell::test {
 
@@ -117,12 +117,8 @@ void folder_instead(const fs::path& path) {
 }
 
 void forge_checkpoints(const fs::path& store, const std::string& hdf5) {
-  std::string image =
-      "shearcell checkpoint 1\nsha256 of all bytes after the first 512: " + sha256_hex(hdf5) + "\n";
-  image.resize(512, '\0');
-  image += hdf5;
   ObjectStore objects(store);
-  const ObjectInfo object = objects.put(std::as_bytes(std::span(image)));
+  const ObjectInfo object = objects.put(sealed(std::as_bytes(std::span(hdf5))));
   payload("CheckpointRecorded", [&](nlohmann::json& body) {
     body["sha256"] = object.sha256;
     body["file"] = object.file;

@@ -196,8 +196,8 @@ TEST_F(DrawFigure, PhiAtRestIsThatOfTheRestedPacking) {
     EXPECT_TRUE(std::isnan(phi[0])) << "the packings of cycle 0 are the same";
     Checkpoint checkpoint = store_.load_checkpoint(records[2]);
     const double recorded = analyse(checkpoint).measures.phi;
-    checkpoint.state =
-        rested(checkpoint.cell, shear_scene(read_stage(run.resolved).parameters), checkpoint.state);
+    checkpoint.state = rested(checkpoint.cell, shear_scene(read_stage(run.resolved).parameters),
+                              checkpoint.state, 0.1);
     EXPECT_EQ(phi[2], analyse(checkpoint).measures.phi);
     EXPECT_NE(phi[2], recorded);
     EXPECT_EQ(phi_at_rest(store_, records, {1, false, {}})[2], phi[2]) << "as kept";

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstdlib>
-#include <cstring>
 
 #include "analysis/crystal.hpp"
 #include "analysis/derived_measures.hpp"
 #include "provenance/events.hpp"
-#include "provenance/hdf5_read.hpp"
 #include "provenance/sha256.hpp"
 #include "tests/fuzz/targets.hpp"
 #include "tests/provenance/samples.hpp"
@@ -102,17 +100,6 @@ std::vector<Event> forged_events(std::string_view lines) {
     events.push_back(std::move(event));
   }
   return events;
-}
-
-std::vector<std::byte> sealed(std::span<const std::byte> bytes) {
-  const bool framed = as_string(bytes.first(std::min(bytes.size(), hdf5::kFrameSize)))
-                          .starts_with(hdf5::kFrameTitle);
-  if (framed) bytes = bytes.subspan(std::min(bytes.size(), hdf5::kFrameSize));
-  std::vector<std::byte> image(hdf5::kFrameSize);
-  const std::string frame = hdf5::frame_text(sha256_hex(bytes));
-  std::memcpy(image.data(), frame.data(), frame.size());
-  image.insert(image.end(), bytes.begin(), bytes.end());
-  return image;
 }
 
 std::vector<std::string> manifest_seeds() {

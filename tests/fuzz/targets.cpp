@@ -19,6 +19,7 @@
 #include "provenance/projections.hpp"
 #include "provenance/ro_crate.hpp"
 #include "tests/provenance/samples.hpp"
+#include "tests/support/frame.hpp"
 
 namespace shearcell::fuzz {
 namespace {
@@ -103,7 +104,7 @@ void take_checkpoint(Input input) {
   const std::span<const std::byte> bytes = std::as_bytes(input);
   attempt<StoreDamaged>([&] { decode_checkpoint(bytes); });
   attempt<StoreDamaged>([&] {
-    const Checkpoint checkpoint = decode_checkpoint(sealed(bytes));
+    const Checkpoint checkpoint = decode_checkpoint(test::sealed(bytes));
     if (checkpoint.state.position.cols() > kAnalysed ||
         checkpoint.cell.wall_grains.size() > kAnalysed) {
       return;

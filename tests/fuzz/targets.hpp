@@ -38,10 +38,6 @@ std::vector<std::string> measure_seeds();
 /// make_store. A line with fewer fields is left out.
 std::vector<Event> forged_events(std::string_view lines);
 
-/// The bytes with the frame of a checkpoint and a right SHA-256 before them; a frame that they have
-/// is put right.
-std::vector<std::byte> sealed(std::span<const std::byte> bytes);
-
 /// A store with a manifest, two runs, three checkpoints and a figure; returns its folder.
 std::filesystem::path make_store(const std::filesystem::path& folder);
 

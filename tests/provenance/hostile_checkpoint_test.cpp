@@ -12,13 +12,14 @@
 #include "provenance/errors.hpp"
 #include "provenance/hdf5_write.hpp"
 #include "tests/provenance/samples.hpp"
+#include "tests/support/frame.hpp"
 
 namespace shearcell {
 namespace {
 
 using hdf5::Handle;
 using test::kFrame;
-using test::seal;
+using test::sealed;
 
 /// A file image opened by the HDF5 library.
 Handle open_image(std::vector<std::byte> image, unsigned flags = H5F_ACC_RDONLY) {
@@ -90,8 +91,7 @@ std::vector<std::byte> forge(const Change& change) {
   const ssize_t size = H5Fget_file_image(file.get(), nullptr, 0);
   image.resize(kFrame + static_cast<std::size_t>(size));
   H5Fget_file_image(file.get(), image.data() + kFrame, static_cast<std::size_t>(size));
-  seal(image);
-  return image;
+  return sealed(image);
 }
 
 Change without(const std::string& path) {
@@ -229,8 +229,7 @@ TEST(HostileCheckpoint, EveryTruncationIsRefused) {
     std::vector<std::byte> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     EXPECT_THROW(decode_checkpoint(cut), StoreDamaged) << size;
     if (size <= kFrame) continue;
-    seal(cut);
-    EXPECT_THROW(decode_checkpoint(cut), StoreDamaged) << size << ", with a valid digest";
+    EXPECT_THROW(decode_checkpoint(sealed(cut)), StoreDamaged) << size << ", with a valid digest";
   }
 }
 
@@ -245,9 +244,8 @@ TEST(HostileCheckpoint, EveryChangedByteIsRefusedOrReadWithoutHarm) {
         EXPECT_THROW(decode_checkpoint(changed), StoreDamaged) << at;
       }
       if (at < kFrame) continue;
-      seal(changed);
       try {
-        decode_checkpoint(changed);
+        decode_checkpoint(sealed(changed));
         ++taken;
       } catch (const StoreDamaged&) {
         ++refused;

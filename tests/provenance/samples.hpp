@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <random>
 #include <span>
 #include <string>
@@ -17,18 +16,10 @@
 namespace shearcell::test {
 
 constexpr std::uint64_t kCycle = 45600;  ///< steps
-constexpr std::size_t kFrame = 512;      ///< bytes before a checkpoint's HDF5
 
 inline std::vector<std::byte> bytes_of(const std::string& text) {
   const auto view = std::as_bytes(std::span(text));
   return {view.begin(), view.end()};
-}
-
-/// Writes the matching digest into the frame.
-inline void seal(std::vector<std::byte>& image) {
-  const std::string title = "shearcell checkpoint 1\nsha256 of all bytes after the first 512: ";
-  const std::string digest = sha256_hex(std::span(image).subspan(kFrame));
-  std::memcpy(image.data() + title.size(), digest.data(), digest.size());
 }
 
 inline Checkpoint sample_checkpoint(const std::string& run, std::uint64_t step = kCycle,

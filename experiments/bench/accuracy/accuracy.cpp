@@ -23,27 +23,6 @@ using bench::PackingNumbers;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// A column of a section's table; one with a heading is also in the summary, as `text`.
-struct Column {
-  std::string name;
-  TableValue value;
-  std::string heading = {}, text = {};
-};
-
-void add_row(Section& section, const std::vector<Column>& columns) {
-  section.table.columns.clear();
-  section.header.clear();
-  section.table.rows.emplace_back();
-  section.summary.emplace_back();
-  for (const Column& column : columns) {
-    section.table.columns.push_back(column.name);
-    section.table.rows.back().push_back(column.value);
-    if (column.heading.empty()) continue;
-    section.header.push_back(column.heading);
-    section.summary.back().push_back(column.text);
-  }
-}
-
 // Three significant digits; `otherwise` for a value that is not finite.
 std::string short_number(double value, const std::string& otherwise = "") {
   return std::isfinite(value) ? fmt::format("{:.3g}", value) : otherwise;
@@ -98,32 +77,28 @@ Chart chart_of(const ClosedForm& form) {
 Section section_of(const ClosedForm& form, const Scene& scene, const std::vector<double>& steps,
                    double engine_rate) {
   const double limit = stability_limit_s(Parameters{}), contact = contact_time(scene);
-  Section section;
-  section.title = form.title;
-  std::vector<std::string> header = {"dt [s]", "dt/limit"};
-  std::vector<std::vector<std::string>> summary;
-  for (const double dt : steps) summary.push_back({short_number(dt), fixed(dt / limit, 2)});
-  summary.push_back({"order", ""});
+  Section section{form.title, "accuracy-" + form.name, chart_of(form)};
+  const auto begin_row = [&](const std::string& step, const std::string& part) {
+    section.summary.push_back({{"", {}, "dt [s]", step}, {"", {}, "dt/limit", part}});
+  };
+  for (const double dt : steps) begin_row(short_number(dt), fixed(dt / limit, 2));
+  begin_row("order", "");
   for (const Method& method : methods()) {
-    header.push_back(method.name);
     for (std::size_t s = 0; s < steps.size(); ++s) {
       const double dt = steps[s], error = error_of(form, method, dt);
-      add_row(section,
-              {{"method", method.name},
-               {"time_step_s", dt},
-               {"time_step_over_contact_time", dt / contact},
-               {"time_step_over_stability_limit", dt / limit},
-               {"evaluations_per_contact_time", method.evaluations / dt * contact},
-               {"seconds_per_cycle", method.evaluations * seconds_per_cycle(600, dt, engine_rate)},
-               {form.error, error}});
-      summary[s].push_back(short_number(error, "stopped"));
+      section.results.push_back(
+          {{"method", method.name},
+           {"time_step_s", dt},
+           {"time_step_over_contact_time", dt / contact},
+           {"time_step_over_stability_limit", dt / limit},
+           {"evaluations_per_contact_time", method.evaluations / dt * contact},
+           {"seconds_per_cycle", method.evaluations * seconds_per_cycle(600, dt, engine_rate)},
+           {form.error, error}});
+      section.summary[s].push_back({"", {}, method.name, short_number(error, "stopped")});
     }
-    summary.back().push_back(fixed(fitted_order(form, method, 4.4e-5), 2));  // larger steps bend it
+    const double order = fitted_order(form, method, 4.4e-5);  // larger steps bend it
+    section.summary.back().push_back({"", {}, method.name, fixed(order, 2)});
   }
-  section.table.name = "accuracy-" + form.name;
-  section.table.chart = chart_of(form);
-  section.header = header;
-  section.summary = summary;
   return section;
 }
 
@@ -197,8 +172,8 @@ Section seeds_section(const Options& options, double engine_rate) {
   Section section;
   section.title = fmt::format("{} sheared grains, {} seeds, means of cycles {} to {}", p.grains,
                               seeds, first, last);
-  section.table.name = "accuracy-seeds";
-  section.table.chart = {
+  section.name = "accuracy-seeds";
+  section.chart = {
       .x = {.name = "time step", .unit = Text("2/ω") + subscript("max")},
       .y = {.name = "volume fraction", .symbol = italic("ϕ")},
       .series = {{.title = fmt::format("{} seeds", seeds),
@@ -214,19 +189,20 @@ Section seeds_section(const Options& options, double engine_rate) {
     p.steps_per_cycle = steps[s];
     const TimeStep step = shear_time_step(p);
     const double seconds = seconds_per_cycle(p.grains, step.seconds, engine_rate);
-    add_row(section, {{"steps_per_cycle", static_cast<std::int64_t>(steps[s])},
-                      {"time_step_s", step.seconds, "dt [s]", short_number(step.seconds)},
-                      {"time_step_over_stability_limit", step.over_stability_limit, "dt/limit",
-                       fixed(step.over_stability_limit, 2)},
-                      {"seconds_per_cycle", seconds, "s/cycle", fixed(seconds, 2)},
-                      {"phi", phi.mean, "phi", with_error(phi, 4)},
-                      {"phi_error", phi.standard_error},
-                      {"contacts_per_grain", contacts.mean, "contacts", with_error(contacts, 2)},
-                      {"contacts_per_grain_error", contacts.standard_error},
-                      {"mean_overlap_d", overlap.mean, "overlap [d]", with_error(overlap, 6)},
-                      {"mean_overlap_d_error", overlap.standard_error},
-                      {"runs", static_cast<std::int64_t>(phi.runs)},
-                      {"stopped", stopped, "stopped", std::to_string(stopped)}});
+    section.results.push_back(
+        {{"steps_per_cycle", static_cast<std::int64_t>(steps[s])},
+         {"time_step_s", step.seconds, "dt [s]", short_number(step.seconds)},
+         {"time_step_over_stability_limit", step.over_stability_limit, "dt/limit",
+          fixed(step.over_stability_limit, 2)},
+         {"seconds_per_cycle", seconds, "s/cycle", fixed(seconds, 2)},
+         {"phi", phi.mean, "phi", with_error(phi, 4)},
+         {"phi_error", phi.standard_error},
+         {"contacts_per_grain", contacts.mean, "contacts", with_error(contacts, 2)},
+         {"contacts_per_grain_error", contacts.standard_error},
+         {"mean_overlap_d", overlap.mean, "overlap [d]", with_error(overlap, 6)},
+         {"mean_overlap_d_error", overlap.standard_error},
+         {"runs", static_cast<std::int64_t>(phi.runs)},
+         {"stopped", stopped, "stopped", std::to_string(stopped)}});
   }
   return section;
 }
@@ -258,8 +234,8 @@ Section stiffness_section(const Options& options, double engine_rate) {
   Section section;
   section.title =
       fmt::format("Finite stiffness: {} settled packings of {} grains", seeds, p.grains);
-  section.table.name = "accuracy-stiffness";
-  section.table.chart = {
+  section.name = "accuracy-stiffness";
+  section.chart = {
       .x = {.name = fmt::format("seconds per cycle of {} sheared grains", p.grains), .log = true},
       .y = {.name = "bias of the volume fraction"},
       .series =
@@ -289,8 +265,7 @@ Section stiffness_section(const Options& options, double engine_rate) {
                         phi_u = bench::over(here, &PackingNumbers::phi_uncorrected),
                         overlap = bench::over(here, &PackingNumbers::overlap),
                         bias = over_runs(biases), bias_u = over_runs(biases_u);
-    add_row(
-        section,
+    section.results.push_back(
         {{"stiffness_factor", factor, "k/k_0", short_number(factor)},
          {"seconds_per_cycle", seconds, "s/cycle", fixed(seconds, 2)},
          {"mean_overlap_d", overlap.mean, "overlap [d]", short_number(overlap.mean.value_or(kNaN))},
@@ -309,11 +284,11 @@ Section stiffness_section(const Options& options, double engine_rate) {
 
 std::vector<Section> measure_accuracy(const Options& options) {
   options.report("the engine's rate");
-  const double rate = measure_speed({.sizes = {small_cell(options.quick).grains},
-                                     .threads = {1},
-                                     .repeats = options.quick ? 1U : 9U,
-                                     .seconds_per_repeat = options.quick ? 0.05 : 0.3,
-                                     .report = {}})
+  const double rate = bench::measure_speed({.sizes = {small_cell(options.quick).grains},
+                                            .threads = {1},
+                                            .repeats = options.quick ? 1U : 9U,
+                                            .seconds_per_repeat = options.quick ? 0.05 : 0.3,
+                                            .report = {}})
                           .front()
                           .median_rate;
   std::vector<Section> sections = closed_form_sections(options, rate);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figure.hpp"
+#include "experiments/bench/facts.hpp"
 
 namespace shearcell::accuracy {
 
@@ -19,9 +19,10 @@ struct Options {
 
 struct Section {
   std::string title;
-  FigureTable table;                              ///< all numbers, and the figure
-  std::vector<std::string> header;                ///< of the summary
-  std::vector<std::vector<std::string>> summary;  ///< the main numbers as text
+  std::string name;  ///< of its files
+  Chart chart;
+  std::vector<bench::Facts> results = {};
+  std::vector<bench::Facts> summary = {};  ///< printed instead of the results
 };
 
 /// All sections, with the grains of Table I. Only the times depend on the machine.

@@ -24,7 +24,7 @@ Packing faster(Packing packing, double s) {
   return packing;
 }
 
-Outcome similar(double ratio) {
+Answer similar(double ratio) {
   const Drive drive{0.0833, 2000, 0};
   const auto after = [&](double s, std::uint64_t steps) {
     return advanced(faster(settled(), s), steps, drive);
@@ -39,7 +39,7 @@ Outcome similar(double ratio) {
 }
 
 // Grains side by side between two walls carry P A and their weight.
-Outcome balance(double ratio, bool quick) {
+Answer balance(double ratio, bool quick) {
   Scene scene = table_1();
   scene.stiffness *= ratio;
   scene.time_step /= std::sqrt(ratio);
@@ -56,7 +56,7 @@ Outcome balance(double ratio, bool quick) {
 }
 
 // The time step of Table I is 0.355 of 2/sqrt(8 k/m), so it allows at most 7.95 k0.
-Outcome fixed_step(double ratio) {
+Answer fixed_step(double ratio) {
   Packing packing = settled();
   packing.scene.stiffness *= ratio;
   if (ratio > 8) return expect_stop(packing, 20000, "time step");
@@ -66,7 +66,7 @@ Outcome fixed_step(double ratio) {
 }
 
 // Without pressure the wall sinks under the grains' weight, at the speed that the drags allow.
-Outcome no_pressure() {
+Answer no_pressure() {
   Scene scene = table_1();
   scene.pressure = 0;
   const Packing row = row_between_walls(3, scene);
@@ -78,7 +78,7 @@ Outcome no_pressure() {
 }
 
 // One grain between two walls, at the pressure that makes this overlap.
-Outcome pressed_grain(double overlap) {
+Answer pressed_grain(double overlap) {
   Packing row = row_between_walls(1, table_1());
   row.scene.gravity = 0;
   row.scene.pressure = overlap * row.scene.stiffness / (row.cell.width * row.cell.depth);
@@ -89,7 +89,7 @@ Outcome pressed_grain(double overlap) {
                      1e-9 * overlap + 1e-14);
 }
 
-Outcome pressed_packing(double ratio) {
+Answer pressed_packing(double ratio) {
   Packing packing = settled();
   packing.scene.pressure *= ratio;
   if (ratio < 1) packing.scene.gravity = 0;  // the wall could not carry the weight
@@ -103,7 +103,7 @@ Outcome pressed_packing(double ratio) {
 
 // Ten thousand times the drag of Table I, b dt/2m = 14: free fall at g m/b, and a contact that
 // opens as exp(-2 k t / b).
-Outcome much_drag() {
+Answer much_drag() {
   constexpr double overlap = 0.05;
   Scene scene = only_springs();
   scene.drag_rate = 64e4;
@@ -128,7 +128,7 @@ Scene heavy(double ratio) {
   return scene;
 }
 
-Outcome heavy_grain(double ratio) {
+Answer heavy_grain(double ratio) {
   const Scene scene = heavy(ratio);
   const State end = advanced(placed(scene, {{2, 0.5, 2}}, {4, 4, 4}), 20000);
   return expect_near("overlap with the wall", 0.5 - end.position(1, 0),
@@ -136,19 +136,19 @@ Outcome heavy_grain(double ratio) {
 }
 
 // Twelve grains stacked in a shaft: the lowest would carry 1200 m g, an overlap of 0.12.
-Outcome heavy_stack() {
+Answer heavy_stack() {
   std::vector<V> positions;
   for (int i = 0; i < 12; ++i) positions.emplace_back(2, 0.5 + i, 2);
   return expect_stop(placed(heavy(100), positions, {4, 14, 4}), 40000, "overlap");
 }
 
-Outcome no_gravity() {
+Answer no_gravity() {
   Packing packing = settled();
   packing.scene.gravity = 0;
   return expect_balance(packing, advanced(packing, 100000), 1e-5);
 }
 
-Outcome light_wall() {
+Answer light_wall() {
   Packing packing = settled();
   packing.scene.wall_mass = 0.01;
   return expect_stop(packing, 20000, "time step");

@@ -15,7 +15,7 @@ namespace {
 
 // A cycle of 2000 steps is 23 times as fast as that of Table I. Rounding errors grow, so only some
 // hundred steps can be compared.
-Outcome shear(double amplitude, std::uint64_t start, Fluid fluid) {
+Answer shear(double amplitude, std::uint64_t start, Fluid fluid) {
   const Drive drive{amplitude, 2000, 0};
   Packing packing = settled();
   packing.scene.fluid = fluid;
@@ -27,7 +27,7 @@ Outcome shear(double amplitude, std::uint64_t start, Fluid fluid) {
 }
 
 // A grain held by two inclined walls stays half way between them.
-Outcome held_grain(double amplitude) {
+Answer held_grain(double amplitude) {
   constexpr double overlap = 1e-3;
   Scene scene = only_springs();
   scene.drag_rate = 640;
@@ -39,13 +39,13 @@ Outcome held_grain(double amplitude) {
                      1e-6 * amplitude);
 }
 
-Outcome sheared(double amplitude) {
+Answer sheared(double amplitude) {
   return all_of({shear(amplitude, 0, Fluid::still), shear(amplitude, 400, Fluid::still),
                  shear(amplitude, 400, Fluid::cell), shear(amplitude, 1400, Fluid::cell),
                  held_grain(amplitude)});
 }
 
-Outcome two_apart(double apart) {
+Answer two_apart(double apart) {
   return expect_stop(placed(table_1(), {{20, 20, 20}, {20 + apart, 20, 20}}), 1,
                      "the overlap [d] of two grains");
 }
@@ -54,22 +54,22 @@ bool same_bits(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   return std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
 }
 
-Outcome stays(const std::vector<V>& positions) {
+Answer stays(const std::vector<V>& positions) {
   const Packing packing = placed(only_springs(), positions);
   const State end = advanced(packing, 5000);
   if (same_bits(end.position, packing.state.position)) return {true, "no bit moved"};
   return {false, fmt::format("moved by {:.2g}", largest_difference(end, packing.state))};
 }
 
-Outcome on_plane() {
-  std::vector<Outcome> parts;
+Answer on_plane() {
+  std::vector<Answer> parts;
   for (const V& place : {V(20, 0, 20), V(0, 20, 20), V(40, 20, 20), V(20, 40, 20)}) {
     parts.push_back(expect_stop(placed(table_1(), {place}), 1, "wall plane"));
   }
   return all_of(parts);
 }
 
-Outcome corner() {
+Answer corner() {
   Scene scene = only_springs();
   scene.time_step /= 10;
   const V into(0.08, 0.05, 0);
@@ -81,14 +81,14 @@ Outcome corner() {
 }
 
 // The same collision in the middle of the cell and across the seam, up to two depths away.
-Outcome seam() {
+Answer seam() {
   const auto collide = [&](double z) {
     Packing packing = placed(only_springs(), {{20, 20, z - 0.53}, {20.1, 20.2, z + 0.53}});
     packing.state.velocity.row(2) << 40, -60;
     return advanced(packing, 100);
   };
   const State right = collide(20);
-  std::vector<Outcome> parts;
+  std::vector<Answer> parts;
   for (const double z : {0.0, 40.0, -40.0, 80.1}) {
     State state = collide(z);
     state.position.row(2).array() += 20 - z;
@@ -100,7 +100,7 @@ Outcome seam() {
 }
 
 // The watchdog's check before the first step must see what one step would jump over.
-Outcome head_on(double diameters_per_step) {
+Answer head_on(double diameters_per_step) {
   Packing packing = placed(only_springs(), {{18.9, 20, 20}, {21.1, 20.2, 20.3}});
   const double speed = diameters_per_step / packing.scene.time_step;
   packing.state.velocity.row(0) << speed, -speed;
@@ -112,7 +112,7 @@ Outcome head_on(double diameters_per_step) {
        expect_near("energy kept", kinetic_energy(end) / kinetic_energy(packing.state), 1, 0.05)});
 }
 
-Outcome flies_into_row() {
+Answer flies_into_row() {
   std::vector<V> positions;
   for (int i = 0; i < 8; ++i) positions.emplace_back(20 + i, 20, 20);
   positions.emplace_back(15.05, 20, 20);
@@ -126,17 +126,16 @@ Outcome flies_into_row() {
 }
 
 // Sheared under all loads of Table I, on every kernel, with more threads than grains.
-Outcome few_grains(int count) {
+Answer few_grains(int count) {
   const Drive drive{0.0833, 2000, 0};
   Packing row = row_between_walls(count, table_1());
   row.cell.top = 1.6;  // falls and is caught
   const State early = advanced(row, 400, drive);
   bool same = true;
-  for (const Simd simd : kEverySimd) {
+  for (const Kernels* kernels : kernels_here()) {
     EngineSettings settings;
-    settings.kernels = find_kernels(simd);
+    settings.kernels = kernels;
     settings.threads = 4;
-    if (settings.kernels == nullptr) continue;
     Simulation other = simulate(row, settings);
     other.advance(drive, 400);
     const State state = other.state();
@@ -148,7 +147,7 @@ Outcome few_grains(int count) {
 }
 
 // A ring of grains through the seam, in a cell hardly deeper than the reach of its list.
-Outcome ring(double depth) {
+Answer ring(double depth) {
   std::vector<V> positions;
   for (int i = 0; i < 3; ++i) positions.emplace_back(2 + 0.1 * i, 2, depth / 3 * i);
   const Packing packing = placed(only_springs(), positions, {4, 4, depth});
@@ -158,7 +157,7 @@ Outcome ring(double depth) {
 }
 
 template <class Error, class Make>
-Outcome expect_refusal(const std::string& what, Make&& make) {
+Answer expect_refusal(const std::string& what, Make&& make) {
   try {
     make();
   } catch (const Error& error) {
@@ -169,7 +168,7 @@ Outcome expect_refusal(const std::string& what, Make&& make) {
 }
 
 // Grains along the depth; at one diameter and below each touches its own image.
-Outcome shallow(double depth) {
+Answer shallow(double depth) {
   std::vector<V> positions = {{2, 2, 0}};
   if (depth >= 2) positions.emplace_back(2, 2, depth / 2);
   return expect_refusal<std::invalid_argument>("depth", [&] {
@@ -177,7 +176,7 @@ Outcome shallow(double depth) {
   });
 }
 
-Outcome no_cell(std::size_t grains) {
+Answer no_cell(std::size_t grains) {
   Geometry geometry;
   geometry.grains = grains;
   return expect_refusal<GeometryError>("more grains", [&] { make_cell(geometry, 1); });

@@ -28,8 +28,8 @@ bool grows(Packing packing, double time_step, std::uint64_t steps) {
 }
 
 // Bisects the stability limit; `square` is omega_max^2 in units of k/m.
-Outcome compare(const Packing& packing, double square, std::uint64_t steps,
-                const std::string& more = "") {
+Answer compare(const Packing& packing, double square, std::uint64_t steps,
+               const std::string& more = "") {
   const double analytic = 2 / std::sqrt(square * packing.scene.stiffness);
   double stable = 0.5 * analytic, unstable = 1.5 * analytic;
   for (int n = 0; n < 12; ++n) {
@@ -45,7 +45,7 @@ Outcome compare(const Packing& packing, double square, std::uint64_t steps,
 
 // Two grains and two walls in a row, equal overlaps: in the fastest mode the grains move against
 // each other, omega^2 = 3 k/m. Drag does not shift the limit, because it is implicit.
-Outcome pair(double drag_rate) {
+Answer pair(double drag_rate) {
   constexpr double overlap = 1e-3;
   Packing packing = placed(only_springs(), {{0.5 - overlap, 2, 2}, {1.5 - 2 * overlap, 2, 2}},
                            {2 - 3 * overlap, 4, 4});
@@ -55,7 +55,7 @@ Outcome pair(double drag_rate) {
 }
 
 // Four grains in a ring through the seam: omega^2 = 4 k/m, neighbours against each other.
-Outcome chain() {
+Answer chain() {
   constexpr double spacing = 1 - 1e-3;
   Packing packing =
       placed(only_springs(), {{2, 2, 0}, {2, 2, spacing}, {2, 2, 2 * spacing}, {2, 2, 3 * spacing}},
@@ -94,7 +94,7 @@ double fastest_vibration(const Cell& cell, const Scene& scene, const State& stat
   return std::sqrt(square * scene.stiffness);
 }
 
-Outcome fcc() {
+Answer fcc() {
   Packing packing = crystal(9, 1e-3);
   packing.scene.wall_mass = 1e30;
   const double omega = fastest_vibration(packing.cell, packing.scene, packing.state);
@@ -127,7 +127,7 @@ Packing at_part_of_limit(double factor) {
 
 // Drag damps a small disturbance.
 template <Packing (*make)()>
-Outcome rests(double factor) {
+Answer rests(double factor) {
   const Packing packing = at_part_of_limit<make>(factor);
   const State end = advanced(packing, kSteps);
   return all_of({expect_at_most("kinetic energy per grain", kinetic_energy(end), 1e-9),
@@ -135,11 +135,11 @@ Outcome rests(double factor) {
 }
 
 template <Packing (*make)()>
-Outcome stops(double factor) {
+Answer stops(double factor) {
   return expect_stop(at_part_of_limit<make>(factor), kSteps, "time step");
 }
 
-Outcome stops_while_filling(double factor) {
+Answer stops_while_filling(double factor) {
   return expect_stop(at_part_of_limit<loose>(factor), 2 * kSteps, "");
 }
 
@@ -155,7 +155,7 @@ std::vector<int> contacts_of_grains(const Packing& packing, const State& state) 
 }
 
 // The twelve neighbours of the vacancy have one contact less each, and stay in place.
-Outcome vacancy() {
+Answer vacancy() {
   const Packing whole = crystal(7, 1e-3);
   Packing missing = in_fluid(crystal(7, 1e-3, 5, true));
   disturb(missing.state, V::Ones());
@@ -169,7 +169,7 @@ Outcome vacancy() {
 }
 
 // Grains without contacts do not influence the others.
-Outcome rattlers() {
+Answer rattlers() {
   Packing with = settled();
   with.scene.gravity = 0;
   with.state = advanced(with, 100000);
@@ -192,7 +192,7 @@ Outcome rattlers() {
 }
 
 // Drag alone takes the speed of a free grain below the normal numbers after ten seconds.
-Outcome subnormal(bool quick) {
+Answer subnormal(bool quick) {
   Scene scene = only_springs();
   scene.drag_rate = 64;
   std::vector<V> positions;
@@ -221,7 +221,7 @@ Outcome subnormal(bool quick) {
 }
 
 // A driven, damped crystal repeats its motion: after every cycle it is where it was.
-Outcome many_cycles(bool quick) {
+Answer many_cycles(bool quick) {
   constexpr std::uint64_t kCycle = 200;
   const std::uint64_t cycles = quick ? 2500 : 50000;
   const Drive drive{1e-3, kCycle, 0};
@@ -266,7 +266,7 @@ double mean_energy(Simulation& simulation, int samples) {
 
 // Energy and momentum of a crystal that vibrates at about `speed` [d/s] without drag, all contacts
 // closed.
-Outcome vibrations(Packing packing, double speed, int samples, std::uint64_t steps, double most) {
+Answer vibrations(Packing packing, double speed, int samples, std::uint64_t steps, double most) {
   packing.scene.wall_mass = 1e30;
   Simulation still = simulate(packing);
   const double at_minimum = mean_energy(still, 1);

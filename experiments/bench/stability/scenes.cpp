@@ -13,12 +13,12 @@ namespace {
 
 // The oracle: the contact law over all pairs and all images. Nothing of the engine is called here.
 
-struct Walls {
+struct Pose {
   double tangent, bottom, top;
 };
 
 // Position of a wall grain: side walls tilt about the top wall, the others keep their shape.
-V wall_grain_at(const Cell& cell, const Walls& walls, const WallGrain& grain) {
+V wall_grain_at(const Cell& cell, const Pose& walls, const WallGrain& grain) {
   V p = grain.position;
   if (grain.side == WallSide::left || grain.side == WallSide::right) {
     p.x() += (p.y() - walls.top) * walls.tangent;
@@ -48,7 +48,7 @@ struct Pushes {
   double of_moving_wall = 0;  // upwards, on all grains
 };
 
-Pushes pushes(const Cell& cell, const Walls& walls, const Eigen::Matrix3Xd& at) {
+Pushes pushes(const Cell& cell, const Pose& walls, const Eigen::Matrix3Xd& at) {
   const V across = V(1, -walls.tangent, 0).normalized();
   const V points[4] = {
       {0, walls.top, 0}, {cell.width, walls.top, 0}, {0, walls.bottom, 0}, {0, walls.top, 0}};
@@ -83,9 +83,9 @@ void step_once(const Cell& cell, const Scene& scene, const Drive& drive, State& 
   const double amplitude = phase < drive.steps_per_cycle ? drive.amplitude : 0;
   const double turn = 2 * std::numbers::pi / static_cast<double>(drive.steps_per_cycle);
   const double at = turn * static_cast<double>(phase);
-  const Walls walls{std::tan(amplitude * std::sin(at)),
-                    bottom_moves ? state.wall_height : cell.bottom,
-                    bottom_moves ? cell.top : state.wall_height};
+  const Pose walls{std::tan(amplitude * std::sin(at)),
+                   bottom_moves ? state.wall_height : cell.bottom,
+                   bottom_moves ? cell.top : state.wall_height};
   const Pushes push = pushes(cell, walls, state.position);
   Eigen::Matrix3Xd force = scene.stiffness * push.on_grain;
   force.row(1).array() -= scene.gravity;
@@ -216,7 +216,7 @@ double largest_difference(const State& a, const State& b) {
                   std::fabs(a.wall_height - b.wall_height));
 }
 
-Outcome expect_stop(const Packing& packing, std::uint64_t steps, const std::string& quantity) {
+Answer expect_stop(const Packing& packing, std::uint64_t steps, const std::string& quantity) {
   Simulation simulation = simulate(packing);
   try {
     simulation.advance(Drive{}, steps);
@@ -229,32 +229,32 @@ Outcome expect_stop(const Packing& packing, std::uint64_t steps, const std::stri
                              kinetic_energy(simulation.state()))};
 }
 
-Outcome expect_near(const std::string& what, double got, double right, double tolerance) {
+Answer expect_near(const std::string& what, double got, double right, double tolerance) {
   const double off = std::fabs(got - right);
   return {off <= tolerance, fmt::format("{} {:.9g}, right {:.9g}, off by {:.2g} (of {:.2g})", what,
                                         got, right, off, tolerance)};
 }
 
-Outcome expect_at_most(const std::string& what, double got, double most) {
+Answer expect_at_most(const std::string& what, double got, double most) {
   return {got <= most, fmt::format("{} {:.2g} (at most {:.2g})", what, got, most)};
 }
 
-Outcome expect_as_all_pairs(const Packing& packing, const State& end, const Drive& drive,
-                            double tolerance) {
+Answer expect_as_all_pairs(const Packing& packing, const State& end, const Drive& drive,
+                           double tolerance) {
   State right = packing.state;
   while (right.step < end.step) step_once(packing.cell, packing.scene, drive, right);
   return expect_at_most("difference from the sum over all pairs", largest_difference(end, right),
                         tolerance);
 }
 
-Outcome expect_balance(const Packing& packing, const State& state, double most) {
+Answer expect_balance(const Packing& packing, const State& state, double most) {
   return expect_at_most("largest net force / P d^2",
                         force_residual(packing.cell, packing.scene, state), most);
 }
 
-Outcome all_of(const std::vector<Outcome>& parts) {
-  Outcome whole{true, ""};
-  for (const Outcome& part : parts) {
+Answer all_of(const std::vector<Answer>& parts) {
+  Answer whole{true, ""};
+  for (const Answer& part : parts) {
     whole.as_expected = whole.as_expected && part.as_expected;
     whole.text += (whole.text.empty() ? "" : "; ") + part.text;
   }

@@ -53,28 +53,28 @@ double largest_difference(const State& a, const State& b);
 double kinetic_energy(const State& state);
 
 /// Expects the watchdog to stop the run within `steps`, for a quantity with this in its name.
-Outcome expect_stop(const Packing& packing, std::uint64_t steps, const std::string& quantity);
+Answer expect_stop(const Packing& packing, std::uint64_t steps, const std::string& quantity);
 
 /// Expects |got - right| <= tolerance, or got <= most.
-Outcome expect_near(const std::string& what, double got, double right, double tolerance);
-Outcome expect_at_most(const std::string& what, double got, double most);
+Answer expect_near(const std::string& what, double got, double right, double tolerance);
+Answer expect_at_most(const std::string& what, double got, double most);
 
 /// Expects the run to end, within `tolerance` [d], as by an oracle that is independent of the
 /// engine: the contact law over all pairs and images, at about 10 ns per pair and step.
-Outcome expect_as_all_pairs(const Packing& packing, const State& end, const Drive& drive,
-                            double tolerance);
+Answer expect_as_all_pairs(const Packing& packing, const State& end, const Drive& drive,
+                           double tolerance);
 
 /// Expects no net force over `most` P d^2 on any grain.
-Outcome expect_balance(const Packing& packing, const State& state, double most);
+Answer expect_balance(const Packing& packing, const State& state, double most);
 
 /// As expected if all parts are.
-Outcome all_of(const std::vector<Outcome>& parts);
+Answer all_of(const std::vector<Answer>& parts);
 
 /// Adds a case; `compute` takes HardCase::run's `quick`, or nothing.
 template <class Compute>
 void add(Cases& cases, const std::string& name, const std::string& done,
          const std::string& expected, Compute compute) {
-  cases.push_back({name, done, expected, [compute](bool quick) -> Outcome {
+  cases.push_back({name, done, expected, [compute](bool quick) -> Answer {
                      if constexpr (std::is_invocable_v<Compute, bool>) {
                        return compute(quick);
                      } else {
@@ -86,7 +86,7 @@ void add(Cases& cases, const std::string& name, const std::string& done,
 /// Adds a case for each value, which appears in its name and description.
 template <class Value>
 void add_each(Cases& cases, const std::vector<Value>& values, const std::string& name,
-              const std::string& done, const std::string& expected, Outcome (*compute)(Value)) {
+              const std::string& done, const std::string& expected, Answer (*compute)(Value)) {
   for (const Value value : values) {
     add(cases, fmt::format(fmt::runtime(name), value), fmt::format(fmt::runtime(done), value),
         expected, [compute, value] { return compute(value); });

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <stdexcept>
 #include <system_error>
 #include <thread>
 
@@ -20,13 +19,10 @@
 #include "provenance/io/plain_file.hpp"
 #include "provenance/io/temporary_folder.hpp"
 
-namespace shearcell {
-
-using stability::HardCase;
-using stability::Outcome;
+namespace shearcell::stability {
 
 // The child writes '+' or '-' and the text to a temporary file.
-Outcome compute_apart(const HardCase& hard, bool quick, double seconds) {
+Answer compute_apart(const HardCase& hard, bool quick, double seconds) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "outcome";
   std::fflush(nullptr);
@@ -35,7 +31,7 @@ Outcome compute_apart(const HardCase& hard, bool quick, double seconds) {
     throw std::system_error(errno, std::generic_category(), "process for a hard case");
   }
   if (child == 0) {
-    Outcome outcome;
+    Answer outcome;
     try {
       outcome = hard.run(quick);
     } catch (const std::exception& error) {
@@ -63,8 +59,6 @@ Outcome compute_apart(const HardCase& hard, bool quick, double seconds) {
   return {message[0] == '+', message.substr(1)};
 }
 
-namespace stability {
-
 const Cases& hard_cases() {
   static const Cases cases = [] {
     Cases all;
@@ -77,11 +71,9 @@ const Cases& hard_cases() {
   return cases;
 }
 
-}  // namespace stability
-
 std::string unknown_case(const std::string& name) {
   std::vector<std::string_view> names;
-  for (const HardCase& hard : stability::hard_cases()) {
+  for (const HardCase& hard : hard_cases()) {
     if (hard.name.starts_with(name)) return "";
     names.push_back(hard.name);
   }
@@ -90,20 +82,17 @@ std::string unknown_case(const std::string& name) {
                      near.empty() ? "" : fmt::format("; did you mean '{}'?", near));
 }
 
-std::vector<StabilityResult> map_stability(const StabilityOptions& options) {
-  for (const std::string& name : options.only) {
-    if (const std::string why = unknown_case(name); !why.empty()) throw std::invalid_argument(why);
-  }
-  std::vector<StabilityResult> results;
-  for (const HardCase& hard : stability::hard_cases()) {
+std::vector<Result> map_stability(const Options& options) {
+  std::vector<Result> results;
+  for (const HardCase& hard : hard_cases()) {
     const auto named = [&](const std::string& name) { return hard.name.starts_with(name); };
     if (!options.only.empty() && std::ranges::none_of(options.only, named)) continue;
     options.report(hard.name + ": " + hard.done);
     const Stopwatch watch;
-    const Outcome outcome = compute_apart(hard, options.quick, options.seconds_per_case);
+    const Answer outcome = compute_apart(hard, options.quick, options.seconds_per_case);
     results.push_back({hard, outcome, watch.seconds()});
   }
   return results;
 }
 
-}  // namespace shearcell
+}  // namespace shearcell::stability

@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-namespace shearcell {
-namespace stability {
+namespace shearcell::stability {
 
-struct Outcome {
+struct Answer {
   bool as_expected = false;
   std::string text;  ///< the result, with its numbers
 };
@@ -21,7 +20,7 @@ struct HardCase {
   std::string done;      ///< what is computed
   std::string expected;  ///< the right answer, or the check that stops it
   /// With `quick` a case of very many steps takes fewer. An exception counts as not as expected.
-  std::function<Outcome(bool quick)> run;
+  std::function<Answer(bool quick)> run;
 };
 
 using Cases = std::vector<HardCase>;
@@ -34,29 +33,26 @@ void add_crystal_cases(Cases& cases);
 /// All of them. `shearcell bench stability` and the tests `stability.*` run this table.
 const Cases& hard_cases();
 
-}  // namespace stability
-
-struct StabilityOptions {
+struct Options {
   bool quick = false;             ///< fewer steps in the very long cases
   std::vector<std::string> only;  ///< names of cases or their beginnings; all if empty
   double seconds_per_case = 300;  ///< a case that takes longer counts as hanging
   std::function<void(const std::string&)> report;  ///< progress messages
 };
 
-struct StabilityResult {
-  stability::HardCase hard;
-  stability::Outcome outcome;
+struct Result {
+  HardCase hard;
+  Answer outcome;
   double seconds = 0;
 };
 
 /// Error message with the nearest name if no case has a name that begins so; empty otherwise.
 std::string unknown_case(const std::string& name);
 
-/// Throws std::invalid_argument for an unknown name and std::system_error if no process can be
-/// started.
-std::vector<StabilityResult> map_stability(const StabilityOptions& options);
+/// Throws std::system_error if no process can be started.
+std::vector<Result> map_stability(const Options& options);
 
 /// The outcome of one case in a process of its own, which is killed after `seconds`.
-stability::Outcome compute_apart(const stability::HardCase& hard, bool quick, double seconds);
+Answer compute_apart(const HardCase& hard, bool quick, double seconds);
 
-}  // namespace shearcell
+}  // namespace shearcell::stability

@@ -12,7 +12,7 @@ int main() {
   parameters.grains = 300;
   Cell cell = make_cell(geometry(parameters), 1);
   const State loose = fill_cell(cell, geometry(parameters), 1);
-  const State packing = pressed(cell, loose, settle_scene(parameters), {});
+  const State packing = pressed(cell, loose, settle_scene(parameters));
   const WallPose pose = wall_pose(cell, 0, packing.wall_height);
   Eigen::Matrix3Xd grains = packing.position;
   const Measures measures = analyse(cell, pose, grains).measures;

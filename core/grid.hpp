@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A cell cut into the cells of a grid that are at least as wide as a search distance, so that all
+// near points lie in 27 of them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/cell.hpp"
+
+namespace shearcell {
+
+/// Cells [begin, end) of consecutive numbers.
+struct CellRun {
+  std::size_t begin, end;
+};
+
+/// A grid in the untilted frame of a pose, periodic in z. Points outside the walls belong to the
+/// border cells, which is correct up to a distance of one cell. The grid is cut along z into
+/// strips; within a strip x is fastest, then z, then y.
+struct Grid {
+  std::int32_t columns = 1, layers = 1, rows = 1;  ///< in x, z and y
+  std::int32_t strip = 1;                          ///< layers of a strip; the last may have fewer
+  double depth = 0;
+  WallPose pose;
+  std::array<double, 3> per_cell{};  ///< cells per d in x, y, z
+
+  Grid() = default;
+  /// As many cells of at least these sizes [d] as fit, of which there are at most about four per
+  /// point, so that a nearly empty cell costs no more than its points. One strip.
+  Grid(const Cell& cell, const WallPose& in_pose, std::array<double, 3> sizes, std::size_t points);
+
+  /// The number of cells.
+  std::size_t size() const {
+    return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) *
+           static_cast<std::size_t>(layers);
+  }
+
+  /// The number of the cell of {x, y, z}; a wild coordinate (or NaN) belongs to a border cell.
+  std::uint32_t cell_of(const double* point) const;
+
+  /// The place among all lines of cells along x of the line at `row` and `layer`.
+  std::int32_t line_of(std::int32_t row, std::int32_t layer) const {
+    const std::int32_t first = layer - layer % strip;
+    return first * rows + row * std::min(strip, layers - first) + layer - first;
+  }
+
+  /// A cell and its neighbours, each once: at most nine runs of three cells in x. Returns the
+  /// number of runs.
+  std::size_t surrounding(std::uint32_t number, std::array<CellRun, 9>& runs) const {
+    const auto cell = static_cast<std::int32_t>(number);
+    const std::int32_t column = cell % columns;
+    const std::int32_t line = cell / columns;
+    const std::int32_t start = line / (strip * rows) * strip;  // the first layer of its strip
+    const std::int32_t width = std::min(strip, layers - start);
+    const std::int32_t row = (line - start * rows) / width;
+    const std::int32_t layer = start + (line - start * rows) % width;
+    const std::int32_t first = column > 0 ? column - 1 : 0;
+    const std::int32_t last = column + 1 < columns ? column + 1 : column;
+    // With fewer than three layers the neighbours on both sides coincide.
+    const std::int32_t most = layers < 3 ? layers : 3;
+    std::size_t count = 0;
+    for (std::int32_t r = row > 0 ? row - 1 : 0; r <= row + 1 && r < rows; ++r) {
+      for (std::int32_t k = 0; k < most; ++k) {
+        const std::int32_t z = layers < 3 ? k : (layer + k - 1 + layers) % layers;
+        const std::int32_t begin = line_of(r, z) * columns;
+        runs[count++] = {static_cast<std::size_t>(begin + first),
+                         static_cast<std::size_t>(begin + last + 1)};
+      }
+    }
+    return count;
+  }
+};
+
+}  // namespace shearcell

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/chart.hpp"
+
+namespace shearcell::bench {
+
+/// A value of a result, for JSON and CSV; with a heading also in the printed table, as `text` or as
+/// it is.
+struct Fact {
+  std::string key;
+  TableValue value;
+  std::string heading = {}, text = {};
+};
+using Facts = std::vector<Fact>;
+
+}  // namespace shearcell::bench
