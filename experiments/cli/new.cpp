@@ -11,7 +11,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -98,7 +98,7 @@ scales:
 void write_new(const std::filesystem::path& file, const std::string& text) {
   try {
     if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-    write_output(file, text, Existing::kept);
+    NewFile(file).add(text);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::file_exists) throw;
     throw ManifestError({{file.string(),

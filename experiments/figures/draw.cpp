@@ -16,7 +16,7 @@
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/derived.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
