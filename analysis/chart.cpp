@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "analysis/error.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell {
 namespace {

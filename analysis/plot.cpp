@@ -8,8 +8,7 @@
 
 #include "analysis/error.hpp"
 #include "provenance/io/child_process.hpp"
-#include "provenance/io/plain_file.hpp"
-#include "provenance/io/temporary_folder.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell {
 namespace {

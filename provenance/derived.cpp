@@ -39,8 +39,8 @@ std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
 
 }  // namespace
 
-DerivedCache::DerivedCache(const fs::path& store_folder, bool read_only)
-    : file_(store_folder / kFile), read_only_(read_only) {
+DerivedCache::DerivedCache(const fs::path& store_folder, Access access)
+    : file_(store_folder / kFile), read_only_(access == Access::read) {
   attempt([](sqlite::Database&) {});
 }
 
@@ -52,7 +52,7 @@ void DerivedCache::open() {
         ": measures are cached in this file, but it is a folder, link or device; remove it");
   }
   if (read_only_ && type == fs::file_type::not_found) return;
-  database_.emplace(file_, read_only_ ? sqlite::Open::existing : sqlite::Open::create);
+  database_.emplace(file_, read_only_ ? Access::read : Access::create);
   sqlite::Database& database = *database_;
   // No syncs: damage by a power cut is found by the hash, and the object is computed again.
   database.execute("PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA synchronous=OFF;");

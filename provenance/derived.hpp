@@ -34,8 +34,8 @@ struct DerivedObject {
 /// nothing can be stored (no space, no permission, a foreign file), `trouble` gives the reason.
 class DerivedCache {
  public:
-  /// With `read_only` nothing is created, replaced or stored.
-  explicit DerivedCache(const std::filesystem::path& store_folder, bool read_only = false);
+  /// With Access::read nothing is created, replaced or stored.
+  explicit DerivedCache(const std::filesystem::path& store_folder, Access access = Access::create);
 
   /// In the order of `keys`; nothing for those that are not stored.
   std::vector<std::optional<std::vector<std::byte>>> get(std::span<const DerivedKey> keys);

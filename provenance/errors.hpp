@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors by what the caller can do about them. experiments/cli/exit_code.hpp gives each its exit
-// code.
+// Errors by what the caller can do about them. experiments/cli/main.cpp gives each its exit code.
 #pragma once
 
 #include <stdexcept>
@@ -33,7 +32,7 @@ struct TooLittleMemory : MachineError {
   using MachineError::MachineError;
 };
 
-/// An append expected another version of its stream: another writer was faster.
+/// Another writer was faster: it took the run, or wrote what the caller has not read.
 struct ConcurrencyConflict : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -134,9 +134,8 @@ std::string change_of(const Event& event, const std::string& prev_hash, std::uin
 
 }  // namespace
 
-sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open mode,
-                               bool read_only) {
-  sqlite::Database database(file, mode);
+sqlite::Database open_database(const std::filesystem::path& file, Access access) {
+  sqlite::Database database(file, access);
   // Rollback journal instead of WAL: SQLite before 3.51.3 can lose committed transactions when
   // several connections checkpoint a WAL at once. EXTRA also syncs the folder after the journal is
   // deleted, so that a committed event survives a power cut.
@@ -145,7 +144,7 @@ sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open m
       "PRAGMA synchronous=EXTRA;");
   if (database.integer("PRAGMA page_count") == 0) {
     // A new store starts with an empty file; with objects beside it, the log was lost.
-    if (mode != sqlite::Open::create || std::filesystem::exists(file.parent_path() / "objects")) {
+    if (access != Access::create || std::filesystem::exists(file.parent_path() / "objects")) {
       throw StoreDamaged(file.string() +
                          ": the log is empty; restore it from a backup, or name another store");
     }
@@ -153,6 +152,7 @@ sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open m
   }
   require_known_schema(database);
   require_own_schema(database);
+  const bool read_only = access == Access::read;
   database.execute(read_only ? "PRAGMA query_only=ON" : "PRAGMA journal_mode=DELETE");
   if (!read_only) migrate(database);
   return database;
@@ -168,13 +168,7 @@ std::string event_hash(const Event& event) {
 EventLog::EventLog(sqlite::Database& database) : database_(database) {}
 
 Event EventLog::append(const sqlite::WriteTransaction& lock, std::string_view stream,
-                       const NewEvent& event, std::optional<std::uint64_t> expected_version) {
-  const std::uint64_t found = version(stream);
-  if (expected_version.value_or(found) != found) {
-    throw ConcurrencyConflict(fmt::format(
-        "{}: stream {} has version {} instead of {}: another process wrote to it; read it again",
-        database_.name(), stream, found, *expected_version));
-  }
+                       const NewEvent& event) {
   Event complete;
   complete.stream = stream;
   complete.type = event.type;
@@ -215,11 +209,12 @@ std::string EventLog::hash_at(std::uint64_t seq) const {
   return query.step() ? query.text(0) : "";
 }
 
-std::vector<Event> EventLog::events(std::string_view stream, std::uint64_t after_version) const {
-  const std::string where =
-      stream.empty() ? "ORDER BY seq" : "WHERE stream = ? AND version > ? ORDER BY version";
-  sqlite::Statement query(database_, std::string(kSelect) + where);
-  if (!stream.empty()) query.bind_all(stream, after_version);
+std::vector<Event> EventLog::events(std::string_view stream, std::string_view type) const {
+  const std::string of_stream = stream.empty() ? "?1 = ''" : "stream = ?1";
+  sqlite::Statement query(database_,
+                          fmt::format("{} WHERE {} AND (?2 = '' OR type = ?2) ORDER BY {}", kSelect,
+                                      of_stream, stream.empty() ? "seq" : "version"),
+                          stream, type);
   std::vector<Event> found;
   while (query.step()) found.push_back(read_event(query));
   return found;

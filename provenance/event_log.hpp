@@ -20,11 +20,10 @@ namespace shearcell {
 inline constexpr std::int64_t kSchemaVersion = 2;
 
 /// Opens the log, creates its tables when it is new or empty, and migrates an older schema without
-/// changing events. With `read_only` an older schema is not migrated; the file is still opened for
+/// changing events. With Access::read an older schema is not migrated; the file is still opened for
 /// writing if possible, so that SQLite can roll back the transaction of a crashed program. Throws
 /// StoreDamaged when the file is not a store or has a newer schema.
-sqlite::Database open_database(const std::filesystem::path& file, sqlite::Open mode,
-                               bool read_only);
+sqlite::Database open_database(const std::filesystem::path& file, Access access);
 
 /// One row of the log.
 struct Event {
@@ -69,12 +68,10 @@ class EventLog {
  public:
   explicit EventLog(sqlite::Database& database);
 
-  /// Appends an event to a stream, in the newest layout of its type. Throws ConcurrencyConflict
-  /// when the stream's version is not `expected_version` (0 for a new stream); without it, appends
-  /// at the end. The parameter `lock` requires the caller to hold the write lock, so that no seq or
-  /// version is assigned twice.
-  Event append(const sqlite::WriteTransaction& lock, std::string_view stream, const NewEvent& event,
-               std::optional<std::uint64_t> expected_version = std::nullopt);
+  /// Appends an event to a stream, in the newest layout of its type. The parameter `lock` requires
+  /// the caller to hold the write lock, so that no seq or version is assigned twice.
+  Event append(const sqlite::WriteTransaction& lock, std::string_view stream,
+               const NewEvent& event);
 
   /// Appends an event of another log to its stream, with type, layout, time and payload unchanged
   /// and a new place in the chain.
@@ -85,8 +82,8 @@ class EventLog {
   Head head() const;
   /// Hash of the event with this number: 64 zeros for 0, "" for an unknown one.
   std::string hash_at(std::uint64_t seq) const;
-  /// Events of one stream after a version, or of the whole log ("") in order of seq.
-  std::vector<Event> events(std::string_view stream = "", std::uint64_t after_version = 0) const;
+  /// Events of one stream, or of the whole log (""), in order; of one type, or of all ("").
+  std::vector<Event> events(std::string_view stream = "", std::string_view type = "") const;
   /// Visits all events without holding the log in memory.
   void for_each(const std::function<void(const Event&)>& visit) const;
   /// Recomputes every hash. Returns nothing when the chain is valid.

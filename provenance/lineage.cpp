@@ -16,10 +16,10 @@ namespace {
 
 using nlohmann::json;
 
-/// Folds the events of one run into its lineage. Other events change nothing.
-class Fold {
+/// Gathers the events of one run into its lineage. Other events change nothing.
+class LineageBuilder {
  public:
-  Fold(RunLineage& lineage, const Event& event) : lineage_(lineage), event_(event) {}
+  LineageBuilder(RunLineage& lineage, const Event& event) : lineage_(lineage), event_(event) {}
 
   void operator()(const events::RunStarted& e) {
     begin(e.host, lineage_.run.parent, e.parent_checkpoint.value_or(""));
@@ -49,16 +49,12 @@ class Fold {
       lineage_.checkpoints.push_back(std::move(checkpoint));
     }
   }
-  void operator()(const events::CheckpointRejected& e) {
-    if (CheckpointHistory* known = find(e.sha256)) known->rejected = true;
-  }
+  void operator()(const events::CheckpointRejected& e) { set(e.sha256, CheckpointState::rejected); }
   void operator()(const events::CheckpointPruned& e) {
-    if (CheckpointHistory* known = find(e.checkpoint.sha256)) known->pruned = true;
+    set(e.checkpoint.sha256, CheckpointState::pruned);
   }
   void operator()(const events::CheckpointRegenerated& e) {
-    if (CheckpointHistory* known = find(e.checkpoint.sha256)) {
-      known->rejected = known->pruned = false;
-    }
+    set(e.checkpoint.sha256, CheckpointState::recorded);
   }
   void operator()(const auto&) {}
 
@@ -85,8 +81,11 @@ class Fold {
   }
 
   CheckpointHistory* find(const std::string& sha256) {
-    const auto found = std::ranges::find(lineage_.checkpoints, sha256, &CheckpointHistory::sha256);
-    return found == lineage_.checkpoints.end() ? nullptr : &*found;
+    return const_cast<CheckpointHistory*>(lineage_.find(sha256));
+  }
+
+  void set(const std::string& sha256, CheckpointState state) {
+    if (CheckpointHistory* known = find(sha256)) known->record.state = state;
   }
 
   RunLineage& lineage_;
@@ -94,11 +93,11 @@ class Fold {
 };
 
 /// What the events before number `before` say of a run.
-RunLineage fold(const RunRecord& run, const std::vector<Event>& events,
-                std::uint64_t before = UINT64_MAX) {
+RunLineage build_lineage(const RunRecord& run, const std::vector<Event>& events,
+                         std::uint64_t before = UINT64_MAX) {
   RunLineage lineage{run, {}, {}};
   for (const Event& event : events) {
-    if (event.seq < before) std::visit(Fold(lineage, event), events::decode(event));
+    if (event.seq < before) std::visit(LineageBuilder(lineage, event), events::decode(event));
   }
   return lineage;
 }
@@ -132,11 +131,11 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
   std::vector<Event> before;
   for (const RunRecord& run : chain) {
     std::vector<Event> events = store.events("run/" + run.id);
-    RunLineage stage = fold(run, events);
+    RunLineage stage = build_lineage(run, events);
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;
       // It began before this was recorded: with the newest state of the stage before it, then.
-      attempt.from_checkpoint = newest_of(fold(stages.back().run, before, attempt.seq));
+      attempt.from_checkpoint = newest_of(build_lineage(stages.back().run, before, attempt.seq));
       if (!attempt.from_checkpoint.empty()) attempt.from_run = run.parent;
     }
     stages.push_back(std::move(stage));
@@ -146,8 +145,7 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
 }
 
 std::optional<ManifestText> find_manifest(const Store& store, const std::string& sha256) {
-  for (const Event& event : store.events("manifest/" + sha256)) {
-    if (event.type != events::ManifestRegistered::kType) continue;
+  for (const Event& event : store.events("manifest/" + sha256, events::ManifestRegistered::kType)) {
     auto found = std::get<events::ManifestRegistered>(events::decode(event));
     if (sha256_hex(found.text) != sha256) {
       throw StoreDamaged(fmt::format(

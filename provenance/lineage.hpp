@@ -34,16 +34,14 @@ struct Attempt {
   std::vector<std::string> checkpoints;  ///< SHA-256 of its checkpoints, in order
 };
 
-/// One checkpoint and its later events.
+/// One checkpoint in the state in which later events left it.
 struct CheckpointHistory {
   CheckpointRecord record;
   std::string recorded_at;  ///< UTC
   /// Index in RunLineage::attempts of the last attempt that recorded it.
   std::optional<std::size_t> attempt;
-  bool rejected = false;
-  bool pruned = false;
   /// Its file should exist and be valid.
-  bool kept() const { return !rejected && !pruned; }
+  bool kept() const { return record.state == CheckpointState::recorded; }
   const std::string& sha256() const { return record.sha256; }
 };
 

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "provenance/merge.hpp"
-
+// Merges the events and checkpoints of other stores into one.
+//
+// The result is the union: events that the store already has (equal stream, type, layout, time and
+// payload) and checkpoints that it already has are skipped, and so are attempts that recorded
+// nothing else. Copied events keep time and payload and get a new place in the chain. The furthest
+// state of a run wins: a later step first, then completed before failed, interrupted, running,
+// declared. Merging the same store again changes nothing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +18,7 @@
 #include "provenance/lease.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/sha256.hpp"
+#include "provenance/store.hpp"
 
 namespace shearcell {
 
@@ -233,7 +239,7 @@ Source read_source(const std::filesystem::path& folder, const std::set<std::stri
   if (!std::filesystem::exists(file)) {
     throw NotFound(fmt::format("{}: there is no store here to merge", folder.string()));
   }
-  Database database = open_database(file, sqlite::Open::existing, true);
+  Database database = open_database(file, Access::read);
   const EventLog log(database);
   Source source{folder, {}, {}, Database::in_memory(), ObjectStore(folder)};
   {
@@ -329,38 +335,39 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
 
 }  // namespace
 
-std::vector<MergeReport> merge_stores(Database& into, EventLog& log, ObjectStore& objects,
-                                      const std::filesystem::path& into_folder,
-                                      const std::vector<std::filesystem::path>& folders,
+std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& folders,
                                       const std::set<std::string>& runs) {
-  const std::string name = into_folder.string();
+  must_write();
+  const std::scoped_lock guard(mutex_);
+  const std::string name = folder_.string();
   std::vector<Source> sources;
   for (const std::filesystem::path& folder : folders) {
     std::error_code ignored;
-    if (std::filesystem::equivalent(folder, into_folder, ignored)) {
+    if (std::filesystem::equivalent(folder, folder_, ignored)) {
       throw NotFound(folder.string() + ": a store cannot be merged into itself; name another one");
     }
     sources.push_back(read_source(folder, runs));
   }
   // All checks are made before the first byte is written.
-  require_idle(into, name);
-  require_agreement(into, name, sources);
+  require_idle(database_, name);
+  require_agreement(database_, name, sources);
   for (const Source& source : sources) {
-    for (const CheckpointRecord& record : needed_objects(into, source)) read_object(source, record);
+    for (const CheckpointRecord& record : needed_objects(database_, source))
+      read_object(source, record);
   }
   std::vector<MergeReport> reports;
   for (const Source& source : sources) {
     MergeReport& report = reports.emplace_back();
     report.source = source.folder.string();
     report.head = source.head;
-    for (const CheckpointRecord& record : needed_objects(into, source)) {
-      objects.put(read_object(source, record));
+    for (const CheckpointRecord& record : needed_objects(database_, source)) {
+      objects_.put(read_object(source, record));
       ++report.checkpoints;
       report.bytes += record.size;
     }
-    sqlite::WriteTransaction lock(into);
-    require_idle(into, name);
-    merge_events(into, log, lock, source, report);
+    sqlite::WriteTransaction lock(database_);
+    require_idle(database_, name);
+    merge_events(database_, log_, lock, source, report);
     lock.commit();
   }
   return reports;

@@ -12,7 +12,7 @@
 
 #include "core/machine.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/io/descriptor.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -64,20 +64,19 @@ std::string ObjectStore::file_of(std::string_view sha256) {
   return fmt::format("{}/{}/{}.h5", kFolder, sha256.substr(0, 2), sha256);
 }
 
-ObjectInfo ObjectStore::put(std::span<const std::byte> bytes) {
-  ObjectInfo info{.file = {}, .sha256 = sha256_hex(bytes), .size = bytes.size()};
-  info.file = file_of(info.sha256);
-  const std::filesystem::path path = folder_ / info.file;
-  const Descriptor folder = open_object_folder(folder_, info.sha256, true);
+std::string ObjectStore::put(std::span<const std::byte> bytes) {
+  std::string sha256 = sha256_hex(bytes);
+  const std::filesystem::path path = folder_ / file_of(sha256);
+  const Descriptor folder = open_object_folder(folder_, sha256, true);
   try {
-    get(info.sha256, info.size);
+    get(sha256, bytes.size());
     sync(folder, path);  // its writer may have been killed before this step
-    return info;
+    return sha256;
   } catch (const StoreDamaged&) {
     // Missing or damaged: written below.
   }
   replace_file(folder, path, bytes, ".tmp-", Durability::synced);
-  return info;
+  return sha256;
 }
 
 std::vector<std::byte> ObjectStore::get(std::string_view sha256, std::uint64_t size) const {

@@ -13,12 +13,6 @@
 
 namespace shearcell {
 
-struct ObjectInfo {
-  std::string file;  ///< relative to the store's folder
-  std::string sha256;
-  std::uint64_t size = 0;  ///< [bytes]
-};
-
 /// The objects of one store folder. Several threads and processes may use it at the same time: an
 /// object appears under its name complete or not at all. Links inside the store are not followed.
 class ObjectStore {
@@ -26,10 +20,10 @@ class ObjectStore {
   /// The folder must exist; the first put creates `objects` in it.
   explicit ObjectStore(std::filesystem::path store_folder);
 
-  /// When this returns, the bytes are on the disk under their final name. An existing object is
-  /// kept if it is valid and replaced if not. Throws std::system_error, and StoreDamaged when
+  /// When this returns their SHA-256, the bytes are on the disk under that name. An existing object
+  /// is kept if it is valid and replaced if not. Throws std::system_error, and StoreDamaged when
   /// `objects` or a folder in it is not a folder.
-  ObjectInfo put(std::span<const std::byte> bytes);
+  std::string put(std::span<const std::byte> bytes);
 
   /// Throws StoreDamaged, which names the file, unless it has this size and hash.
   std::vector<std::byte> get(std::string_view sha256, std::uint64_t size) const;

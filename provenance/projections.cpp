@@ -102,7 +102,7 @@ class Projector {
     const Membership& m = d.membership;
     require_cycles(d.target_cycles, m.checkpoint_every);
     // An upsert would also count as an insert of a second ordinal.
-    if (Statement(database_, "SELECT 1 FROM runs WHERE id = ?", id_).step()) {
+    if (has_run(database_, id_)) {
       // A completed run may also have ended early, as other experiments asked for.
       run("UPDATE runs SET state = CASE WHEN state = 'completed' AND (target_cycles < ?2 OR "
           "(step > 0 AND cycle < ?2)) THEN 'declared' ELSE state END, target_cycles = "
@@ -110,9 +110,9 @@ class Projector {
           id_, d.target_cycles);
     } else {
       run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
-          "updated_at) VALUES(?,?,?,?,?,'declared',?,?,?)",
-          id_, event_.seq, sqlite::OrNull{d.parent}, d.kind, d.resolved.dump(), d.grains,
-          d.target_cycles, event_.recorded_at);
+          "updated_at) VALUES(?,?,NULLIF(?,''),?,?,'declared',?,?,?)",
+          id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, d.target_cycles,
+          event_.recorded_at);
     }
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "target_cycles = max(target_cycles, excluded.target_cycles), "
@@ -338,6 +338,10 @@ std::optional<RunRecord> query_run(const Database& database, std::string_view id
   auto found = select_runs(database, "WHERE id = ?", id);
   if (found.empty()) return std::nullopt;
   return std::move(found.front());
+}
+
+bool has_run(const Database& database, std::string_view id) {
+  return Statement(database, "SELECT 1 FROM runs WHERE id = ?", id).step();
 }
 
 std::vector<std::string> query_run_ids(const Database& database, std::string_view prefix,

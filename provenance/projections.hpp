@@ -37,6 +37,7 @@ std::string run_stream(std::string_view id);  ///< "run/<id>"
 /// In the order of their declaration.
 std::vector<RunRecord> query_runs(const sqlite::Database& database);
 std::optional<RunRecord> query_run(const sqlite::Database& database, std::string_view id);
+bool has_run(const sqlite::Database& database, std::string_view id);
 /// Ids with this prefix, at most `limit`.
 std::vector<std::string> query_run_ids(const sqlite::Database& database, std::string_view prefix,
                                        std::size_t limit);

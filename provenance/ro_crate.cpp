@@ -70,8 +70,9 @@ json add_checkpoint(Graph& graph, const CheckpointHistory& checkpoint) {
   if (!checkpoint.kept()) {
     entity["@id"] = "#checkpoint-" + c.sha256;
     entity["@type"] = "CreativeWork";
-    entity["description"] = checkpoint.pruned ? "Not in this crate: its file was pruned"
-                                              : "Not in this crate: it was rejected as damaged";
+    entity["description"] = c.state == CheckpointState::pruned
+                                ? "Not in this crate: its file was pruned"
+                                : "Not in this crate: it was rejected as damaged";
     entity.erase("encodingFormat");
   }
   return graph.add(std::move(entity));

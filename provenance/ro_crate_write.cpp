@@ -5,8 +5,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "provenance/io/plain_file.hpp"
-#include "provenance/io/temporary_folder.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/ro_crate.hpp"
@@ -65,9 +64,11 @@ class Document {
                    {"shearcell:run", c.run},
                    {"shearcell:cycle", c.cycle},
                    {"shearcell:step", c.step}};
-    if (checkpoint.rejected) entity["shearcell:rejected"] = true;
-    if (checkpoint.pruned) entity["shearcell:pruned"] = true;
-    if (checkpoint.kept()) entity["prov:location"] = crate_path_of_checkpoint(c.sha256);
+    if (checkpoint.kept()) {
+      entity["prov:location"] = crate_path_of_checkpoint(c.sha256);
+    } else {
+      entity[fmt::format("shearcell:{}", name_of(c.state))] = true;
+    }
     document_["entity"][checkpoint_id(c.sha256)] = std::move(entity);
   }
 
@@ -181,6 +182,12 @@ std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const
       const std::string path = crate_path_of_checkpoint(c.record.sha256);
       write_output(folder / path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
       written.push_back(path);
+    }
+  }
+  // An earlier export wrote what was pruned or rejected since.
+  for (const RunLineage& stage : facts.stages) {
+    for (const CheckpointHistory& c : stage.checkpoints) {
+      if (!done.contains(c.sha256())) fs::remove(folder / crate_path_of_checkpoint(c.sha256()));
     }
   }
   for (const ManifestText& manifest : facts.manifests) {

@@ -50,7 +50,7 @@ std::string full_name(const std::filesystem::path& file) {
                   file.string(), name.size(), kLongestName));
 }
 
-Database::Database(const std::filesystem::path& file, Open mode)
+Database::Database(const std::filesystem::path& file, Access access)
     : name_(file.string()), handle_(nullptr, sqlite3_close_v2) {
   if (name_ != kInMemory) {
     full_name_ = sqlite::full_name(file);
@@ -58,7 +58,7 @@ Database::Database(const std::filesystem::path& file, Open mode)
   }
   sqlite3* handle = nullptr;
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE |
-                    (mode == Open::create ? SQLITE_OPEN_CREATE : 0);
+                    (access == Access::create ? SQLITE_OPEN_CREATE : 0);
   const int code =
       sqlite3_open_v2(full_name_.empty() ? kInMemory : full_name_.c_str(), &handle, flags, nullptr);
   handle_.reset(handle);
@@ -78,7 +78,7 @@ Database::Database(const std::filesystem::path& file, Open mode)
 }
 
 Database Database::in_memory() {
-  return Database(kInMemory, Open::create);
+  return Database(kInMemory, Access::create);
 }
 
 void Database::require_same_file() const {
@@ -186,12 +186,6 @@ Statement& Statement::bind(int parameter, std::span<const std::byte> blob) {
   check(sqlite3_bind_blob64(handle_.get(), parameter,
                             blob.empty() ? static_cast<const void*>("") : blob.data(), blob.size(),
                             SQLITE_TRANSIENT));
-  return *this;
-}
-
-Statement& Statement::bind(int parameter, OrNull value) {
-  if (!value.text.empty()) return bind(parameter, value.text);
-  check(sqlite3_bind_null(handle_.get(), parameter));
   return *this;
 }
 

@@ -17,9 +17,18 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
-namespace shearcell::sqlite {
+namespace shearcell {
 
-enum class Open { existing, create };
+/// How a file or store is opened.
+enum class Access {
+  create,  ///< read and write; a missing one is created
+  write,   ///< read and write; it must exist
+  read     ///< it must exist; functions that write throw std::logic_error
+};
+
+}  // namespace shearcell
+
+namespace shearcell::sqlite {
 
 /// The absolute name under which a database is opened. Throws UsageError when it is longer than
 /// SQLite's own limit.
@@ -35,7 +44,8 @@ std::string full_name(const std::filesystem::path& file);
 /// journal of another database, or none.
 class Database {
  public:
-  Database(const std::filesystem::path& file, Open mode);
+  /// With Access::read it may be written to all the same: SQLite rolls back what a crash left.
+  Database(const std::filesystem::path& file, Access access);
   static Database in_memory();
 
   /// Runs statements and ignores their rows.
@@ -62,11 +72,6 @@ class Database {
   mutable std::unordered_map<std::string, Prepared> idle_;
 };
 
-/// Bound as NULL when the text is empty.
-struct OrNull {
-  std::string_view text;
-};
-
 /// A prepared statement; the database must outlive it. Parameters count from 1, columns from 0.
 class Statement {
  public:
@@ -90,7 +95,6 @@ class Statement {
   Statement& bind(int parameter, std::uint64_t value);
   Statement& bind(int parameter, double value);
   Statement& bind(int parameter, std::span<const std::byte> blob);
-  Statement& bind(int parameter, OrNull value);
 
   /// Moves to the next row; false when there is none.
   bool step();

@@ -43,13 +43,6 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   return folder;
 }
 
-/// Events that only the holder of a run writes. All others (a new membership, a rejected
-/// checkpoint, a replay) may be appended at any time.
-bool claims_run(const Event& event) {
-  return events::begins_attempt(event) || events::ends_attempt(event) ||
-         event.type == events::CheckpointRecorded::kType;
-}
-
 bool adds_something(const RunRecord& known, const RunDeclaration& declared) {
   const Membership& m = declared.membership;
   return std::none_of(
@@ -67,10 +60,7 @@ Store::Store(std::filesystem::path folder, Access access, const StoreOptions& op
     : folder_(prepare_folder(std::move(folder), access)),
       access_(access),
       objects_(folder_),
-      database_(
-          open_database(folder_ / kLogFile,
-                        access == Access::create ? sqlite::Open::create : sqlite::Open::existing,
-                        access == Access::read)),
+      database_(open_database(folder_ / kLogFile, access)),
       log_(database_),
       self_(this_process()),
       lease_ms_(std::min(kLongestLeaseMs,
@@ -81,7 +71,7 @@ Store::~Store() {
   if (held_.empty()) return;
   try {
     sqlite::WriteTransaction lock(database_);
-    for (const auto& [id, held] : held_) drop_lease(database_, id, self_.token);
+    for (const auto& [id, attempt] : held_) drop_lease(database_, id, self_.token);
     lock.commit();
   } catch (const std::exception&) {
     // The leases expire by themselves.
@@ -101,20 +91,16 @@ void Store::must_write() const {
   if (access_ == Access::read) throw std::logic_error("this store was opened for reading only");
 }
 
-std::uint64_t Store::append(std::string_view stream, const NewEvent& event,
-                            const sqlite::WriteTransaction& lock,
-                            std::optional<std::uint64_t> expected_version) {
-  const Event appended = log_.append(lock, stream, event, expected_version);
-  apply(database_, appended);
-  return appended.version;
+void Store::append(std::string_view stream, const NewEvent& event,
+                   const sqlite::WriteTransaction& lock) {
+  apply(database_, log_.append(lock, stream, event));
 }
 
-void Store::record(std::string_view stream, const NewEvent& event,
-                   std::optional<std::uint64_t> expected_version) {
+void Store::record(std::string_view stream, const NewEvent& event) {
   must_write();
   const std::scoped_lock guard(mutex_);
   sqlite::WriteTransaction lock(database_);
-  append(stream, event, lock, expected_version);
+  append(stream, event, lock);
   lock.commit();
 }
 
@@ -136,18 +122,15 @@ void Store::append_held(const std::string& id, const NewEvent& event, bool relea
     lose(fmt::format("its lease expired and another program took the run ({})",
                      describe(lease->holder)));
   }
-  std::uint64_t version = held->second.version;
-  for (const Event& e : log_.events(run_stream(id), version)) {
-    if (claims_run(e)) {
-      lose(fmt::format("another process continued it ({} at {})", e.type, e.recorded_at));
-    }
-    version = e.version;
+  // Whoever continued it began an attempt, and a merge may have brought its end.
+  const auto run = query_run(database_, id);
+  if (!run || run->attempts != held->second || run->state != RunState::running) {
+    lose("another process continued it");
   }
-  version = append(run_stream(id), event, lock, version);
+  append(run_stream(id), event, lock);
   if (!release) {
-    hold(id, held->second.attempt);
+    hold(id, held->second);
     lock.commit();
-    held->second.version = version;
   } else {
     drop_lease(database_, id, self_.token);
     lock.commit();
@@ -233,10 +216,10 @@ std::uint64_t Store::start_run(const std::string& id, const json& host,
     throw ConcurrencyConflict(fmt::format(
         "run {}: another program has recorded step {}; continue from there", id, known->step));
   }
-  const std::uint64_t version = append(run_stream(id), encode(begun), lock);
+  append(run_stream(id), encode(begun), lock);
   hold(id, attempt);
   lock.commit();
-  held_[id] = {version, attempt};
+  held_[id] = attempt;
   return attempt;
 }
 
@@ -248,7 +231,7 @@ void Store::renew_leases() {
   for (auto run = held_.begin(); run != held_.end();) {
     const auto lease = query_lease(database_, run->first);
     const bool lost = lease && lease->holder.token != self_.token;
-    if (!lost) hold(run->first, run->second.attempt);
+    if (!lost) hold(run->first, run->second);
     run = lost ? held_.erase(run) : std::next(run);
   }
   lock.commit();
@@ -274,23 +257,23 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
     const std::scoped_lock guard(mutex_);
     database_.require_in_place();  // else the file would go to the store that is now at this place
   }
-  const ObjectInfo object = objects_.put(bytes);
+  const std::string sha256 = objects_.put(bytes);
   const std::scoped_lock guard(mutex_);
-  const auto old = query_checkpoint(database_, id, object.sha256);
+  const auto old = query_checkpoint(database_, id, sha256);
   if (old && old->state == CheckpointState::recorded && held_.contains(id)) return *old;
   const CheckpointRecord record{.run = id,
                                 .step = checkpoint.state.step,
                                 .cycle = checkpoint.cycle,
                                 .time_s = checkpoint.time_s,
-                                .file = object.file,
-                                .size = object.size,
-                                .sha256 = object.sha256,
+                                .file = ObjectStore::file_of(sha256),
+                                .size = bytes.size(),
+                                .sha256 = sha256,
                                 .state_hash = state,
                                 .observables = checkpoint.observables};
   append_held(id, encode(events::CheckpointRecorded{{record}, effort}), false);
   // A concurrent `prune` may have deleted the file before this event.
-  if (old && !objects_.contains(object.sha256)) objects_.put(bytes);
-  return query_checkpoint(database_, id, object.sha256).value();
+  if (old && !objects_.contains(sha256)) objects_.put(bytes);
+  return query_checkpoint(database_, id, sha256).value();
 }
 
 void Store::interrupt_run(const std::string& id, const std::string& why) {
@@ -324,7 +307,17 @@ void Store::record_figure(const std::string& name, const json& provenance) {
 
 void Store::record_submission(const std::string& type, const json& facts,
                               std::optional<std::uint64_t> seen) {
-  record(kSubmissions, {type, facts}, seen);
+  must_write();
+  const std::scoped_lock guard(mutex_);
+  sqlite::WriteTransaction lock(database_);
+  const std::uint64_t found = log_.version(kSubmissions);
+  if (seen.value_or(found) != found) {
+    throw ConcurrencyConflict(fmt::format(
+        "{}: stream {} has version {} instead of {}: another process wrote to it; read it again",
+        database_.name(), kSubmissions, found, *seen));
+  }
+  append(kSubmissions, {type, facts}, lock);
+  lock.commit();
 }
 
 }  // namespace shearcell

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,18 +17,10 @@
 #include "provenance/errors.hpp"
 #include "provenance/event_log.hpp"
 #include "provenance/lease.hpp"
-#include "provenance/merge.hpp"
 #include "provenance/objects.hpp"
 #include "provenance/records.hpp"
-#include "provenance/verify.hpp"
 
 namespace shearcell {
-
-enum class Access {
-  create,  ///< read and write; a missing folder is created
-  write,   ///< read and write; the store must exist
-  read     ///< the store must exist; functions that write throw std::logic_error
-};
 
 struct StoreOptions {
   /// A lease that is not renewed for so long expires; at most kLongestLeaseMs.
@@ -41,6 +34,41 @@ struct LoadedCheckpoint {
   CheckpointRecord record;
   Checkpoint checkpoint;
 };
+
+struct Finding {
+  /// An error: a record is lost or changed. A note: everything recorded is intact.
+  enum class Severity { note, error };
+  Severity severity = Severity::note;
+  std::string subject;  ///< file, event or table
+  std::string run;      ///< affected run, or ""
+  std::string message;  ///< problem and remedy
+};
+
+struct VerifyReport {
+  std::vector<Finding> findings;
+  std::uint64_t events = 0;
+  std::uint64_t checkpoints = 0;  ///< number of checkpoint files hashed
+  std::uint64_t bytes = 0;        ///< size of these files
+  std::uint64_t orphans = 0;      ///< files that no event names
+  Head head;                      ///< kept elsewhere, it proves later that the log only grew
+
+  /// Without errors.
+  bool ok() const;
+};
+
+struct MergeReport {
+  std::string source;             ///< folder, as given
+  Head head;                      ///< of the source when it was read
+  std::uint64_t events = 0;       ///< number of copied events
+  std::uint64_t checkpoints = 0;  ///< number of copied files
+  std::uint64_t bytes = 0;        ///< size of these files
+};
+
+/// Decodes the file of a record of this run. Throws StoreDamaged also when it is not plausible, or
+/// when its run, step, cycle, time, units, number of grains, observables or state are not those
+/// that the record and the run's parameters say.
+Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRecord& record,
+                           const RunRecord& run);
 
 /// Thread-safe. Several processes may open one store on a local disk; the log decides who was
 /// first. Every function may throw StoreDamaged, and std::runtime_error when the machine fails or
@@ -104,10 +132,11 @@ class Store {
   /// Excludes the checkpoint from now on; its file is kept.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
-  /// The newest checkpoint that can be loaded. Missing or damaged ones are rejected (with
-  /// Access::read: skipped) and their errors appended to `damage`.
+  /// The newest checkpoint before a step that can be loaded. With `damage`, the errors of missing
+  /// or damaged ones are appended to it and these are rejected (with Access::read: skipped).
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
-      const std::string& id, std::vector<std::string>* damage = nullptr);
+      const std::string& id, std::vector<std::string>* damage = nullptr,
+      std::uint64_t before_step = UINT64_MAX);
 
   /// `name` is that of the figure's stream, "drag/S2"; `provenance` holds the inputs and the
   /// SHA-256 of the outputs.
@@ -136,15 +165,16 @@ class Store {
   /// The same; nothing when it is damaged or was pruned.
   std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;
   std::vector<FigureRecord> figures() const;  ///< the newest of each name, by name
-  /// Events of one stream ("run/<id>", ...), or all ("").
-  std::vector<Event> events(std::string_view stream = "") const;
+  /// Events of one stream ("run/<id>", ...), or of all (""); of one type, or of all ("").
+  std::vector<Event> events(std::string_view stream = "", std::string_view type = "") const;
   Head head() const;
 
   // --- Maintenance ---
 
   /// Derives the tables again from the events.
   void rebuild();
-  /// With `against`, a head of earlier, the log must extend it.
+  /// Damage is reported as findings, and the check continues. With `against`, a head of earlier, a
+  /// log that does not extend it is damaged. Throws only when the machine fails.
   VerifyReport verify(const std::optional<Head>& against = std::nullopt) const;
 
   /// The checkpoints that `prune` would free. Never among them: the newest checkpoint of a run, the
@@ -160,20 +190,19 @@ class Store {
   /// Appends ReplayVerified or ReplayDiverged.
   void record_replay(const std::string& id, bool same, const nlohmann::json& facts);
 
-  /// Merges other stores (merge.hpp); with `runs`, only these runs, which must include the parents
-  /// of each.
+  /// Merges other stores into this one (merge.cpp); with `runs`, only these runs, which must
+  /// include the parents of each, and the manifests. Throws NotFound when there is no store,
+  /// MachineError while a program computes a run of this one, and StoreDamaged, before anything is
+  /// written, when a source is damaged, or when two stores hold different states of the same run at
+  /// the same step or different runs under one id.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 
  private:
-  /// Appends one event and applies it; returns its version. Without `expected_version`, at the end
-  /// of the stream.
-  std::uint64_t append(std::string_view stream, const NewEvent& event,
-                       const sqlite::WriteTransaction& lock,
-                       std::optional<std::uint64_t> expected_version = std::nullopt);
+  /// Appends one event and applies it.
+  void append(std::string_view stream, const NewEvent& event, const sqlite::WriteTransaction& lock);
   /// The same in a transaction of its own.
-  void record(std::string_view stream, const NewEvent& event,
-              std::optional<std::uint64_t> expected_version = std::nullopt);
+  void record(std::string_view stream, const NewEvent& event);
   /// Appends an event that only the holder may write; with `release`, ends the lease.
   void append_held(const std::string& id, const NewEvent& event, bool release);
   void hold(const std::string& id, std::uint64_t attempt);
@@ -185,13 +214,9 @@ class Store {
   mutable std::recursive_mutex mutex_;  ///< guards all members below
   mutable sqlite::Database database_;
   EventLog log_;
-  struct Held {
-    std::uint64_t version = 0;  ///< of the run's stream after the last own event
-    std::uint64_t attempt = 0;
-  };
   Holder self_;
   std::uint64_t lease_ms_;
-  std::map<std::string, Held> held_;  ///< by run id
+  std::map<std::string, std::uint64_t> held_;  ///< own attempt, by run id
 };
 
 }  // namespace shearcell

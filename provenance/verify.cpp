@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "provenance/verify.hpp"
-
+// Verification of a store: chain, objects, projections.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "provenance/events.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/sha256.hpp"
+#include "provenance/store.hpp"
 
 namespace shearcell {
 
@@ -206,26 +206,26 @@ bool VerifyReport::ok() const {
   return std::ranges::count(findings, Severity::error, &Finding::severity) == 0;
 }
 
-VerifyReport verify(sqlite::Database& database, const EventLog& log, const ObjectStore& objects,
-                    const std::optional<Head>& against) {
+VerifyReport Store::verify(const std::optional<Head>& against) const {
+  const std::scoped_lock guard(mutex_);
   VerifyReport report;
   std::vector<CheckpointRecord> records;
   std::map<std::string, RunRecord> runs;
   try {
     // One snapshot of the log; the files are read after it.
-    const sqlite::ReadTransaction snapshot(database);
-    check_file(database, report);
-    check_chain(log, report);
-    if (against) check_extends(log, *against, report);
-    const sqlite::Database fresh = derive(log, report);
-    compare_tables(projection_rows(database), projection_rows(fresh), report);
+    const sqlite::ReadTransaction snapshot(database_);
+    check_file(database_, report);
+    check_chain(log_, report);
+    if (against) check_extends(log_, *against, report);
+    const sqlite::Database fresh = derive(log_, report);
+    compare_tables(projection_rows(database_), projection_rows(fresh), report);
     for (RunRecord& run : query_runs(fresh)) runs.emplace(run.id, std::move(run));
     records = query_checkpoints(fresh);
   } catch (const StoreDamaged& damage) {
-    add_error(report, database.name(), damage.what());
+    add_error(report, database_.name(), damage.what());
   }
   check_reproduced(records, report);
-  check_objects(records, runs, database, objects, report);
+  check_objects(records, runs, database_, objects_, report);
   return report;
 }
 

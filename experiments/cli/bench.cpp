@@ -12,7 +12,7 @@
 #include "experiments/bench/speed.hpp"
 #include "experiments/bench/stability/stability.hpp"
 #include "experiments/cli/command.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell::cli {
 namespace {

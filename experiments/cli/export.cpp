@@ -18,8 +18,8 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/progress.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/io/read_number.hpp"
-#include "provenance/io/temporary_folder.hpp"
 #include "provenance/ro_crate.hpp"
 
 namespace shearcell::cli {

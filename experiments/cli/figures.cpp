@@ -11,7 +11,7 @@
 #include "experiments/figures/draw.hpp"
 #include "experiments/runner/progress.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell::cli {
 namespace {

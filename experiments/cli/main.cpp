@@ -14,7 +14,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell::cli {
 namespace {

@@ -2,6 +2,7 @@
 // `new`: writes a commented manifest from the schema, so that every key in it exists.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <memory>
@@ -11,7 +12,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -95,12 +96,19 @@ scales:
 )";
 }
 
+/// The file has its name only when it is whole, and never in place of another.
 void write_new(const std::filesystem::path& file, const std::string& text) {
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+  const std::filesystem::path whole = fmt::format("{}.tmp-{}", file.string(), getpid());
+  std::error_code failed, ignored;
   try {
-    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-    write_output(file, text, Existing::kept);
+    write_output(whole, text);
+    std::filesystem::create_hard_link(whole, file, failed);
   } catch (const std::system_error& error) {
-    if (error.code() != std::errc::file_exists) throw;
+    failed = error.code();
+  }
+  std::filesystem::remove(whole, ignored);
+  if (failed == std::errc::file_exists) {
     throw ManifestError({{file.string(),
                           {},
                           "",
@@ -108,6 +116,7 @@ void write_new(const std::filesystem::path& file, const std::string& text) {
                           "",
                           "Choose another name, or remove it."}});
   }
+  if (failed) throw std::system_error(failed, file.string() + ": cannot write");
 }
 
 void make(std::filesystem::path file) {

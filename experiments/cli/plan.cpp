@@ -129,7 +129,7 @@ std::vector<std::string> notes_of(const Plan& plan) {
   std::vector<std::string> notes;
   double most = 0;
   for (const PlannedRun& run : plan.runs) {
-    most = std::max(most, stage_bound(run, run.last).memory_bytes);
+    most = std::max(most, run_bytes(geometry(run.parameters)));
   }
   if (most > machine_memory()) {
     notes.push_back(fmt::format("the largest run needs {}, and this machine has {}",
@@ -241,7 +241,6 @@ Left left_of(const std::vector<Line>& lines, const std::vector<RunRecord>& known
 }
 
 nlohmann::json facts(const Line& line) {
-  const StageBound bound = stage_bound(*line.run, *line.stage);
   return {{"id", line.stage->key},
           {"parent", line.stage->parent},
           {"stage", name_of(line.stage->stage)},
@@ -257,8 +256,8 @@ nlohmann::json facts(const Line& line) {
           {"new", facts(line.novelty)},
           {"particle_steps_left", line.left.particle_steps},
           {"bytes_left", line.left.bytes},
-          {"most_particle_steps", bound.particle_steps},
-          {"memory_bytes", bound.memory_bytes}};
+          {"most_particle_steps", most_particle_steps(*line.run, *line.stage)},
+          {"memory_bytes", run_bytes(geometry(line.run->parameters))}};
 }
 
 Row row(const Line& line) {

@@ -9,7 +9,7 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/progress.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell::cli {
 namespace {

@@ -142,7 +142,7 @@ void print_stage_before(const RunLineage& stage, Machines& machines) {
   print_attempts(stage, machines);
   std::vector<std::string> checkpoints;
   for (const CheckpointHistory& c : stage.checkpoints) {
-    if (!c.rejected) checkpoints.push_back(c.record.sha256);
+    if (c.record.state != CheckpointState::rejected) checkpoints.push_back(c.record.sha256);
   }
   print_checkpoints(checkpoints, stage);
 }

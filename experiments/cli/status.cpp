@@ -13,7 +13,7 @@
 
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/cluster/queue_view.hpp"
+#include "experiments/cluster/submission.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/progress.hpp"
 #include "experiments/runner/registered.hpp"
@@ -62,11 +62,11 @@ nlohmann::json facts(const Lease& lease) {
 }
 
 nlohmann::json facts(const QueuedRun& run) {
-  const auto& reported = run.reported;
-  return {{"job", run.job},
-          {"state", run.state},
-          {"reason", run.reason},
-          {"node", run.node},
+  const auto& [task, reported] = run;
+  return {{"job", task.job},
+          {"state", task.state},
+          {"reason", task.reason},
+          {"node", task.node},
           {"reported_state", reported ? nlohmann::json(name_of(reported->state)) : nullptr},
           {"reported_cycle", reported ? nlohmann::json(reported->cycle) : nullptr}};
 }
@@ -113,8 +113,9 @@ struct Shown {
   double cycle() const { return ahead() ? queued->reported->cycle : run.cycle; }
   std::string queue() const {
     if (queued == nullptr || run.state == RunState::completed) return "";
-    const std::string& more = queued->state == "pending" ? queued->reason : queued->node;
-    return fmt::format("{} {}{}{}", queued->job, queued->state, more.empty() ? "" : " ", more);
+    const QueuedTask& task = queued->task;
+    const std::string& more = task.state == "pending" ? task.reason : task.node;
+    return fmt::format("{} {}{}{}", task.job, task.state, more.empty() ? "" : " ", more);
   }
 };
 
@@ -137,7 +138,7 @@ std::optional<Estimate> estimate(const View& view) {
   for (const SelectedRun& selected : view.runs) {
     const RunRecord& run = records.emplace_back(selected.run);
     const QueuedRun* queued = view.queued(run);
-    const bool in_task = queued != nullptr && queued->state == "running";
+    const bool in_task = queued != nullptr && queued->task.state == "running";
     running += view.holders.contains(run.id) || in_task ? 1 : 0;
     if (run.state == RunState::completed) continue;
     made.at_most = made.at_most ||
@@ -223,7 +224,7 @@ void print(const View& view) {
     tell("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
   }
   const std::string& problem = view.queue.problem;
-  for (const OpenSubmission& submission : view.queue.submissions) {
+  for (const Submission& submission : view.queue.submissions) {
     if (problem.empty()) tell("{}\n", describe(submission));
   }
   if (!problem.empty()) tell("The queue is not known: {}\n", problem);
@@ -241,11 +242,11 @@ void print_facts(const View& view) {
       {{"runs", json_list(view.runs, [&](const SelectedRun& run) { return facts(run, view); })},
        {"estimate", facts(estimate(view))},
        {"submissions", json_list(view.queue.submissions,
-                                 [](const OpenSubmission& open) -> nlohmann::json {
-                                   return {{"id", open.submission.id},
-                                           {"job", open.submission.job},
-                                           {"fold_job", open.submission.fold_job},
-                                           {"tasks", open.submission.tasks.size()},
+                                 [](const Submission& open) -> nlohmann::json {
+                                   return {{"id", open.id},
+                                           {"job", open.job},
+                                           {"fold_job", open.fold_job},
+                                           {"tasks", open.tasks.size()},
                                            {"in_queue", open.queue.size()}};
                                  })},
        {"queue_problem", problem.empty() ? nlohmann::json() : nlohmann::json(problem)}});

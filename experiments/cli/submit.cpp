@@ -11,7 +11,7 @@
 #include "experiments/cluster/proposal.hpp"
 #include "experiments/cluster/submission.hpp"
 #include "experiments/runner/progress.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell::cli {
@@ -158,16 +158,16 @@ void queue(const Submission& submission, const Proposal& proposal, Store& store,
 }
 
 /// What earlier submissions computed and no job folded, as after `scancel`.
-void fold_leftovers(Store& store, const std::vector<OpenSubmission>& open) {
-  for (const OpenSubmission& submission : open) {
+void fold_leftovers(Store& store, const std::vector<Submission>& open) {
+  for (const Submission& submission : open) {
     if (!submission.queue.empty()) continue;
     std::uint64_t checkpoints = 0;
-    for (const MergeReport& report : fold(store, submission.submission)) {
+    for (const MergeReport& report : fold(store, submission)) {
       checkpoints += report.checkpoints;
     }
     if (checkpoints == 0) continue;
     tell_stderr("folded in {} checkpoints of submission {}, whose jobs have ended\n", checkpoints,
-                submission.submission.id);
+                submission.id);
   }
 }
 
@@ -194,7 +194,7 @@ void submit_really(const SubmitOptions& options, const LoadedManifests& loaded, 
   places_of(folder, folder);  // or says why it cannot be
   Store store(folder, Access::create);
   const std::size_t seen = store.events(kSubmissions).size();
-  std::vector<OpenSubmission> open = unfinished_submissions(store);
+  std::vector<Submission> open = unfinished_submissions(store);
   ask_queue(open);
   fold_leftovers(store, open);
   for (std::size_t m = 0; m < loaded.manifests.size(); ++m) {
@@ -215,7 +215,7 @@ void submit(const SubmitOptions& options, Context& context) {
   std::set<std::string> busy;
   if (fs::exists(fs::path(context.store) / "store.sqlite")) {
     store.emplace(context.store, Access::read);
-    std::vector<OpenSubmission> open = unfinished_submissions(*store);
+    std::vector<Submission> open = unfinished_submissions(*store);
     try {
       ask_queue(open);
     } catch (const ClusterError& error) {

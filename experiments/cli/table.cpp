@@ -6,7 +6,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/run_table.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell::cli {
 namespace {

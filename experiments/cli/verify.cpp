@@ -43,11 +43,6 @@ std::optional<Head> read_head(const std::vector<std::string>& words) {
       "'" + text + "' is not a head; give SEQ and 64 hex digits, as `verify` prints them");
 }
 
-// A new sample for every new event, and the same one again for the same store.
-std::uint64_t seed_of(const Head& head) {
-  return std::stoull(head.hash.substr(0, 12), nullptr, 16);
-}
-
 nlohmann::json facts(const Replay& replay) {
   nlohmann::json all = {
       {"run", replay.record.run},     {"sha256", replay.record.sha256},

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/cluster/queue_view.hpp"
+#include "experiments/cluster/submission.hpp"
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/stop.hpp"

@@ -5,41 +5,48 @@
 #include <map>
 #include <utility>
 
+#include "experiments/manifest/identity.hpp"
+#include "experiments/runner/cost.hpp"
+
 namespace shearcell {
 namespace {
 
 constexpr std::size_t kMostCpus = 16;
 
-std::vector<RunRecord> runs_of(const Store* store) {
-  return store == nullptr ? std::vector<RunRecord>{} : store->runs();
-}
-
-/// Particle-steps left of a stage; nothing when it is done.
-std::optional<double> left_of(const PlannedRun& run, const StageSpec& stage,
-                              const std::map<std::string, RunRecord>& known, const Store* store) {
-  const auto found = known.find(stage.key);
-  const RunRecord* record = found == known.end() ? nullptr : &found->second;
-  const auto cycle = cycle_to_continue(run, stage, record, store);
-  if (!cycle) return std::nullopt;
-  return stage_cost(run, stage, *cycle).particle_steps;
-}
-
 }  // namespace
 
 std::vector<Bundle> work_left(const std::vector<Plan>& plans, const Store* store) {
-  std::map<std::string, RunRecord> known;
-  for (RunRecord& run : runs_of(store)) known.emplace(run.id, run);
+  const auto runs = store == nullptr ? std::vector<RunRecord>{} : store->runs();
+  const Rates rates(runs);
+  std::map<std::string, const RunRecord*> known;
+  for (const RunRecord& run : runs) known.emplace(run.id, &run);
+  // Adds what is left of a stage; false when it is done.
+  const auto add = [&](const PlannedRun& run, const StageSpec& stage, Bundle& bundle) {
+    const auto found = known.find(stage.key);
+    const auto cycle =
+        cycle_to_continue(run, stage, found == known.end() ? nullptr : found->second, store);
+    if (!cycle) return false;
+    const double steps = stage_cost(run, stage, *cycle).particle_steps;
+    const Rate rate =
+        rates.of(engine_of(stage.resolved), static_cast<double>(run.parameters.grains));
+    bundle.particle_steps += steps;
+    bundle.core_seconds += steps / rate.particle_steps_per_second;
+    return true;
+  };
   std::vector<Bundle> bundles;
   std::map<std::string, std::size_t> places;  // of each packing in bundles
   for (const PlannedRun& run : joined(plans).runs) {
-    const auto left = left_of(run, run.last, known, store);
-    if (!left) continue;
+    Bundle left;
+    if (!add(run, run.last, left)) continue;
     const auto [place, fresh] = places.try_emplace(run.prepare.key, bundles.size());
     if (fresh) {
-      bundles.push_back({run.prepare.key, {}, left_of(run, run.prepare, known, store).value_or(0)});
+      bundles.push_back({run.prepare.key, {}});
+      add(run, run.prepare, bundles.back());
     }
-    bundles[place->second].runs.push_back(run.last.key);
-    bundles[place->second].particle_steps += *left;
+    Bundle& bundle = bundles[place->second];
+    bundle.runs.push_back(run.last.key);
+    bundle.particle_steps += left.particle_steps;
+    bundle.core_seconds += left.core_seconds;
   }
   return bundles;
 }
@@ -56,9 +63,8 @@ std::vector<Share> share_out(std::vector<Bundle> bundles, std::size_t tasks) {
           return std::pair(a.particle_steps, a.packings) < std::pair(b.particle_steps, b.packings);
         });
     least->runs.insert(least->runs.end(), bundle.runs.begin(), bundle.runs.end());
-    least->stages.insert(bundle.packing);
-    least->stages.insert(bundle.runs.begin(), bundle.runs.end());
     least->particle_steps += bundle.particle_steps;
+    least->core_seconds += bundle.core_seconds;
     ++least->packings;
   }
   return shares;
@@ -82,18 +88,12 @@ Proposal propose(const std::vector<Plan>& plans, const Store* store,
     job.cpus = std::max(std::min(kMostCpus, most * job.threads), job.threads);
   }
   made.job = std::move(job);
-  std::uint64_t grains = 0;
-  for (const Plan& plan : plans) {
-    for (const PlannedRun& run : plan.runs) grains = std::max(grains, run.parameters.grains);
-  }
-  made.rate = Rates(runs_of(store)).of(EngineKind::shearcell, static_cast<double>(grains));
   return made;
 }
 
 double seconds_of(const Share& share, const Proposal& proposal) {
   const std::size_t busy = std::min(proposal.job.cpus, share.runs.size() * proposal.job.threads);
-  return share.particle_steps /
-         (proposal.rate.particle_steps_per_second * static_cast<double>(busy));
+  return share.core_seconds / static_cast<double>(busy);
 }
 
 }  // namespace shearcell

@@ -9,7 +9,6 @@
 
 #include "experiments/cluster/slurm.hpp"
 #include "experiments/manifest/expand.hpp"
-#include "experiments/runner/cost.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -19,14 +18,15 @@ struct Bundle {
   std::string packing;            ///< id of the `prepare` stage
   std::vector<std::string> runs;  ///< ids of the stages left that start from it, as planned
   double particle_steps = 0;      ///< left, the packing's own included
+  double core_seconds = 0;        ///< that these take at the rates of their engines
 };
 
 /// What one task computes.
 struct Share {
   std::vector<std::string> runs;  ///< ids of the stages to compute, without their packings
-  std::set<std::string> stages;   ///< ids of these and of the packings that they start from
   std::size_t packings = 0;
   double particle_steps = 0;
+  double core_seconds = 0;
 };
 
 /// Every run of the plans that the store, which may be null, does not hold completed at its length;
@@ -41,7 +41,6 @@ struct Proposal {
   std::vector<Share> shares;
   std::size_t left_out = 0;  ///< runs that are in the queue or at work already
   JobOptions job;            ///< with a number of cores
-  Rate rate{};
 };
 
 /// Leaves out every bundle with a busy run or packing. Where `job` states no number of cores (0), a

@@ -4,10 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <random>
+#include <system_error>
 
 #include "experiments/runner/audit.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/io/file.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell {
 namespace {
@@ -50,6 +55,25 @@ bool all_completed(const Submission& submission, const std::set<std::string>& co
   });
 }
 
+fs::path report_file(fs::path folder) {
+  return folder += ".progress.json";
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+QueuedTask task_of(const Submission& submission, std::size_t task) {
+  QueuedTask found{submission.name(), submission.job, task, "ended", "", ""};
+  for (const QueuedTask& queued : submission.queue) {
+    if (queued.name == submission.name() && queued.task == task) found = queued;
+  }
+  if (!found.job.empty()) found.job += fmt::format("_{}", task);
+  found.state = lower(found.state);
+  return found;
+}
+
 }  // namespace
 
 std::vector<Submission> read_submissions(const Store& store) {
@@ -66,32 +90,29 @@ std::vector<Submission> read_submissions(const Store& store) {
   return known;
 }
 
-std::vector<OpenSubmission> unfinished_submissions(const Store& store) {
-  std::vector<OpenSubmission> open;
+std::vector<Submission> unfinished_submissions(const Store& store) {
+  std::vector<Submission> open = read_submissions(store);
   std::set<std::string> completed;
   for (const RunRecord& run : store.runs()) {
     if (run.state == RunState::completed) completed.insert(run.id);
   }
-  for (Submission& submission : read_submissions(store)) {
+  std::erase_if(open, [&](const Submission& submission) {
     // Others came by `merge` from stores elsewhere.
-    if (!fs::exists(submission.folder(store.folder()))) continue;
-    if (all_completed(submission, completed)) continue;
-    open.push_back({std::move(submission), {}});
-  }
+    return !fs::exists(submission.folder(store.folder())) || all_completed(submission, completed);
+  });
   return open;
 }
 
-void ask_queue(std::vector<OpenSubmission>& submissions) {
+void ask_queue(std::vector<Submission>& submissions) {
   std::vector<std::string> names;
-  for (const OpenSubmission& open : submissions) {
-    names.push_back(open.submission.name());
-    names.push_back(open.submission.fold_name());
+  for (const Submission& s : submissions) {
+    names.push_back(s.name());
+    names.push_back(s.fold_name());
   }
   for (QueuedTask& task : ask_queue(names)) {
-    for (OpenSubmission& open : submissions) {
-      const Submission& s = open.submission;
+    for (Submission& s : submissions) {
       if (task.name != s.name() && task.name != s.fold_name()) continue;
-      open.queue.push_back(std::move(task));
+      s.queue.push_back(std::move(task));
       break;
     }
   }
@@ -107,11 +128,11 @@ std::vector<MergeReport> fold(Store& store, const Submission& submission) {
   return reports;
 }
 
-std::set<std::string> busy_runs(const Store& store, const std::vector<OpenSubmission>& open) {
+std::set<std::string> busy_runs(const Store& store, const std::vector<Submission>& open) {
   std::set<std::string> busy;
-  for (const OpenSubmission& submission : open) {
+  for (const Submission& submission : open) {
     if (submission.queue.empty()) continue;
-    for (const auto& task : submission.submission.tasks) busy.insert(task.begin(), task.end());
+    for (const auto& task : submission.tasks) busy.insert(task.begin(), task.end());
   }
   for (const Lease& lease : store.leases()) busy.insert(lease.run);
   // Their packings as well, while these are still to be settled.
@@ -138,8 +159,11 @@ Submission prepare_submission(Store& store, const std::vector<Share>& shares, js
   }
   try {
     for (std::size_t task = 1; task <= shares.size(); ++task) {
+      const std::vector<std::string>& runs = made.tasks[task - 1];
+      std::set<std::string> stages(runs.begin(), runs.end());
+      for (const std::string& run : runs) stages.insert(store.run(run).parent);  // the packings
       Store own(made.task_store(store.folder(), task), Access::create);
-      merge_stores(own, {store.folder()}, shares[task - 1].stages);
+      merge_stores(own, {store.folder()}, stages);
     }
     store.record_submission("CampaignSubmitted", facts, seen);
   } catch (...) {
@@ -148,6 +172,85 @@ Submission prepare_submission(Store& store, const std::vector<Share>& shares, js
     throw;
   }
   return made;
+}
+
+void write_task_report(const fs::path& folder, const std::vector<RunRecord>& runs) {
+  json list = json::array();
+  for (const RunRecord& run : runs) {
+    list.push_back({{"id", run.id}, {"state", name_of(run.state)}, {"cycle", run.cycle}});
+  }
+  try {
+    write_output(report_file(folder), json{{"runs", list}}.dump() + "\n");
+  } catch (const std::system_error&) {
+    // It only informs, and is written again soon.
+  }
+}
+
+std::map<std::string, ReportedRun> read_task_report(const fs::path& folder) {
+  std::map<std::string, ReportedRun> reported;
+  const json facts =
+      parse_json(read_plain(report_file(folder), StoreLimits::value_bytes).value_or(""));
+  try {
+    for (const json& run : facts.at("runs")) {
+      const auto state = value_of<RunState>(run.at("state").get_ref<const std::string&>());
+      if (!state) continue;
+      reported[run.at("id").get<std::string>()] = {*state, run.at("cycle").get<double>()};
+    }
+  } catch (const json::exception&) {
+    reported.clear();  // it only informs
+  }
+  return reported;
+}
+
+bool QueueView::busy() const {
+  return std::ranges::any_of(submissions, [](const auto& open) { return !open.queue.empty(); });
+}
+
+QueueView look_at_queue(const Store& store) {
+  QueueView view;
+  view.submissions = unfinished_submissions(store);
+  try {
+    ask_queue(view.submissions);
+  } catch (const ClusterError& error) {
+    view.problem = error.what();
+  }
+  std::map<std::string, std::string> packing_of;
+  for (const RunRecord& run : store.runs()) packing_of[run.id] = run.parent;
+  for (const Submission& open : view.submissions) {
+    for (std::size_t task = 1; task <= open.tasks.size(); ++task) {
+      const auto reports = read_task_report(open.task_store(store.folder(), task));
+      const QueuedTask queued = task_of(open, task);
+      std::vector<std::string> ids = open.tasks[task - 1];
+      for (const std::string& run : open.tasks[task - 1]) ids.push_back(packing_of[run]);
+      for (const std::string& id : ids) {
+        QueuedRun& run = view.runs[id] = {queued, {}};  // of the newest submission that has it
+        const auto reported = reports.find(id);
+        if (reported != reports.end()) run.reported = reported->second;
+      }
+    }
+  }
+  return view;
+}
+
+std::string describe(const Submission& s) {
+  if (s.queue.empty()) {
+    return fmt::format(
+        "submission {}: its jobs have ended with runs unfinished; `submit` them again", s.id);
+  }
+  std::map<std::string, std::size_t> count;
+  bool folding = false;
+  for (const QueuedTask& task : s.queue) {
+    if (task.name == s.name()) ++count[lower(task.state)];
+    folding = folding || task.name == s.fold_name();
+  }
+  std::string states;
+  for (const auto& [state, tasks] : count) {
+    states += fmt::format("{}{} {}", states.empty() ? "" : ", ", tasks, state);
+  }
+  return fmt::format("submission {}: job {}, {} of {} tasks in the queue{}", s.id,
+                     s.job.empty() ? s.queue.front().job : s.job, states.empty() ? "none" : states,
+                     s.tasks.size(),
+                     folding ? fmt::format("; job {} will fold their stores", s.fold_job) : "");
 }
 
 }  // namespace shearcell

@@ -6,7 +6,9 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,6 +24,7 @@ struct Submission {
   std::vector<std::vector<std::string>> tasks;  ///< runs of task 1, 2, ...
   std::string job;                              ///< "" when it was not queued
   std::string fold_job;
+  std::vector<QueuedTask> queue;  ///< its lines of the queue, once that was asked
 
   std::string name() const { return "shearcell-" + id; }  ///< of the array job
   std::string fold_name() const { return name() + "-fold"; }
@@ -33,24 +36,18 @@ struct Submission {
   }
 };
 
-/// A submission that may still have work in it, and its lines of the queue.
-struct OpenSubmission {
-  Submission submission;
-  std::vector<QueuedTask> queue;
-};
-
 /// Oldest first. Throws StoreDamaged when an event does not hold what it must.
 std::vector<Submission> read_submissions(const Store& store);
 
 /// Those that are in this store's folder and have runs that the store does not hold completed.
-std::vector<OpenSubmission> unfinished_submissions(const Store& store);
+std::vector<Submission> unfinished_submissions(const Store& store);
 
 /// Adds what the queue says of each. Asks Slurm only when there are any. Throws ClusterError.
-void ask_queue(std::vector<OpenSubmission>& submissions);
+void ask_queue(std::vector<Submission>& submissions);
 
 /// Runs that somebody computes now, or will: those of submissions in the queue, and those that
 /// programs on this machine hold; and packings that they start from and have yet to settle.
-std::set<std::string> busy_runs(const Store& store, const std::vector<OpenSubmission>& open);
+std::set<std::string> busy_runs(const Store& store, const std::vector<Submission>& open);
 
 /// Folds in what the tasks of a submission recorded. Task stores that no longer exist are skipped.
 std::vector<MergeReport> fold(Store& store, const Submission& submission);
@@ -60,5 +57,38 @@ std::vector<MergeReport> fold(Store& store, const Submission& submission);
 /// since `seen` such events were read.
 Submission prepare_submission(Store& store, const std::vector<Share>& shares, nlohmann::json facts,
                               std::size_t seen);
+
+/// The progress of a task is in a small file beside its store. No other machine opens the store
+/// itself while the task runs, because SQLite's locks may not work between machines.
+struct ReportedRun {
+  RunState state = RunState::declared;
+  double cycle = 0;
+};
+
+/// Puts `FOLDER.progress.json` there, whole or not at all, for the task's store FOLDER.
+void write_task_report(const std::filesystem::path& folder, const std::vector<RunRecord>& runs);
+
+/// By run id; empty when there is no such file or it cannot be understood.
+std::map<std::string, ReportedRun> read_task_report(const std::filesystem::path& folder);
+
+struct QueuedRun {
+  /// The job is "17_3", task 3 of array job 17, or "" when it was never queued; the state is
+  /// "pending", "running", ..., or "ended" when it left the queue.
+  QueuedTask task;
+  std::optional<ReportedRun> reported;
+};
+
+struct QueueView {
+  std::map<std::string, QueuedRun> runs;  ///< by id: those of open submissions, and their packings
+  std::vector<Submission> submissions;
+  std::string problem;  ///< why the queue could not be asked; "" when it was
+  bool busy() const;    ///< whether anything is in the queue
+};
+
+/// Asks Slurm only when the store knows submissions with unfinished runs.
+QueueView look_at_queue(const Store& store);
+
+/// "job 17: 2 running, 4 pending; job 18 folds", or what to do when it has ended.
+std::string describe(const Submission& submission);
 
 }  // namespace shearcell

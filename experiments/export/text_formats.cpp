@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "experiments/export/formats.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell {
 namespace {

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "experiments/export/formats.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell {
 namespace {

@@ -15,7 +15,7 @@
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/runner/host.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "provenance/errors.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/sha256.hpp"
@@ -74,8 +74,8 @@ json checkpoint_json(const std::string& sha256, const RunLineage& run) {
           {"event", known->record.seq},
           {"recorded_at", known->recorded_at},
           {"attempt", known->attempt ? json(*known->attempt + 1) : json(nullptr)},
-          {"rejected", known->rejected},
-          {"pruned", known->pruned}};
+          {"rejected", known->record.state == CheckpointState::rejected},
+          {"pruned", known->record.state == CheckpointState::pruned}};
 }
 
 json stage_json(const RunLineage& stage) {
@@ -138,8 +138,7 @@ std::string lineage_text(json provenance) {
 std::vector<FigureRecord> figure_records(const Store& store) {
   std::vector<FigureRecord> records;
   for (const FigureRecord& figure : store.figures()) {
-    for (const Event& event : store.events("figure/" + figure.name)) {
-      if (event.type != "FigureGenerated") continue;
+    for (const Event& event : store.events("figure/" + figure.name, "FigureGenerated")) {
       records.push_back({figure.name, event.seq, event.recorded_at, event.body()});
     }
   }
@@ -259,7 +258,9 @@ std::vector<InputFault> check_inputs(const Store& store, const FigureLineage& li
       try {
         objects.get(sha256, known->record.size);
       } catch (const StoreDamaged& damage) {
-        faults.push_back({input.run, sha256, known->pruned ? "pruned" : damage.what()});
+        faults.push_back(
+            {input.run, sha256,
+             known->record.state == CheckpointState::pruned ? "pruned" : damage.what()});
       }
     }
   }

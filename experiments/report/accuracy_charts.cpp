@@ -8,7 +8,7 @@
 
 #include "experiments/report/report_data.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/io/plain_file.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {

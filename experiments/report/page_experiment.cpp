@@ -86,16 +86,15 @@ std::size_t to_come(const RunRecord& run, const std::string& experiment) {
 }
 
 std::string checkpoints_html(const ReportData& data, const ReportExperiment& experiment) {
-  std::size_t kept = 0, pruned = 0, rejected = 0, waiting = 0;
+  std::map<CheckpointState, std::size_t> count;
+  std::size_t waiting = 0;
   for (const RunRecord& run : experiment.runs) {
     waiting += to_come(run, experiment.name);
-    for (const CheckpointHistory& c : data.runs.at(run.id).checkpoints) {
-      (c.rejected ? rejected : c.pruned ? pruned : kept) += 1;
-    }
+    for (const CheckpointHistory& c : data.runs.at(run.id).checkpoints) ++count[c.record.state];
   }
-  return counts_html({{"done", "✓", "stored", kept},
-                      {"stopped", "‖", "pruned", pruned},
-                      {"failed", "✗", "damaged", rejected},
+  return counts_html({{"done", "✓", "stored", count[CheckpointState::recorded]},
+                      {"stopped", "‖", "pruned", count[CheckpointState::pruned]},
+                      {"failed", "✗", "damaged", count[CheckpointState::rejected]},
                       {"waiting", "·", "to come, at most", waiting}});
 }
 

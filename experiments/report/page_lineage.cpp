@@ -158,7 +158,7 @@ std::string run_html(const RunLineage& stage) {
                       stage.checkpoints.size());
   for (const CheckpointHistory& c : stage.checkpoints) {
     html += fmt::format("cycle {:<8g} {}{}{}\n", c.record.cycle, escape_html(c.record.sha256),
-                        c.rejected ? " rejected" : "", c.pruned ? " pruned" : "");
+                        c.kept() ? "" : " ", c.kept() ? "" : name_of(c.record.state));
   }
   return html + "</pre></details>\n</details>\n";
 }

@@ -19,7 +19,7 @@
 #include "experiments/figures/collect.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/io/temporary_folder.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell {
 namespace {

@@ -31,8 +31,7 @@ using Place = std::array<json, 5>;  // of an experiment, as the store tells memb
 
 std::map<Place, RunAsk> asks_by_place(const Store& store, const std::string& run) {
   std::map<Place, RunAsk> asks;
-  for (const Event& event : store.events("run/" + run)) {
-    if (event.type != "RunDeclared") continue;
+  for (const Event& event : store.events("run/" + run, "RunDeclared")) {
     const json body = event.body();
     try {
       const json& m = body.at("membership");

@@ -158,7 +158,7 @@ std::vector<Finding> check_runs(const Store& store) {
 
 MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
                             std::size_t count, std::uint64_t seed) {
-  DerivedCache cache(folder, true);
+  DerivedCache cache(folder, Access::read);
   MeasureSources sources(store);
   const std::vector<CheckpointRecord> kept = measured_checkpoints(store, cache, sources);
   const std::vector<CheckpointRecord> chosen = sample(kept, count, seed);
@@ -181,10 +181,11 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       std::vector<Finding>* refused) {
   constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
+  const std::uint64_t seed = seed_of(store.head());  // whoever made a source does not know it
   for (const std::filesystem::path& source : sources) {
-    const MeasureCheck check = check_measures(store, source, kSampled, reports.size());
+    const MeasureCheck check = check_measures(store, source, kSampled, seed);
     if (check.findings.empty()) {
-      DerivedCache from(source, true);
+      DerivedCache from(source, Access::read);
       copy_measures(store, from);
     } else if (refused != nullptr) {
       refused->insert(refused->end(), check.findings.begin(), check.findings.end());

@@ -17,6 +17,9 @@ namespace shearcell {
 /// 100,000 grains settled 710 (`bench engines --settle`).
 inline constexpr double kRunBytesPerGrain = 750;
 
+/// The same of a whole run.
+double run_bytes(const Geometry& shape);
+
 /// Size [bytes] of the file of a checkpoint, estimated from its grains and wall grains.
 double checkpoint_bytes(const Geometry& shape);
 
@@ -35,12 +38,8 @@ std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& 
 /// 18200; checkpoints by checkpoint_bytes.
 StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle);
 
-/// The most that a whole stage can take before it ends or fails.
-struct StageBound {
-  double particle_steps = 0;
-  double memory_bytes = 0;
-};
-StageBound stage_bound(const PlannedRun& run, const StageSpec& stage);
+/// The most particle-steps that a whole stage can take before it ends or fails.
+double most_particle_steps(const PlannedRun& run, const StageSpec& stage);
 
 struct Rate {
   double particle_steps_per_second;  ///< of one core

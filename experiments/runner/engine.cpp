@@ -2,12 +2,10 @@
 #include "experiments/runner/engine.hpp"
 
 #include <chrono>
-#include <optional>
 #include <utility>
 
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/lammps/lammps_run.hpp"
 
 namespace shearcell {
 namespace {
@@ -42,7 +40,8 @@ class OwnEngine final : public Engine {
 
 class LammpsEngine final : public Engine {
  public:
-  LammpsEngine(const StagePlan& plan, Beginning&& beginning, const Parallel& parallel)
+  LammpsEngine(const StagePlan& plan, Beginning&& beginning, const Parallel& parallel,
+               const LammpsProgram& program)
       : plan_(plan),
         stride_(plan.checkpoint_every * cycle_steps(plan.protocol->drive())),
         cell_(std::move(beginning.cell)),
@@ -58,7 +57,7 @@ class LammpsEngine final : public Engine {
                           .end = end,
                           .stride = stride_,
                           .look = lammps_look_steps(plan.run.grains, parallel.ranks)};
-    run_.emplace(find_lammps(), task, parallel.ranks);
+    run_.emplace(program, task, parallel.ranks);
   }
 
   StageProgress advance() override {
@@ -111,15 +110,19 @@ class LammpsEngine final : public Engine {
   std::optional<LammpsRun> run_;
 };
 
-bool by_lammps(const StagePlan& plan) {
-  return plan.stage.parameters.engine == EngineKind::lammps;
-}
-
 }  // namespace
 
+std::optional<LammpsProgram> find_engine(const StagePlan& plan) {
+  if (plan.stage.parameters.engine != EngineKind::lammps) return std::nullopt;
+  return find_lammps();
+}
+
 std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,
-                                    const Parallel& parallel) {
-  if (by_lammps(plan)) return std::make_unique<LammpsEngine>(plan, std::move(beginning), parallel);
+                                    const Parallel& parallel,
+                                    const std::optional<LammpsProgram>& lammps) {
+  if (lammps) {
+    return std::make_unique<LammpsEngine>(plan, std::move(beginning), parallel, *lammps);
+  }
   return std::make_unique<OwnEngine>(plan, std::move(beginning), parallel.threads);
 }
 
@@ -133,12 +136,10 @@ std::vector<std::string> lammps_caveats() {
       "wall's plane ends a run."};
 }
 
-nlohmann::json engine_facts(const StagePlan& plan, const Parallel& parallel) {
-  if (!by_lammps(plan)) return nullptr;
-  const LammpsProgram program = find_lammps();
+nlohmann::json engine_facts(const LammpsProgram& lammps, const Parallel& parallel) {
   return {{"name", "LAMMPS"},
-          {"version", program.version},
-          {"program", program.path},
+          {"version", lammps.version},
+          {"program", lammps.path},
           {"processes", parallel.ranks}};
 }
 

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/stage.hpp"
 
 namespace shearcell {
@@ -30,14 +32,17 @@ class Engine {
   virtual std::uint64_t evaluations() const = 0;  ///< of the forces since construction
 };
 
-/// Takes ownership of the beginning's cell and state. For a stage of LAMMPS throws ProgramError
-/// when it is not installed.
-std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,
-                                    const Parallel& parallel);
+/// The program that computes a stage of LAMMPS; nothing for one of ours. Throws ProgramError when
+/// it is not installed.
+std::optional<LammpsProgram> find_engine(const StagePlan& plan);
 
-/// What an attempt records of the engine beside the host: null for our own, else {name, version,
-/// program, processes}. Throws ProgramError when it is not installed.
-nlohmann::json engine_facts(const StagePlan& plan, const Parallel& parallel);
+/// Takes ownership of the beginning's cell and state. `lammps` computes the stage where it is one.
+std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,
+                                    const Parallel& parallel,
+                                    const std::optional<LammpsProgram>& lammps = std::nullopt);
+
+/// What an attempt records of it beside the host.
+nlohmann::json engine_facts(const LammpsProgram& lammps, const Parallel& parallel);
 
 /// Features of our own simulation that LAMMPS lacks or has only approximately, one sentence each.
 std::vector<std::string> lammps_caveats();

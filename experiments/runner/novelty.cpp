@@ -31,29 +31,21 @@ std::vector<Difference> differences(const json& planned, const json& known) {
   return found;
 }
 
+std::string text_of(const std::string& key, const json& value) {
+  return fmt::format("{}={}", key, value.dump());
+}
+
 }  // namespace
 
 KnownRuns::KnownRuns(const std::vector<RunRecord>& runs) {
   for (const RunRecord& run : runs) {
     by_id_.emplace(run.id, &run);
-    kinds_[run.kind].runs.push_back(&run);
+    Kind& kind = kinds_[run.kind];
     const json values = values_of(run.resolved);
     for (const auto& [key, value] : values.items()) {
-      columns_.try_emplace(key, columns_.size());
+      kind.with[text_of(key, value)].push_back(kind.runs.size());
     }
-  }
-  numbers_.resize(columns_.size());
-  for (auto& [name, kind] : kinds_) {
-    for (const RunRecord* run : kind.runs) {
-      const std::size_t row = kind.rows.size();
-      kind.rows.resize(row + columns_.size());
-      const json values = values_of(run->resolved);
-      for (const auto& [key, value] : values.items()) {
-        const std::size_t column = columns_.at(key);
-        const auto next = static_cast<std::uint32_t>(numbers_[column].size() + 1);
-        kind.rows[row + column] = numbers_[column].try_emplace(value.dump(), next).first->second;
-      }
-    }
+    kind.runs.push_back(&run);
   }
 }
 
@@ -65,33 +57,17 @@ const RunRecord* KnownRuns::find(const std::string& id) const {
 std::optional<Novelty> KnownRuns::novelty(const StageSpec& stage) const {
   const auto found = kinds_.find(name_of(stage.stage));
   if (found == kinds_.end() || find(stage.key) != nullptr) return std::nullopt;
-  constexpr std::uint32_t kUnknown = UINT32_MAX;
-  // Values that only the known runs have do not count.
-  std::vector<std::uint32_t> planned(columns_.size(), 0), counts(columns_.size(), 0);
+  const auto& [runs, known] = found->second;
+  std::vector<std::size_t> hits(runs.size(), 0);  // values that each shares with the stage
   const json values = values_of(stage.resolved);
   for (const auto& [key, value] : values.items()) {
-    const auto column = columns_.find(key);
-    if (column == columns_.end()) continue;  // no run has it, so it does not decide
-    const auto& numbers = numbers_[column->second];
-    const auto number = numbers.find(value.dump());
-    planned[column->second] = number == numbers.end() ? kUnknown : number->second;
-    counts[column->second] = 1;
+    const auto with = known.find(text_of(key, value));
+    // What all have does not decide.
+    if (with == known.end() || with->second.size() == runs.size()) continue;
+    for (const std::size_t place : with->second) ++hits[place];
   }
-  const auto& [runs, rows] = found->second;
-  std::size_t nearest = 0;
-  std::uint32_t fewest = kUnknown;
-  for (std::size_t r = 0; r < runs.size() && fewest > 1; ++r) {
-    const std::uint32_t* row = rows.data() + r * planned.size();
-    std::uint32_t different = 0;
-    for (std::size_t c = 0; c < planned.size(); ++c) {
-      different += counts[c] & static_cast<std::uint32_t>(row[c] != planned[c]);
-    }
-    if (different < fewest) {
-      fewest = different;
-      nearest = r;
-    }
-  }
-  const RunRecord& run = *runs[nearest];
+  const RunRecord& run =
+      *runs[static_cast<std::size_t>(std::distance(hits.begin(), std::ranges::max_element(hits)))];
   return Novelty{run.id, differences(values, values_of(run.resolved))};
 }
 

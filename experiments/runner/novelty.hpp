@@ -2,12 +2,13 @@
 // The values in which a new stage differs from the nearest known one.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "experiments/manifest/identity.hpp"
@@ -27,8 +28,7 @@ struct Novelty {
   std::vector<Difference> differences;
 };
 
-/// The runs of a store, which must outlive this object, prepared for many searches: a search
-/// compares one row of numbers with each run of the kind.
+/// The runs of a store, which must outlive this object, prepared for many searches.
 class KnownRuns {
  public:
   explicit KnownRuns(const std::vector<RunRecord>& runs);
@@ -43,12 +43,9 @@ class KnownRuns {
   std::map<std::string_view, const RunRecord*> by_id_;
   struct Kind {
     std::vector<const RunRecord*> runs;
-    std::vector<std::uint32_t> rows;  ///< numbers of each run, columns_.size() of them; 0 for none
+    std::unordered_map<std::string, std::vector<std::size_t>> with;  ///< places by "key=value"
   };
   std::map<std::string_view, Kind> kinds_;
-  /// For each value that enters an identity: its column, and a number for each value in use.
-  std::map<std::string, std::size_t> columns_;
-  std::vector<std::map<std::string, std::uint32_t>> numbers_;
 };
 
 /// "steps_per_cycle 500 (store has 400), seed 2 (store has 1)".

@@ -11,8 +11,7 @@
 namespace shearcell {
 std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   std::vector<RegisteredManifest> found;
-  for (const Event& event : store.events()) {
-    if (event.type != "ManifestRegistered") continue;
+  for (const Event& event : store.events("", "ManifestRegistered")) {
     try {
       const nlohmann::json body = event.body();
       const nlohmann::json& info = body.at("info");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <random>
@@ -58,8 +59,7 @@ class Replaying {
   /// The state at the record's step; nothing when that was not reached.
   std::optional<Checkpoint> compute(std::size_t threads) {
     const CheckpointRecord& record = replay_.record;
-    Beginning beginning = beginning_before(
-        store_, plan_, [&](const CheckpointRecord& c) { return c.step < record.step; });
+    Beginning beginning = continue_stage(store_, plan_, nullptr, record.step);
     replay_.from = beginning.from;
     try {
       Simulation simulation = make_simulation(plan_, std::move(beginning), threads);
@@ -184,6 +184,13 @@ std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std:
   }
   records.resize(count);
   return records;
+}
+
+std::uint64_t seed_of(const Head& head) {
+  const std::string digits = head.hash.substr(0, 12);
+  std::uint64_t seed = 0;  // stays so where a damaged log has no digits
+  std::from_chars(digits.data(), digits.data() + digits.size(), seed, 16);
+  return seed;
 }
 
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads) {

@@ -43,6 +43,9 @@ std::optional<std::string> why_not_again(const RunRecord& run);
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
                                      std::uint64_t seed);
 
+/// A new sample for every new event, and the same one again for the same log.
+std::uint64_t seed_of(const Head& head);
+
 /// Computes from the nearest earlier checkpoint that is kept, or the beginning of the stage, up to
 /// the record's step, compares the state and all that is recorded with it (cycle, time, tilt,
 /// observables), and records ReplayVerified or ReplayDiverged.

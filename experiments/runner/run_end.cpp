@@ -57,15 +57,16 @@ std::optional<json> ended_early(std::span<const RunAsk> asks,
   return why;
 }
 
+json recorded_end(const Store& store, const std::string& run) {
+  const std::vector<Event> ends = store.events("run/" + run, "RunCompleted");
+  return ends.empty() ? json() : ends.back().body().value("/summary/ended"_json_pointer, json());
+}
+
 json end_of(const Store& store, const RunRecord& run) {
-  json ended;
   if (run.state != RunState::completed || run.cycle >= static_cast<double>(run.target_cycles)) {
-    return ended;
+    return json();
   }
-  for (const Event& event : store.events("run/" + run.id)) {
-    if (event.type == "RunCompleted")
-      ended = event.body().value("/summary/ended"_json_pointer, json());
-  }
+  const json ended = recorded_end(store, run.id);
   return ended.is_object() && ended.value("by", "") == "until" ? ended : json();
 }
 

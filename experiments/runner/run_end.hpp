@@ -31,6 +31,9 @@ struct MeasuredCycle {
 std::optional<nlohmann::json> ended_early(std::span<const RunAsk> asks,
                                           std::span<const MeasuredCycle> measured, double now);
 
+/// What the last completion of the run records of its end; null where there is none.
+nlohmann::json recorded_end(const Store& store, const std::string& run);
+
 /// The reason recorded with the end of a run that is complete before its last cycle; else null.
 nlohmann::json end_of(const Store& store, const RunRecord& run);
 

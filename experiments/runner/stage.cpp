@@ -36,9 +36,7 @@ Scene make_scene(const StageRecord& stage) {
 }
 
 void require_memory(const StageRecord& stage) {
-  const Geometry shape = geometry(stage.parameters);
-  const double needed =
-      kRunBytesPerGrain * (static_cast<double>(shape.grains) + wall_grain_count(shape));
+  const double needed = run_bytes(geometry(stage.parameters));
   if (needed <= machine_memory()) return;
   throw TooLittleMemory(fmt::format(
       "{} grains take about {:.3g} GB, and this machine has {:.3g} GB; use fewer grains",
@@ -101,7 +99,7 @@ StagePlan plan_stage(const Store& store, RunRecord run) {
   return {std::move(run), std::move(stage), scene, std::move(protocol), every};
 }
 
-Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>& damage) {
+Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage) {
   const RunRecord& run = plan.run;
   if (run.parent.empty()) {
     const Geometry shape = geometry(plan.stage.parameters);
@@ -109,7 +107,7 @@ Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::stri
     State state = fill_cell(cell, shape, plan.stage.seed, give_up_if_requested);
     return {std::move(cell), std::move(state), std::nullopt, ""};
   }
-  auto parent = store.newest_valid_checkpoint(run.parent, &damage);
+  auto parent = store.newest_valid_checkpoint(run.parent, damage);
   if (!parent) {
     throw StoreDamaged("run " + run.parent.substr(0, 12) + ": the settled packing that run " +
                        run.id.substr(0, 12) +
@@ -120,25 +118,13 @@ Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::stri
           parent->record.sha256};
 }
 
-Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>& damage) {
-  if (auto newest = store.newest_valid_checkpoint(plan.run.id, &damage)) {
+Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage,
+                         std::uint64_t before_step) {
+  if (auto newest = store.newest_valid_checkpoint(plan.run.id, damage, before_step)) {
     return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
             std::move(newest->record), ""};
   }
   return begin_stage(store, plan, damage);
-}
-
-Beginning beginning_before(Store& store, const StagePlan& plan,
-                           const std::function<bool(const CheckpointRecord&)>& before) {
-  std::vector<CheckpointRecord> earlier = store.checkpoints(plan.run.id);
-  for (auto record = earlier.rbegin(); record != earlier.rend(); ++record) {
-    if (!before(*record)) continue;
-    if (auto kept = store.load_if_readable(*record)) {
-      return {std::move(kept->cell), std::move(kept->state), std::move(*record), ""};
-    }
-  }
-  std::vector<std::string> ignored;
-  return begin_stage(store, plan, ignored);
 }
 
 Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads) {

@@ -46,14 +46,12 @@ struct Beginning {
 
 /// Where the stage itself begins: its parent's last state, or a fresh filling. Throws StoreDamaged
 /// when the parent's last state cannot be read, and Interrupted when the filling is given up.
-Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>& damage);
+/// `damage` as in Store::newest_valid_checkpoint.
+Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage);
 
-/// The newest checkpoint that verifies, or else where the stage begins.
-Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>& damage);
-
-/// The newest kept checkpoint for which `before` holds, or else where the stage begins.
-Beginning beginning_before(Store& store, const StagePlan& plan,
-                           const std::function<bool(const CheckpointRecord&)>& before);
+/// The newest checkpoint before a step that verifies, or else where the stage begins.
+Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage,
+                         std::uint64_t before_step = UINT64_MAX);
 
 /// Takes the beginning's cell and state over.
 Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads);

@@ -18,31 +18,28 @@
 namespace shearcell {
 namespace {
 
-using namespace nlohmann::literals;
-
 // A stage in progress, and what has not been recorded of it yet.
-class Attempt {
+class StageAttempt {
  public:
-  Attempt(Store& store, RunRecord run, const StageOptions& options)
+  StageAttempt(Store& store, RunRecord run, const StageOptions& options)
       : store_(store), options_(options), plan_(plan_stage(store, std::move(run))) {}
 
   StageOutcome run() {
     std::vector<std::string> damage;
-    Beginning beginning = continue_stage(store_, plan_, damage);
+    Beginning beginning = continue_stage(store_, plan_, &damage);
     for (const std::string& what : damage) {
       if (options_.damaged) options_.damaged(what);
     }
     const bool fresh = !beginning.from;
     nlohmann::json facts = host_facts();
-    if (auto engine = engine_facts(plan_, options_.parallel); !engine.is_null()) {
-      facts["engine"] = std::move(engine);
-    }
+    const auto lammps = find_engine(plan_);
+    if (lammps) facts["engine"] = engine_facts(*lammps, options_.parallel);
     start(beginning, facts);
     if (options_.begun) options_.begun();
     if (asks_for_early_end()) end_.emplace(store_, plan_.run, fresh ? 0 : beginning.from->step);
     if (ends_early()) return StageOutcome::completed;
     return guarded([&] {
-      const auto engine = make_engine(plan_, std::move(beginning), options_.parallel);
+      const auto engine = make_engine(plan_, std::move(beginning), options_.parallel, lammps);
       first_step_ = engine->step();
       // The settled packing is cycle 0 of what follows.
       if (fresh && plan_.stage.stage != Stage::prepare) record(*engine, 0);
@@ -53,8 +50,7 @@ class Attempt {
 
   // Records the checkpoints at these steps of a completed run, which lacks them.
   StageOutcome fill(const std::vector<std::uint64_t>& steps) {
-    Beginning beginning = beginning_before(
-        store_, plan_, [&](const CheckpointRecord& kept) { return kept.step < steps.front(); });
+    Beginning beginning = continue_stage(store_, plan_, nullptr, steps.front());
     const bool fresh = !beginning.from;
     const nlohmann::json ended = last_end();
     start(beginning, host_facts(), true);
@@ -111,12 +107,8 @@ class Attempt {
 
   // Why the run ended when it was completed.
   nlohmann::json last_end() const {
-    nlohmann::json ended = {{"by", "cycles"}};
-    for (const Event& event : store_.events("run/" + id())) {
-      if (event.type != "RunCompleted") continue;
-      ended = event.body().value("/summary/ended"_json_pointer, ended);
-    }
-    return ended;
+    const nlohmann::json ended = recorded_end(store_, id());
+    return ended.is_null() ? nlohmann::json({{"by", "cycles"}}) : ended;
   }
 
   StageOutcome advance(Engine& engine) {
@@ -215,14 +207,14 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
     RunRecord run = store.run(id);
     bool computed = false;
     if (run.state != RunState::completed || !newest_is_sound(store, run)) {
-      Attempt attempt(store, std::move(run), options);
+      StageAttempt attempt(store, std::move(run), options);
       const StageOutcome outcome = attempt.run();
       run = store.run(id);
       if (outcome != StageOutcome::completed || run.state != RunState::completed) return outcome;
       computed = attempt.computed();
     }
     const std::vector<std::uint64_t> missing = missing_checkpoints(store, run);
-    if (!missing.empty()) return Attempt(store, std::move(run), options).fill(missing);
+    if (!missing.empty()) return StageAttempt(store, std::move(run), options).fill(missing);
     return computed ? StageOutcome::completed : StageOutcome::already;
   } catch (const RunHeld&) {
     return StageOutcome::held;

@@ -21,7 +21,7 @@
 #include <thread>
 
 #include "provenance/io/clock.hpp"
-#include "provenance/io/descriptor.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell {
 namespace {

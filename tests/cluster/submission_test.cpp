@@ -9,7 +9,8 @@
 #include <map>
 
 #include "experiments/cluster/proposal.hpp"
-#include "experiments/cluster/queue_view.hpp"
+#include "experiments/cluster/submission.hpp"
+#include "experiments/runner/cost.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
@@ -112,11 +113,10 @@ TEST_F(Submitted, TasksEndRunsWhereUntilSays) {
 }
 
 TEST_F(Submitted, RunsInTheQueueAreBusyWithTheirPackings) {
-  const Submission made = submit(shares());
-  EXPECT_TRUE(busy_runs(store_, {{made, {}}}).empty()) << "its jobs have ended";
-  const QueuedTask waiting{made.name(), "17", 2, "PENDING", {}, {}};
-  EXPECT_EQ(busy_runs(store_, {{made, {waiting}}}).size(), 6U)
-      << "nothing is folded before the end";
+  Submission made = submit(shares());
+  EXPECT_TRUE(busy_runs(store_, {made}).empty()) << "its jobs have ended";
+  made.queue = {{made.name(), "17", 2, "PENDING", {}, {}}};
+  EXPECT_EQ(busy_runs(store_, {made}).size(), 6U) << "nothing is folded before the end";
 }
 
 TEST_F(Submitted, RunsAtWorkHereAreBusyWithTheirPackings) {
@@ -198,6 +198,21 @@ TEST(Queue, IsReadLineByLine) {
   EXPECT_EQ(queue[2].job, "18");
 }
 
+TEST(Described, NamesTheArrayWhileOnlyTheFoldingJobWaits) {
+  Submission made;
+  made.id = "0123456789ab";
+  made.tasks.resize(4);
+  made.job = "17";
+  made.fold_job = "18";
+  made.queue = {{made.fold_name(), "18", {}, "PENDING", "Dependency", ""}};
+  EXPECT_EQ(describe(made),
+            "submission 0123456789ab: job 17, none of 4 tasks in the queue; job 18 will fold their "
+            "stores");
+  made.job = "";  // a crash before it was recorded
+  made.queue.insert(made.queue.begin(), {made.name(), "17", 1, "RUNNING", "", "node7"});
+  EXPECT_TRUE(describe(made).starts_with("submission 0123456789ab: job 17, 1 running of 4"));
+}
+
 TEST(TaskReport, ComesBackAndIsNotTrusted) {
   const TemporaryFolder folder;
   const fs::path task = folder.path() / "task-1";
@@ -264,6 +279,20 @@ TEST(WorkLeft, LeavesOutWhatTheStoreHolds) {
   EXPECT_NEAR(longer[0].particle_steps, 2 * 3.0 * kStepsPerCycle * kGrains, 1);
 }
 
+TEST(Proposed, TakesTheRateOfTheEngineOfEachStage) {
+  const auto seconds = [](const std::string& engine) {
+    const auto made =
+        propose(plans(tiny_manifest("  engine: " + engine + "\n"), of(1)), nullptr, {}, 1, {});
+    return seconds_of(made.shares.at(0), made);
+  };
+  const auto shear = [](EngineKind engine) {
+    return 2.0 * kStepsPerCycle * kGrains / Rates({}).of(engine, kGrains).particle_steps_per_second;
+  };
+  EXPECT_NEAR(seconds("lammps") - seconds("shearcell"),
+              shear(EngineKind::lammps) - shear(EngineKind::shearcell), 1e-6)
+      << "both settle the packing in this program";
+}
+
 Bundle bundle(const std::string& name, double cost) {
   return {name, {name + "a", name + "b"}, cost};
 }
@@ -279,11 +308,7 @@ TEST(SharingOut, GivesEveryRunToOneTaskWithItsPacking) {
     for (const Share& share : shares) {
       EXPECT_FALSE(share.runs.empty());
       EXPECT_EQ(share.runs.size(), 2 * share.packings);
-      EXPECT_EQ(share.stages.size(), 3 * share.packings);
-      for (const std::string& run : share.runs) {
-        ++times[run];
-        EXPECT_TRUE(share.stages.contains(run.substr(0, run.size() - 1))) << "its packing";
-      }
+      for (const std::string& run : share.runs) ++times[run];
       least = std::min(least, share.particle_steps);
       most = std::max(most, share.particle_steps);
     }

@@ -44,8 +44,8 @@ class EngineRun : public ProgramTest {
   std::string fake(const std::string& body) {
     std::string file = path("fake").string();
     write("fake",
-          "#!/bin/sh\nif [ \"$1\" = -h ]; then echo 'Massively Parallel Simulator - "
-          "1 Jan 2000'; echo gran/hooke; exit 0; fi\n" +
+          "#!/bin/sh\nif [ \"$1\" = -h ]; then echo >> '" + path("asked").string() +
+              "'; echo 'Massively Parallel Simulator - 1 Jan 2000'; echo gran/hooke; exit 0; fi\n" +
               body + "\n");
     fs::permissions(file, fs::perms::owner_all);
     return file;
@@ -168,6 +168,8 @@ TEST_F(EngineRun, TellsWhatLammpsSaidWhenItFails) {
     const Outcome outcome = run({"run", manifest, "--engine", "lammps", "-q"});
     EXPECT_EQ(outcome.code, 3) << body;
     EXPECT_TRUE(has(outcome.err, says)) << body;
+    EXPECT_EQ(fs::file_size(path("asked")), 2U) << "once before anything, once for the stage";
+    fs::remove(path("asked"));
   }
   EXPECT_EQ(run({"verify"}).code, 0);
 }

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "provenance/io/temporary_folder.hpp"
+#include "provenance/io/file.hpp"
 #include "tests/support/variable.hpp"
 
 namespace shearcell::test {

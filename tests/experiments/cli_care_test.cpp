@@ -71,7 +71,7 @@ TEST_F(Care, VerifyReplaysAndHoldsAgainstAHead) {
 
 TEST_F(Care, RebuildMendsATableThatWasChanged) {
   campaign(manifest_, {"--cycles", "0"});
-  sqlite::Database(path("shearcell-store/store.sqlite"), sqlite::Open::existing)
+  sqlite::Database(path("shearcell-store/store.sqlite"), Access::write)
       .execute("UPDATE runs SET state = 'failed'");
   expect(4, {"verify"}, {"run `rebuild`"});
   expect(0, {"rebuild"});

@@ -118,11 +118,12 @@ void folder_instead(const fs::path& path) {
 
 void forge_checkpoints(const fs::path& store, const std::string& hdf5) {
   ObjectStore objects(store);
-  const ObjectInfo object = objects.put(sealed(std::as_bytes(std::span(hdf5))));
+  const std::vector<std::byte> image = sealed(std::as_bytes(std::span(hdf5)));
+  const std::string sha256 = objects.put(image);
   payload("CheckpointRecorded", [&](nlohmann::json& body) {
-    body["sha256"] = object.sha256;
-    body["file"] = object.file;
-    body["size"] = object.size;
+    body["sha256"] = sha256;
+    body["file"] = ObjectStore::file_of(sha256);
+    body["size"] = image.size();
   })(store);
   Store(store, Access::write).rebuild();
 }
@@ -140,7 +141,12 @@ Damage rebuilt(const Damage& damage) {
 
 Damage states(const std::function<void(Checkpoint&)>& change) {
   return rebuilt([=](const fs::path& store) {
-    std::map<std::string, std::pair<Checkpoint, ObjectInfo>> made;  // by the former SHA-256
+    struct Made {
+      Checkpoint checkpoint;
+      std::string sha256;
+      std::size_t size;
+    };
+    std::map<std::string, Made> made;  // by the former SHA-256
     {
       const Store known(store, Access::read);
       ObjectStore objects(store);
@@ -148,25 +154,25 @@ Damage states(const std::function<void(Checkpoint&)>& change) {
         for (const CheckpointRecord& record : known.checkpoints(run.id)) {
           Checkpoint checkpoint = known.load_checkpoint(record);
           change(checkpoint);
-          const ObjectInfo object = objects.put(encode_checkpoint(checkpoint));
-          made[record.sha256] = {std::move(checkpoint), object};
+          const auto bytes = encode_checkpoint(checkpoint);
+          made[record.sha256] = {std::move(checkpoint), objects.put(bytes), bytes.size()};
         }
       }
     }
     payload("CheckpointRecorded", [&](nlohmann::json& body) {
-      const auto& [checkpoint, object] = made.at(body["sha256"]);
+      const auto& [checkpoint, sha256, size] = made.at(body["sha256"]);
       body["step"] = checkpoint.state.step;
       body["cycle"] = checkpoint.cycle;
       body["time_s"] = checkpoint.time_s;
       body["observables"] = checkpoint.observables;
       body["state_hash"] = state_hash(checkpoint);
-      body["file"] = object.file;
-      body["size"] = object.size;
+      body["file"] = ObjectStore::file_of(sha256);
+      body["size"] = size;
     })(store);
     forged([&](Event& event) {
       for (const auto& [before, now] : made) {
         for (std::size_t at = 0; (at = event.payload.find(before, at)) != std::string::npos;) {
-          event.payload.replace(at, before.size(), now.second.sha256);
+          event.payload.replace(at, before.size(), now.sha256);
           at += before.size();
         }
       }
@@ -178,7 +184,7 @@ Damage measures(const std::string& name, const std::function<void(nlohmann::json
   return [=](const fs::path& store) {
     std::vector<DerivedKey> keys;
     {
-      const sqlite::Database kept(store / DerivedCache::kFile, sqlite::Open::existing);
+      const sqlite::Database kept(store / DerivedCache::kFile, Access::write);
       sqlite::Statement row(kept, "SELECT checkpoint, measure, version FROM derived");
       while (row.step()) {
         DerivedKey& key = keys.emplace_back();

@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <span>
 
 #include "analysis/error.hpp"
 #include "experiments/figures/collect.hpp"
+#include "experiments/runner/audit.hpp"
+#include "experiments/runner/replay.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/sqlite.hpp"
 #include "tests/experiments/drawing.hpp"
@@ -33,7 +37,7 @@ class Measure : public DrawingTest {
   }
   std::filesystem::path cache() const { return store_.folder() / DerivedCache::kFile; }
   void sql(const std::string& statement) const {
-    sqlite::Database(cache(), sqlite::Open::existing).execute(statement);
+    sqlite::Database(cache(), Access::write).execute(statement);
   }
   std::vector<CheckpointRecord> records() const {
     std::vector<CheckpointRecord> all;
@@ -55,6 +59,28 @@ TEST_F(Measure, IsMeasuredOnceAndGivesTheSameBytesAgain) {
   for (const char* other : {"second", "third", "fourth"}) EXPECT_EQ(csv(other), csv("first"));
   EXPECT_TRUE(store_.verify().ok());
   EXPECT_TRUE(store_.verify().findings.empty()) << "what is kept is no orphan";
+}
+
+// Whoever knew the sample would forge all but that.
+TEST_F(Measure, AMergeSamplesWhatTheMakerOfASourceCannotForesee) {
+  make("first");
+  const std::vector<CheckpointRecord> known = sample(records(), 3, 1);
+  DerivedCache kept(store_.folder());
+  for (const CheckpointRecord& record : records()) {
+    if (std::ranges::count(known, record.sha256, &CheckpointRecord::sha256) > 0) continue;
+    const DerivedKey key{record.sha256, scalar_measures().key(), analysis_version};
+    nlohmann::json forged = decode_result(kept.get(std::span(&key, 1)).front().value());
+    forged["phi"] = 0.9;
+    const DerivedObject object{key, encode_result(forged)};
+    kept.put(std::span(&object, 1));
+  }
+  // One merge of twenty takes these three.
+  std::vector<Finding> refused;
+  for (int merge = 0; merge < 8 && refused.empty(); ++merge) {
+    Store into(folder_.path() / ("into" + std::to_string(merge)), Access::create);
+    merge_stores(into, {store_.folder()}, {}, &refused);
+  }
+  EXPECT_EQ(refused.size(), 1U);
 }
 
 TEST_F(Measure, OnlyNewCheckpointsAreMeasured) {

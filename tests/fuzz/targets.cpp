@@ -178,7 +178,7 @@ std::string patched(std::string bytes, std::string_view patches) {
 
 // Appends events under right hashes: what a forger who knows the format can write.
 void forge(const fs::path& log, std::string_view lines) {
-  sqlite::Database database(log, sqlite::Open::existing);
+  sqlite::Database database(log, Access::write);
   EventLog events(database);
   const sqlite::WriteTransaction all(database);
   for (const Event& event : forged_events(lines)) events.append_copy(all, event);

@@ -34,7 +34,7 @@ class DerivedCacheTest : public testing::Test {
     EXPECT_EQ(cache.trouble(), "");
   }
   void sql(const std::string& statement) {
-    sqlite::Database(file(), sqlite::Open::existing).execute(statement);
+    sqlite::Database(file(), Access::write).execute(statement);
   }
   fs::path file() const { return folder_.path() / DerivedCache::kFile; }
 
@@ -121,11 +121,11 @@ TEST_F(DerivedCacheTest, TouchesNoForeignFile) {
   }
   EXPECT_EQ(test::read_bytes(elsewhere), "mine");
   fs::remove(file());
-  sqlite::Database(file(), sqlite::Open::create)
+  sqlite::Database(file(), Access::create)
       .execute("PRAGMA application_id=7; CREATE TABLE mine(x); INSERT INTO mine VALUES(1);");
   DerivedCache cache(folder_.path());
   EXPECT_NE(cache.trouble().find("another program"), std::string::npos) << cache.trouble();
-  EXPECT_EQ(sqlite::Database(file(), sqlite::Open::existing).integer("SELECT x FROM mine"), 1);
+  EXPECT_EQ(sqlite::Database(file(), Access::write).integer("SELECT x FROM mine"), 1);
 }
 
 TEST_F(DerivedCacheTest, SeveralMayKeepAtOnce) {

@@ -150,7 +150,7 @@ Event in_first_layout(Event event) {
 }
 
 auto rows_of_old_events(const std::filesystem::path& file, const std::vector<Event>& events) {
-  sqlite::Database database = open_database(file, sqlite::Open::create, false);
+  sqlite::Database database = open_database(file, Access::create);
   EventLog log(database);
   sqlite::WriteTransaction lock(database);
   for (const Event& event : events) {
@@ -187,7 +187,7 @@ PROPERTY(History, GivesTheTablesThatItsEventsTell, 100) {
   }
   expect_told(*store);
   const auto rows = [&] {
-    return projection_rows(sqlite::Database(path / "store.sqlite", sqlite::Open::existing));
+    return projection_rows(sqlite::Database(path / "store.sqlite", Access::write));
   };
   const auto step_by_step = rows();
   RC_ASSERT(rows_of_old_events(folder.path() / "old.sqlite", store->events()) == step_by_step);

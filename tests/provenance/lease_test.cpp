@@ -83,6 +83,19 @@ TEST_F(LeaseTest, ExpiresUnlessItIsRenewed) {
   second.record_checkpoint(id_, sample_checkpoint(id_));
 }
 
+TEST_F(LeaseTest, IsNotMissedByWhoWasOvertaken) {
+  Store late = open(0);
+  late.start_run(id_, {});
+  Store other = open();
+  other.start_run(id_, {});
+  other.complete_run(id_);
+  ASSERT_TRUE(other.leases().empty());
+  expect_refused<ConcurrencyConflict>([&] { late.record_checkpoint(id_, sample_checkpoint(id_)); },
+                                      {"another process continued"});
+  EXPECT_FALSE(late.holds(id_));
+  EXPECT_TRUE(other.checkpoints(id_).empty());
+}
+
 TEST_F(LeaseTest, OfADeadProcessIsTakenAtOnce) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);

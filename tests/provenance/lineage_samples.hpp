@@ -73,7 +73,7 @@ struct SampleHistory {
 
 /// Appends an event to a run as another program would, past the store.
 inline void append_to_run(const Store& store, const std::string& run, const NewEvent& event) {
-  sqlite::Database database(store.folder() / "store.sqlite", sqlite::Open::existing);
+  sqlite::Database database(store.folder() / "store.sqlite", Access::write);
   EventLog log(database);
   sqlite::WriteTransaction lock(database);
   log.append(lock, "run/" + run, event);

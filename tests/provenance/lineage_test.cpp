@@ -52,7 +52,8 @@ TEST_F(Lineage, TheFirstAttemptBeganWithThePackingAndLaterOnesWithTheirOwnState)
 
 TEST_F(Lineage, ARejectedCheckpointIsKnownAsSuchUntilItIsMadeAgain) {
   const auto rejected = [&] {
-    return run_lineage(store_, history_.sheared).back().find(history_.rejected)->rejected;
+    const RunLineage run = run_lineage(store_, history_.sheared).back();
+    return run.find(history_.rejected)->record.state == CheckpointState::rejected;
   };
   EXPECT_TRUE(rejected());
   RunDeclaration longer = test::sample_run(2, 9);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Merging is a union of what several stores know: nothing is lost, repeated or mixed up.
-#include "provenance/merge.hpp"
+#include "provenance/store.hpp"
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,7 @@ class MergeTest : public ::testing::Test {
   /// Every row of the tables, without the facts of when, by whom and in how many attempts it was
   /// computed: seq and ordinals, times, attempts, efforts.
   std::map<std::string, std::set<std::string>> facts(const std::string& name) const {
-    const sqlite::Database database(path(name) / "store.sqlite", sqlite::Open::existing);
+    const sqlite::Database database(path(name) / "store.sqlite", Access::write);
     std::map<std::string, std::set<std::string>> found;
     for (const std::string rows :
          {"runs id, parent, kind, resolved, state, grains, target_cycles, cycle, step, state_hash, "
@@ -227,7 +227,7 @@ TEST_F(MergeTest, RefusesDamagedSources) {
   fs::resize_file(path("cut") / record.file, 1000);
   expect_refused<StoreDamaged>([&] { a.merge({path("b"), path("cut")}); }, {record.file});
   copy("b", "forged");
-  sqlite::Database(path("forged") / "store.sqlite", sqlite::Open::existing)
+  sqlite::Database(path("forged") / "store.sqlite", Access::write)
       .execute(
           "DROP TRIGGER events_are_never_updated; UPDATE events SET type = 'RunFailed' WHERE "
           "type = 'RunCompleted'");

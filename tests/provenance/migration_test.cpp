@@ -26,7 +26,7 @@ class MigrationTest : public ::testing::Test {
     }
   }
 
-  sqlite::Database database() const { return {path_ / "store.sqlite", sqlite::Open::existing}; }
+  sqlite::Database database() const { return {path_ / "store.sqlite", Access::write}; }
   void execute(const std::string& sql) const { database().execute(sql); }
   std::int64_t integer(const std::string& sql) const { return database().integer(sql); }
   std::int64_t version() { return integer("PRAGMA user_version"); }

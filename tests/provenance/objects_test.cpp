@@ -3,6 +3,8 @@
 #include "provenance/objects.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <thread>
@@ -24,36 +26,36 @@ class ObjectStoreTest : public ::testing::Test {
 };
 
 TEST_F(ObjectStoreTest, GivesBackWhatWasPut) {
-  const ObjectInfo info = objects_.put(bytes_);
-  EXPECT_EQ(info.sha256, sha256_hex("abc"));
-  EXPECT_EQ(info.file, "objects/ba/" + info.sha256 + ".h5");
-  EXPECT_EQ(info.size, 3u);
-  EXPECT_EQ(objects_.get(info.sha256, 3), bytes_);
-  const auto written = fs::last_write_time(folder_.path() / info.file);
+  const std::string sha256 = objects_.put(bytes_);
+  EXPECT_EQ(sha256, sha256_hex("abc"));
+  EXPECT_EQ(ObjectStore::file_of(sha256), "objects/ba/" + sha256 + ".h5");
+  EXPECT_EQ(objects_.get(sha256, 3), bytes_);
+  const auto written = fs::last_write_time(folder_.path() / ObjectStore::file_of(sha256));
   objects_.put(bytes_);
-  EXPECT_EQ(fs::last_write_time(folder_.path() / info.file), written) << "it was written again";
-  EXPECT_TRUE(objects_.strangers({info.sha256}).empty());
+  EXPECT_EQ(fs::last_write_time(folder_.path() / ObjectStore::file_of(sha256)), written)
+      << "it was written again";
+  EXPECT_TRUE(objects_.strangers({sha256}).empty());
 }
 
 TEST_F(ObjectStoreTest, ObeysTheUmask) {
   const mode_t old = umask(022);
-  const ObjectInfo info = objects_.put(bytes_);
+  const std::string sha256 = objects_.put(bytes_);
   umask(old);
   struct stat status {};
-  ASSERT_EQ(stat((folder_.path() / info.file).c_str(), &status), 0);
+  ASSERT_EQ(stat((folder_.path() / ObjectStore::file_of(sha256)).c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0644u);
   ASSERT_EQ(stat((folder_.path() / "objects/ba").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0755u);
 }
 
 TEST_F(ObjectStoreTest, NamesADamagedFileAndMendsItWithTheNextPut) {
-  const ObjectInfo info = objects_.put(bytes_);
+  const std::string sha256 = objects_.put(bytes_);
   for (const std::string wrong : {"", "ab", "abd", "abcd"}) {
-    test::write_bytes(folder_.path() / info.file, wrong);
-    expect_refused<StoreDamaged>([&] { objects_.get(info.sha256, info.size); }, {info.file});
+    test::write_bytes(folder_.path() / ObjectStore::file_of(sha256), wrong);
+    expect_refused<StoreDamaged>([&] { objects_.get(sha256, 3); }, {ObjectStore::file_of(sha256)});
   }
   objects_.put(bytes_);
-  EXPECT_EQ(objects_.get(info.sha256, info.size), bytes_);
+  EXPECT_EQ(objects_.get(sha256, 3), bytes_);
 }
 
 TEST_F(ObjectStoreTest, ReportsAMissingFileAndANameThatIsNoDigest) {
@@ -63,32 +65,32 @@ TEST_F(ObjectStoreTest, ReportsAMissingFileAndANameThatIsNoDigest) {
 }
 
 TEST_F(ObjectStoreTest, FollowsNoLink) {
-  const ObjectInfo info = objects_.put(bytes_);
+  const std::string sha256 = objects_.put(bytes_);
   const fs::path outside = folder_.path() / "outside.h5";
-  fs::rename(folder_.path() / info.file, outside);
-  fs::create_symlink(outside, folder_.path() / info.file);
-  expect_refused<StoreDamaged>([&] { objects_.get(info.sha256, info.size); }, {"symbolic link"});
+  fs::rename(folder_.path() / ObjectStore::file_of(sha256), outside);
+  fs::create_symlink(outside, folder_.path() / ObjectStore::file_of(sha256));
+  expect_refused<StoreDamaged>([&] { objects_.get(sha256, 3); }, {"symbolic link"});
 
   objects_.put(bytes_);  // replaces the link and leaves what it named
-  EXPECT_FALSE(fs::is_symlink(folder_.path() / info.file));
-  EXPECT_EQ(objects_.get(info.sha256, info.size), bytes_);
+  EXPECT_FALSE(fs::is_symlink(folder_.path() / ObjectStore::file_of(sha256)));
+  EXPECT_EQ(objects_.get(sha256, 3), bytes_);
   EXPECT_EQ(test::read_bytes(outside), "abc");
 }
 
 TEST_F(ObjectStoreTest, FollowsNoLinkToAFolder) {
-  const ObjectInfo info = objects_.put(bytes_);
+  const std::string sha256 = objects_.put(bytes_);
   fs::rename(folder_.path() / "objects/ba", folder_.path() / "elsewhere");
   fs::create_symlink(folder_.path() / "elsewhere", folder_.path() / "objects/ba");
-  EXPECT_THROW(objects_.get(info.sha256, info.size), StoreDamaged);
+  EXPECT_THROW(objects_.get(sha256, 3), StoreDamaged);
   EXPECT_THROW(objects_.put(bytes_), StoreDamaged);
-  EXPECT_EQ(objects_.strangers({info.sha256}), std::vector<std::string>{"objects/ba"});
+  EXPECT_EQ(objects_.strangers({sha256}), std::vector<std::string>{"objects/ba"});
 }
 
 TEST_F(ObjectStoreTest, NamesStrangers) {
-  const ObjectInfo info = objects_.put(bytes_);
+  const std::string sha256 = objects_.put(bytes_);
   test::write_bytes(folder_.path() / "objects/ba/.tmp-1-0", "half");
   test::write_bytes(folder_.path() / "objects/note.txt", "");
-  EXPECT_EQ(objects_.strangers({info.sha256}),
+  EXPECT_EQ(objects_.strangers({sha256}),
             (std::vector<std::string>{"objects/ba/.tmp-1-0", "objects/note.txt"}));
   EXPECT_EQ(objects_.strangers({}).size(), 3u);
 }
@@ -101,6 +103,24 @@ TEST_F(ObjectStoreTest, TakesTheSameObjectFromSeveralThreads) {
   const std::string sha256 = sha256_hex(large);
   EXPECT_EQ(objects_.get(sha256, large.size()), large);
   EXPECT_TRUE(objects_.strangers({sha256}).empty());
+}
+
+TEST(NewFile, LeavesNothingOfWhatCouldNotBeWritten) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "new";
+  NewFile file(path);
+  file.add("abc");
+  EXPECT_THROW(NewFile{path}, std::system_error) << "it exists";
+  EXPECT_EQ(test::read_bytes(path), "abc");
+  rlimit old{};
+  getrlimit(RLIMIT_FSIZE, &old);
+  const rlimit full{5, old.rlim_max};
+  signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &full);
+  EXPECT_THROW(file.add("defgh"), std::system_error);
+  setrlimit(RLIMIT_FSIZE, &old);
+  signal(SIGXFSZ, SIG_DFL);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
 }  // namespace

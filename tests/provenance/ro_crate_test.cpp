@@ -152,9 +152,14 @@ TEST_F(Crate, APrunedCheckpointIsToldOfAndNotCopied) {
   EXPECT_FALSE(fs::exists(pruned / crate_path_of_checkpoint(record.sha256)));
   const std::string metadata = test::read_bytes(pruned / "ro-crate-metadata.json");
   EXPECT_NE(metadata.find("#checkpoint-" + record.sha256), std::string::npos);
+  test::write_bytes(crate_ / "checkpoints" / "notes", "of the user");
+  EXPECT_TRUE(fs::exists(crate_ / crate_path_of_checkpoint(record.sha256)));
+  write_ro_crate(store_, history_.sheared, crate_);
+  EXPECT_FALSE(fs::exists(crate_ / crate_path_of_checkpoint(record.sha256))) << "of an earlier one";
+  EXPECT_TRUE(fs::exists(crate_ / "checkpoints" / "notes"));
   test::append_to_run(store_, history_.sheared,
                       events::encode(events::CheckpointRegenerated{{record}}));
-  EXPECT_FALSE(run_lineage(store_, history_.sheared).back().find(record.sha256)->pruned);
+  EXPECT_TRUE(run_lineage(store_, history_.sheared).back().find(record.sha256)->kept());
 }
 
 TEST_F(Crate, ADamagedCheckpointLeavesNoCrate) {

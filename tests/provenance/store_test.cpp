@@ -182,6 +182,12 @@ TEST_F(StoreTest, PassesOverADamagedNewestCheckpoint) {
   EXPECT_EQ(reader.checkpoints(id_).size(), 3u);
 
   EXPECT_EQ(store_.newest_valid_checkpoint(id_).value().record.sha256, first.sha256);
+  EXPECT_EQ(store_.checkpoints(id_).size(), 3u) << "rejected where the caller asks what is damaged";
+  EXPECT_FALSE(store_.newest_valid_checkpoint(id_, nullptr, 45600).has_value());
+
+  std::vector<std::string> damage;
+  EXPECT_EQ(store_.newest_valid_checkpoint(id_, &damage).value().record.sha256, first.sha256);
+  EXPECT_EQ(damage.size(), 2u);
   EXPECT_EQ(store_.checkpoints(id_).size(), 1u);
   EXPECT_EQ(store_.checkpoints(id_, Listed::all).size(), 3u);
   EXPECT_EQ(store_.run(id_).step, 45600u);
@@ -191,6 +197,17 @@ TEST_F(StoreTest, PassesOverADamagedNewestCheckpoint) {
   store_.record_checkpoint(id_, sample_checkpoint(id_, 91200));  // computed again
   EXPECT_EQ(store_.newest_valid_checkpoint(id_)->record.sha256, second.sha256);
   EXPECT_EQ(store_.run(id_).step, 91200u);
+}
+
+TEST_F(StoreTest, ListsCheckpointsInATimeThatDoesNotGrowWithTheNumberOfRuns) {
+  sqlite::Database(path_ / "store.sqlite", Access::write)
+      .execute(
+          "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 50000) INSERT "
+          "INTO runs(id, ordinal, kind, resolved, state, grains, target_cycles, updated_at) SELECT "
+          "printf('0%063x', i), 100 + i, 'shear', '{}', 'declared', 1, 1, '' FROM n");
+  const Stopwatch watch;
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(store_.checkpoints(id_).empty());
+  EXPECT_LT(watch.seconds(), 0.2) << "looking at every run takes a second and more";
 }
 
 TEST_F(StoreTest, FindsARunByItsPrefix) {

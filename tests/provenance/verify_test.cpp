@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Any change made without the store is found and named by `verify`; `rebuild` repairs the tables.
-#include "provenance/verify.hpp"
+#include "provenance/store.hpp"
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ class VerifyTest : public ::testing::Test {
   }
 
   void execute(const std::string& sql) {  // without syncs: some thousand changes
-    sqlite::Database(log_, sqlite::Open::existing).execute("PRAGMA synchronous=OFF;" + sql);
+    sqlite::Database(log_, Access::write).execute("PRAGMA synchronous=OFF;" + sql);
   }
 
   /// The log as it was, without the triggers that refuse changes.
@@ -62,7 +62,7 @@ class VerifyTest : public ::testing::Test {
   }
 
   std::map<std::string, std::vector<std::string>> rows() {
-    return projection_rows(sqlite::Database(log_, sqlite::Open::existing));
+    return projection_rows(sqlite::Database(log_, Access::write));
   }
 
   /// Whether an error of this subject says these words.
@@ -248,11 +248,11 @@ TEST_F(VerifyTest, NotesTheLossOfARejectedObject) {
 }
 
 TEST_F(VerifyTest, NamesOrphans) {
-  const ObjectInfo orphan = ObjectStore(path_).put(test::bytes_of("written before a crash"));
+  const std::string orphan = ObjectStore(path_).put(test::bytes_of("written before a crash"));
   const VerifyReport report = verify();
   EXPECT_TRUE(report.ok());
   EXPECT_EQ(report.orphans, 1u);
-  EXPECT_EQ(only(report).subject, orphan.file);
+  EXPECT_EQ(only(report).subject, ObjectStore::file_of(orphan));
 }
 
 TEST_F(VerifyTest, NotesAStepThatWasReproducedDifferently) {

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <string>
 
-#include "provenance/io/temporary_folder.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell::test {
 

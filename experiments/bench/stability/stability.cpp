@@ -16,8 +16,7 @@
 
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/io/clock.hpp"
-#include "provenance/io/plain_file.hpp"
-#include "provenance/io/temporary_folder.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell::stability {
 

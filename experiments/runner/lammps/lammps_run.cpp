@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "experiments/runner/stop.hpp"
+#include "provenance/io/read_number.hpp"
 
 namespace shearcell {
 namespace {
@@ -39,13 +40,6 @@ std::string last_line(std::string_view text) {
   while (text.ends_with('\n')) text.remove_suffix(1);
   const auto newline = text.rfind('\n');
   return std::string(newline == text.npos ? text : text.substr(newline + 1));
-}
-
-std::uint64_t number_in(std::string_view name) {
-  std::uint64_t number = 0;
-  const char* end = name.data() + name.size();
-  const auto [stop, error] = std::from_chars(name.data(), end, number);
-  return error == std::errc() && stop == end ? number : 0;
 }
 
 // What the environment does not set already. Several of these may share a machine: Open MPI would
@@ -145,7 +139,8 @@ std::optional<State> LammpsRun::take_frame() {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path())) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(prefix)) continue;
-    const std::uint64_t step = number_in(std::string_view(name).substr(prefix.size()));
+    const auto step =
+        read_number<std::uint64_t>(std::string_view(name).substr(prefix.size())).value_or(0);
     if (step != 0 && (first == 0 || step < first)) first = step;
   }
   if (first == 0) return std::nullopt;
@@ -180,7 +175,7 @@ std::uint64_t LammpsRun::step() {
   tail.resize(tail.rfind('\n') == tail.npos ? 0 : tail.rfind('\n'));
   std::string line = last_line(tail);
   line.erase(std::remove(line.begin(), line.end(), ' '), line.end());
-  step_ = std::max(step_, number_in(line));
+  step_ = std::max(step_, read_number<std::uint64_t>(line).value_or(0));
   return step_;
 }
 

@@ -3,8 +3,7 @@
 
 #include <filesystem>
 
-#include "provenance/io/descriptor.hpp"
-#include "provenance/io/temporary_folder.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell {
 

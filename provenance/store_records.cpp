@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Maintenance of the store: verify, rebuild, prune, regenerate, merge.
+// What the store holds: reading it, and rebuilding, pruning and restoring it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +14,16 @@
 namespace shearcell {
 
 namespace {
+
+constexpr std::size_t kListed = 10;  // candidates of an ambiguous prefix
+
+void require_one(const char* what, std::string_view prefix,
+                 const std::vector<std::string>& candidates) {
+  if (candidates.size() < 2) return;
+  const bool more = candidates.size() == kListed;
+  throw NotFound(fmt::format("several {} begin with '{}'; give more digits of one of\n  {}{}", what,
+                             prefix, fmt::join(candidates, "\n  "), more ? "\n  ..." : ""));
+}
 
 /// Checkpoints that are initial states of other stages.
 std::set<std::string> initial_states(const EventLog& log) {
@@ -38,15 +48,132 @@ bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) 
 
 }  // namespace
 
+std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string& id,
+                                                               std::vector<std::string>* damage,
+                                                               std::uint64_t before_step) {
+  std::vector<CheckpointRecord> records = checkpoints(id);
+  std::reverse(records.begin(), records.end());
+  for (const CheckpointRecord& record : records) {
+    if (record.step >= before_step) continue;
+    try {
+      return LoadedCheckpoint{record, load_checkpoint(record)};
+    } catch (const CheckpointPruned&) {
+      continue;
+    } catch (const StoreDamaged& error) {
+      if (damage == nullptr) continue;
+      damage->push_back(error.what());
+      if (access_ != Access::read) reject_checkpoint(id, record.sha256, error.what());
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<RunRecord> Store::runs() const {
+  const std::scoped_lock guard(mutex_);
+  const sqlite::ReadTransaction snapshot(database_);
+  return query_runs(database_);
+}
+
+RunRecord Store::run(const std::string& id) const {
+  const std::scoped_lock guard(mutex_);
+  const sqlite::ReadTransaction snapshot(database_);
+  auto found = query_run(database_, id);
+  if (!found) throw unknown_run(id);
+  return std::move(*found);
+}
+
+std::vector<Lease> Store::leases() const {
+  const std::scoped_lock guard(mutex_);
+  std::vector<Lease> found = query_leases(database_);
+  const std::uint64_t now = now_ms();
+  std::erase_if(found, [now](const Lease& lease) { return lapsed(lease, now); });
+  return found;
+}
+
+RunRecord Store::find_run(std::string_view prefix) const {
+  const std::scoped_lock guard(mutex_);
+  const std::vector<std::string> ids = query_run_ids(database_, prefix, kListed);
+  if (ids.empty()) throw unknown_run(prefix);
+  require_one("runs", prefix, ids);
+  return run(ids.front());
+}
+
+std::optional<CheckpointRecord> Store::find_checkpoint(std::string_view prefix) const {
+  const std::scoped_lock guard(mutex_);
+  const auto found = query_checkpoints_by_prefix(database_, prefix, kListed);
+  if (found.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  for (const CheckpointRecord& record : found) names.push_back(record.sha256);
+  require_one("checkpoints", prefix, names);
+  return found.front();
+}
+
+std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, Listed listed) const {
+  const std::scoped_lock guard(mutex_);
+  if (!has_run(database_, id)) throw unknown_run(id);
+  auto found = query_checkpoints(database_, id);
+  std::erase_if(found, [listed](const CheckpointRecord& record) {
+    return (record.state == CheckpointState::rejected && listed != Listed::all) ||
+           (record.state == CheckpointState::pruned && listed == Listed::recorded);
+  });
+  return found;
+}
+
+Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
+  const std::string file = (folder_ / record.file).string();
+  const auto require_kept = [&] {
+    const std::scoped_lock guard(mutex_);
+    const auto now = query_checkpoint(database_, record.run, record.sha256);
+    if (!now || now->state != CheckpointState::pruned) return;
+    throw CheckpointPruned(fmt::format(
+        "{}: checkpoint {:.12} (run {:.12}, cycle {:g}) was pruned; restore it with `shearcell "
+        "regenerate {:.12}`",
+        file, record.sha256, record.run, record.cycle, record.sha256));
+  };
+  if (record.state == CheckpointState::pruned) require_kept();
+  std::vector<std::byte> bytes;
+  try {
+    bytes = objects_.get(record.sha256, record.size);
+  } catch (const StoreDamaged&) {
+    require_kept();  // it may have been pruned since the record was read
+    throw;
+  }
+  const RunRecord of = run(record.run);
+  try {
+    return read_checkpoint(bytes, record, of);
+  } catch (const StoreDamaged& damage) {
+    throw StoreDamaged(fmt::format("{}: {}", file, damage.what()));
+  }
+}
+
+std::optional<Checkpoint> Store::load_if_readable(const CheckpointRecord& record) const {
+  try {
+    return load_checkpoint(record);
+  } catch (const CheckpointPruned&) {
+  } catch (const StoreDamaged&) {
+  }
+  return std::nullopt;
+}
+
+std::vector<FigureRecord> Store::figures() const {
+  const std::scoped_lock guard(mutex_);
+  return query_figures(database_);
+}
+
+std::vector<Event> Store::events(std::string_view stream, std::string_view type) const {
+  const std::scoped_lock guard(mutex_);
+  return log_.events(stream, type);
+}
+
+Head Store::head() const {
+  const std::scoped_lock guard(mutex_);
+  return log_.head();
+}
+
 void Store::rebuild() {
   must_write();
   const std::scoped_lock guard(mutex_);
   rebuild_projections(database_, log_);
-}
-
-VerifyReport Store::verify(const std::optional<Head>& against) const {
-  const std::scoped_lock guard(mutex_);
-  return shearcell::verify(database_, log_, objects_, against);
 }
 
 std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
@@ -141,13 +268,6 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
 void Store::record_replay(const std::string& id, bool same, const nlohmann::json& facts) {
   run(id);  // throws when it is unknown
   record(run_stream(id), {same ? "ReplayVerified" : "ReplayDiverged", facts});
-}
-
-std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& sources,
-                                      const std::set<std::string>& runs) {
-  must_write();
-  const std::scoped_lock guard(mutex_);
-  return merge_stores(database_, log_, objects_, folder_, sources, runs);
 }
 
 }  // namespace shearcell

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "provenance/io/file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+
+namespace shearcell {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text));
+}
+
+/// At most `most` bytes from the beginning of a regular file; nothing when it is not one.
+std::optional<std::string> beginning_of(const fs::path& path, std::size_t most) {
+  // O_NONBLOCK: opening a pipe must not wait for a writer.
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  struct stat status {};
+  if (!file.valid() || fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
+    return std::nullopt;
+  }
+  try {
+    const auto bytes =
+        read_all(file, std::min(most, static_cast<std::size_t>(status.st_size)), path);
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  } catch (const std::system_error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+Descriptor::Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+
+Descriptor::~Descriptor() {
+  if (number_ >= 0) close(number_);
+}
+
+void fail_on(const std::filesystem::path& path, const std::string& doing) {
+  throw std::system_error(errno, std::generic_category(), path.string() + ": cannot " + doing);
+}
+
+void write_all(const Descriptor& file, std::span<const std::byte> bytes,
+               const std::filesystem::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(file.get(), bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail_on(path, "write");
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+std::vector<std::byte> read_all(const Descriptor& file, std::size_t size,
+                                const std::filesystem::path& path) {
+  std::vector<std::byte> bytes(size);
+  std::size_t done = 0;
+  while (done < size) {
+    const ssize_t count = read(file.get(), bytes.data() + done, size - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail_on(path, "read");
+    if (count == 0) break;
+    done += static_cast<std::size_t>(count);
+  }
+  bytes.resize(done);
+  return bytes;
+}
+
+void sync(const Descriptor& file, const std::filesystem::path& path) {
+  if (fsync(file.get()) != 0) fail_on(path, "write to disk (fsync)");
+}
+
+void replace_file(const Descriptor& folder, const std::filesystem::path& path,
+                  std::span<const std::byte> bytes, const std::string& temporary,
+                  Durability durability) {
+  static std::atomic<unsigned> counter = 0;
+  std::string name;
+  int number = -1;
+  do {
+    name = temporary + std::to_string(getpid()) + '-' + std::to_string(counter++);
+    number = openat(folder.get(), name.c_str(),
+                    O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
+  } while (number < 0 && errno == EEXIST);
+  if (number < 0) fail_on(path, "write");
+  const Descriptor file(number);
+  try {
+    write_all(file, bytes, path);
+    if (durability == Durability::synced) sync(file, path);
+    if (renameat(folder.get(), name.c_str(), folder.get(), path.filename().c_str()) != 0) {
+      fail_on(path, "rename the new file");
+    }
+  } catch (...) {
+    unlinkat(folder.get(), name.c_str(), 0);
+    throw;
+  }
+  if (durability == Durability::synced) sync(folder, path);
+}
+
+std::optional<std::string> read_plain(const fs::path& path, std::size_t limit) {
+  auto bytes = beginning_of(path, limit + 1);
+  if (bytes && bytes->size() > limit) bytes.reset();
+  return bytes;
+}
+
+void require_ours(const fs::path& path, const Recognize& ours) {
+  std::error_code ignored;
+  const fs::file_type type = fs::symlink_status(path, ignored).type();
+  if (type == fs::file_type::not_found) return;
+  if (type != fs::file_type::regular) {
+    throw NotOurs(path.string() +
+                  ": this is a folder, link or device; remove it, or write elsewhere with --out");
+  }
+  const auto beginning = beginning_of(path, 4096);
+  if (beginning && ours(*beginning)) return;
+  throw NotOurs(path.string() +
+                ": this file was not made by shearcell, so it is not overwritten; move it, or "
+                "write elsewhere with --out");
+}
+
+void write_output(const fs::path& path, std::string_view bytes) {
+  const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
+  const Descriptor folder(open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  if (!folder.valid()) fail_on(path, "write");
+  replace_file(folder, path, bytes_of(bytes), '.' + path.filename().string() + ".tmp-",
+               Durability::renamed);
+}
+
+NewFile::NewFile(const fs::path& path)
+    : path_(path),
+      file_(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644)) {
+  if (!file_.valid()) fail_on(path_, "write");
+}
+
+void NewFile::add(std::string_view text) {
+  try {
+    write_all(file_, bytes_of(text), path_);
+  } catch (const std::system_error&) {
+    unlink(path_.c_str());
+    throw;
+  }
+}
+
+TemporaryFolder::TemporaryFolder(const std::string& prefix) {
+  std::string pattern = fs::temp_directory_path() / (prefix + std::string(kRandom, 'X'));
+  if (mkdtemp(pattern.data()) == nullptr) {
+    fail_on(pattern, "make a temporary folder (is TMPDIR writable?)");
+  }
+  path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+}  // namespace shearcell
