@@ -101,12 +101,8 @@ void write_new(const std::filesystem::path& file, const std::string& text) {
     write_output(file, text, Existing::kept);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::file_exists) throw;
-    throw ManifestError({{file.string(),
-                          {},
-                          "",
-                          "the file exists already",
-                          "",
-                          "Choose another name, or remove it."}});
+    throw UsageError(file.string() +
+                     ": the file exists already. Choose another name, or remove it.");
   }
 }
 
