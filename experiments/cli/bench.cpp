@@ -135,10 +135,10 @@ void add_speed(CLI::App& bench, Context& context) {
   CLI::App* command = bench.add_subcommand(
       "speed",
       "Measure particle-steps per second in the sheared rough cell, and the share of each part");
-  add_count(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000);
-  add_count(*command, "--threads", options->threads, "Threads inside one run", "T", 1, 1024);
-  add_count(*command, "--repeats", options->repeats, "Number of timings; the median is printed",
-            "N", 1, 1000);
+  add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000);
+  add_number(*command, "--threads", options->threads, "Threads inside one run", "T", 1, 1024);
+  add_number(*command, "--repeats", options->repeats, "Number of timings; the median is printed",
+             "N", 1, 1000);
   add_number(*command, "--seconds", options->seconds_per_repeat, "Length of one timing", "S", 0.01,
              60);
   add_json_option(*command, context);
@@ -209,7 +209,7 @@ void add_accuracy(CLI::App& bench, Context& context) {
       "accuracy", "Measure error against cost of integrators, time steps and stiffness");
   command->add_flag("--quick", options->quick,
                     "Seconds instead of minutes: the same tables from fewer runs");
-  add_count(*command, "--jobs", options->jobs, "Runs computed at once", "J", 1, 1024);
+  add_number(*command, "--jobs", options->jobs, "Runs computed at once", "J", 1, 1024);
   command->add_option("--out", *out, "Folder for CSV files and figures")->type_name("DIR");
   add_json_option(*command, context);
   command->footer(
@@ -288,14 +288,14 @@ void add_engines(CLI::App& bench, Context& context) {
   auto weightless = std::make_shared<bool>(false);
   CLI::App* command = bench.add_subcommand(
       "engines", "Compare LAMMPS and our engine: trajectories, means over seeds, speed");
-  add_count(*command, "--size", options->grains, "Number of grains", "N", 100, 100'000'000);
-  add_count(*command, "--steps", options->steps, "Time steps of trajectories and timing", "S", 1,
-            1'000'000);
-  add_count(*command, "--cycles", options->cycles, "Cycles before the means; 0: no means", "C", 0,
-            1000);
-  add_count(*command, "--seeds", options->seeds, "Packings of the means", "K", 3, 1000);
-  add_count(*command, "--mpi", options->ranks,
-            "Run LAMMPS also with this many processes, by mpirun", "N", 1, 65536);
+  add_number(*command, "--size", options->grains, "Number of grains", "N", 100, 100'000'000);
+  add_number(*command, "--steps", options->steps, "Time steps of trajectories and timing", "S", 1,
+             1'000'000);
+  add_number(*command, "--cycles", options->cycles, "Cycles before the means; 0: no means", "C", 0,
+             1000);
+  add_number(*command, "--seeds", options->seeds, "Packings of the means", "K", 3, 1000);
+  add_number(*command, "--mpi", options->ranks,
+             "Run LAMMPS also with this many processes, by mpirun", "N", 1, 65536);
   command->add_flag("--settle", options->settle,
                     "Settle the loose grains in LAMMPS too, with the processes of --mpi");
   add_number(*command, "--settle-time-limit", options->settle_time_limit,

@@ -3,12 +3,42 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
 
 #include "core/machine.hpp"
 #include "provenance/io/read_number.hpp"
 
 namespace shearcell::cli {
+
+void fail(Context& context, ExitCode code) {
+  const auto gravity = [](int of) { return of == kInterrupted ? 0.5 : of; };
+  if (gravity(code) > gravity(context.exit_code)) context.exit_code = code;
+}
+
+std::optional<Store> open_if_there(const std::string& folder) {
+  // An empty folder is not a store yet; `run` would create one there.
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder) ||
+      (std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder, ignored))) {
+    return std::nullopt;
+  }
+  return std::optional<Store>(std::in_place, folder, Access::read);
+}
+
+void tell_problems(const MeasureOutcome& outcome, const char* left_out, Context& context) {
+  for (const auto* lines : {&outcome.damage, &outcome.pruned}) {
+    for (const std::string& line : *lines) tell_stderr("{}: {}\n", left_out, line);
+  }
+  for (const std::string& sha256 : outcome.changed) {
+    tell_stderr("checkpoint {:.12}: the cached measures differed and were replaced\n", sha256);
+  }
+  if (!outcome.cache_trouble.empty()) {
+    tell_stderr("measures cannot be cached: {}\n", outcome.cache_trouble);
+  }
+  if (!outcome.damage.empty()) fail(context, kStoreDamaged);
+}
 
 void add_json_option(CLI::App& command, Context& context) {
   command.add_flag("--json", context.json, "Print JSON for programs");
@@ -35,18 +65,13 @@ void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
            "KEY=V");
 }
 
-template <class Enum>
-CLI::IsMember is_name() {
-  return CLI::IsMember(std::vector<std::string>(kNames<Enum>.begin(), kNames<Enum>.end()));
-}
-
 }  // namespace
 
 void add_expand_options(CLI::App& command, ExpandOptions& options) {
   command.add_option("--scale", options.scale, "Named size (default: desk)");
-  add_count(command, "--cycles", options.cycles, "Cycles instead of the manifest's");
-  add_count(command, "--seeds", options.seeds, "Number of seeds instead of the manifest's", "N", 1,
-            UINT64_MAX);
+  add_number(command, "--cycles", options.cycles, "Cycles instead of the manifest's");
+  add_number(command, "--seeds", options.seeds, "Number of seeds instead of the manifest's", "N",
+             1);
   add_variant_option(command, options.variants);
 }
 
@@ -55,10 +80,10 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
   add_each(command, "--scale", selection.scales, "Only runs of this scale", "NAME");
   add_variant_option(command, selection.variants);
   add_each(command, "--seed", selection.seeds, "Only runs with this seed", "N")
-      ->check([](const std::string& text) { return unfit_count(text, 1, UINT64_MAX); });
+      ->check([](const std::string& text) { return unfit(text, std::uint64_t{1}, UINT64_MAX); });
   if (!states) return;
   add_each(command, "--state", selection.states, "Only runs in this state", "STATE")
-      ->check(is_name<RunState>());
+      ->check(one_of<RunState>());
 }
 
 LoadedManifests load_manifests(const std::vector<std::string>& paths,
@@ -78,39 +103,27 @@ MeasureOptions measure_options() {
   return {.workers = usable_cores(), .report = terminal_counter("measuring checkpoint")};
 }
 
-std::string unfit_count(const std::string& text, std::uint64_t low, std::uint64_t high) {
-  const auto value = read_number<std::uint64_t>(text);
-  const bool plain = value && (text[0] != '0' || text.size() == 1);
+template <class Number>
+std::string unfit(const std::string& text, Number low, Number high) {
+  constexpr bool whole = std::is_integral_v<Number>;
+  const auto value = read_number<Number>(text);
+  const bool plain = value && (!whole || text[0] != '0' || text.size() == 1);
   if (plain && *value >= low && *value <= high) return "";
-  if (high == UINT64_MAX) {
-    return fmt::format("must be a whole number from {} on, in decimal digits (got '{}')", low,
-                       text);
-  }
-  return fmt::format("must be a whole number from {} to {} in decimal digits (got '{}')", low, high,
+  const bool open = high == std::numeric_limits<Number>::max();
+  return fmt::format("must be a {}number from {} {} decimal digits (got '{}')",
+                     whole ? "whole " : "", low, open ? "on, in" : fmt::format("to {} in", high),
                      text);
 }
-
-std::string unfit_number(const std::string& text, double low, double high) {
-  const auto value = read_number<double>(text);
-  if (value && *value >= low && *value <= high) return "";
-  return fmt::format("must be a number from {} to {} in decimal digits (got '{}')", low, high,
-                     text);
-}
-
-CLI::Option* add_number(CLI::App& command, const std::string& names, double& value,
-                        const std::string& help, const std::string& type_name, double low,
-                        double high) {
-  const auto check = [low, high](const std::string& text) { return unfit_number(text, low, high); };
-  return command.add_option(names, value, help)->check(check)->type_name(type_name);
-}
+template std::string unfit(const std::string&, std::uint64_t, std::uint64_t);
+template std::string unfit(const std::string&, double, double);
 
 void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help) {
-  add_count(command, "--threads,-t", threads, help, "T", 1, 1024);
+  add_number(command, "--threads,-t", threads, help, "T", 1, 1024);
 }
 
 void add_engine_option(CLI::App& command, ExpandOptions& options) {
   command.add_option("--engine", options.engine, "What computes the shear (default: shearcell)")
-      ->check(is_name<EngineKind>())
+      ->check(one_of<EngineKind>())
       ->type_name("NAME");
 }
 

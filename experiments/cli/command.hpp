@@ -3,9 +3,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "experiments/figures/select_runs.hpp"
@@ -32,6 +36,15 @@ struct Context {
   bool json = false;
   int exit_code = kDone;
 };
+
+/// Keeps the gravest: 4, 3, 2, 1, then 85.
+void fail(Context& context, ExitCode code);
+
+/// A store to look into, or nothing where `run` would make one.
+std::optional<Store> open_if_there(const std::string& folder);
+
+/// Says what came in the way of measuring, each checkpoint after `left_out`; damage is a failure.
+void tell_problems(const MeasureOutcome& outcome, const char* left_out, Context& context);
 
 // Each subcommand lives in a file of its own, or with its closest relative, and adds itself here.
 void add_plan(CLI::App& app, Context& context);
@@ -90,25 +103,29 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
 /// All cores; progress on standard error if that is a terminal.
 MeasureOptions measure_options();
 
-/// What is wrong with a whole number in decimal digits from `low` to `high`; "" when nothing is.
-std::string unfit_count(const std::string& text, std::uint64_t low, std::uint64_t high);
+/// What is wrong with a number in decimal digits from `low` to `high`; "" when nothing is. A double
+/// may have a fraction and an exponent, a std::uint64_t no leading zeros.
+template <class Number>
+std::string unfit(const std::string& text, Number low, Number high);
 
-/// The same of a number from `low` to `high`, which may have a fraction and an exponent.
-std::string unfit_number(const std::string& text, double low, double high);
+template <class Value>
+using NumberOf = std::conditional_t<std::is_floating_point_v<Value>, double, std::uint64_t>;
 
 /// An option that takes such a number.
-template <class Count>
-CLI::Option* add_count(CLI::App& command, const std::string& names, Count& value,
-                       const std::string& help, const std::string& type_name = "N",
-                       std::uint64_t low = 0, std::uint64_t high = UINT64_MAX) {
-  const auto check = [low, high](const std::string& text) { return unfit_count(text, low, high); };
+template <class Value>
+CLI::Option* add_number(CLI::App& command, const std::string& names, Value& value,
+                        const std::string& help, const std::string& type_name = "N",
+                        NumberOf<Value> low = 0,
+                        NumberOf<Value> high = std::numeric_limits<NumberOf<Value>>::max()) {
+  const auto check = [low, high](const std::string& text) { return unfit(text, low, high); };
   return command.add_option(names, value, help)->check(check)->type_name(type_name);
 }
 
-/// An option that takes a number.
-CLI::Option* add_number(CLI::App& command, const std::string& names, double& value,
-                        const std::string& help, const std::string& type_name, double low,
-                        double high);
+/// Allows the names of an enumeration.
+template <class Enum>
+CLI::IsMember one_of() {
+  return CLI::IsMember(std::vector<std::string>(kNames<Enum>.begin(), kNames<Enum>.end()));
+}
 
 /// --threads T.
 void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help);

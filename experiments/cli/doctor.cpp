@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 struct Check {
   std::string what;
   std::string found;
-  std::string state;  ///< "ok", "slow", "missing"
+  std::string state;  ///< "ok", "slow", "low", "missing"
   std::string advice;
 };
 

@@ -11,6 +11,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "core/drive.hpp"
 #include "experiments/cli/command.hpp"
@@ -37,34 +38,39 @@ struct ExportOptions {
   bool metres = false;
 };
 
-using FrameWriters = std::vector<FrameWriter>;
+/// A folder of frames has run.json beside them.
+FrameWriter with_facts(FrameWriter write, const fs::path& out, std::size_t frames) {
+  return [write = std::move(write), facts = facts_writer(out, frames)](const Frame& frame) {
+    write(frame);
+    facts(frame);
+  };
+}
 
 struct ExportFormat {
   const char* name;
   const char* title;
   const char* ending;  ///< of the file of a run; "" for a folder
   /// What writes so many frames to `out`; none for a crate, which has no frames.
-  FrameWriters (*writers)(const ExportOptions&, const fs::path& out, std::size_t frames);
+  FrameWriter (*writer)(const ExportOptions&, const fs::path& out, std::size_t frames);
 };
 
 // A new format is one entry here.
 const std::array kFormats = {
     ExportFormat{"h5md", "H5MD 1.1, one file: MDAnalysis, h5py, VMD; lengths in nm", ".h5md",
-                 [](const auto&, const fs::path& out, std::size_t frames) -> FrameWriters {
-                   return {h5md_writer(out, frames)};
+                 [](const auto&, const fs::path& out, std::size_t frames) {
+                   return h5md_writer(out, frames);
                  }},
-    ExportFormat{
-        "extxyz", "extended XYZ, one file: OVITO, ASE, MDAnalysis; lengths in d", ".xyz",
-        [](const ExportOptions& options, const fs::path& out, std::size_t) -> FrameWriters {
-          return {extxyz_writer(out, options.metres ? Lengths::metres : Lengths::diameters)};
-        }},
+    ExportFormat{"extxyz", "extended XYZ, one file: OVITO, ASE, MDAnalysis; lengths in d", ".xyz",
+                 [](const ExportOptions& options, const fs::path& out, std::size_t) {
+                   return extxyz_writer(out, options.metres ? Lengths::metres : Lengths::diameters);
+                 }},
     ExportFormat{"vtk", "VTK PolyData and run.json, a folder: ParaView; SI", "",
-                 [](const auto&, const fs::path& out, std::size_t) -> FrameWriters {
-                   return {vtk_writer(out), facts_writer(out)};
+                 [](const auto&, const fs::path& out, std::size_t frames) {
+                   return with_facts(vtk_writer(out, frames), out, frames);
                  }},
     ExportFormat{"lammps", "LAMMPS data and run.json, a folder: LAMMPS, OVITO; SI", "",
-                 [](const auto&, const fs::path& out, std::size_t) -> FrameWriters {
-                   return {lammps_writer(out), facts_writer(out)};
+                 [](const auto&, const fs::path& out, std::size_t frames) {
+                   return with_facts(lammps_writer(out), out, frames);
                  }},
     ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5, and PROV-JSON", "", nullptr},
 };
@@ -149,15 +155,14 @@ std::vector<std::string> files_of(const fs::path& out) {
 std::vector<std::string> write_run(const Store& store, const SelectedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out) {
-  if (format.writers == nullptr) return write_ro_crate(store, run.run.id, out, options.licence);
+  if (format.writer == nullptr) return write_ro_crate(store, run.run.id, out, options.licence);
   const std::vector<CheckpointRecord> records = chosen(store, run.run, options.cycles);
   if (*format.ending == '\0') fs::create_directory(out);
   {
-    const FrameWriters writers = format.writers(options, out, records.size());
+    const FrameWriter write = format.writer(options, out, records.size());
     MeasureSources sources(store);
     for (const CheckpointRecord& record : records) {
-      const Frame frame = frame_of(store.load_checkpoint(record), record, run, &sources);
-      for (const FrameWriter& write : writers) write(frame);
+      write(frame_of(store.load_checkpoint(record), record, run, &sources));
     }
   }
   return files_of(out);
@@ -169,6 +174,17 @@ std::string check_uri(const std::string& text) {
   return web && text.find_first_of(" \"<>\\") == std::string::npos
              ? ""
              : text + " is no URI that begins with https://, as that of a licence does";
+}
+
+/// Throws for an option that this format would ignore.
+void require_effect(const ExportOptions& options, const ExportFormat& format) {
+  const bool crate = format.writer == nullptr;
+  const auto refuse = [&](const char* option) {
+    throw CLI::ValidationError(option, fmt::format("has no effect with --to {}", format.name));
+  };
+  if (crate && !options.cycles.empty()) refuse("--cycles");
+  if (!crate && !options.licence.empty()) refuse("--license");
+  if (options.metres && options.format != "extxyz") refuse("--metres");
 }
 
 /// The named runs, or else those of the filters; packings only by name.
@@ -193,16 +209,16 @@ std::vector<SelectedRun> wanted(const Store& store, const ExportOptions& options
 /// "drag_fluid=still_seed1_3f9a52c1.xyz": a file of its own in a folder of several runs.
 std::string entry_name(const SelectedRun& selected, const ExportFormat& format) {
   const Membership& m = selected.membership;
-  std::string variant = m.variant.substr(0, 100);
+  std::string name = fmt::format("{}_{}_seed{}_{:.8}{}", m.experiment.substr(0, 64),
+                                 m.variant.substr(0, 100), m.seed, selected.run.id, format.ending);
   std::ranges::replace_if(
-      variant,
+      name,
       [](unsigned char c) {
         return std::isalnum(c) == 0 &&
                std::string("=.+-").find(static_cast<char>(c)) == std::string::npos;
       },
       '_');
-  return fmt::format("{:.64}_{}_seed{}_{:.8}{}", m.experiment, variant, m.seed, selected.run.id,
-                     format.ending);
+  return name;
 }
 
 struct Exported {
@@ -219,7 +235,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<SelectedRu
   const fs::path given = fs::absolute(options.out);
   const fs::path out = given.has_filename() ? given : given.parent_path();
   const bool single = options.runs.size() == 1;
-  if (single && format.writers == nullptr) {  // a crate may add to an earlier one
+  if (single && format.writer == nullptr) {  // a crate may add to an earlier one
     return {{runs.front(), out, write_run(store, runs.front(), format, options, out)}};
   }
   require_new(out);
@@ -246,6 +262,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<SelectedRu
 void export_runs(const ExportOptions& options, Context& context) {
   const Store store(context.store, Access::read);
   const ExportFormat& format = *std::ranges::find(kFormats, options.format, &ExportFormat::name);
+  require_effect(options, format);
   std::vector<Exported> done;
   try {
     done = write_all(store, wanted(store, options), format, options);

@@ -23,18 +23,11 @@ struct FigureArguments {
   FigureOptions how;
 };
 
-void complain(const FigureSummary& result, std::set<std::string>& told) {
+void complain(const FigureSummary& result, std::set<std::string>& told, Context& context) {
   for (const std::string& note : result.notes) {  // once for all figures
     if (told.insert(note).second) tell_stderr("{}\n", note);
   }
-  for (const std::string& line : result.damage) tell_stderr("left out: {}\n", line);
-  for (const std::string& line : result.pruned) tell_stderr("left out: {}\n", line);
-  for (const std::string& sha256 : result.changed) {
-    tell_stderr("checkpoint {:.12}: the cached measures differed and were replaced\n", sha256);
-  }
-  if (!result.cache_trouble.empty()) {
-    tell_stderr("measures cannot be cached: {}\n", result.cache_trouble);
-  }
+  tell_problems(result, "left out", context);
   if (!result.plot_error.empty()) tell_stderr("no plot: {}\n", result.plot_error);
 }
 
@@ -63,9 +56,7 @@ void print_verdicts(const FigureSummary& result) {
 
 /// Prints one figure's summary or adds it to the list.
 void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
-  if (!result.damage.empty()) context.exit_code = kStoreDamaged;
-  const bool incomplete = !result.plot_error.empty() || !result.pruned.empty();
-  if (incomplete && context.exit_code == kDone) context.exit_code = kOtherError;
+  if (!result.plot_error.empty() || !result.pruned.empty()) fail(context, kOtherError);
   list.push_back(facts(result));
   if (context.json) return;
   tell("{}{}{} ({} scale): {}, {}, {} of them newly measured\n", result.experiment,
@@ -86,7 +77,7 @@ void figures(FigureArguments& options, Context& context) {
   if (wanted.figures.empty()) tell_stderr("No manifest of this store lists a figure.\n");
   const auto complain_of = [&](const std::string& problem) {  // the others are made all the same
     tell_stderr("shearcell: {}\n", problem);
-    context.exit_code = kUsageError;
+    fail(context, kUsageError);
   };
   for (const std::string& problem : wanted.unknown) complain_of(problem);
   FigureOptions& how = options.how;
@@ -97,7 +88,7 @@ void figures(FigureArguments& options, Context& context) {
   for (const WantedFigure& figure : in_order_of_needs(std::move(wanted.figures))) {
     try {
       const FigureSummary result = draw_figure(store, figure, how);
-      complain(result, told);
+      complain(result, told, context);
       take(result, list, context);
     } catch (const UsageError& problem) {
       complain_of(problem.what());

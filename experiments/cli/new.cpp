@@ -109,12 +109,8 @@ void write_new(const std::filesystem::path& file, const std::string& text) {
   }
   std::filesystem::remove(whole, ignored);
   if (failed == std::errc::file_exists) {
-    throw ManifestError({{file.string(),
-                          {},
-                          "",
-                          "the file exists already",
-                          "",
-                          "Choose another name, or remove it."}});
+    throw UsageError(file.string() +
+                     ": the file exists already. Choose another name, or remove it.");
   }
   if (failed) throw std::system_error(failed, file.string() + ": cannot write");
 }

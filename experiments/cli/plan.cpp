@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -23,16 +22,6 @@
 
 namespace shearcell::cli {
 namespace {
-
-std::optional<Store> open_if_there(const std::string& folder) {
-  // An empty folder is not a store yet; `run` would create one there.
-  std::error_code ignored;
-  if (!std::filesystem::exists(folder) ||
-      (std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder, ignored))) {
-    return std::nullopt;
-  }
-  return std::optional<Store>(std::in_place, folder, Access::read);
-}
 
 // Stages of the plan, each once, with what the store holds of them.
 struct Line {

@@ -125,18 +125,18 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
   };
   if (sound(store, record)) return say("kept", "the file is intact");
   if (const auto why = why_not_again(store.run(record.run))) {
-    context.exit_code = kOtherError;
+    fail(context, kOtherError);
     facts["why"] = *why;
     return say("refused", *why + "; keep a copy of its file elsewhere");
   }
   const Replay replay = regenerate_checkpoint(store, record, threads);
   facts["steps"] = replay.steps;
   if (replay.interrupted) {
-    context.exit_code = kInterrupted;
+    fail(context, kInterrupted);
     return say("interrupted", "interrupted; nothing was changed");
   }
   if (replay.divergence) {
-    context.exit_code = kStoreDamaged;
+    fail(context, kStoreDamaged);
     facts["why"] = replay.divergence->message;
     return say("diverged", "DIVERGED: " + replay.divergence->message);
   }
@@ -177,9 +177,9 @@ void add_prune(CLI::App& app, Context& context) {
       "prune", "Delete checkpoint files that can be recomputed; their records stay");
   command->add_option("run", options->runs, "Only these runs: ids, or unique beginnings of them");
   command->add_option("--state", options->state, "Only runs in this state")
-      ->check(CLI::IsMember({"declared", "running", "interrupted", "failed", "completed"}));
-  add_count(*command, "--keep-every", options->keep_every, "Keep every K-th cycle", "K", 1,
-            1'000'000'000);
+      ->check(one_of<RunState>());
+  add_number(*command, "--keep-every", options->keep_every, "Keep every K-th cycle", "K", 1,
+             1'000'000'000);
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
   add_common_options(*command, context);
   command->footer(

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `report`: the whole store in one HTML file.
-#include "experiments/report/report.hpp"
-
 #include <fmt/format.h>
 
 #include <memory>
 
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
+#include "experiments/report/page.hpp"
 #include "experiments/runner/progress.hpp"
 #include "provenance/io/file.hpp"
 
@@ -16,8 +15,6 @@ namespace {
 
 struct ReportCommand {
   std::string out = "report.html";
-  std::string accuracy;
-  bool drawings = false;
   double megabytes = 9;
   ReportOptions report;
 };
@@ -30,47 +27,45 @@ bool is_report(std::string_view beginning) {
              "<meta http-equiv=\"Content-Security-Policy\"") != beginning.npos;
 }
 
-nlohmann::json facts(const Report& report, const ReportCommand& command) {
-  return {{"file", command.out},
-          {"bytes", report.html.size()},
-          {"interactive", report.interactive},
-          {"experiments", report.experiments},
-          {"figures", report.figures},
-          {"stages", report.runs},
-          {"packings", report.packings},
-          {"checkpoints", report.frames},
-          {"damage", report.damage},
-          {"notes", report.notes}};
-}
-
 void report(ReportCommand& command, Context& context) {
   require_ours(command.out, is_report);
   const Store store(context.store, Access::read);
   ReportOptions& options = command.report;
-  options.interactive = !command.drawings;
   options.packings.budget = static_cast<std::size_t>(command.megabytes * 1e6);
-  if (!command.accuracy.empty()) options.accuracy = command.accuracy;
   for (std::string& run : options.packings.runs) run = store.find_run(run).id;
   options.workers = usable_cores();
   options.measured = terminal_counter("measuring checkpoint");
   options.packed = terminal_counter("packing checkpoint");
-  const Report made = make_report(store, options);
-  write_output(command.out, made.html);
-  if (!made.damage.empty()) context.exit_code = kStoreDamaged;
+  const ReportData made = collect_report(store, options);
+  const std::string html = report_page(made);
+  write_output(command.out, html);
+  if (!made.damage.empty()) fail(context, kStoreDamaged);
   for (const std::string& line : made.damage) tell_stderr("left out: {}\n", line);
   for (const std::string& line : made.notes) tell_stderr("left out: {}\n", line);
-  if (!has_front_end() && !command.drawings) {
+  if (!has_front_end() && options.interactive) {
     tell_stderr(
         "Figures are drawings and there are no packings: this program was built without "
         "Node.\n");
   }
-  if (context.json) return print_json(facts(made, command));
-  tell("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(made.html.size())),
-       counted(made.experiments, "experiment"), counted(made.figures, "figure"),
-       counted(made.runs, "stage"));
+  const std::size_t packings = made.packings.runs.size();
+  if (context.json) {
+    return print_json({{"file", command.out},
+                       {"bytes", html.size()},
+                       {"interactive", made.interactive},
+                       {"experiments", made.experiments.size()},
+                       {"figures", made.figures.size()},
+                       {"stages", made.runs.size()},
+                       {"packings", packings},
+                       {"checkpoints", made.packings.frames},
+                       {"damage", made.damage},
+                       {"notes", made.notes}});
+  }
+  tell("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(html.size())),
+       counted(made.experiments.size(), "experiment"), counted(made.figures.size(), "figure"),
+       counted(made.runs.size(), "stage"));
   if (made.interactive) {
-    fmt::print(", {} of {} in 3D", counted(made.frames, "checkpoint"),
-               counted(made.packings, "run"));
+    fmt::print(", {} of {} in 3D", counted(made.packings.frames, "checkpoint"),
+               counted(packings, "run"));
   }
   fmt::print("\n");
 }
@@ -85,21 +80,22 @@ void add_report(CLI::App& app, Context& context) {
   sub->add_option("--scale", command->report.scale, "Scale of the runs (default: declared last)");
   sub->add_option("--run", packings.runs, "Show these runs in 3D instead of the default")
       ->type_name("RUN");
-  add_count(*sub, "--runs-per-experiment", packings.runs_per_experiment,
-            "Number of runs shown in 3D: the last of each variant")
+  add_number(*sub, "--runs-per-experiment", packings.runs_per_experiment,
+             "Number of runs shown in 3D: the last of each variant")
       ->capture_default_str();
-  add_count(*sub, "--frames", packings.frames, "Checkpoints of each run in 3D, evenly spread", "N",
-            1, 100000)
+  add_number(*sub, "--frames", packings.frames, "Checkpoints of each run in 3D, evenly spread", "N",
+             1, 100000)
       ->capture_default_str();
   add_number(*sub, "--packings-mb", command->megabytes,
              "Limit for all packings in 3D; fewer checkpoints are taken where they would not fit",
              "MB", 0, 1000)
       ->capture_default_str();
-  sub->add_option("--accuracy", command->accuracy,
+  sub->add_option("--accuracy", command->report.accuracy,
                   "Folder that `bench accuracy --out` wrote: adds its diagrams")
       ->type_name("DIR");
-  sub->add_flag("--drawings", command->drawings,
-                "Figures as gnuplot draws them, no script, no packings");
+  sub->add_flag_callback(
+      "--drawings", [command] { command->report.interactive = false; },
+      "Figures as gnuplot draws them, no script, no packings");
   add_common_options(*sub, context);
   sub->footer(
       R"(The file needs no network: figures to zoom and read values from, verdicts, runs, lineage, and

@@ -15,7 +15,7 @@ namespace shearcell::cli {
 namespace {
 
 struct RunOptions {
-  std::vector<std::string> manifests;
+  std::vector<std::string> inputs;  ///< manifests, or runs of `resume`
   ExpandOptions expand;
   std::size_t jobs = 0;
   Parallel parallel;
@@ -38,7 +38,7 @@ void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& 
 
 void run(const RunOptions& options, Context& context) {
   // All manifests are read before anything is written.
-  const auto [manifests, plans] = load_manifests(options.manifests, options.expand);
+  const auto [manifests, plans] = load_manifests(options.inputs, options.expand);
   if (std::ranges::any_of(plans, asks_for_lammps)) find_lammps();  // or say what to install
   Store store(context.store, Access::create);
   std::vector<StageJob> jobs;
@@ -52,12 +52,12 @@ void run(const RunOptions& options, Context& context) {
 }
 
 void add_worker_options(CLI::App& command, RunOptions& options) {
-  add_count(command, "--jobs,-j", options.jobs, "Runs at a time (default: one per core)", "J", 1,
-            1024);
+  add_number(command, "--jobs,-j", options.jobs, "Runs at a time (default: one per core)", "J", 1,
+             1024);
   add_threads_option(command, options.parallel.threads, "Threads inside each run, for large cells");
-  add_count(command, "--mpi", options.parallel.ranks,
-            "Processes of each run in LAMMPS, by mpirun; it changes the last digits", "N", 1,
-            65536);
+  add_number(command, "--mpi", options.parallel.ranks,
+             "Processes of each run in LAMMPS, by mpirun; it changes the last digits", "N", 1,
+             65536);
   command.add_flag("--quiet,-q", options.quiet, "Show no progress");
 }
 
@@ -99,7 +99,7 @@ void report(const CampaignResult& result, Context& context) {
 void add_run(CLI::App& app, Context& context) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Compute the runs of manifests");
-  command->add_option("manifest", options->manifests, "YAML manifests")->required();
+  command->add_option("manifest", options->inputs, "YAML manifests")->required();
   add_expand_options(*command, options->expand);
   add_engine_option(*command, options->expand);
   add_worker_options(*command, *options);
@@ -118,14 +118,14 @@ machine and one store to share the work.)");
 
   auto resume_options = std::make_shared<RunOptions>();
   CLI::App* resume = app.add_subcommand("resume", "Continue unfinished runs");
-  resume->add_option("run", resume_options->manifests,
+  resume->add_option("run", resume_options->inputs,
                      "Run ids, or unique beginnings of them (default: all)");
   add_worker_options(*resume, *resume_options);
   add_common_options(*resume, context);
   resume->footer("Examples:\n  shearcell resume\n  shearcell resume 3f9a");
   resume->callback([resume_options, &context] {
     Store store(context.store, Access::write);
-    compute(store, unfinished(store, resume_options->manifests), *resume_options, context);
+    compute(store, unfinished(store, resume_options->inputs), *resume_options, context);
   });
 }
 

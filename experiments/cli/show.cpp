@@ -44,7 +44,7 @@ nlohmann::json engine_of_run(const Store& store, const std::string& run) {
 using Facts = std::vector<std::pair<TableColumn, nlohmann::json>>;
 
 /// As `table` has them, measured now if the store does not keep them.
-Facts facts_at(const Store& store, const CheckpointRecord& record) {
+Facts facts_at(const Store& store, const CheckpointRecord& record, Context& context) {
   MeasuredPackings found;
   try {
     found = measures_of(store, {&record, 1}, table_measures(), {});
@@ -52,15 +52,14 @@ Facts facts_at(const Store& store, const CheckpointRecord& record) {
     tell_stderr("not measured: {}\n", problem.what());
     return facts_of(record, std::nullopt);
   }
-  for (const auto* messages : {&found.damage, &found.pruned}) {
-    for (const std::string& line : *messages) tell_stderr("not measured: {}\n", line);
-  }
+  tell_problems(found, "not measured", context);
   return facts_of(record, found.measures.front());
 }
 
-Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& checkpoints) {
+Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& checkpoints,
+                      Context& context) {
   for (auto c = checkpoints.rbegin(); c != checkpoints.rend(); ++c) {
-    if (c->state != CheckpointState::rejected) return facts_at(store, *c);
+    if (c->state != CheckpointState::rejected) return facts_at(store, *c, context);
   }
   return {};
 }
@@ -100,7 +99,7 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                 {"engine", engine},
                 {"memberships", json_list(run.memberships, member)},
                 {"checkpoints", json_list(checkpoints, checkpoint_facts)},
-                {"measures", as_json(newest_measures(store, checkpoints))},
+                {"measures", as_json(newest_measures(store, checkpoints, context))},
                 {"error", run.error},
                 {"ended", end_of(store, run)}});
     return;
@@ -142,7 +141,7 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                         format_bytes(static_cast<double>(c.size)),
                         c.state == CheckpointState::recorded ? "" : std::string(name_of(c.state))};
               });
-  if (const Facts facts = newest_measures(store, checkpoints); !facts.empty()) {
+  if (const Facts facts = newest_measures(store, checkpoints, context); !facts.empty()) {
     tell("\nnewest checkpoint:\n");
     print(facts);
   }
@@ -173,13 +172,13 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
     nlohmann::json all = checkpoint_facts(record);
     all["grains"] = grains;
     all["wall_grains"] = wall_grains;
-    all["measures"] = as_json(facts_at(store, record));
+    all["measures"] = as_json(facts_at(store, record, context));
     return print_json(all);
   }
   print_head(record, fmt::format("{} ({}, hash verified)", record.file,
                                  format_bytes(static_cast<double>(record.size))));
   tell("grains      {} and {} wall grains\n", grains, wall_grains);
-  print(facts_at(store, record));
+  print(facts_at(store, record, context));
 }
 
 // The newest record of "drag/S2", or of "S2" where one experiment has that figure.
@@ -217,6 +216,13 @@ void show(const std::string& name, Context& context) {
   if (is_file_name(name)) return show_published(store, name, context);
   if (name.size() >= 4) {
     if (const auto checkpoint = store.find_checkpoint(name)) {
+      for (const RunRecord& run : store.runs()) {
+        if (!run.id.starts_with(name)) continue;
+        throw NotFound(
+            fmt::format("a run and a checkpoint begin with '{}'; give more digits of one of\n"
+                        "  run {}\n  checkpoint {}",
+                        name, run.id, checkpoint->sha256));
+      }
       return show_checkpoint(store, *checkpoint, context);
     }
   }

@@ -233,7 +233,7 @@ void show_published(const Store& store, const std::filesystem::path& file, Conte
   const bool damaged =
       std::ranges::any_of(faults, [](const InputFault& f) { return f.what != "pruned"; });
   if (damaged || found->verdict == PublishedFile::Verdict::changed) {
-    context.exit_code = kStoreDamaged;
+    fail(context, kStoreDamaged);
   }
   std::size_t inputs = 0;
   for (const FigureInput& input : lineage.inputs) inputs += input.checkpoints.size();

@@ -304,7 +304,7 @@ void add_status(CLI::App& app, Context& context) {
                              ->type_name("SECONDS=2")
                              ->expected(0, 1)
                              ->check([](const std::string& text) {
-                               return text.empty() ? "" : unfit_number(text, 0.1, 86400);
+                               return text.empty() ? "" : unfit(text, 0.1, 86400.0);
                              })
                              ->excludes("--json");
   command->footer(

@@ -27,7 +27,6 @@ constexpr double kWarningResolution = 30;
 struct SubmitOptions {
   std::vector<std::string> manifests;
   ExpandOptions expand;
-  std::string scheduler = "slurm";
   JobOptions job;
   std::size_t array_size = kMostTasks;
   bool dry_run = false;
@@ -171,10 +170,9 @@ void fold_leftovers(Store& store, const std::vector<Submission>& open) {
   }
 }
 
-nlohmann::json event_facts(const SubmitOptions& options, const JobOptions& job,
-                           const LoadedManifests& loaded) {
+nlohmann::json event_facts(const JobOptions& job, const LoadedManifests& loaded) {
   const auto sha = [](const Manifest& manifest) { return sha256_hex(manifest.text); };
-  return {{"scheduler", options.scheduler},
+  return {{"scheduler", "slurm"},
           {"manifests", json_list(loaded.manifests, sha)},
           {"scales", json_list(loaded.plans, [](const Plan& plan) { return plan.scale; })},
           {"options",
@@ -204,17 +202,16 @@ void submit_really(const SubmitOptions& options, const LoadedManifests& loaded, 
       propose(loaded.plans, &store, busy_runs(store, open), options.array_size, options.job);
   if (proposal.shares.empty()) return print_nothing(proposal, context);
   const Submission made =
-      prepare_submission(store, proposal.shares, event_facts(options, proposal.job, loaded), seen);
+      prepare_submission(store, proposal.shares, event_facts(proposal.job, loaded), seen);
   queue(made, proposal, store, context);
 }
 
 void submit(const SubmitOptions& options, Context& context) {
   const LoadedManifests loaded = load_manifests(options.manifests, options.expand);
   if (!options.dry_run) return submit_really(options, loaded, context);
-  std::optional<Store> store;
+  const std::optional<Store> store = open_if_there(context.store);
   std::set<std::string> busy;
-  if (fs::exists(fs::path(context.store) / "store.sqlite")) {
-    store.emplace(context.store, Access::read);
+  if (store) {
     std::vector<Submission> open = unfinished_submissions(*store);
     try {
       ask_queue(open);
@@ -252,19 +249,6 @@ void check_time(const JobOptions& job) {
 
 void add_job_options(CLI::App& command, SubmitOptions& options) {
   JobOptions& job = options.job;
-  const auto schedulers = CLI::IsMember({"slurm"});
-  command.add_option("--scheduler", options.scheduler, "What queues the jobs")
-      ->check(schedulers)
-      ->capture_default_str();
-  // Its name in earlier versions.
-  command
-      .add_option_function<std::string>(
-          "--engine",
-          [](const std::string&) {
-            tell_stderr("warning: --engine slurm is now called --scheduler slurm\n");
-          })
-      ->check(schedulers)
-      ->group("");
   command.add_option("--partition,-p", job.partition, "Partition")->check(unfit_value);
   command.add_option("--account,-A", job.account, "Account")->check(unfit_value);
   command
@@ -272,11 +256,11 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
                   "Time limit of one start of a task; it restarts until it is done")
       ->check(unfit_value)
       ->type_name("HH:MM:SS");
-  add_count(command, "--array-size", options.array_size, "Most tasks (default: one per packing)",
-            "K", 1, 100000);
-  add_count(command, "--cpus-per-task,-c", job.cpus,
-            "Cores, and so runs at a time, of a task (default: one per run, at most 16)", "C", 1,
-            1024);
+  add_number(command, "--array-size", options.array_size, "Most tasks (default: one per packing)",
+             "K", 1, 100000);
+  add_number(command, "--cpus-per-task,-c", job.cpus,
+             "Cores, and so runs at a time, of a task (default: one per run, at most 16)", "C", 1,
+             1024);
   add_threads_option(command, job.threads, "Threads inside each run, for large cells");
   command
       .add_option("--scratch", job.scratch,
@@ -284,10 +268,10 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
                   "minutes")
       ->check(unfit_path)
       ->type_name("DIR");
-  add_count(command, "--warn", job.warn_seconds,
-            "Seconds before the time limit at which tasks write checkpoints and queue themselves "
-            "again",
-            "S", 10, 3600)
+  add_number(command, "--warn", job.warn_seconds,
+             "Seconds before the time limit at which tasks write checkpoints and queue themselves "
+             "again",
+             "S", 10, 3600)
       ->capture_default_str();
   command.add_option("--sbatch", job.sbatch, "Further option of sbatch, as --sbatch=--mem=2G")
       ->check(check_sbatch)

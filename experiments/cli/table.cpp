@@ -38,15 +38,7 @@ void table(const TableOptions& options, Context& context) {
                 options.out);
   }
   for (const std::string& note : made.notes) tell_stderr("{}\n", note);
-  for (const auto* messages : {&made.damage, &made.pruned}) {
-    for (const std::string& line : *messages) {
-      tell_stderr("not measured: {}\n", line);
-    }
-  }
-  if (!made.cache_trouble.empty()) {
-    tell_stderr("measures cannot be cached: {}\n", made.cache_trouble);
-  }
-  if (!made.damage.empty()) context.exit_code = kStoreDamaged;
+  tell_problems(made, "not measured", context);
 }
 
 std::string columns_text() {
@@ -68,7 +60,7 @@ void add_table(CLI::App& app, Context& context) {
                     "Runs of older versions of a manifest too");
   CLI::Option* per =
       command->add_option("--per", options->per, "One row for each checkpoint or each run")
-          ->check(CLI::IsMember({"checkpoint", "run"}))
+          ->check(one_of<RowPer>())
           ->capture_default_str();
   std::vector<std::string> curves;
   std::string curves_text;

@@ -94,10 +94,10 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   for (const CheckpointRecord& record : chosen) {
     const Replay result = verify_by_replay(store, record, options.threads);
     if (result.interrupted) {
-      context.exit_code = kInterrupted;
+      fail(context, kInterrupted);
       break;
     }
-    if (result.divergence) context.exit_code = kStoreDamaged;
+    if (result.divergence) fail(context, kStoreDamaged);
     list.push_back(facts(result));
     if (!context.json) tell("{}\n", describe(result));
   }
@@ -159,7 +159,7 @@ void verify(const VerifyOptions& options, Context& context) {
   all["measures"] = {{"kept", measures.kept}, {"computed_again", measures.computed}};
   if (!context.json) print(report, measures);
   if (!report.ok()) {
-    context.exit_code = kStoreDamaged;
+    fail(context, kStoreDamaged);
     if (options.replay > 0) tell_stderr("Not replayed: the store is damaged.\n");
   } else if (options.replay > 0) {
     all["replay"] = replay(options, context);
@@ -188,11 +188,11 @@ void add_verify(CLI::App& app, Context& context) {
   command->add_option("--against", options->against, "A head that an earlier `verify` printed")
       ->expected(1, 2)
       ->type_name("SEQ HASH");
-  add_count(*command, "--replay", options->replay, "Recompute K sampled checkpoints", "K", 1,
-            1'000'000'000);
-  add_count(*command, "--measures", options->measures,
-            "Recompute the cached measures of K sampled checkpoints (default: 8)", "K");
-  add_count(*command, "--seed", options->seed, "Seed of the sample (default: from the head)");
+  add_number(*command, "--replay", options->replay, "Recompute K sampled checkpoints", "K", 1,
+             1'000'000'000);
+  add_number(*command, "--measures", options->measures,
+             "Recompute the cached measures of K sampled checkpoints (default: 8)", "K");
+  add_number(*command, "--seed", options->seed, "Seed of the sample (default: from the head)");
   add_threads_option(*command, options->threads, "Threads of a replay, for large cells");
   add_common_options(*command, context);
   command->footer(

@@ -134,7 +134,7 @@ void add_work(CLI::App& app, Context& context) {
   auto options = std::make_shared<WorkOptions>();
   CLI::App* command =
       app.add_subcommand("work", "Compute one task of a cluster job that `submit` queued");
-  add_count(*command, "--jobs,-j", options->jobs, "Runs at a time (default: 1)", "J", 1, 1024);
+  add_number(*command, "--jobs,-j", options->jobs, "Runs at a time (default: 1)", "J", 1, 1024);
   add_threads_option(*command, options->threads, "Threads inside each run (default: 1)");
   command
       ->add_option("--scratch", options->scratch,

@@ -19,7 +19,7 @@ using FrameWriter = std::function<void(const Frame&)>;
 /// H5MD 1.1 in one file: particles/all with box, position, velocity, id, species (as Frame::type),
 /// mass, radius and the measures of each grain; observables with every scalar; the run and its
 /// parameters as attributes of the group parameters. Lengths in nm, the nearest that MDAnalysis
-/// knows. `frames` is how many there will be.
+/// knows. `frames` is how many there will be, as below.
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 
 enum class Lengths { diameters, metres };
@@ -32,7 +32,7 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths);
 
 /// A folder with grains_CYCLE.vtp (points with their data; scalars as field data) and
 /// cell_CYCLE.vtp (the six faces of the cell) for each frame, and frames.pvd over all of them. SI.
-FrameWriter vtk_writer(const std::filesystem::path& folder);
+FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames);
 
 /// A folder with frame_CYCLE.data for each frame: LAMMPS data, atom_style sphere, units si, a
 /// triclinic box. Type 1 is a grain, 2 to 5 are the wall grains of the left, right, bottom and top
@@ -43,6 +43,6 @@ FrameWriter lammps_writer(const std::filesystem::path& folder);
 
 /// FOLDER/run.json: {"run", ..., "parameters": {...}, "frames": [{"cycle", "checkpoint",
 /// scalars}]}, beside the files of the formats that are folders.
-FrameWriter facts_writer(const std::filesystem::path& folder);
+FrameWriter facts_writer(const std::filesystem::path& folder, std::size_t frames);
 
 }  // namespace shearcell

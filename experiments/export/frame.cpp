@@ -88,11 +88,11 @@ void add_wall_grains(const Checkpoint& c, Frame& frame) {
 void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
                const Measures& measures, Frame& frame) {
   const Membership& m = selected.membership;
-  frame.facts = {{"run", selected.run.id},
-                 {"experiment", m.experiment},
-                 {"scale", m.scale},
-                 {"variant", m.variant},
-                 {"seed", m.seed}};
+  frame.run = {{"run", selected.run.id},
+               {"experiment", m.experiment},
+               {"scale", m.scale},
+               {"variant", m.variant},
+               {"seed", m.seed}};
   frame.checkpoint = record.sha256;
   for (const auto& [column, value] : facts_of(record, measures)) {
     // Members of Frame.
@@ -103,7 +103,7 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
   const nlohmann::json parameters =
       resolved.is_object() ? resolved.value("parameters", nlohmann::json()) : nlohmann::json();
   for (const auto& [key, value] : parameters.items()) {
-    if (value.is_number() || value.is_string()) frame.facts.emplace_back(key, value);
+    if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);
   }
 }
 

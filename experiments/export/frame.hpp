@@ -28,9 +28,9 @@ struct Frame {
   double cycle = 0;
   double theta = 0;  ///< tilt [rad]
 
-  /// What holds for every frame of the run: id, experiment, scale, variant, seed, and its
-  /// parameters by their keys in a manifest; texts and numbers.
-  std::vector<std::pair<std::string, nlohmann::json>> facts;
+  /// What holds for every frame of the run, texts and numbers: id, experiment, scale, variant and
+  /// seed; its parameters by their keys in a manifest.
+  std::vector<std::pair<std::string, nlohmann::json>> run, parameters;
   std::string checkpoint;  ///< SHA-256 of its file
   /// The measures of the frame, by the names that `table` gives them; NaN where one is unknown.
   std::vector<std::pair<std::string, double>> scalars;

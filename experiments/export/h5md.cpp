@@ -113,14 +113,17 @@ class Trajectory {
     const std::vector<double> radius(particles_, frame.radius * nm_per_m);
     put_unit(put_dataset(all, "radius", H5T_IEEE_F64LE, radius.data(), {particles_}), "nm");
     make_group(file_, "observables", 2 + frame.scalars.size());
-    const Handle parameters = make_group(file_, "parameters", 0, frame.facts.size());
-    for (const auto& [key, value] : frame.facts) {
-      if (value.is_string()) {
-        put_attribute(parameters, key, value.get<std::string>());
-      } else if (value.is_number_unsigned()) {
-        put_attribute(parameters, key, value.get<std::uint64_t>());
-      } else {
-        put_attribute(parameters, key, value.get<double>());
+    const Handle parameters =
+        make_group(file_, "parameters", 0, frame.run.size() + frame.parameters.size());
+    for (const auto* facts : {&frame.run, &frame.parameters}) {
+      for (const auto& [key, value] : *facts) {
+        if (value.is_string()) {
+          put_attribute(parameters, key, value.get<std::string>());
+        } else if (value.is_number_unsigned()) {
+          put_attribute(parameters, key, value.get<std::uint64_t>());
+        } else {
+          put_attribute(parameters, key, value.get<double>());
+        }
       }
     }
   }

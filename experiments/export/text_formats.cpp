@@ -36,9 +36,11 @@ std::string xyz_comment(const Frame& f, Lengths lengths) {
   }
   line += fmt::format(" length_unit={} velocity_unit={} d_m={:.17g} checkpoint={}", si ? "m" : "d",
                       si ? "m/s" : "d/s", d, quoted(f.checkpoint));
-  for (const auto& [key, value] : f.facts) {
-    line += fmt::format(" {}={}", key,
-                        value.is_string() ? quoted(value.get<std::string>()) : value.dump());
+  for (const auto* facts : {&f.run, &f.parameters}) {
+    for (const auto& [key, value] : *facts) {
+      line += fmt::format(" {}={}", key,
+                          value.is_string() ? quoted(value.get<std::string>()) : value.dump());
+    }
   }
   for (const auto& [name, value] : f.scalars) {
     if (std::isfinite(value)) line += fmt::format(" {}={:.17g}", name, value);
@@ -59,8 +61,8 @@ std::string lammps_header(const Frame& f) {
       "{} atoms\n5 atom types\n\n"
       "{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n0 {:.17g} zlo zhi\n{:.17g} 0 0 xy xz "
       "yz\n\n",
-      f.step, f.cycle, f.facts.front().second.get<std::string>(), f.particles(), low_x, high_x,
-      low_y, high_y, f.edges(2, 2), tilt * (high_y - low_y));
+      f.step, f.cycle, f.run.front().second.get<std::string>(), f.particles(), low_x, high_x, low_y,
+      high_y, f.edges(2, 2), tilt * (high_y - low_y));
 }
 
 }  // namespace
@@ -109,18 +111,16 @@ FrameWriter lammps_writer(const std::filesystem::path& folder) {
   };
 }
 
-FrameWriter facts_writer(const std::filesystem::path& folder) {
+FrameWriter facts_writer(const std::filesystem::path& folder, std::size_t count) {
   using Json = nlohmann::ordered_json;
-  return [folder, frames = std::make_shared<Json>(Json::array())](const Frame& f) {
-    Json all = {{"units", "SI: m, kg, s; others are in the names"}};
-    constexpr std::size_t kIdentity = 5;  // the run, and how its experiment names it
-    for (std::size_t i = 0; i < f.facts.size(); ++i) {
-      const auto& [key, value] = f.facts[i];
-      (i < kIdentity ? all[key] : all["parameters"][key]) = value;
-    }
+  return [folder, count, frames = std::make_shared<Json>(Json::array())](const Frame& f) {
     Json frame = {{"cycle", f.cycle}, {"time_s", f.time_s}, {"checkpoint", f.checkpoint}};
     for (const auto& [name, value] : f.scalars) frame[name] = value;  // NaN as null
     frames->push_back(std::move(frame));
+    if (frames->size() < count) return;
+    Json all = {{"units", "SI: m, kg, s; others are in the names"}};
+    for (const auto& [key, value] : f.run) all[key] = value;
+    for (const auto& [key, value] : f.parameters) all["parameters"][key] = value;
     all["frames"] = *frames;
     write_output(folder / "run.json",
                  all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");

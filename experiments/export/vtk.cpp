@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <numeric>
 
 #include "experiments/export/formats.hpp"
@@ -103,20 +102,21 @@ void write_cell(const Frame& f, const std::filesystem::path& file) {
 
 }  // namespace
 
-FrameWriter vtk_writer(const std::filesystem::path& folder) {
-  return [folder, sets = std::make_shared<std::string>()](const Frame& f) {
+FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames) {
+  return [folder, left = frames, sets = std::string()](const Frame& f) mutable {
     const std::string grains = fmt::format("grains_{:g}.vtp", f.cycle);
     const std::string cell = fmt::format("cell_{:g}.vtp", f.cycle);
     write_grains(f, folder / grains);
     write_cell(f, folder / cell);
-    *sets += fmt::format(
+    sets += fmt::format(
         "<DataSet timestep=\"{0:.17g}\" part=\"0\" name=\"grains\" file=\"{1}\"/>\n"
         "<DataSet timestep=\"{0:.17g}\" part=\"1\" name=\"cell\" file=\"{2}\"/>\n",
         f.cycle, grains, cell);
+    if (--left > 0) return;
     write_output(folder / "frames.pvd",
                  "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" "
                  "version=\"1.0\">\n<Collection>\n" +
-                     *sets + "</Collection>\n</VTKFile>\n");
+                     sets + "</Collection>\n</VTKFile>\n");
   };
 }
 

@@ -116,14 +116,9 @@ std::map<std::string, std::string> files_of(const FigureRecord& record) {
 }  // namespace
 
 json overrides_of(const Store& store, const RunRecord& run, const Membership& membership) {
-  json found;
-  if (run.kind != "shear") return found;
+  if (run.kind != "shear") return nullptr;
   const auto manifest = find_manifest(store, membership.manifest);
-  if (!manifest) return found;
-  for (const Override& made : overrides(manifest->text, membership)) {
-    found[made.key] = {{"run", made.value}, {"manifest", made.manifest}};
-  }
-  return found;
+  return manifest ? overrides(manifest->text, membership) : json();
 }
 
 std::string figure_name(const FigureRecord& record) {

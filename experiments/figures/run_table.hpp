@@ -3,10 +3,12 @@
 // parameter and each scalar measure.
 #pragma once
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiments/figures/select_runs.hpp"
@@ -28,6 +30,12 @@ struct RunTable : MeasureOutcome {
   std::vector<TableColumn> columns;
   std::vector<std::vector<nlohmann::json>> rows;  ///< null: it does not apply or is not known
   std::vector<std::string> notes;                 ///< of newest_runs()
+
+  /// Of a column; their number if there is none of that name.
+  std::size_t place(std::string_view name) const {
+    return static_cast<std::size_t>(std::ranges::find(columns, name, &TableColumn::name) -
+                                    columns.begin());
+  }
 };
 
 /// Rows in the order of declaration, then by cycle. The runs are newest_runs().

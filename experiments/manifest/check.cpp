@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks whether the values of a variant can be simulated together.
+// Checks whether the values of a variant can be simulated together, and plots and claims be made.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <map>
 #include <set>
-#include <span>
 
+#include "analysis/measures.hpp"
+#include "analysis/own_figure.hpp"
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/problems.hpp"
@@ -35,7 +37,7 @@ class VariantCheck {
         problems_(problems) {}
 
   void run() {
-    if (!engine_numbers_are_finite() || !autos_are_in_range()) return;
+    if (!autos_are_in_range()) return;
     check_shear_step();
     check_settle_steps();
     check_pause();
@@ -72,43 +74,6 @@ class VariantCheck {
 
   void report(string_view key, const Place& place, string problem, string remedy) {
     problems_.add(place.at, string(key), std::move(problem), place.got, std::move(remedy));
-  }
-
-  // Of these keys the one whose value is farthest from its default.
-  string_view farthest(std::span<const string_view> keys) const {
-    const auto distance = [this](string_view key) {
-      const Field& field = *find_field(key);
-      return std::fabs(std::log(get_value(field, p_).get<double>() /
-                                get_value(field, Parameters{}).get<double>()));
-    };
-    return *std::ranges::max_element(keys, {}, distance);
-  }
-
-  bool engine_numbers_are_finite() {
-    const Scene scene = shear_scene(p_);
-    struct Number {
-      double value;
-      bool may_be_zero;
-      std::vector<string_view> keys;  // that it is made from
-    };
-    const std::vector<string_view> spring = {"mass_kg", "stiffness_N_per_m"};
-    for (const Number& number :
-         {Number{scene.stiffness, false, spring}, Number{stability_limit_s(p_), false, spring},
-          Number{scene.drag_rate, true, {"drag_kg_per_s", "mass_kg"}},
-          Number{scene.gravity, true, {"gravity_m_per_s2", "diameter_m"}},
-          Number{scene.pressure, false, {"pressure_Pa", "diameter_m", "mass_kg"}},
-          Number{scene.pressure / scene.stiffness,
-                 true,
-                 {"pressure_Pa", "diameter_m", "stiffness_N_per_m"}},
-          Number{scene.time_step, false, {"period_s", "steps_per_cycle"}}}) {
-      if (std::isfinite(number.value) && (number.value > 0 || number.may_be_zero)) continue;
-      report(farthest(number.keys),
-             "the parameters are so far apart that their values in units of d, m and s leave the "
-             "range of a double",
-             fmt::format("Check {}.", fmt::join(number.keys, ", ")));
-      return false;
-    }
-    return true;
   }
 
   // Whether what `auto` came to may be used.
@@ -168,10 +133,7 @@ class VariantCheck {
   void check_pause() {
     const double steps = pause_time_steps(p_);
     if (p_.protocol != ProtocolKind::paused || steps <= kMostPauseSteps) return;
-    constexpr std::array<string_view, 3> keys = {"pause_s", "period_s", "steps_per_cycle"};
-    report(farthest(keys),
-           fmt::format("the pause takes {:.3g} time steps",
-                       std::min(steps, std::numeric_limits<double>::max())),
+    report("pause_s", fmt::format("the pause takes {:.3g} time steps", steps),
            fmt::format("Use a pause of at most {:g} steps of period_s/steps_per_cycle.",
                        kMostPauseSteps));
   }
@@ -274,7 +236,104 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   }
 }
 
+/// What the variants of a scale have that a plot or claim may ask for.
+struct Variants {
+  std::vector<Parameters> parameters;
+  std::vector<nlohmann::json> labels;
+  std::uint64_t longest = 0;  ///< cycles
+};
+
+Variants variants_of(const Scale& scale) {
+  Variants all;
+  for_each_variant(scale, [&](const Variant& variant) {
+    all.parameters.push_back(variant.parameters);
+    all.labels.push_back(variant.labels());
+    all.longest = std::max(all.longest, target_cycles(variant.parameters));
+  });
+  return all;
+}
+
+std::size_t count_of(const nlohmann::json& where, const Variants& variants) {
+  return static_cast<std::size_t>(std::ranges::count_if(variants.parameters, [&](const auto& p) {
+    return std::ranges::all_of(where.items(), [&](const auto& item) {
+      return get_value(*find_field(item.key()), p) == item.value();
+    });
+  }));
+}
+
+/// A swept key over which the plot would average: two variants have the same curve and x.
+std::string averaged_over(const PlotSpec& plot, const Variants& variants) {
+  if (plot.by.empty()) return "";
+  std::map<std::array<nlohmann::json, 2>, nlohmann::json>
+      curves;  // swept values of the first variant
+  for (std::size_t k = 0; k < variants.labels.size(); ++k) {
+    const auto value = [&](const std::string& key) {
+      const Field* field = find_field(key);
+      return field == nullptr ? nlohmann::json() : get_value(*field, variants.parameters[k]);
+    };
+    const auto [known, first] =
+        curves.try_emplace({value(plot.by), value(plot.x)}, variants.labels[k]);
+    for (const auto& [key, swept] : variants.labels[k].items()) {
+      if (known->second.at(key) != swept) return key;
+    }
+  }
+  return "";
+}
+
+std::vector<std::string> problems_of(const PlotSpec& plot, const Variants& variants) {
+  std::vector<std::string> found;
+  if (const std::string key = averaged_over(plot, variants); !key.empty()) {
+    found.push_back(
+        fmt::format("it would average over the values of {}. Leave out `by` for a curve "
+                    "of each variant.",
+                    key));
+  }
+  const bool every_cycle =
+      find_curve_measure(plot.y) == nullptr && (plot.x == "cycle" || is_measure(plot.x));
+  if (plot.cycle && every_cycle) {
+    found.emplace_back("at_cycle has no effect, since it draws every cycle. Leave it out.");
+  }
+  const std::uint64_t last = plot.cycles ? plot.cycles->at(1) : plot.cycle.value_or(0);
+  if (last > variants.longest && !(plot.cycle && every_cycle)) {
+    found.push_back(
+        fmt::format("it asks for cycle {}, and the runs have {}.", last, variants.longest));
+  }
+  return found;
+}
+
+std::vector<std::string> problems_of(const ClaimSpec& claim, const Variants& variants) {
+  std::vector<std::string> found;
+  for (const nlohmann::json& side : claim.between) {
+    const std::size_t count = count_of(side, variants);
+    if (count == 1) continue;
+    found.push_back(fmt::format("{} variants have {}; `between` must name one on each side.", count,
+                                words_of(side)));
+  }
+  if (claim.last > variants.longest) {
+    found.push_back(
+        fmt::format("it asks for cycle {}, and the runs have {}.", claim.last, variants.longest));
+  }
+  return found;
+}
+
 }  // namespace
+
+std::vector<std::string> own_warnings(const Manifest& manifest, const Scale& scale) {
+  std::vector<std::string> warnings;
+  if (manifest.plots.empty() && manifest.claims.empty()) return warnings;
+  const Variants variants = variants_of(scale);
+  const auto add = [&](const char* kind, const auto& list) {
+    for (const auto& own : list) {
+      for (const std::string& problem : problems_of(own, variants)) {
+        warnings.push_back(
+            fmt::format("{}: {} {}: {}", manifest.experiment, kind, own.name, problem));
+      }
+    }
+  };
+  add("plot", manifest.plots);
+  add("claim", manifest.claims);
+  return warnings;
+}
 
 string without_effect(string_view key, const Parameters& p) {
   const Field* field = find_field(key);

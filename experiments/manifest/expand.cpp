@@ -12,7 +12,6 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/filter.hpp"
-#include "experiments/manifest/own_check.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -86,9 +85,8 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
-void warn_of_variant(const Variant& variant, const ExpandOptions& options, Plan& plan) {
+void warn_of_variant(const Variant& variant, Plan& plan) {
   const Parameters& p = variant.parameters;
-  const bool stiffens = p.protocol == ProtocolKind::stiffen;
   const auto warn = [&](const std::string& warning) {
     plan.warnings.push_back(
         fmt::format("{}: variant {}: {}", plan.experiment, variant.name(), warning));
@@ -106,14 +104,11 @@ void warn_of_variant(const Variant& variant, const ExpandOptions& options, Plan&
                     "max_overlap_diameters ({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
                     overlap, p.max_overlap_diameters));
   }
-  if (!stiffens) {
+  if (p.protocol != ProtocolKind::stiffen) {
     if (const auto advice = time_step_advice(shear_time_step(p), "steps_per_cycle")) warn(*advice);
   }
   if (const auto advice = time_step_advice(settle_time_step(p), "settle_time_step_s")) {
     warn(*advice);
-  }
-  if (options.cycles && stiffens) {
-    warn("a number of cycles has no effect on stiffening, whose length is stiffness_decades");
   }
 }
 
@@ -188,7 +183,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     const Parameters& p = variant.parameters;
     without_effect.visit(p);
     if (!wanted.passes(variant.name())) return;
-    warn_of_variant(variant, options, plan);
+    warn_of_variant(variant, plan);
     if (options.engine && asks_lammps_to_stiffen(p)) {
       refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", *options.engine,
              "Leave the option out.");

@@ -140,7 +140,7 @@ StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed) {
 }
 
 StageSpec last_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent) {
-  const Stage stage = last_stage(parameters.protocol);
+  const Stage stage = stage_after_settling(parameters.protocol);
   json resolved = resolve(stage, parameters, seed);
   resolved["parent"] = parent.key;
   std::string key = stage_key(resolved);
@@ -172,7 +172,8 @@ StageRecord read_stage(const json& resolved) {
   }
   if (record.stage == Stage::stiffen) record.parameters.protocol = ProtocolKind::stiffen;
   // A record of a shear that says it stiffens is one that this program never wrote.
-  if (record.stage == Stage::shear && last_stage(record.parameters.protocol) != Stage::shear) {
+  if (record.stage == Stage::shear &&
+      stage_after_settling(record.parameters.protocol) != Stage::shear) {
     throw damaged("protocol", "is not one that shears");
   }
   const std::set<std::string> known =

@@ -22,15 +22,10 @@ struct ManifestLine {
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& labels);
 
-/// A value that the command line gave in place of the manifest's: --cycles, --seeds or --engine.
-struct Override {
-  std::string key;  ///< "cycles", "seed" or "engine"
-  nlohmann::json value;
-  nlohmann::json manifest;  ///< the manifest's value; of "seed" the list of its seeds
-};
-
-/// How a run of the manifest that shears differs from what its text asks for. Empty like
+/// How a run of the manifest that shears differs from what its text asks for, since the command
+/// line gave --cycles, --seeds or --engine: {"cycles", "seed" or "engine": {"run", "manifest"}}, of
+/// "seed" with the list of the manifest's seeds. Null where nothing differs, or like
 /// manifest_lines().
-std::vector<Override> overrides(std::string_view text, const Membership& membership);
+nlohmann::json overrides(std::string_view text, const Membership& membership);
 
 }  // namespace shearcell

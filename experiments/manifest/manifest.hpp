@@ -82,6 +82,7 @@ struct Sweep {
 struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;
+  Position at = {};  ///< line 0: not stated
 };
 
 /// Measures of a checkpoint (analysis/measures.hpp) that can end a run.
@@ -145,6 +146,7 @@ struct Manifest {
   std::string file;  ///< name for messages
   std::string text;  ///< the bytes that were read
   std::string experiment;
+  Position experiment_at;
   std::string question;
   std::vector<std::string> figures;
   std::vector<VariantLabel> labels;

@@ -29,15 +29,8 @@ template <>
 inline constexpr auto kNames<EngineKind> = names_in_order<EngineKind>("shearcell", "lammps");
 
 /// The stage that a protocol adds to the settled packing.
-constexpr Stage last_stage(ProtocolKind protocol) {
-  switch (protocol) {
-    case ProtocolKind::continuous:
-    case ProtocolKind::paused:
-      return Stage::shear;
-    case ProtocolKind::stiffen:
-      return Stage::stiffen;
-  }
-  return Stage::shear;
+constexpr Stage stage_after_settling(ProtocolKind protocol) {
+  return protocol == ProtocolKind::stiffen ? Stage::stiffen : Stage::shear;
 }
 
 struct Parameters {

@@ -251,13 +251,14 @@ StatedUntil read_until(const Entry& in) {
 }
 
 Seeds read_seeds(const Entry& in) {
-  Seeds seeds;
+  Seeds seeds{.at = in.key.at};
   if (in.node.kind != Node::Kind::list) {
     seeds.values.resize(read_count(in, ManifestLimits::runs).value_or(1));
     std::iota(seeds.values.begin(), seeds.values.end(), 1);
     return seeds;
   }
-  seeds = {.values = {}, .counted = false};
+  seeds.values.clear();
+  seeds.counted = false;
   for (const Entry& item : read_list(in, "[3, 5]")) {
     const auto seed = read_count(item, kLargestSeed);
     if (!seed) continue;

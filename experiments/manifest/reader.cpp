@@ -109,7 +109,10 @@ constexpr ManifestKey part(string_view name, string_view example, string_view me
 std::span<const ManifestKey> manifest_keys() {
   static constexpr std::array<ManifestKey, 12> keys = {{
       {"experiment", "drag", "required; its name: letters, digits, - and _",
-       [](const Entry& in, Manifest& manifest) { manifest.experiment = read_name(in); }},
+       [](const Entry& in, Manifest& manifest) {
+         manifest.experiment = read_name(in);
+         manifest.experiment_at = in.key.at;
+       }},
       {"question", "Does the fluid matter?", "what the experiment is to find out, for people",
        read_question},
       {"figures", "[S2]", "figures of the supplement to draw", read_figures},

@@ -33,6 +33,9 @@ constexpr Range from(double min, double max) {
   return {min, max};
 }
 
+// Of the parameters whose quotients are values in units of d, m and s, so that these stay in range.
+constexpr double kSmallest = 1e-30;
+
 constexpr Range above(double min, double max) {
   return {min, max, true};
 }
@@ -109,10 +112,11 @@ std::span<const Field> schema() {
   static const std::array fields = {
       // Grains and what acts on them.
       row("grains", "N", "1", &P::grains, from(1, 1e8), kPrepare, "number of grains"),
-      row("mass_kg", "m", "kg", &P::mass_kg, above(0, 1e6), kPrepare, "mass of a grain (Table I)"),
-      row("diameter_m", "d", "m", &P::diameter_m, above(0, 1e3), kPrepare,
+      row("mass_kg", "m", "kg", &P::mass_kg, from(kSmallest, 1e6), kPrepare,
+          "mass of a grain (Table I)"),
+      row("diameter_m", "d", "m", &P::diameter_m, from(kSmallest, 1e3), kPrepare,
           "diameter of a grain (Table I)"),
-      row("stiffness_N_per_m", "k", "N/m", &P::stiffness_N_per_m, above(0, 1e15), kPrepare,
+      row("stiffness_N_per_m", "k", "N/m", &P::stiffness_N_per_m, from(kSmallest, 1e15), kPrepare,
           "spring constant of a contact (Table I)"),
       row("drag_kg_per_s", "b", "kg/s", &P::drag_kg_per_s, from(0, 1e9), kPrepare,
           "Stokes drag constant (Table I)"),
@@ -121,7 +125,7 @@ std::span<const Field> schema() {
           "same height (B.3, Eq. S5)"),
       row("gravity_m_per_s2", "g", "m/s^2", &P::gravity_m_per_s2, from(0, 1e6), kPrepare,
           "gravitational acceleration (Table I); 0 turns it off (D)"),
-      row("pressure_Pa", "P", "Pa", &P::pressure_Pa, above(0, 1e12), kPrepare,
+      row("pressure_Pa", "P", "Pa", &P::pressure_Pa, from(kSmallest, 1e12), kPrepare,
           "pressure on the moving wall (Table I)"),
       row("pressure_at", "", "", choice<&P::pressure_at>(), {},
           {.stage = Stage::prepare, .omitted_at = "moving_wall"},
@@ -173,7 +177,7 @@ std::span<const Field> schema() {
           "(B.2)"),
       row("amplitude_rad", "A", "rad", &P::amplitude_rad, from(0, 0.5), kShear,
           "amplitude of the tilt theta = A sin(omega t)"),
-      row("period_s", "T", "s", &P::period_s, above(0, 1e6), kShear,
+      row("period_s", "T", "s", &P::period_s, from(kSmallest, 1e6), kShear,
           "duration of a cycle, 2 pi/omega (Table I: omega = pi rad/s)"),
       row("steps_per_cycle", "", "1", &P::steps_per_cycle, from(4, 1e9), kShear,
           "time steps in a cycle (Table I, B.4); `auto` keeps Table I's part of the stability "

@@ -67,6 +67,12 @@ void for_each_variant(const Scale& scale, const std::function<void(const Variant
 /// does not; else "".
 std::string without_effect(std::string_view key, const Parameters& parameters);
 
+/// A warning for each plot or claim that `shearcell figures` would refuse or leave without data: a
+/// side of `between` that is not one variant, a plot that would average over a swept key that it
+/// does not name, cycles beyond the end of the runs, `at_cycle` where every cycle is drawn. `scale`
+/// states everything (whole_scale()).
+std::vector<std::string> own_warnings(const Manifest& manifest, const Scale& scale);
+
 /// Time steps, units and geometry of every variant of every scale, and how many runs there are.
 /// Only for a manifest that is well formed otherwise. Throws ManifestError.
 void check_variants(const Manifest& manifest);

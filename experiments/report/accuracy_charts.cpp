@@ -28,50 +28,40 @@ std::optional<std::string> read_beside(const std::filesystem::path& csv, const c
   return text;
 }
 
-bool all(const json& list, bool (*holds)(const json&)) {
-  return list.is_array() && std::ranges::all_of(list, holds);
-}
-
-bool is_text(const json& text) {
-  return all(text, [](const json& run) {
-    return run.is_array() && run.size() == 2 && run[0].is_string() && run[1].is_string();
+/// Like this example: an object has its keys; a list of one element stands for any number of them,
+/// a longer one for as many; null for a number or null, an integer for integers.
+bool fits(const json& value, const json& like) {
+  if (like.is_null()) return value.is_null() || value.is_number();
+  if (like.is_number())
+    return like.is_number_integer() ? value.is_number_integer() : value.is_number();
+  if (value.type() != like.type()) return false;
+  if (like.is_array()) {
+    const bool tuple = like.size() > 1;
+    if (tuple && value.size() != like.size()) return false;
+    for (std::size_t k = 0; k < value.size(); ++k) {
+      if (!fits(value[k], like[tuple ? k : 0])) return false;
+    }
+  }
+  return !like.is_object() || std::ranges::all_of(like.items(), [&](const auto& member) {
+    return value.contains(member.key()) && fits(value.at(member.key()), member.value());
   });
 }
 
-bool is_axis(const json& axis) {
-  const auto end = [&](const char* key) {
-    return axis.at(key).is_null() || axis.at(key).is_number();
-  };
-  return is_text(axis.at("label")) && is_text(axis.at("unit")) && axis.at("log").is_boolean() &&
-         axis.at("whole").is_boolean() && axis.at("clip").is_boolean() && end("low") && end("high");
-}
-
-bool is_point(const json& point) {
-  const auto error = [&](std::size_t k) { return point[k].is_null() || point[k].is_number(); };
-  return point.is_array() && point.size() == 4 && point[0].is_number() && point[1].is_number() &&
-         error(2) && error(3);
-}
-
-bool is_series(const json& series) {
-  return is_text(series.at("title")) && series.at("colour").is_string() &&
-         series.at("point").is_number_integer() && series.at("shift").is_number() &&
-         series.at("line").is_boolean() && series.at("dashed").is_boolean() &&
-         series.at("band").is_boolean() && all(series.at("points"), is_point);
-}
-
-bool is_line(const json& line) {
-  return line.at("at").is_number() && line.at("vertical").is_boolean() &&
-         line.at("stub").is_boolean() && line.at("colour").is_string();
-}
-
-/// What chart_json() writes, and nothing that the front end could stumble over.
-bool is_chart(const json& chart) {
-  try {
-    return is_axis(chart.at("x")) && is_axis(chart.at("y")) && is_text(chart.at("title")) &&
-           all(chart.at("series"), is_series) && all(chart.at("lines"), is_line);
-  } catch (const json::exception&) {
-    return false;
-  }
+/// As chart_json() writes it. The front end would stumble over anything else.
+json example_chart() {
+  const json text = json::parse(R"([["", ""]])");
+  const json axis = {{"label", text}, {"unit", text},   {"log", true},    {"whole", true},
+                     {"clip", true},  {"low", nullptr}, {"high", nullptr}};
+  const json series = {{"title", text}, {"colour", ""},
+                       {"point", 0},    {"shift", 0.0},
+                       {"line", true},  {"dashed", true},
+                       {"band", true},  {"points", json::parse("[[0.0, 0.0, null, null]]")}};
+  const json line = {{"at", 0.0}, {"vertical", true}, {"stub", true}, {"colour", ""}};
+  return {{"x", axis},
+          {"y", axis},
+          {"title", text},
+          {"series", json::array({series})},
+          {"lines", json::array({line})}};
 }
 
 ReportPanel read_panel(const std::filesystem::path& csv) {
@@ -80,7 +70,7 @@ ReportPanel read_panel(const std::filesystem::path& csv) {
   panel.csv = read_beside(csv, ".csv").value_or("");
   if (const auto text = read_beside(csv, ".chart.json")) {
     panel.chart = parse_json(*text);
-    if (!is_chart(panel.chart)) {
+    if (!fits(panel.chart, example_chart())) {
       throw UsageError((csv.parent_path() / panel.name).string() +
                        ".chart.json: not a chart of `bench accuracy --out`");
     }

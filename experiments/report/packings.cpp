@@ -5,15 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
 
 #include "analysis/chart.hpp"
 #include "analysis/common_neighbours.hpp"
-#include "analysis/measures.hpp"
 #include "analysis/motion.hpp"
 #include "analysis/profiles.hpp"
+#include "analysis/voronoi.hpp"
 #include "experiments/figures/select_runs.hpp"
-#include "experiments/report/frames.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/measure_sources.hpp"
@@ -26,6 +26,24 @@ namespace {
 using nlohmann::json;
 using namespace nlohmann::literals;
 
+constexpr double largest_word = 65535;
+
+void put_word(double value, std::vector<std::byte>& bytes) {
+  const auto word = static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, largest_word)));
+  bytes.push_back(static_cast<std::byte>(word & 0xFFU));
+  bytes.push_back(static_cast<std::byte>(word >> 8U));
+}
+
+std::byte byte_of(const GrainField& field, double value) {
+  constexpr double most = 254;
+  constexpr auto unknown = std::byte{255};
+  if (!field.classes.empty()) return static_cast<std::byte>(static_cast<unsigned>(value));
+  double share = (value - field.low) / (field.high - field.low);
+  if (field.logarithmic) share = std::log(value / field.low) / std::log(field.high / field.low);
+  if (std::isnan(share)) return unknown;
+  return static_cast<std::byte>(std::lround(most * std::clamp(share, 0.0, 1.0)));
+}
+
 constexpr std::size_t kFields = 6;          // of make_fields()
 constexpr std::size_t kFactsInPage = 2500;  // [bytes]: facts, profiles and braces
 
@@ -33,7 +51,6 @@ struct ChosenRun {
   RunRecord run;
   Membership membership;
   std::vector<CheckpointRecord> checkpoints;  // that can be read; then those to show
-  std::size_t stored = 0;                     // that can be read
   std::size_t bytes = 0;                      // of one of them in the page
   std::size_t grains = 0;
   std::size_t wall_grains = 0;
@@ -111,7 +128,6 @@ void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings)
     }
   }
   std::erase_if(runs, [](const ChosenRun& run) { return run.checkpoints.empty(); });
-  for (ChosenRun& run : runs) run.stored = run.checkpoints.size();
 }
 
 std::size_t bytes_with(const std::vector<ChosenRun>& runs, std::size_t frames) {
@@ -205,13 +221,13 @@ json profiles_json(const Checkpoint& checkpoint, const GrainMeasures& grains,
           {"crystalline", rounded(found.crystalline_percent)}};
 }
 
-struct Frame {
+struct PageFrame {
   json value;
   double step = 0;
 };
 
-Frame make_frame(const Store& store, const RunRecord& run, const CheckpointRecord& record,
-                 const MeasureSources& sources) {
+PageFrame make_frame(const Store& store, const RunRecord& run, const CheckpointRecord& record,
+                     const MeasureSources& sources) {
   const Checkpoint checkpoint = store.load_checkpoint(record);
   const Analysis analysis = analyse(checkpoint);
   const WallPose pose = pose_of(checkpoint);
@@ -241,6 +257,42 @@ Frame make_frame(const Store& store, const RunRecord& run, const CheckpointRecor
 }
 
 }  // namespace
+
+PackedFrame pack_frame(const Checkpoint& checkpoint, const WallPose& pose,
+                       const GrainMeasures& grains, std::span<const GrainField> fields) {
+  const Eigen::Matrix3Xd position = wrapped_sites(checkpoint.cell, pose, checkpoint.state.position);
+  PackedFrame frame;
+  frame.origin = position.rowwise().minCoeff();
+  frame.step = (position.rowwise().maxCoeff() - frame.origin) / largest_word;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const double step = frame.step[axis] > 0 ? frame.step[axis] : 1;
+    for (Eigen::Index i = 0; i < position.cols(); ++i) {
+      put_word((position(axis, i) - frame.origin[axis]) / step, frame.bytes);
+    }
+  }
+  for (const double phi : grains.phi_local) put_word(phi * largest_word, frame.bytes);
+  for (const double q6 : grains.q6) put_word(q6 * largest_word, frame.bytes);
+  for (const std::int32_t label : grains.crystallites.label) put_word(label + 1.0, frame.bytes);
+  for (std::size_t i = 0; i < grains.structure.size(); ++i) {
+    const unsigned interior = grains.interior[i] != 0 ? 4 : 0;
+    frame.bytes.push_back(
+        static_cast<std::byte>(static_cast<unsigned>(grains.structure[i]) + interior));
+  }
+  for (const GrainField& field : fields) {
+    for (const double value : field.value) frame.bytes.push_back(byte_of(field, value));
+  }
+  return frame;
+}
+
+nlohmann::json to_json(const GrainField& field) {
+  if (!field.classes.empty()) return {{"key", field.key}, {"classes", field.classes}};
+  return {{"key", field.key}, {"unit", field.unit}, {"low", field.low}, {"high", field.high}};
+}
+
+std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains, std::size_t fields) {
+  const std::size_t bytes = 6 * (grains + wall_grains) + (7 + fields) * grains;
+  return (bytes + 2) / 3 * 4;
+}
 
 std::vector<std::size_t> evenly(std::size_t size, std::size_t count) {
   count = std::min(count, size);
@@ -272,7 +324,7 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
       of_run.push_back(&run.run);
     }
   }
-  std::vector<Frame> frames(records.size());  // null where a checkpoint cannot be read
+  std::vector<PageFrame> frames(records.size());  // null where a checkpoint cannot be read
   const UnreadCheckpoints unread = read_in_parallel(
       records.size(), workers,
       [&](std::size_t k) { frames[k] = make_frame(store, *of_run[k], records[k], sources); },
@@ -297,7 +349,6 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
                              {"experiment", run.membership.experiment},
                              {"grains", run.grains},
                              {"wall_grains", run.wall_grains},
-                             {"checkpoints", run.stored},
                              {"frames", std::move(list)}});
   }
   return packings;

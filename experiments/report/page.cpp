@@ -5,7 +5,6 @@
 
 #include <charconv>
 #include <cstddef>
-#include <set>
 #include <vector>
 
 #include "experiments/report/html.hpp"
@@ -55,10 +54,6 @@ std::string head_html(const ReportData& data) {
 }
 
 std::string title_html(const ReportData& data) {
-  std::set<std::string> runs;
-  for (const ReportExperiment& experiment : data.experiments) {
-    for (const RunRecord& run : experiment.runs) runs.insert(run.id);
-  }
   return fmt::format(
       "<header>\n<p class=\"eyebrow\">shearcell report</p>\n<h1>{}</h1>\n<p class=\"lead\">{}, {}, "
       "{}. Log at event {}, <code title=\"{}\">{}</code>. Made by shearcell {} ({}).</p>\n"
@@ -66,7 +61,7 @@ std::string title_html(const ReportData& data) {
       "system</option><option value=\"light\">light</option><option "
       "value=\"dark\">dark</option></select></label>\n</header>\n",
       escape_html(data.store), counted(data.experiments.size(), "experiment"),
-      counted(data.figures.size(), "figure"), counted(runs.size(), "stage"), data.head.seq,
+      counted(data.figures.size(), "figure"), counted(data.runs.size(), "stage"), data.head.seq,
       escape_html(data.head.hash), escape_html(data.head.hash.substr(0, 12)),
       escape_html(data.program.value("version", "")),
       escape_html(data.program.value("commit", "")));
@@ -79,13 +74,14 @@ std::string overview_html(const ReportData& data) {
     for (const std::size_t index : experiment.figures) {
       const ReportFigure& figure = data.figures.at(index);
       figures += fmt::format("<a href=\"#figure-{}\">{}</a> ", escape_html(figure.id),
-                             escape_html(figure.name));
+                             escape_html(figure.summary.name));
     }
+    const RegisteredManifest& manifest = experiment.manifest;
     const std::string& question =
-        experiment.question.empty() ? experiment.name : experiment.question;
+        manifest.question.empty() ? manifest.experiment : manifest.question;
     rows.push_back({fmt::format("<a href=\"#experiment-{0}\">{1}</a> <span "
                                 "class=\"small\">{0}</span>",
-                                escape_html(experiment.name), escape_html(question)),
+                                escape_html(manifest.experiment), escape_html(question)),
                     ruling_html(ruling_of(data, experiment)), figures,
                     std::to_string(experiment.runs.size())});
   }
@@ -124,7 +120,7 @@ std::string compare_html(const ReportData& data) {
 std::string across_html(const ReportData& data) {
   std::string html;
   for (const ReportFigure& figure : data.figures) {
-    if (figure.experiment.empty()) html += figure_html(data, figure);
+    if (figure.summary.experiment.empty()) html += figure_html(data, figure);
   }
   if (html.empty()) return html;
   return "<section id=\"across\">\n<h2>All experiments together</h2>\n" + html + "</section>\n";
@@ -178,7 +174,12 @@ std::string data_html(const ReportData& data) {
       front_end_script());
 }
 
-/// The whole page: markup, style, data and, when it is interactive, the front end.
+}  // namespace
+
+bool has_front_end() {
+  return !front_end_script().empty();
+}
+
 std::string report_page(const ReportData& data) {
   std::string html =
       head_html(data) + "<body>\n" + title_html(data) + "<main>\n" + overview_html(data);
@@ -188,26 +189,6 @@ std::string report_page(const ReportData& data) {
   html += across_html(data) + compare_html(data) + packings_html(data) + accuracy_html(data) +
           runs_html(data) + about_html(data);
   return html + "</main>\n" + data_html(data) + "</body>\n</html>\n";
-}
-
-}  // namespace
-
-bool has_front_end() {
-  return !front_end_script().empty();
-}
-
-Report make_report(const Store& store, const ReportOptions& options) {
-  Report report;
-  const ReportData data = collect_report(store, options, report);
-  report.html = report_page(data);
-  report.experiments = data.experiments.size();
-  report.figures = data.figures.size();
-  report.runs = data.runs.size();
-  report.packings = data.packings.runs.size();
-  report.frames = data.packings.frames;
-  report.interactive = data.interactive;
-  if (!data.drawing_trouble.empty()) report.notes.push_back(data.drawing_trouble);
-  return report;
 }
 
 }  // namespace shearcell

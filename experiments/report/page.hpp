@@ -8,6 +8,10 @@
 
 namespace shearcell {
 
+/// The whole page: markup, style, data and, when it is interactive, the front end. The same store
+/// and options give the same bytes with the same program (drawings: with the same gnuplot).
+std::string report_page(const ReportData& data);
+
 /// The experiment's question, verdict, figures and runs.
 std::string experiment_html(const ReportData& data, const ReportExperiment& experiment);
 

@@ -89,7 +89,7 @@ std::string checkpoints_html(const ReportData& data, const ReportExperiment& exp
   std::map<CheckpointState, std::size_t> count;
   std::size_t waiting = 0;
   for (const RunRecord& run : experiment.runs) {
-    waiting += to_come(run, experiment.name);
+    waiting += to_come(run, experiment.manifest.experiment);
     for (const CheckpointHistory& c : data.runs.at(run.id).checkpoints) ++count[c.record.state];
   }
   return counts_html({{"done", "✓", "stored", count[CheckpointState::recorded]},
@@ -103,7 +103,7 @@ std::string figures_html(const ReportData& data, const ReportExperiment& experim
   for (const std::size_t index : experiment.figures) {
     const ReportFigure& figure = data.figures.at(index);
     names += fmt::format(" <a href=\"#figure-{}\">{}</a>", escape_html(figure.id),
-                         escape_html(figure.name));
+                         escape_html(figure.summary.name));
   }
   for (const std::string& name : experiment.unmade) names += fmt::format(" {}", escape_html(name));
   return counts_html({{"done", "✓", "made", experiment.figures.size()},
@@ -112,7 +112,7 @@ std::string figures_html(const ReportData& data, const ReportExperiment& experim
 }
 
 std::string manifest_html(const ReportExperiment& experiment) {
-  const std::string brief = escape_html(experiment.manifest.substr(0, 12));
+  const std::string brief = escape_html(experiment.manifest.sha256.substr(0, 12));
   return fmt::format("<p><a href=\"#manifest-{0}\">{1}</a></p><p class=\"id\">{0}</p>", brief,
                      escape_html(experiment.manifest_path));
 }
@@ -121,7 +121,7 @@ std::string manifest_html(const ReportExperiment& experiment) {
 /// picture of boxes, which the style sheet puts in a row or, on a narrow page, in a column.
 std::string workflow_html(const ReportData& data, const ReportExperiment& experiment) {
   return fmt::format("<ol class=\"workflow\" aria-label=\"Workflow of {}\">\n",
-                     escape_html(experiment.name)) +
+                     escape_html(experiment.manifest.experiment)) +
          box_html("Manifest", manifest_html(experiment)) +
          box_html("Packings", stages_html(experiment, true)) +
          box_html("Runs", stages_html(experiment, false)) +
@@ -151,7 +151,7 @@ std::string figure_html(const ReportData& data, const ReportFigure& figure) {
   std::string html = fmt::format(
       "<section class=\"figure\" id=\"figure-{0}\">\n<h3>Figure {1}. "
       "{2}</h3>\n<div class=\"panels\">\n",
-      escape_html(figure.id), escape_html(figure.name), escape_html(figure.title));
+      escape_html(figure.id), escape_html(figure.summary.name), escape_html(figure.summary.title));
   for (const ReportPanel& panel : figure.panels) html += panel_html(data, panel);
   html += "</div>\n<ul class=\"claims\">\n";
   for (const Verdict& verdict : figure.summary.verdicts) html += claim_html(verdict);
@@ -189,11 +189,12 @@ std::string panel_html(const ReportData& data, const ReportPanel& panel) {
 }
 
 std::string experiment_html(const ReportData& data, const ReportExperiment& experiment) {
-  const std::string name = escape_html(experiment.name);
+  const std::string name = escape_html(experiment.manifest.experiment);
   std::string html = fmt::format(
       "<section class=\"experiment\" id=\"experiment-{0}\">\n<p class=\"eyebrow\">{0}</p>\n"
       "<h2>{1}</h2>\n",
-      name, experiment.question.empty() ? name : escape_html(experiment.question));
+      name,
+      experiment.manifest.question.empty() ? name : escape_html(experiment.manifest.question));
   if (experiment.figures.empty()) {
     html += "<p class=\"small\">No figure can be made of this experiment yet.</p>\n";
   } else if (const auto ruling = ruling_of(data, experiment)) {

@@ -55,8 +55,10 @@ std::string makers_html(const ReportData& data, const ReportFigure& figure) {
 std::string record_html(const ReportFigure& figure) {
   if (!figure.recorded) {
     return "no; " +
-           code("shearcell figures " + figure.name +
-                (figure.experiment.empty() ? "" : " --experiment " + figure.experiment)) +
+           code("shearcell figures " + figure.summary.name +
+                (figure.summary.experiment.empty()
+                     ? ""
+                     : " --experiment " + figure.summary.experiment)) +
            " records it with its drawings";
   }
   return fmt::format("event {} of {}", figure.recorded->seq,

@@ -64,10 +64,7 @@ std::string head_of(const std::string& key) {
 
 std::vector<ShownColumn> columns_of(const ReportExperiment& experiment) {
   const std::vector<TableColumn>& all = experiment.table.columns;
-  const auto place = [&](std::string_view name) {
-    const auto found = std::ranges::find(all, name, &TableColumn::name);
-    return static_cast<std::size_t>(found - all.begin());
-  };
+  const auto place = [&](std::string_view name) { return experiment.table.place(name); };
   const auto several = [&](std::string_view name) {
     const std::size_t at = place(name);
     const auto& rows = experiment.table.rows;
@@ -149,7 +146,7 @@ std::string run_table_html(const ReportData& data, const ReportExperiment& exper
       "<h3 id=\"table-{0}\">Runs</h3>\n<div class=\"runs\" data-runs=\"{0}\">\n<table "
       "class=\"cards\" "
       "aria-label=\"Runs of {0}\">",
-      escape_html(experiment.name));
+      escape_html(experiment.manifest.experiment));
   html += table_head(experiment, columns);
   for (std::size_t r = 0; r < experiment.table.rows.size(); ++r) {
     html += row_html(data, experiment.table.rows[r], r, columns);

@@ -32,14 +32,14 @@ std::vector<ReportExperiment> experiments_of(const Store& store) {
   for (RegisteredManifest& manifest : newest_manifests(store)) {
     const std::optional<Manifest> known = read(manifest);
     ReportExperiment& experiment = found.emplace_back();
-    experiment.name = std::move(manifest.experiment);
-    experiment.question = std::move(manifest.question);
-    experiment.manifest = std::move(manifest.sha256);
+    experiment.manifest = std::move(manifest);
     experiment.labelled = known && !known->labels.empty();
   }
   const std::vector<RunRecord> runs = store.runs();
   for (ReportExperiment& experiment : found) {
-    const auto is_member = [&](const Membership& m) { return m.experiment == experiment.name; };
+    const auto is_member = [&](const Membership& m) {
+      return m.experiment == experiment.manifest.experiment;
+    };
     for (const RunRecord& run : runs) {
       if (std::ranges::any_of(run.memberships, is_member)) experiment.runs.push_back(run);
     }
@@ -48,7 +48,6 @@ std::vector<ReportExperiment> experiments_of(const Store& store) {
 }
 
 std::string draw(const FigureTable& table, const TemporaryFolder& folder) {
-  write_csv(table, folder.path());
   std::ifstream svg(draw_svg(table, folder.path()), std::ios::binary);
   return {std::istreambuf_iterator<char>(svg), {}};
 }
@@ -76,12 +75,9 @@ ReportFigure figure_of(const Store& store, const WantedFigure& wanted, const Rep
   ComputedFigure computed = compute_figure(store, wanted, how);
   const std::string prefix = wanted.experiment.empty() ? "" : wanted.experiment + "-";
   ReportFigure made;
-  made.name = wanted.figure.name;
-  made.title = wanted.figure.title;
-  made.id = prefix + made.name;
-  made.experiment = wanted.experiment;
+  made.id = prefix + wanted.figure.name;
   made.summary = std::move(computed.summary);
-  made.recorded = record_of(records, made.name, computed.lineage);
+  made.recorded = record_of(records, wanted.figure.name, computed.lineage);
   made.lineage = figure_lineage(store, {wanted.path(), 0, "", computed.lineage});
   const TemporaryFolder folder("shearcell-report-");
   for (const FigureTable& table : computed.result.tables) {
@@ -97,18 +93,18 @@ ReportFigure figure_of(const Store& store, const WantedFigure& wanted, const Rep
   return made;
 }
 
-void add_figures(const Store& store, const ReportOptions& options, ReportData& data,
-                 Report& report) {
+void add_figures(const Store& store, const ReportOptions& options, ReportData& data) {
   const std::vector<FigureRecord> records = figure_records(store);
   WantedFigures wanted = wanted_figures(store);
   std::set<std::string> notes(wanted.unknown.begin(), wanted.unknown.end());
   for (const WantedFigure& figure : in_order_of_needs(std::move(wanted.figures))) {
     const auto home =
-        std::ranges::find(data.experiments, figure.experiment, &ReportExperiment::name);
+        std::ranges::find(data.experiments, figure.experiment,
+                          [](const ReportExperiment& e) { return e.manifest.experiment; });
     try {
       ReportFigure one = figure_of(store, figure, options, records, data);
       const FigureSummary& summary = one.summary;
-      report.damage.insert(report.damage.end(), summary.damage.begin(), summary.damage.end());
+      data.damage.insert(data.damage.end(), summary.damage.begin(), summary.damage.end());
       notes.insert(summary.pruned.begin(), summary.pruned.end());
       notes.insert(summary.notes.begin(), summary.notes.end());
       if (home != data.experiments.end()) home->figures.push_back(data.figures.size());
@@ -118,14 +114,14 @@ void add_figures(const Store& store, const ReportOptions& options, ReportData& d
       if (home != data.experiments.end()) home->unmade.push_back(figure.figure.name);
     }
   }
-  report.notes.assign(notes.begin(), notes.end());
+  data.notes.assign(notes.begin(), notes.end());
 }
 
 void add_runs(const Store& store, ReportData& data) {
   for (ReportExperiment& experiment : data.experiments) {
-    if (auto manifest = find_manifest(store, experiment.manifest)) {
+    if (auto manifest = find_manifest(store, experiment.manifest.sha256)) {
       experiment.manifest_path = manifest->path;
-      data.manifests.try_emplace(experiment.manifest, std::move(*manifest));
+      data.manifests.try_emplace(experiment.manifest.sha256, std::move(*manifest));
     }
     for (const RunRecord& run : experiment.runs) {
       if (data.runs.contains(run.id)) continue;
@@ -145,13 +141,8 @@ void add_runs(const Store& store, ReportData& data) {
 /// Scale, variant and run.
 using RowKey = std::tuple<std::string, std::string, std::string>;
 
-std::size_t place(const RunTable& table, std::string_view name) {
-  const auto found = std::ranges::find(table.columns, name, &TableColumn::name);
-  return static_cast<std::size_t>(found - table.columns.begin());
-}
-
 RowKey key_of(const RunTable& table, const std::vector<json>& row) {
-  const auto text = [&](const char* name) { return row[place(table, name)].get<std::string>(); };
+  const auto text = [&](const char* name) { return row[table.place(name)].get<std::string>(); };
   return {text("scale"), text("variant"), text("run")};
 }
 
@@ -165,15 +156,16 @@ std::map<RowKey, json> traces_of(const RunTable& checkpoints) {
   std::map<RowKey, json> traces;
   for (const std::vector<json>& row : checkpoints.rows) {
     json& trace = traces[key_of(checkpoints, row)];
-    trace["cycle"].push_back(row[place(checkpoints, "cycle")]);
-    trace["phi"].push_back(rounded(row[place(checkpoints, "phi")]));
-    trace["percent"].push_back(rounded(row[place(checkpoints, "crystalline_percent")]));
+    trace["cycle"].push_back(row[checkpoints.place("cycle")]);
+    trace["phi"].push_back(rounded(row[checkpoints.place("phi")]));
+    trace["percent"].push_back(rounded(row[checkpoints.place("crystalline_percent")]));
   }
   return traces;
 }
 
 void add_run_table(const Store& store, const RunSelection& selection,
-                   const MeasureOptions& measuring, ReportExperiment& experiment, Report& report) {
+                   const MeasureOptions& measuring, ReportExperiment& experiment,
+                   std::vector<std::string>& damage) {
   experiment.table = run_table(store, selection, RowPer::run, measuring);
   const RunTable checkpoints = run_table(store, selection, RowPer::checkpoint, measuring);
   const std::map<RowKey, json> traces = traces_of(checkpoints);
@@ -182,33 +174,31 @@ void add_run_table(const Store& store, const RunSelection& selection,
     experiment.traces.push_back(found == traces.end() ? json::object() : found->second);
   }
   for (const std::string& line : experiment.table.damage) {
-    if (std::ranges::find(report.damage, line) == report.damage.end())
-      report.damage.push_back(line);
+    if (std::ranges::find(damage, line) == damage.end()) damage.push_back(line);
   }
 }
 
 /// The runs of each experiment with their results, and how those came about over the cycles. What
-/// keeps an experiment from having them goes to report.notes.
-void add_run_tables(const Store& store, const ReportOptions& options, ReportData& data,
-                    Report& report) {
+/// keeps an experiment from having them goes to data.notes.
+void add_run_tables(const Store& store, const ReportOptions& options, ReportData& data) {
   for (ReportExperiment& experiment : data.experiments) {
     RunSelection selection;
-    selection.experiments = {experiment.name};
+    selection.experiments = {experiment.manifest.experiment};
     if (options.scale) selection.scales = {*options.scale};
     try {
       add_run_table(store, selection, {options.workers, false, options.measured}, experiment,
-                    report);
+                    data.damage);
     } catch (const std::runtime_error& problem) {
       // No run at this scale, or a record that this version of the program cannot read.
-      report.notes.push_back(
-          fmt::format("table of runs of {}: {}", experiment.name, problem.what()));
+      data.notes.push_back(
+          fmt::format("table of runs of {}: {}", experiment.manifest.experiment, problem.what()));
     }
   }
 }
 
 }  // namespace
 
-ReportData collect_report(const Store& store, const ReportOptions& options, Report& report) {
+ReportData collect_report(const Store& store, const ReportOptions& options) {
   ReportData data;
   data.head = store.head();
   data.store = std::filesystem::absolute(store.folder()).lexically_normal().filename().string();
@@ -220,16 +210,18 @@ ReportData collect_report(const Store& store, const ReportOptions& options, Repo
                    ": the store holds no experiment; `shearcell run` one first");
   }
   std::vector<std::string> names;
-  for (const ReportExperiment& experiment : data.experiments) names.push_back(experiment.name);
-  add_figures(store, options, data, report);
+  for (const ReportExperiment& experiment : data.experiments)
+    names.push_back(experiment.manifest.experiment);
+  add_figures(store, options, data);
   add_runs(store, data);
-  add_run_tables(store, options, data, report);
+  add_run_tables(store, options, data);
   if (options.accuracy) data.accuracy = read_accuracy_charts(*options.accuracy);
   if (data.interactive) {
     data.packings = collect_packings(store, names, options.scale, options.packings, options.workers,
                                      options.packed);
-    report.notes.insert(report.notes.end(), data.packings.notes.begin(), data.packings.notes.end());
+    data.notes.insert(data.notes.end(), data.packings.notes.begin(), data.packings.notes.end());
   }
+  if (!data.drawing_trouble.empty()) data.notes.push_back(data.drawing_trouble);
   return data;
 }
 
@@ -241,12 +233,12 @@ json run_traces(const ReportData& data) {
       const std::vector<json>& row = experiment.table.rows[r];
       json& run = runs.emplace_back(experiment.traces[r]);
       for (const char* key : {"scale", "variant", "seed"}) {
-        run[key] = row[place(experiment.table, key)];
+        run[key] = row[experiment.table.place(key)];
       }
-      run["id"] = row[place(experiment.table, "run")];
+      run["id"] = row[experiment.table.place("run")];
       run["kind"] = data.runs.at(run["id"].get<std::string>()).run.kind;
     }
-    all.push_back({{"experiment", experiment.name}, {"runs", std::move(runs)}});
+    all.push_back({{"experiment", experiment.manifest.experiment}, {"runs", std::move(runs)}});
   }
   return all;
 }

@@ -2,6 +2,8 @@
 // What a report shows, before any of it is HTML.
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -12,11 +14,24 @@
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/report/packings.hpp"
-#include "experiments/report/report.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/lineage.hpp"
 
 namespace shearcell {
+
+struct ReportOptions {
+  std::optional<std::string> scale;  ///< of figures and packings; default: the one declared last
+  /// Folder with the CSV files of `bench accuracy --out`; no such section without it.
+  std::optional<std::filesystem::path> accuracy;
+  PackingChoice packings;
+  bool interactive = true;  ///< false: figures as drawings, as in a build without Node
+  std::size_t workers = 1;
+  std::function<void(std::size_t done, std::size_t total)> measured;  ///< may be empty
+  std::function<void(std::size_t done, std::size_t total)> packed;    ///< may be empty
+};
+
+/// Whether this build holds the front end, which needs Node to be built.
+bool has_front_end();
 
 struct ReportPanel {
   std::string name;
@@ -28,10 +43,7 @@ struct ReportPanel {
 };
 
 struct ReportFigure {
-  std::string name;
-  std::string title;
-  std::string id;          ///< in the page: "drag-S2"
-  std::string experiment;  ///< "" when it is about all
+  std::string id;  ///< in the page: "drag-S2"
   FigureSummary summary;
   std::vector<ReportPanel> panels;
   FigureLineage lineage;
@@ -39,9 +51,7 @@ struct ReportFigure {
 };
 
 struct ReportExperiment {
-  std::string name;
-  std::string question;
-  std::string manifest;  ///< SHA-256 of its newest version
+  RegisteredManifest manifest;  ///< its newest version
   std::string manifest_path = {};
   bool labelled = false;                  ///< that version has names for variants
   std::vector<std::size_t> figures = {};  ///< of ReportData::figures
@@ -63,11 +73,15 @@ struct ReportData {
   std::vector<ReportPanel> accuracy;
   Packings packings;
   bool interactive = false;
-  std::string drawing_trouble;  ///< why a figure has no drawing
+  std::string drawing_trouble;      ///< why a figure has no drawing
+  std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each
+  std::vector<std::string> notes;   ///< what else was left out, likewise
 };
 
-/// Throws as make_report() does. What was left out goes to `report`.
-ReportData collect_report(const Store& store, const ReportOptions& options, Report& report);
+/// Reads the store and writes nothing but measures into its derived.sqlite. Throws NotFound when
+/// the store has no experiment or a run of `packings.runs` is unknown, and UsageError when the
+/// folder of `accuracy` holds no CSV file that this program can read.
+ReportData collect_report(const Store& store, const ReportOptions& options);
 
 /// For the front end: [{experiment, runs: [{id, kind, scale, variant, seed, cycle, phi,
 /// percent}]}], the runs in the order of the rows of the table; the last three are arrays with null

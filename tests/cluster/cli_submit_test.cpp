@@ -68,6 +68,16 @@ TEST_F(Submit, ShowsAllWithoutSlurmAndWritesNothing) {
   EXPECT_EQ(listing(), before);
 }
 
+TEST_F(Submit, RefusesAFolderThatIsNoStoreAsPlanDoes) {
+  std::filesystem::create_directory(path("papers"));
+  write("papers/draft.txt", "");
+  const Outcome plan = run({"plan", manifest_, "--store", "papers"});
+  const Outcome submit = run({"submit", manifest_, "--dry-run", "--store", "papers"});
+  EXPECT_NE(submit.code, 0);
+  EXPECT_EQ(submit.code, plan.code);
+  EXPECT_EQ(submit.err, plan.err);
+}
+
 TEST_F(Submit, SaysWhatToDoWithoutSlurm) {
   const auto before = listing();
   expect(1, {"submit", manifest_}, {"sbatch is not installed here", "--dry-run"});
@@ -78,7 +88,7 @@ TEST_F(Submit, RefusesWhatSlurmWouldMisread) {
   for (const Arguments& words :
        {Arguments{"--partition", "a b"}, Arguments{"--account", "x\n#SBATCH --uid=0"},
         Arguments{"--time", "soon"}, Arguments{"--time", "2", "--warn", "90"},
-        Arguments{"--sbatch=qos"}, Arguments{"--sbatch=--wrap=a b"}, Arguments{"--engine", "pbs"},
+        Arguments{"--sbatch=qos"}, Arguments{"--sbatch=--wrap=a b"}, Arguments{"--engine", "slurm"},
         Arguments{"--scratch", "/a\nb"}, Arguments{"--array-size", "0"},
         Arguments{"--cpus-per-task", "-1"}}) {
     Arguments all = {"submit", manifest_, "--dry-run"};

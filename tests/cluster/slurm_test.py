@@ -62,7 +62,7 @@ class Campaign:
 
     def submit(self, cycles, *limits):
         said = json.loads(self.shearcell(
-            "submit", MANIFEST, "--scale", "smoke", "--cycles", str(cycles), "--engine", "slurm",
+            "submit", MANIFEST, "--scale", "smoke", "--cycles", str(cycles),
             "--cpus-per-task", "1", *limits, "--json"))
         if said["submission"]:
             self.folder = pathlib.Path(said["folder"])

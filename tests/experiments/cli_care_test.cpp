@@ -52,6 +52,29 @@ TEST_F(Care, PruneShowsFirstAndRegenerateBringsBack) {
   expect(2, {"regenerate", "no-such"});
 }
 
+TEST_F(Care, TheGravestFaultDecidesTheExitCode) {
+  campaign(tiny_manifest("",
+                         "sweep: {grid: {fluid: [still, cell], walls: [rough, smooth]}}\n"
+                         "plots: [{name: mixed, y: phi, x: cycle, by: fluid}]\n"),
+           {"--cycles", "1"});
+  truncate_file(path(newest_file(last_run())));
+  expect(4, {"figures"}, {"left out: ", "figure mixed would average"});
+  fs::remove(path("shearcell-store/derived.sqlite"));
+  expect(4, {"show", last_run()}, {"not measured: "});
+  expect(4, {"show", last_run(), "--json"}, {"not measured: "});
+}
+
+TEST_F(Care, ShowRefusesABeginningOfARunAndOfACheckpoint) {
+  campaign(manifest_, {"--cycles", "0"});
+  const std::string run = last_run(), brief = run.substr(0, 8);
+  sqlite::Database(path("shearcell-store/store.sqlite"), sqlite::Open::existing)
+      .execute("UPDATE checkpoints SET sha256 = '" + brief + std::string(56, '0') +
+               "' WHERE sha256 = (SELECT min(sha256) FROM checkpoints JOIN runs ON run = id "
+               "WHERE kind = 'prepare')");
+  expect_refused({"show", brief}, {"a run and a checkpoint begin with '" + brief, run});
+  expect(0, {"show", run});
+}
+
 TEST_F(Care, VerifyReplaysAndHoldsAgainstAHead) {
   campaign(manifest_);
   const std::string before = head();

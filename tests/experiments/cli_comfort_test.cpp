@@ -207,6 +207,12 @@ TEST_F(Comfort, ExportsTheCyclesThatAreAskedFor) {
     all.insert(all.end(), words.begin(), words.end());
     expect_refused(all, {"export: "});
   }
+  for (const std::string line : {"ro-crate --cycles 0", "ro-crate --metres", "vtk --metres",
+                                 "h5md --license https://x.org"}) {
+    Arguments all{"export", id, "--out", "other", "--to"};
+    for (const std::string& word : split(line)) all.push_back(word);
+    expect_refused(all, {"has no effect with --to " + line.substr(0, line.find(' '))});
+  }
 }
 
 TEST_F(Comfort, WatchingEndsWhenNobodyIsAtWork) {

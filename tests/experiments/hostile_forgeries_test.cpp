@@ -205,6 +205,24 @@ INSTANTIATE_TEST_SUITE_P(Faults, ForgedStore, testing::ValuesIn(other_faults()),
 
 class Neighbours : public ProgramTest {};
 
+// Else an export would leave the folder that it makes.
+TEST_F(Neighbours, TheNameOfAnExperimentIsNoPath) {
+  campaign(tiny_manifest("  grains: 200\n", kBothFluids), {"--cycles", "1"});
+  const std::string elsewhere = path("elsewhere").string();
+  for (const std::string& name : {"../../elsewhere"s, elsewhere, ".."s, ".\x1b[2J/x"s}) {
+    member("/membership/experiment", name)(path("shearcell-store"));
+    expect(0, {"export", "--variant", "fluid=cell", "--to", "extxyz", "--out", "out/all"});
+    const std::set<std::string> made = listing();
+    EXPECT_EQ(std::ranges::count_if(made, [](auto& m) { return m.ends_with(".xyz"); }), 1) << name;
+    for (const std::string& file : made) {
+      EXPECT_TRUE(file.starts_with("shearcell-store") || file == "m.yaml" || file == "out" ||
+                  file.starts_with("out/all"))
+          << name << ": " << file;
+    }
+    fs::remove_all(path("out"));
+  }
+}
+
 // The old process must neither play back the new store's journal nor write into it.
 TEST_F(Neighbours, AStoreThatIsMovedAwayIsLeftAlone) {
   write("long.yaml", tiny_manifest("  cycles: 400\n"));

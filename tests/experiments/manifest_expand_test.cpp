@@ -274,6 +274,12 @@ TEST(Expand, WarnsOfKeysThatNoVariantFeels) {
   }
   EXPECT_TRUE(warnings("pause_s: 1", "sweep: {grid: {protocol: [continuous, paused]}}\n").empty());
   EXPECT_EQ(warnings("protocol: stiffen", "until: {phi: 0.6}\n").size(), 1U);
+  const Manifest swept = parse(
+      "experiment: a\nbase: {protocol: stiffen}\nsweep: {grid: {walls: "
+      "[rough, smooth]}}\n");
+  EXPECT_EQ(expand(swept, {.cycles = 5}).warnings,
+            Strings{"test.yaml: cycles: has no effect: not under protocol stiffen. Leave it out."})
+      << "once, not for each variant";
 }
 
 TEST(Expand, AnUntilIsReadOverriddenAndPartOfNoIdentity) {

@@ -49,6 +49,31 @@ TEST(Suggest, FindsWhatWasMeant) {
   EXPECT_EQ(suggest_name(std::string(100'000, 'm'), names).name, "");
 }
 
+// Whatever a manifest states, its values in units of d, m and s are numbers.
+TEST(Conversion, StaysFiniteAtTheEndsOfTheRanges) {
+  const std::vector<std::string> keys = {"mass_kg",       "diameter_m",       "stiffness_N_per_m",
+                                         "drag_kg_per_s", "gravity_m_per_s2", "pressure_Pa",
+                                         "period_s",      "steps_per_cycle",  "pause_s"};
+  for (unsigned ends = 0; ends < 1U << keys.size(); ++ends) {
+    Parameters p;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      const Field& field = *find_field(keys[k]);
+      const double end = (ends >> k & 1U) != 0 ? field.range.max : field.range.min;
+      set_value(field, field.is_whole() ? json(static_cast<std::uint64_t>(end)) : json(end), p);
+    }
+    const Scene scene = shear_scene(p);
+    for (const double value : {scene.stiffness, scene.time_step, scene.pressure,
+                               scene.pressure / scene.stiffness, stability_limit_s(p)}) {
+      EXPECT_TRUE(std::isnormal(value) && value > 0) << value;
+    }
+    for (const double value :
+         {scene.drag_rate, scene.gravity, pause_time_steps(p), expected_overlap(p),
+          settle_time_step(p).over_stability_limit, shear_time_step(p).over_contact_time}) {
+      EXPECT_TRUE(std::isfinite(value)) << value;
+    }
+  }
+}
+
 // Table I in units of d, m and s.
 TEST(Conversion, GivesTheNumbersOfTableOne) {
   const Scene scene = shear_scene({});

@@ -216,8 +216,8 @@ TEST(Export, OtherProgramsReadEveryNumber) {
     const FrameWriter writers[] = {h5md_writer(at / "run.h5md", all.size()),
                                    extxyz_writer(at / "run.xyz", Lengths::diameters),
                                    extxyz_writer(at / "metres.xyz", Lengths::metres),
-                                   vtk_writer(at / "vtk"),
-                                   facts_writer(at / "vtk"),
+                                   vtk_writer(at / "vtk", all.size()),
+                                   facts_writer(at / "vtk", all.size()),
                                    lammps_writer(at / "lammps")};
     nlohmann::json frames = nlohmann::json::array();
     for (const Checkpoint& checkpoint : all) {
@@ -242,7 +242,7 @@ TEST(Export, OtherProgramsReadEveryNumber) {
 TEST(Export, WritesTheSameBytesTwice) {
   const TemporaryFolder folder;
   Frame frame = frame_of(checkpoints().back(), {}, about());
-  for (int k = 0; k < 20; ++k) frame.facts.emplace_back("key_" + std::to_string(k), 0.5 * k);
+  for (int k = 0; k < 20; ++k) frame.parameters.emplace_back("key_" + std::to_string(k), 0.5 * k);
   std::string bytes[2];
   for (int k = 0; k < 2; ++k) {
     const fs::path file = folder.path() / ("run" + std::to_string(k) + ".h5");
@@ -257,7 +257,7 @@ TEST(Export, SaysWhatItCannotWrite) {
   const Frame frame = frame_of(checkpoints().front());
   EXPECT_THROW(extxyz_writer("/nowhere/run.xyz", Lengths::metres), std::runtime_error);
   EXPECT_THROW(h5md_writer("/nowhere/run.h5", 1), std::runtime_error);
-  EXPECT_THROW(vtk_writer("/nowhere")(frame), std::runtime_error);
+  EXPECT_THROW(vtk_writer("/nowhere", 1)(frame), std::runtime_error);
   EXPECT_THROW(lammps_writer("/nowhere")(frame), std::runtime_error);
   const TemporaryFolder folder;
   const FrameWriter one = h5md_writer(folder.path() / "run.h5", 1);

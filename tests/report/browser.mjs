@@ -149,6 +149,29 @@ const checks = {
     await page.screenshot({path: join(shots, "top.png")});
   },
 
+  // campaign.sh adds a chart with a title; figures have theirs in the text.
+  async title() {
+    const page = await open("title");
+    await drawAllPlots(page);
+    const titles = await page.locator("#accuracy svg.canvas .title").allTextContents();
+    expect(titles.join() === "One grain swings on a wall: position, in amplitudes",
+      `title: a chart is headed '${titles}'`);
+  },
+
+  // Without the script that names the theme, as in a report of drawings.
+  async tints() {
+    const page = await open("tints", {colorScheme: "dark"});
+    const [shown, own] = await page.evaluate(() => {
+      delete document.documentElement.dataset.theme;
+      const tint = document.querySelector(".tint");
+      const colour = () => getComputedStyle(tint).color;
+      const before = colour();
+      tint.style.setProperty("--tint-part", "100%");
+      return [before, colour()];
+    });
+    expect(shown !== own, `tints: ${shown} on a dark page`);
+  },
+
   async interaction() {
     const page = await open("interaction");
     await drawAllPlots(page);

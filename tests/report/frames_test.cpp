@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A packed frame gives back what went in, to the step that it states.
-#include "experiments/report/frames.hpp"
+#include "experiments/report/packings.hpp"
 
 #include <gtest/gtest.h>
 

@@ -87,6 +87,9 @@ export function drawFrame(root, chart, scales, box) {
     transform: `translate(15 ${(top + bottom) / 2}) rotate(-90)`
   }, root);
   writeSvgText(beside, axisLabel(chart.y));
+  const above = svg("text",
+    {class: "title", x: root.viewBox.baseVal.width / 2, y: top - 9, "text-anchor": "middle"}, root);
+  writeSvgText(above, chart.title);
 }
 
 export function drawReferenceLines(root, chart, scales, box) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decodes what experiments/report/frames.cpp packed: 16-bit positions and measures of each grain,
+// Decodes what experiments/report/packings.cpp packed: 16-bit positions and measures of each grain,
 // little-endian, one array after the other.
 
 export const structureNames = ["disordered", "FCC", "HCP"];

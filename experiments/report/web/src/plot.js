@@ -54,8 +54,8 @@ export class Plot {
   redraw() {
     const {width, height} = this;
     const box = {
-      left: margin.left, right: width - margin.right, top: margin.top,
-      bottom: height - margin.bottom
+      left: margin.left, right: width - margin.right,
+      top: margin.top + (this.chart.title.length > 0 ? 16 : 0), bottom: height - margin.bottom
     };
     const visible = this.visibleSeries();
     const domain = this.view ?? {
