@@ -72,7 +72,6 @@ void require_own_files(const FigureTable& table, const std::filesystem::path& fo
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder) {
   require_plain_name(table.name);
   std::filesystem::path svg = folder / (table.name + ".svg"), pdf = folder / (table.name + ".pdf");
-  for (const auto& old : {svg, pdf}) std::filesystem::remove(old);  // of other data
   const std::string script = table.name + ".gp";
   write_output(folder / script, gnuplot_script(table));
   const TemporaryFolder apart;
@@ -81,11 +80,14 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
   // -d keeps a user's own defaults out of the figure.
   const std::optional<ProgramOutcome> outcome =
       run_timeless(apart.path(), {"gnuplot", "-d", script});
+  auto drawn = outcome ? drawing(*outcome, apart.path() / svg.filename()) : std::nullopt;
+  if (!drawn) {  // what is there is of other data
+    for (const auto& old : {svg, pdf}) std::filesystem::remove(old);
+  }
   if (!outcome) {
     throw AnalysisError("gnuplot is not installed (Debian package gnuplot-nox); the data are in " +
                         folder.string());
   }
-  auto drawn = drawing(*outcome, apart.path() / svg.filename());
   if (!drawn) {
     throw AnalysisError("gnuplot could not draw " + table.name + ":\n" + outcome->messages);
   }
@@ -101,8 +103,9 @@ std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path&
   const std::optional<ProgramOutcome> outcome = run_timeless(
       svg.parent_path(),
       {"rsvg-convert", "--format=pdf", "--output", made.string(), svg.filename().string()});
+  const auto drawn = outcome ? drawing(*outcome, made) : std::nullopt;
+  if (!drawn) std::filesystem::remove(pdf);  // of other data
   if (!outcome) return std::nullopt;
-  const auto drawn = drawing(*outcome, made);
   if (!drawn) {
     throw AnalysisError("rsvg-convert could not read " + svg.string() + ":\n" + outcome->messages);
   }

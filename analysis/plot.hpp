@@ -25,12 +25,12 @@ inline constexpr std::string_view gnuplot_script_beginning = "set terminal svg s
 void require_own_files(const FigureTable& table, const std::filesystem::path& folder);
 
 /// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` draws it
-/// again). Deletes an SVG and PDF of that name first. Returns the path of the SVG. The same table
+/// again). Returns the path of the SVG. The same table
 /// gives the same bytes with the same gnuplot. Drawings are made in a temporary folder, so that
 /// several programs may write to one folder and no cut file is left there.
 ///
 /// Throws AnalysisError if gnuplot is missing (naming the package to install) or fails (with its
-/// message); the script stays.
+/// message); the script stays, and drawings of other data are deleted.
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder);
 
 /// The same drawing as PDF beside the SVG, without a date: equal bytes from an equal SVG with the

@@ -133,7 +133,10 @@ class VariantCheck {
   void check_pause() {
     const double steps = pause_time_steps(p_);
     if (p_.protocol != ProtocolKind::paused || steps <= kMostPauseSteps) return;
-    report("pause_s", fmt::format("the pause takes {:.3g} time steps", steps),
+    constexpr std::array<string_view, 3> keys = {"pause_s", "period_s", "steps_per_cycle"};
+    const auto* stated = std::ranges::find_if(keys, [&](auto key) { return find(key).stated; });
+    report(stated == keys.end() ? keys[0] : *stated,
+           fmt::format("the pause takes {:.3g} time steps", steps),
            fmt::format("Use a pause of at most {:g} steps of period_s/steps_per_cycle.",
                        kMostPauseSteps));
   }

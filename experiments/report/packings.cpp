@@ -56,31 +56,18 @@ struct ChosenRun {
   std::size_t wall_grains = 0;
 };
 
-const Membership* membership_in(const RunRecord& run, const std::string& experiment,
-                                const std::optional<std::string>& scale) {
-  const Membership* found = nullptr;
-  for (const Membership& member : run.memberships) {
-    if (member.experiment == experiment && (!scale || scale_name(member.scale) == *scale))
-      found = &member;
-  }
-  return found;
-}
-
 /// The last run of each variant, evenly thinned to `limit` variants.
-std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<RunRecord>& runs,
-                                          const std::string& experiment,
-                                          const std::optional<std::string>& scale,
-                                          std::size_t limit) {
+std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<SelectedRun>& runs,
+                                          const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;
-  for (const RunRecord& run : runs) {
-    const Membership* member = membership_in(run, experiment, scale);
-    if (member == nullptr || run.kind == "prepare") continue;
+  for (const auto& [run, member] : runs) {
+    if (member.experiment != experiment) continue;
     std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id);
     if (checkpoints.empty()) continue;
-    auto same = std::ranges::find(last, member->variant,
+    auto same = std::ranges::find(last, member.variant,
                                   [](const ChosenRun& other) { return other.membership.variant; });
     if (same == last.end()) same = last.emplace(last.end());
-    *same = {run, *member, std::move(checkpoints)};
+    *same = {run, member, std::move(checkpoints)};
   }
   std::vector<ChosenRun> kept;
   for (const std::size_t i : evenly(last.size(), limit)) kept.push_back(std::move(last[i]));
@@ -100,10 +87,12 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
     return chosen;
   }
   std::set<std::string> known;
-  const std::vector<RunRecord> runs = store.runs();
+  std::vector<SelectedRun> runs = newest_runs(store, select_runs(store, {}), false).runs;
+  std::erase_if(runs, [&](const SelectedRun& s) {
+    return scale && scale_name(s.membership.scale) != *scale;
+  });
   for (const std::string& experiment : experiments) {
-    for (ChosenRun& run :
-         runs_of_experiment(store, runs, experiment, scale, choice.runs_per_experiment)) {
+    for (ChosenRun& run : runs_of_experiment(store, runs, experiment, choice.runs_per_experiment)) {
       if (known.insert(run.run.id).second) chosen.push_back(std::move(run));
     }
   }

