@@ -78,14 +78,12 @@ struct StepTask {
   /// From a block to the rows that are fetched into the cache before they are needed
   /// (CellOrder::ahead()); 0 fetches none.
   std::size_t ahead = 0;
-  double* next_rows = nullptr;  ///< output: positions at the next step
-  double* velocity[3] = {};     ///< [d/s], half a step before `rows` -> half a step after
-  double velocity_factor = 0;   ///< (1 - b dt / 2m) / D
-  double contact_kick = 0;      ///< dt k/m / D [1/s]
-  double gravity_step = -0.0;   ///< -dt g / D [d/s], added to v_y; adding -0 changes no bit
-  /// dt b/m du_x/dy / D [1/s]. In a still fluid it is 0, which changes no bit of v_x: that is never
-  /// -0, because a contact sum never is.
-  double fluid_step = 0;
+  double* next_rows = nullptr;   ///< output: positions at the next step
+  double* velocity[3] = {};      ///< [d/s], half a step before `rows` -> half a step after
+  double velocity_factor = 0;    ///< (1 - b dt / 2m) / D
+  double contact_kick = 0;       ///< dt k/m / D [1/s]
+  double gravity_step = -0.0;    ///< -dt g / D [d/s], added to v_y; adding -0 changes no bit
+  double fluid_step = 0;         ///< dt b/m du_x/dy / D [1/s]; 0 in a still fluid
   double fluid_rest_height = 0;  ///< height at which that fluid is at rest [d]
   double time_step = 0;          ///< dt [s]
 };

@@ -89,7 +89,7 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
     double vx = std::fma(t.contact_kick, sum.x, t.velocity_factor * t.velocity[0][g]);
     double vy = std::fma(t.contact_kick, sum.y, t.velocity_factor * t.velocity[1][g]);
     const double vz = std::fma(t.contact_kick, sum.z, t.velocity_factor * t.velocity[2][g]);
-    vx = std::fma(t.fluid_step, own[1] - t.fluid_rest_height, vx);
+    if (t.fluid_step != 0) vx = std::fma(t.fluid_step, own[1] - t.fluid_rest_height, vx);
     vy += t.gravity_step;
     t.velocity[0][g] = vx;
     t.velocity[1][g] = vy;

@@ -152,8 +152,10 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
     V vx = hn::MulAdd(kick, sum.x, hn::Mul(factor, hn::LoadU(kD, t.velocity[0] + g)));
     V vy = hn::MulAdd(kick, sum.y, hn::Mul(factor, hn::LoadU(kD, t.velocity[1] + g)));
     const V vz = hn::MulAdd(kick, sum.z, hn::Mul(factor, hn::LoadU(kD, t.velocity[2] + g)));
-    vx =
-        hn::MulAdd(hn::Set(kD, t.fluid_step), hn::Sub(own.y, hn::Set(kD, t.fluid_rest_height)), vx);
+    if (t.fluid_step != 0) {
+      vx = hn::MulAdd(hn::Set(kD, t.fluid_step), hn::Sub(own.y, hn::Set(kD, t.fluid_rest_height)),
+                      vx);
+    }
     vy = hn::Add(vy, hn::Set(kD, t.gravity_step));
     hn::StoreU(vx, kD, t.velocity[0] + g);
     hn::StoreU(vy, kD, t.velocity[1] + g);
