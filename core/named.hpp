@@ -44,7 +44,8 @@ inline constexpr auto kNames = nullptr;
 
 template <class Enum>
 constexpr std::string_view name_of(Enum value) {
-  return kNames<Enum>[static_cast<std::size_t>(value)];
+  const auto& names = kNames<Enum>;
+  return names[static_cast<std::size_t>(value)];
 }
 
 /// Nothing when no value has that name.
