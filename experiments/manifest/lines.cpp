@@ -39,8 +39,8 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
     const auto stated = std::ranges::find(manifest.scales, scale, &Scale::name);
     const Scale* own = stated == manifest.scales.end() ? nullptr : &*stated;
     const std::string path = "scales." + std::string(scale);
-    const bool own_sweep = own != nullptr && own->sweep;
-    const std::string sweep_path = own_sweep ? path + ".sweep." : "sweep.";
+    const Sweep* own_sweep = own != nullptr && own->sweep ? &*own->sweep : nullptr;
+    const std::string sweep_path = own_sweep != nullptr ? path + ".sweep." : "sweep.";
     const auto add_labels = [&](const std::vector<SweepAxis>& axes, const std::string& kind) {
       for (const SweepAxis& axis : axes) {
         const auto label = labels.find(axis.key);
@@ -57,7 +57,7 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
 
     add("experiment", manifest.experiment_at);
     if (own != nullptr) add(path, own->at);
-    const Sweep& sweep = own_sweep ? *own->sweep : *manifest.base.sweep;
+    const Sweep& sweep = own_sweep != nullptr ? *own_sweep : *manifest.base.sweep;
     add_labels(sweep.grid, "grid.");
     add_labels(sweep.zip, "zip.");
     if (!add_cycles(own, path)) add_cycles(&manifest.base, "base");
