@@ -33,7 +33,8 @@ HEADLINES = [
     ("C", "C: the critical size at A = 0.1", "critical size [grains], A = 0.1", "about 20"),
     ("S6", "D: the onset at A = 0.0833 rad is the same", "phi at the onset, without less with gravity", "equal"),
     ("S5a", "C: the onset at A = 0.05 rad", "phi at the onset, A = 0.05", "0.646 +- 0.001"),
-    ("S5b", "C: the onset for N_inves >= 6000", "phi at the onset, N_inves >= 6000", "0.646 +- 0.001"),
+    ("S5b", "C: the onset at N = 11400", "phi at the onset, N = 11400, A = 0.05", "0.646 +- 0.001"),
+    ("S5b", "C: the onset at N = 18200", "phi at the onset, N = 18200, A = 0.05", "0.646 +- 0.001"),
     ("nucleation", "title: the rate", "exponent of the nucleation rate against N_inves, less 1", "homogeneous: 0"),
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper less the lower third", "more near the top"),
 ]
