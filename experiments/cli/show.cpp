@@ -2,10 +2,12 @@
 // `show`: everything the store knows about one run, checkpoint, figure or published file.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "analysis/error.hpp"
+#include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/more_measures.hpp"
