@@ -85,7 +85,7 @@ std::vector<std::string> ticks_of_decades(const Extent& data) {
   const bool narrow = data.high < 4 * data.low;
   const double power =
       std::pow(10, std::floor(std::log10(narrow ? (data.high - data.low) / 2 : data.low)));
-  const bool one_value = data.high - data.low < 1e-8 * data.low;  // but for rounding
+  const bool one_value = data.high - data.low < 1e-8 * data.low;  // except for rounding
   if (one_value || !(power > 0) || !std::isfinite(power)) return {digits(data.low)};
   if (narrow) {
     const double step = power * ((data.high - data.low) / power > 5 ? 2 : 1);
