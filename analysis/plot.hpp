@@ -25,9 +25,9 @@ inline constexpr std::string_view gnuplot_script_beginning = "set terminal svg s
 void require_own_files(const FigureTable& table, const std::filesystem::path& folder);
 
 /// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` draws it
-/// again). Returns the path of the SVG. The same table
-/// gives the same bytes with the same gnuplot. Drawings are made in a temporary folder, so that
-/// several programs may write to one folder and no cut file is left there.
+/// again). Returns the path of the SVG. The same table gives the same bytes with the same gnuplot.
+/// Drawings are made in a temporary folder, so that several programs may write to one folder and no
+/// cut file is left there.
 ///
 /// Throws AnalysisError if gnuplot is missing (naming the package to install) or fails (with its
 /// message); the script stays, and drawings of other data are deleted.
