@@ -49,6 +49,14 @@ Axis axis_of(const std::string& key) {
   return named_axis(key, "1");
 }
 
+Axis x_axis(const std::string& key, std::span<const FigureRun> runs) {
+  const auto stiffening = [](const FigureRun& run) {
+    return !run.checkpoints.empty() && std::isfinite(run.checkpoints.front().stiffness_N_per_m);
+  };
+  if (key != "cycle" || runs.empty() || !std::ranges::all_of(runs, stiffening)) return axis_of(key);
+  return {.name = "step of the stiffening", .whole = true};
+}
+
 /// The checkpoint at a cycle, or the last one; null if there is none.
 const Measures* measures_at(const FigureRun& run, const std::optional<std::uint64_t>& cycle) {
   if (run.checkpoints.empty()) return nullptr;
@@ -96,9 +104,10 @@ FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Qu
     const Curve& curve = curves[k];
     Text title = curve.style.title;  // once in the key
     for (const FigureRun* run : curve.runs) {
-      // Without symbols, each curve has a colour of its own.
+      // Without symbols, each curve has a colour of its own; when they run out, dashes.
       Series series =
           thin_line(std::exchange(title, Text()), safe_colours[k % safe_colours.size()]);
+      if (k / safe_colours.size() % 2 == 1) series.join = Join::dashes;
       for (const CheckpointMeasures& c : run->checkpoints) {
         const double at = x == nullptr ? c.cycle : x->of(c.measures), value = y(c.measures);
         table.rows.push_back({curve.variant, run->seed, at, value});
@@ -281,7 +290,7 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   Figure figure{plot.name, plot.y + " against " + x,
                 [plot, names, measured](std::span<const FigureRun> runs) {
                   FigureTable table = draw(plot, runs, names);
-                  table.chart.x = measured == nullptr ? axis_of(plot.x)
+                  table.chart.x = measured == nullptr ? x_axis(plot.x, runs)
                                                       : named_axis(measured->x, measured->x_unit);
                   if (!plot.x_symbol.empty()) table.chart.x = {.symbol = italic(plot.x_symbol)};
                   if (!plot.x_unit.empty()) table.chart.x.unit = plot.x_unit;

@@ -19,7 +19,6 @@ namespace {
 struct FigureArguments {
   std::vector<std::string> names;
   bool all = false;
-  std::optional<std::string> experiment;
   FigureOptions how;
 };
 
@@ -69,7 +68,7 @@ void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
 void figures(FigureArguments& options, Context& context) {
   Store store(context.store, Access::write);
   if (options.all) options.names.clear();
-  WantedFigures wanted = wanted_figures(store, options.names, options.experiment);
+  WantedFigures wanted = wanted_figures(store, options.names, options.how.runs.experiments);
   if (wanted.figures.empty() && !options.names.empty()) {
     throw NotFound(fmt::format("no experiment of the store lists {}; name one with --experiment",
                                fmt::join(options.names, " or ")));
@@ -120,15 +119,14 @@ void add_figures(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand("figures", "Draw figures from the store alone");
   command->add_option("figure", options->names, "Figures, as S2 (default: all)");
   command->add_flag("--all", options->all, "Every figure that the store's manifests list");
-  command
-      ->add_option("--experiment", options->experiment,
-                   "Only of this experiment, which need not list the figures named")
-      ->type_name("E");
   command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/NAME.csv, ...")
       ->capture_default_str()
       ->type_name("DIR");
-  command->add_option("--scale", how.collect.scale, "Scale of the runs (default: declared last)");
-  command->add_flag("--all-versions", how.collect.all_versions,
+  add_selection_options(*command, how.runs);
+  command->get_option("--experiment")
+      ->description("Only of this experiment, which need not list the figures named");
+  command->get_option("--scale")->description("Scale of the runs (default: declared last)");
+  command->add_flag("--all-versions", how.runs.all_versions,
                     "Runs of older versions of a manifest too, as variants of their own");
   command
       ->add_option_function<std::string>(

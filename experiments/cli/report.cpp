@@ -77,7 +77,7 @@ void add_report(CLI::App& app, Context& context) {
   PackingChoice& packings = command->report.packings;
   CLI::App* sub = app.add_subcommand("report", "Write the whole store as one HTML file");
   sub->add_option("--out", command->out, "File to write")->capture_default_str()->type_name("FILE");
-  sub->add_option("--scale", command->report.scale, "Scale of the runs (default: declared last)");
+  add_selection_options(*sub, command->report.runs);
   sub->add_option("--run", packings.runs, "Show these runs in 3D instead of the default")
       ->type_name("RUN");
   add_number(*sub, "--runs-per-experiment", packings.runs_per_experiment,
@@ -104,7 +104,7 @@ the measures that it keeps change.
 Examples:
   shearcell report --out report.html
   shearcell report --run 3f9a --frames 200 --out one-run.html
-  shearcell report --scale desk --accuracy accuracy --out desk.html)");
+  shearcell report --experiment drag --scale desk --accuracy accuracy --out desk.html)");
   sub->callback([command, &context] { report(*command, context); });
 }
 

@@ -137,10 +137,7 @@ std::vector<std::string> unfinished(std::vector<CollectedRun>& runs) {
 
 std::string unknown_name(const char* what, const std::string& name,
                          const std::vector<std::string_view>& known) {
-  const Suggestion nearest = suggest_name(name, known);
-  return fmt::format("there is no {} {}; {}", what, name,
-                     nearest.name.empty() ? fmt::format("known are {}", fmt::join(known, ", "))
-                                          : "did you mean " + nearest.name + "?");
+  return fmt::format("there is no {} {}; {}", what, name, did_you_mean(name, known));
 }
 
 std::vector<Figure> own_figures(const RegisteredManifest& manifest) {
@@ -181,19 +178,17 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRu
 
 /// Runs of any version of the manifest, settled packings not among them. Throws NotFound for none.
 std::vector<SelectedRun> runs_of(const Store& store, const WantedFigure& wanted,
-                                 const CollectOptions& options) {
-  std::vector<SelectedRun> found = select_runs(store, {});
+                                 const RunSelection& selection) {
+  std::vector<SelectedRun> found = select_runs(store, selection);
   std::erase_if(found, [&](const SelectedRun& s) {
-    const Membership& m = s.membership;
     return s.run.kind == "prepare" ||
-           (!wanted.experiment.empty() && m.experiment != wanted.experiment) ||
-           (options.scale && scale_name(m.scale) != *options.scale);
+           (!wanted.experiment.empty() && s.membership.experiment != wanted.experiment);
   });
   if (found.empty()) {
-    throw NotFound(fmt::format("no run of the store belongs to figure {}{}", wanted.path(),
-                               options.scale
-                                   ? " at scale " + *options.scale
-                                   : "; run a manifest that lists it under `figures` first"));
+    throw NotFound(
+        fmt::format("no run selected belongs to figure {}; `status` lists the runs of the store, "
+                    "`run` adds those of a manifest",
+                    wanted.path()));
   }
   return found;
 }
@@ -216,31 +211,32 @@ std::string WantedFigure::path() const {
 }
 
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names,
-                             const std::optional<std::string>& experiment) {
+                             const std::vector<std::string>& experiments) {
   std::vector<RegisteredManifest> manifests = newest_manifests(store);
-  if (experiment) {
-    std::vector<std::string_view> known;
-    for (const RegisteredManifest& manifest : manifests) known.emplace_back(manifest.experiment);
-    if (std::ranges::find(known, *experiment) == known.end()) {
-      throw NotFound(unknown_name("experiment", *experiment, known));
+  std::vector<std::string_view> registered;
+  for (const RegisteredManifest& manifest : manifests) registered.emplace_back(manifest.experiment);
+  for (const std::string& experiment : experiments) {
+    if (std::ranges::count(registered, experiment) == 0) {
+      throw NotFound(unknown_name("experiment", experiment, registered));
     }
-    std::erase_if(manifests, [&](const auto& m) { return m.experiment != *experiment; });
   }
-  const auto asked = [&](const std::string& name) {
-    return names.empty() || std::ranges::find(names, name) != names.end();
+  const auto among = [](const std::vector<std::string>& some, const std::string& name) {
+    return some.empty() || std::ranges::count(some, name) > 0;
   };
+  std::erase_if(manifests, [&](const auto& m) { return !among(experiments, m.experiment); });
+  const auto asked = [&](const std::string& name) { return among(names, name); };
+  const bool named = !experiments.empty() && !names.empty();
   WantedFigures wanted;
   std::vector<std::string_view> supplement;
   for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
   std::set<std::string> known(supplement.begin(), supplement.end()), reported;
   for (const Figure& figure : all_figures()) {
     if (figure.form != FigureForm::table || manifests.empty() || !asked(figure.name)) continue;
-    if (!experiment || !names.empty()) wanted.figures.push_back({figure, ""});
+    if (experiments.empty() || named) wanted.figures.push_back({figure, ""});
   }
   for (const RegisteredManifest& manifest : manifests) {
     for (const Figure& figure : all_figures()) {
       const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;
-      const bool named = experiment && !names.empty();
       if (figure.form == FigureForm::table || !asked(figure.name) || !(named || lists)) continue;
       wanted.figures.push_back({figure, manifest.experiment});
     }
@@ -270,15 +266,14 @@ std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures) {
 }
 
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
-                           const CollectOptions& options, const MeasureOptions& measuring) {
+                           const RunSelection& selection, const MeasureOptions& measuring) {
   const std::vector<RegisteredManifest> manifests = newest_manifests(store);
   CollectedRuns collected;
-  std::vector<SelectedRun> selected = runs_of(store, wanted, options);
-  collected.scale =
-      options.scale ? selected.front().membership.scale : last_scale(selected, manifests);
+  std::vector<SelectedRun> selected = runs_of(store, wanted, selection);
+  collected.scale = last_scale(selected, manifests);
   std::erase_if(selected,
                 [&](const SelectedRun& s) { return s.membership.scale != collected.scale; });
-  NewestRuns newest = newest_runs(store, std::move(selected), options.all_versions);
+  NewestRuns newest = newest_runs(store, std::move(selected), selection.all_versions);
   collected.notes = std::move(newest.notes);
   for (SelectedRun& run : newest.runs) {
     Membership& m = run.membership;

@@ -2,7 +2,6 @@
 // Which runs and checkpoints of a store belong to a figure.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,10 +29,10 @@ struct WantedFigures {
 };
 
 /// The figures, plots and claims that the newest manifests state: all, or those with one of
-/// `names`; of all experiments, or of `experiment`, which then need not list them. Throws NotFound,
-/// with the nearest name, for a name that is not a figure's or an experiment's.
+/// `names`; of all experiments, or of `experiments`, which then need not list them. Throws
+/// NotFound, with the nearest name, for a name that is not a figure's or an experiment's.
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
-                             const std::optional<std::string>& experiment = {});
+                             const std::vector<std::string>& experiments = {});
 
 /// Figures that need more of a checkpoint first: its one analysis then gives what the others need
 /// as well. Otherwise in the order given.
@@ -54,16 +53,11 @@ struct CollectedRuns {
   std::vector<std::string> notes;
 };
 
-struct CollectOptions {
-  std::optional<std::string> scale;  ///< default: the one declared last
-  bool all_versions = false;         ///< runs of older versions of the manifest too
-};
-
-/// The newest_runs() of the experiment at one scale. (A figure of every experiment has a run once
-/// per experiment.) Those of older versions of the manifest have a variant of their own,
-/// "fluid=cell,manifest=1f2e3d4c". Each has its checkpoints up to own_end(). Throws NotFound if
-/// there is no such run.
+/// The newest_runs() of the experiment among those selected, at the scale declared last. (A figure
+/// of every experiment has a run once per experiment.) Those of older versions of the manifest have
+/// a variant of their own, "fluid=cell,manifest=1f2e3d4c". Each has its checkpoints up to
+/// own_end(). Throws NotFound if there is no such run.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
-                           const CollectOptions& options, const MeasureOptions& measuring = {});
+                           const RunSelection& selection, const MeasureOptions& measuring = {});
 
 }  // namespace shearcell

@@ -163,7 +163,7 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   const Figure& figure = wanted.figure;
   ComputedFigure computed;
   FigureSummary& summary = computed.summary;
-  CollectedRuns collected = collect_runs(store, wanted, options.collect, options);
+  CollectedRuns collected = collect_runs(store, wanted, options.runs, options);
   summary.name = figure.name;
   summary.experiment = wanted.experiment;
   summary.title = figure.title;

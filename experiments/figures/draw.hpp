@@ -16,7 +16,7 @@ namespace shearcell {
 /// `fresh` measures every checkpoint again, even if the store keeps its measures.
 struct FigureOptions : MeasureOptions {
   std::filesystem::path folder;  ///< the files go into its folder EXPERIMENT; created if missing
-  CollectOptions collect = {};
+  RunSelection runs = {};
   bool wide = false;  ///< drawn over two columns of a journal
 };
 

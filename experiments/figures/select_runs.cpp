@@ -24,10 +24,8 @@ void require_found(const char* what, const Filter& filter) {
   if (missing == nullptr) return;
   const std::vector<std::string> seen = filter.seen();
   const std::vector<std::string_view> known(seen.begin(), seen.end());
-  const std::string nearest = suggest_name(*missing, known).name;
   throw NotFound(fmt::format("no run of the store has {} {}; {}", what, *missing,
-                             nearest.empty() ? fmt::format("it has {}", fmt::join(known, "; "))
-                                             : "did you mean " + nearest + "?"));
+                             did_you_mean(*missing, known)));
 }
 
 /// When each version of a manifest was registered last, by its SHA-256: larger is newer.

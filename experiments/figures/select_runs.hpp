@@ -14,13 +14,13 @@ namespace shearcell {
 
 /// An empty list selects all.
 struct RunSelection {
-  std::vector<std::string> experiments;
-  std::vector<std::string> scales;
+  std::vector<std::string> experiments = {};
+  std::vector<std::string> scales = {};
   /// "fluid=cell" also selects the variant "fluid=cell,amplitude_rad=0.1".
-  std::vector<std::string> variants;
-  std::vector<std::uint64_t> seeds;
-  std::vector<std::string> states;  ///< names of RunState
-  bool all_versions = false;        ///< newest_runs(): those of older versions of a manifest too
+  std::vector<std::string> variants = {};
+  std::vector<std::uint64_t> seeds = {};
+  std::vector<std::string> states = {};  ///< names of RunState
+  bool all_versions = false;  ///< newest_runs(): those of older versions of a manifest too
 };
 
 struct SelectedRun {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/manifest/suggest.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -78,6 +81,12 @@ std::string with_nearest(std::string problem, string_view unknown,
                          std::span<const string_view> candidates) {
   const std::string near = suggest_name(unknown, candidates).name;
   return near.empty() ? problem : problem + ", the nearest is " + near;
+}
+
+std::string did_you_mean(string_view unknown, std::span<const string_view> known) {
+  const std::string near = suggest_name(unknown, known).name;
+  return near.empty() ? fmt::format("known are {}", fmt::join(known, ", "))
+                      : fmt::format("did you mean {}?", near);
 }
 
 }  // namespace shearcell

@@ -22,6 +22,9 @@ Suggestion suggest_name(std::string_view unknown, std::span<const std::string_vi
 std::string with_nearest(std::string problem, std::string_view unknown,
                          std::span<const std::string_view> candidates);
 
+/// "did you mean NEAREST?"; "known are A, B, C" when nothing is near.
+std::string did_you_mean(std::string_view unknown, std::span<const std::string_view> known);
+
 /// The member `name` of each.
 std::vector<std::string_view> names_of(const auto& list) {
   std::vector<std::string_view> names;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <set>
 
 #include "analysis/chart.hpp"
@@ -13,7 +14,6 @@
 #include "analysis/motion.hpp"
 #include "analysis/profiles.hpp"
 #include "analysis/voronoi.hpp"
-#include "experiments/figures/select_runs.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/measure_sources.hpp"
@@ -75,8 +75,7 @@ std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<
 }
 
 std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>& experiments,
-                              const std::optional<std::string>& scale,
-                              const PackingChoice& choice) {
+                              const RunSelection& selection, const PackingChoice& choice) {
   std::vector<ChosenRun> chosen;
   if (!choice.runs.empty()) {
     for (const std::string& id : choice.runs) {
@@ -87,10 +86,8 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
     return chosen;
   }
   std::set<std::string> known;
-  std::vector<SelectedRun> runs = newest_runs(store, select_runs(store, {}), false).runs;
-  std::erase_if(runs, [&](const SelectedRun& s) {
-    return scale && scale_name(s.membership.scale) != *scale;
-  });
+  const std::vector<SelectedRun> runs =
+      newest_runs(store, select_runs(store, selection), false).runs;
   for (const std::string& experiment : experiments) {
     for (ChosenRun& run : runs_of_experiment(store, runs, experiment, choice.runs_per_experiment)) {
       if (known.insert(run.run.id).second) chosen.push_back(std::move(run));
@@ -294,11 +291,11 @@ std::vector<std::size_t> evenly(std::size_t size, std::size_t count) {
 }
 
 Packings collect_packings(const Store& store, const std::vector<std::string>& experiments,
-                          const std::optional<std::string>& scale, const PackingChoice& choice,
+                          const RunSelection& selection, const PackingChoice& choice,
                           std::size_t workers,
                           const std::function<void(std::size_t, std::size_t)>& report) {
   Packings packings;
-  std::vector<ChosenRun> runs = choose(store, experiments, scale, choice);
+  std::vector<ChosenRun> runs = choose(store, experiments, selection, choice);
   const VariantNames names(store);
   weigh(store, runs, packings);
   fit(runs, choice, packings);

@@ -6,12 +6,12 @@
 #include <cstddef>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/measures.hpp"
+#include "experiments/figures/select_runs.hpp"
 #include "provenance/checkpoint.hpp"
 #include "provenance/store.hpp"
 
@@ -34,12 +34,12 @@ struct Packings {
   std::vector<std::string> notes;  ///< what was left out, one line each
 };
 
-/// `experiments` in the order of the report, `scale` as in a figure. Where all chosen checkpoints
-/// would not fit the budget each run shows fewer, evenly over its length, the first and the last
+/// `experiments` in the order of the report. Where all chosen checkpoints would not fit the budget
+/// each run shows fewer, evenly over its length, the first and the last
 /// among them; where not even the last ones fit, the last runs are left out. The same store gives
 /// the same value.
 Packings collect_packings(const Store& store, const std::vector<std::string>& experiments,
-                          const std::optional<std::string>& scale, const PackingChoice& choice,
+                          const RunSelection& selection, const PackingChoice& choice,
                           std::size_t workers,
                           const std::function<void(std::size_t, std::size_t)>& report);
 

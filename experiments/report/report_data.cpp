@@ -26,10 +26,13 @@ namespace {
 
 using nlohmann::json;
 
-/// In the order in which they were first registered, with the question of the newest manifest.
-std::vector<ReportExperiment> experiments_of(const Store& store) {
+/// All or those named, in the order in which they were first registered, with the question of the
+/// newest manifest.
+std::vector<ReportExperiment> experiments_of(const Store& store,
+                                             const std::vector<std::string>& names) {
   std::vector<ReportExperiment> found;
   for (RegisteredManifest& manifest : newest_manifests(store)) {
+    if (!names.empty() && std::ranges::count(names, manifest.experiment) == 0) continue;
     const std::optional<Manifest> known = read(manifest);
     ReportExperiment& experiment = found.emplace_back();
     experiment.manifest = std::move(manifest);
@@ -69,7 +72,7 @@ std::optional<FigureRecord> record_of(const std::vector<FigureRecord>& records,
 ReportFigure figure_of(const Store& store, const WantedFigure& wanted, const ReportOptions& options,
                        const std::vector<FigureRecord>& records, ReportData& data) {
   FigureOptions how;
-  how.collect.scale = options.scale;
+  how.runs = options.runs;
   how.workers = options.workers;
   how.report = options.measured;
   ComputedFigure computed = compute_figure(store, wanted, how);
@@ -95,7 +98,7 @@ ReportFigure figure_of(const Store& store, const WantedFigure& wanted, const Rep
 
 void add_figures(const Store& store, const ReportOptions& options, ReportData& data) {
   const std::vector<FigureRecord> records = figure_records(store);
-  WantedFigures wanted = wanted_figures(store);
+  WantedFigures wanted = wanted_figures(store, {}, options.runs.experiments);
   std::set<std::string> notes(wanted.unknown.begin(), wanted.unknown.end());
   for (const WantedFigure& figure : in_order_of_needs(std::move(wanted.figures))) {
     const auto home =
@@ -182,9 +185,8 @@ void add_run_table(const Store& store, const RunSelection& selection,
 /// keeps an experiment from having them goes to data.notes.
 void add_run_tables(const Store& store, const ReportOptions& options, ReportData& data) {
   for (ReportExperiment& experiment : data.experiments) {
-    RunSelection selection;
+    RunSelection selection = options.runs;
     selection.experiments = {experiment.manifest.experiment};
-    if (options.scale) selection.scales = {*options.scale};
     try {
       add_run_table(store, selection, {options.workers, false, options.measured}, experiment,
                     data.damage);
@@ -204,7 +206,8 @@ ReportData collect_report(const Store& store, const ReportOptions& options) {
   data.store = std::filesystem::absolute(store.folder()).lexically_normal().filename().string();
   data.program = host_facts().at("build");
   data.interactive = options.interactive && has_front_end();
-  data.experiments = experiments_of(store);
+  select_runs(store, options.runs);  // refuses a name that the store does not have
+  data.experiments = experiments_of(store, options.runs.experiments);
   if (data.experiments.empty()) {
     throw NotFound(store.folder().string() +
                    ": the store holds no experiment; `shearcell run` one first");
@@ -217,7 +220,7 @@ ReportData collect_report(const Store& store, const ReportOptions& options) {
   add_run_tables(store, options, data);
   if (options.accuracy) data.accuracy = read_accuracy_charts(*options.accuracy);
   if (data.interactive) {
-    data.packings = collect_packings(store, names, options.scale, options.packings, options.workers,
+    data.packings = collect_packings(store, names, options.runs, options.packings, options.workers,
                                      options.packed);
     data.notes.insert(data.notes.end(), data.packings.notes.begin(), data.packings.notes.end());
   }

@@ -20,7 +20,7 @@
 namespace shearcell {
 
 struct ReportOptions {
-  std::optional<std::string> scale;  ///< of figures and packings; default: the one declared last
+  RunSelection runs;  ///< in figures, tables and packings; figures are of one scale
   /// Folder with the CSV files of `bench accuracy --out`; no such section without it.
   std::optional<std::filesystem::path> accuracy;
   PackingChoice packings;

@@ -140,6 +140,19 @@ TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
   EXPECT_EQ(table({.name = "own", .y = "phi", .by = "fluid"}).chart.series.size(), 2U);
 }
 
+TEST(OwnPlot, NamesTheStepsOfAStiffening) {
+  std::vector<FigureRun> runs = two_parameters();
+  const auto x_name = [&] {
+    const FigureTable table = plot_figure({.name = "own", .y = "phi"}).make(runs).tables.at(0);
+    return plain_text(table.chart.x.name);
+  };
+  for (FigureRun& run : runs) {
+    EXPECT_EQ(x_name(), "shear cycle");
+    run.checkpoints.front().stiffness_N_per_m = 654;
+  }
+  EXPECT_EQ(x_name(), "step of the stiffening");
+}
+
 TEST(OwnPlot, OfRunsThatEndBeforeItsCycleIsEmpty) {
   const std::vector<FigureRun> runs = {rising_run("still", 1, 3, 0)};
   for (const char* y : {"phi", "pair_correlation"}) {

@@ -102,6 +102,13 @@ def verdicts(results):
             yield path.parent.relative_to(results).as_posix(), figure, drawing, claim
 
 
+def measured_elsewhere(place, figure, claim, others):
+    """Whether another folder of the same scale, with another part of the runs, measured what this one could not."""
+    same = [other for other_place, of, _, other in others
+            if of == figure and other["claim"] == claim["claim"] and other_place.split("/")[0] == place.split("/")[0]]
+    return claim["estimate"] is None and any(other["estimate"] is not None for other in same)
+
+
 def headlines(page, results):
     text = header(["claim", "supplement", "ours (90 % interval)", "runs", "verdict"])
     for figure, beginning, name, supplement in HEADLINES:
@@ -119,7 +126,10 @@ def headlines(page, results):
 def all_claims(page, results):
     text = header(["figure", "claim", "quantity", "measured (90 % interval)", "margin", "runs", "verdict"])
     last = None
-    for place, figure, drawing, claim in verdicts(results):
+    every = list(verdicts(results))
+    for place, figure, drawing, claim in every:
+        if measured_elsewhere(place, figure, claim, every):
+            continue
         link = f"[{place}/{figure}]({drawing.relative_to(page.parent).as_posix()})"
         low, high = claim["interval"] or (None, None)
         value = "not measured"

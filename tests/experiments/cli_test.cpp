@@ -75,7 +75,7 @@ TEST_F(CommandLine, TakesTheStoreThatIsNamedElseThatOfTheEnvironment) {
 TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {
   campaign(tiny_manifest(), {"--cycles", "0"});
   expect_refused({"figures", "S99"}, {"there is no figure S99"});
-  expect_refused({"figures", "S2", "--scale", "paper"}, {"no run of the store belongs"});
+  expect_refused({"figures", "S2", "--scale", "paper"}, {"no run of the store has scale paper"});
   expect_refused({"show", "0123456789abcdef"}, {"no run"});
   expect_refused({"log", "zzz"}, {"no run"});
   expect_refused({"resume", "zzz"}, {"no run"});

@@ -77,14 +77,13 @@ TEST_F(DrawFigure, TakesTheNewestVersionOfTheManifest) {
   EXPECT_TRUE(has(newest.notes[0], "2 runs of another version"));
   EXPECT_TRUE(has(newest.notes[0], "fluid=cell, fluid=still"));
 
-  const CollectedRuns all = collect_runs(store_, kS2, {.scale = {}, .all_versions = true});
+  const CollectedRuns all = collect_runs(store_, kS2, {.all_versions = true});
   EXPECT_EQ(distinct_runs(all).size(), 6U) << "older runs are variants of their own";
 
   compute(store_, text);
   EXPECT_EQ(distinct_runs(collect_runs(store_, kS2, {})).size(), 2U) << "run again, the newest";
   compute(store_, "# a comment\n" + text);
-  EXPECT_EQ(distinct_runs(collect_runs(store_, kS2, {.scale = {}, .all_versions = true})).size(),
-            6U)
+  EXPECT_EQ(distinct_runs(collect_runs(store_, kS2, {.all_versions = true})).size(), 6U)
       << "no run comes twice";
 }
 
@@ -93,7 +92,7 @@ TEST_F(DrawFigure, AnEditedManifestThatRanAtOneScaleLeavesTheRunsOfTheOther) {
   compute(store_, tiny_manifest("", kBothFluids + scales), {.scale = "long"});
   compute(store_, tiny_manifest("  pressure_Pa: 700\n", scales), {.scale = "short"});
   EXPECT_EQ(collect_runs(store_, kS2, {}).scale, "short");
-  EXPECT_EQ(distinct_runs(collect_runs(store_, kS2, {.scale = "long"})).size(), 2U);
+  EXPECT_EQ(distinct_runs(collect_runs(store_, kS2, {.scales = {"long"}})).size(), 2U);
   EXPECT_EQ(newest_runs(store_, select_runs(store_, {}), false).runs.size(), 3U) << "in a table";
 }
 
@@ -279,12 +278,23 @@ TEST_F(DrawFigure, TakesTheScaleThatIsAskedFor) {
   compute(store_, text);
   EXPECT_EQ(draw("last").scale, "desk");
   FigureOptions options;
-  options.collect.scale = "smoke";
+  options.runs.scales = {"smoke"};
   const FigureSummary smoke = draw("smoke", kS2, options);
   EXPECT_EQ(smoke.scale, "smoke");
   EXPECT_EQ(smoke.checkpoints, 2U * 3U);
-  options.collect.scale = "paper";
+  options.runs.scales = {"paper"};
   EXPECT_THROW(draw("paper", kS2, options), NotFound);
+}
+
+TEST_F(DrawFigure, TakesTheRunsThatAreSelected) {
+  compute(store_, tiny_manifest("", kBothFluids + "seeds: 3\n"));
+  FigureOptions options;
+  options.runs.variants = {"fluid=cell"};
+  options.runs.seeds = {1, 3};
+  EXPECT_EQ(draw("part", kS2, options).runs, 2U);
+  EXPECT_TRUE(has(contents("part").at("S2.caption.txt"), "Runs: fluid=cell: 2."));
+  options.runs.variants = {"fluid=none"};
+  EXPECT_THROW(draw("none", kS2, options), NotFound);
 }
 
 TEST_F(DrawFigure, KnowsWhichFiguresTheStoreCanMake) {
@@ -297,8 +307,8 @@ TEST_F(DrawFigure, KnowsWhichFiguresTheStoreCanMake) {
   for (const WantedFigure& one : wanted.figures) names.push_back(one.path());
   EXPECT_EQ(names, (std::vector<std::string>{"table1", "tiny/S2"}));
   EXPECT_EQ(wanted_figures(store_, {"S4"}).figures.size(), 0U);
-  EXPECT_EQ(wanted_figures(store_, {"S4"}, "tiny").figures.size(), 1U) << "asked for by name";
-  EXPECT_THROW(wanted_figures(store_, {}, "tini"), NotFound);
+  EXPECT_EQ(wanted_figures(store_, {"S4"}, {"tiny"}).figures.size(), 1U) << "asked for by name";
+  EXPECT_THROW(wanted_figures(store_, {}, {"tini"}), NotFound);
   EXPECT_TRUE(wanted.unknown.empty());
 }
 

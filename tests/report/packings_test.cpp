@@ -30,7 +30,7 @@ class PackingsOf : public testing::Test {
   }
 
   Packings collect(const PackingChoice& choice) {
-    return collect_packings(store_, {"tiny"}, std::nullopt, choice, 2, {});
+    return collect_packings(store_, {"tiny"}, {}, choice, 2, {});
   }
 
   TemporaryFolder folder_;
@@ -52,7 +52,7 @@ TEST_F(PackingsOf, ShowTheLastRunOfEachVariant) {
 
 TEST_F(PackingsOf, AreTheSameWhateverTheWorkers) {
   const auto with = [&](std::size_t workers) {
-    return collect_packings(store_, {"tiny"}, std::nullopt, {}, workers, {}).runs.dump();
+    return collect_packings(store_, {"tiny"}, {}, {}, workers, {}).runs.dump();
   };
   EXPECT_EQ(with(1), with(4));
 }

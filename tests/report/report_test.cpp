@@ -64,6 +64,16 @@ TEST_F(ReportOfRuns, HasTheSameBytesAgainAndLeavesTheLogAlone) {
   EXPECT_EQ(store_.head().hash, before.hash);
 }
 
+TEST_F(ReportOfRuns, HoldsTheRunsThatAreSelected) {
+  ReportOptions options;
+  options.runs.variants = {"fluid=cell"};
+  const ReportData report = collect(options);
+  EXPECT_EQ(report.experiments.at(0).table.rows.size(), 1U);
+  EXPECT_EQ(report.figures.at(0).summary.runs, 1U);
+  options.runs.experiments = {"tini"};
+  EXPECT_THROW(collect(options), NotFound);
+}
+
 TEST_F(ReportOfRuns, HoldsQuestionVerdictRunsLineageAndNumbers) {
   const ReportData report = collect();
   EXPECT_EQ(report.experiments.size(), 1U);
