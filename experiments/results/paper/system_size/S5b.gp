@@ -22,10 +22,8 @@ set offsets 0, 0, graph 0.05, graph 0.05
 set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '#888888'
 set arrow from graph 0, first 0.647 to graph 1, first 0.647 nohead dt 2 lc rgb '#888888'
 $series0 << EOD
-5200,0.646443072,,
-7900,0.645129441,,0.000874644227
-11400,0.647164577,,0.000259492878
-18200,0.642623838,,0.00032532975
+5200,0.646406502,,0.000236413751
+18200,0.644091535,,0.00148363447
 EOD
 $series1 << EOD
 0,0.645,,
