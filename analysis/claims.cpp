@@ -48,8 +48,8 @@ void add_missing(std::string& note, const Values& values, const Scalar& scalar) 
     if (why == Missing::nothing) continue;
     add(note, fmt::format("{} of {} runs {} {}", count, values.runs,
                           why == Missing::checkpoint  ? "lack a checkpoint of"
-                          : why == Missing::too_short ? "end before"
-                          : why == Missing::too_late  ? "begin after"
+                          : why == Missing::too_short ? "end too early for"
+                          : why == Missing::too_late  ? "begin too late for"
                                                       : "have no value at",
                           scalar.reach));
   }

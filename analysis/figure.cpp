@@ -95,7 +95,7 @@ std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> vari
   return keys;
 }
 
-std::vector<std::string> varied_keys(std::span<const FigureRun> runs) {
+std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::string_view first) {
   std::set<nlohmann::json> variants;
   std::set<std::string> keys;
   for (const FigureRun& run : runs) {
@@ -104,7 +104,9 @@ std::vector<std::string> varied_keys(std::span<const FigureRun> runs) {
     for (const auto& [key, value] : run.labels.items()) keys.insert(key);
   }
   const std::vector<nlohmann::json> list(variants.begin(), variants.end());
-  return keys_telling_apart(list, {keys.begin(), keys.end()});
+  std::vector<std::string> in_order(keys.begin(), keys.end());
+  std::ranges::stable_partition(in_order, [&](const std::string& key) { return key == first; });
+  return keys_telling_apart(list, std::move(in_order));
 }
 
 std::span<const Figure> all_figures() {

@@ -80,8 +80,9 @@ bool sweeps_engine(const FigureRun& run);
 std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,
                                             std::vector<std::string> keys);
 
-/// The swept keys of the runs that distinguish their variants.
-std::vector<std::string> varied_keys(std::span<const FigureRun> runs);
+/// The swept keys of the runs that distinguish their variants; `first` stays of those that advance
+/// together with it.
+std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::string_view first = "");
 
 /// Every figure, in the order of the supplement.
 std::span<const Figure> all_figures();

@@ -98,6 +98,24 @@ double critical_size_for(const FigureRun& run) {
   return published_nearest(number_of(run, "amplitude_rad")).critical_size;
 }
 
+double RunMeasure::of(const FigureRun& run) const {
+  const RunOnset onset = method(run, critical_size_for(run));
+  return onset.observed == Observed::yes ? onset.*value : std::nan("");
+}
+
+std::span<const RunMeasure> all_run_measures() {
+  static constexpr RunMeasure all[] = {{"onset_size_cycle", onset_by_size, &RunOnset::cycle},
+                                       {"onset_size_phi", onset_by_size, &RunOnset::phi},
+                                       {"onset_slope_phi", onset_by_slope, &RunOnset::phi}};
+  return all;
+}
+
+const RunMeasure* find_run_measure(std::string_view name) {
+  const auto all = all_run_measures();
+  const auto found = std::ranges::find(all, name, &RunMeasure::name);
+  return found == all.end() ? nullptr : &*found;
+}
+
 Onset onset(std::span<const FigureRun* const> runs, OnsetMethod method, double critical_size) {
   Onset result;
   std::vector<double> phi;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "analysis/figure.hpp"
 #include "analysis/statistics.hpp"
@@ -43,6 +44,18 @@ RunOnset onset_by_slope(const FigureRun& run, double critical_size);
 double critical_size_for(const FigureRun& run);
 
 using OnsetMethod = RunOnset (*)(const FigureRun& run, double critical_size);
+
+/// One number of a whole run that plots and claims take, by its name in tables.
+struct RunMeasure {
+  std::string_view name;
+  OnsetMethod method;
+  double RunOnset::*value;
+
+  double of(const FigureRun& run) const;  ///< not a number where no onset was observed
+};
+std::span<const RunMeasure> all_run_measures();
+/// The one of that name, or null.
+const RunMeasure* find_run_measure(std::string_view name);
 
 /// Over independent runs. Censored runs do not enter the mean, which is biased towards early onsets
 /// as long as there are any: they are counted for that reason.

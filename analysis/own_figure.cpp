@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -12,6 +14,7 @@
 
 #include "analysis/claims.hpp"
 #include "analysis/figures/curves.hpp"
+#include "analysis/onset.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
@@ -49,20 +52,30 @@ Axis axis_of(const std::string& key) {
   return named_axis(key, "1");
 }
 
-Axis x_axis(const std::string& key, std::span<const FigureRun> runs) {
-  const auto stiffening = [](const FigureRun& run) {
+bool all_stiffen(std::span<const FigureRun> runs) {
+  return !runs.empty() && std::ranges::all_of(runs, [](const FigureRun& run) {
     return !run.checkpoints.empty() && std::isfinite(run.checkpoints.front().stiffness_N_per_m);
-  };
-  if (key != "cycle" || runs.empty() || !std::ranges::all_of(runs, stiffening)) return axis_of(key);
+  });
+}
+
+Axis x_axis(const std::string& key, std::span<const FigureRun> runs) {
+  if (key != "cycle" || !all_stiffen(runs)) return axis_of(key);
   return {.name = "step of the stiffening", .whole = true};
 }
 
-/// The checkpoint at a cycle, or the last one; null if there is none.
-const Measures* measures_at(const FigureRun& run, const std::optional<std::uint64_t>& cycle) {
-  if (run.checkpoints.empty()) return nullptr;
-  if (!cycle) return &run.checkpoints.back().measures;
-  const auto found =
-      std::ranges::find(run.checkpoints, static_cast<double>(*cycle), &CheckpointMeasures::cycle);
+/// The cycle that every run of the plot is measured at: as stated, or the last that all have.
+double cycle_of(const PlotSpec& plot, std::span<const FigureRun> runs) {
+  if (plot.cycle) return static_cast<double>(*plot.cycle);
+  double last = std::numeric_limits<double>::infinity();
+  for (const FigureRun& run : runs) {
+    if (!run.checkpoints.empty()) last = std::min(last, run.checkpoints.back().cycle);
+  }
+  return last;
+}
+
+/// The checkpoint at a cycle; null if there is none.
+const Measures* measures_at(const FigureRun& run, double cycle) {
+  const auto found = std::ranges::find(run.checkpoints, cycle, &CheckpointMeasures::cycle);
   return found == run.checkpoints.end() ? nullptr : &found->measures;
 }
 
@@ -70,7 +83,7 @@ const Measures* measures_at(const FigureRun& run, const std::optional<std::uint6
 /// with one value of `by`, share a curve. It has the name of its variant where it is of one.
 std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec& plot,
                                 const NameVariants& name) {
-  std::vector<std::string> keys = varied_keys(runs);
+  std::vector<std::string> keys = varied_keys(runs, plot.x);
   std::erase(keys, plot.x);
   if (!plot.by.empty()) keys = {plot.by};
   std::vector<FigureRun> found(runs.begin(), runs.end());
@@ -84,14 +97,11 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
     names[run.variant].insert(run.name);
   }
   std::vector<nlohmann::json> curves;
-  for (const FigureRun& run : found) {
-    if (std::ranges::find(curves, run.labels) == curves.end()) curves.push_back(run.labels);
-  }
-  const std::vector<std::string> shared = name ? name(curves) : std::vector<std::string>();
+  for (const FigureRun& run : found) curves.push_back(run.labels);
+  const auto shared = name ? name(curves) : std::map<nlohmann::json, std::string>();
   for (FigureRun& run : found) {
     if (names.at(run.variant).size() == 1 && !run.name.empty()) continue;
-    const auto curve = std::ranges::find(curves, run.labels) - curves.begin();
-    run.name = name && !run.labels.empty() ? shared[static_cast<std::size_t>(curve)] : run.variant;
+    run.name = name && !run.labels.empty() ? shared.at(run.labels) : run.variant;
   }
   return found;
 }
@@ -131,22 +141,21 @@ struct Points {
   }
 };
 
-/// The measure of one checkpoint of each run against a parameter; a trace for each seed.
-Points along_parameter(const PlotSpec& plot, const Curve& curve, const Quantity& y) {
+/// One number of each run against a parameter; a trace for each seed.
+Points along_parameter(const PlotSpec& plot, const Curve& curve,
+                       const std::function<double(const FigureRun&)>& number) {
   Points points;
   for (const FigureRun* run : curve.runs) {
-    if (const Measures* measures = measures_at(*run, plot.cycle)) {
-      points.add(run->seed, number_of(*run, plot.x), y(*measures));
-    }
+    points.add(run->seed, number_of(*run, plot.x), number(*run));
   }
   return points;
 }
 
 /// A measured curve of one checkpoint of each run; a trace for each run.
-Points along_curve(const PlotSpec& plot, const Curve& curve, const CurveMeasure& measure) {
+Points along_curve(const Curve& curve, const CurveMeasure& measure, double cycle) {
   Points points;
   for (std::size_t r = 0; r < curve.runs.size(); ++r) {
-    const Measures* measures = measures_at(*curve.runs[r], plot.cycle);
+    const Measures* measures = measures_at(*curve.runs[r], cycle);
     if (measures == nullptr) continue;
     const MeasuredCurve measured = measure.of(*measures);
     for (std::size_t i = 0; i < measured.x.size(); ++i) {
@@ -156,19 +165,60 @@ Points along_curve(const PlotSpec& plot, const Curve& curve, const CurveMeasure&
   return points;
 }
 
+/// What a panel against a parameter, or of measured curves, shows.
+struct Panel {
+  std::string x;
+  MeasureColumn y;
+  std::function<Points(const Curve&)> points;
+  std::optional<double> cycle = {};  ///< of the checkpoints; none for a number of the whole run
+};
+
+Panel panel_of(const PlotSpec& plot, std::span<const FigureRun> runs) {
+  if (const RunMeasure* of_run = find_run_measure(plot.y)) {
+    const auto number = [of_run](const FigureRun& run) { return of_run->of(run); };
+    return {plot.x, column_of(of_run->name, "1"),
+            [&plot, number](const Curve& curve) { return along_parameter(plot, curve, number); }};
+  }
+  const double cycle = cycle_of(plot, runs);
+  if (const CurveMeasure* measured = find_curve_measure(plot.y)) {
+    return {std::string(measured->x), column_of(measured->name, measured->unit),
+            [=](const Curve& curve) { return along_curve(curve, *measured, cycle); }, cycle};
+  }
+  MeasureColumn y = scalar_column(plot.y);
+  const auto number = [quantity = y.quantity, cycle](const FigureRun& run) {
+    const Measures* measures = measures_at(run, cycle);
+    return measures == nullptr ? std::nan("") : quantity(*measures);
+  };
+  return {plot.x, std::move(y),
+          [&plot, number](const Curve& curve) { return along_parameter(plot, curve, number); },
+          cycle};
+}
+
+/// A sentence of the caption: which checkpoints, and how many runs have no value.
+std::string note_of(const PlotSpec& plot, const Panel& panel, std::span<const FigureRun> runs,
+                    std::size_t with_value) {
+  if (panel.cycle && std::isfinite(*panel.cycle)) {
+    return fmt::format("At {} {}{}", all_stiffen(runs) ? "step" : "cycle", *panel.cycle,
+                       plot.cycle ? "" : ", the last that all runs have");
+  }
+  if (panel.cycle || with_value == runs.size()) return "";
+  return fmt::format("{} of {} runs have no value and are left out of the means",
+                     runs.size() - with_value, runs.size());
+}
+
 /// The mean over the runs at each x, or each trace: of a parameter, or of a measured curve.
-FigureTable against_x(const PlotSpec& plot, const CurveMeasure* measured,
+FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
                       std::span<const Curve> curves) {
-  const std::string x(measured == nullptr ? plot.x : measured->x);
-  const MeasureColumn y =
-      measured == nullptr ? scalar_column(plot.y) : column_of(measured->name, measured->unit);
-  FigureTable table{.name = plot.name, .columns = {"variant", x}};
-  add_columns(y, table.columns);
+  const bool measured_curves = find_curve_measure(plot.y) != nullptr;
+  const Panel panel = panel_of(plot, runs);
+  FigureTable table{.name = plot.name, .columns = {"variant", panel.x}};
+  if (panel.cycle) table.columns.insert(table.columns.begin() + 1, "cycle");
+  add_columns(panel.y, table.columns);
   table.columns.emplace_back("runs");
   std::vector<Series> traces;
+  std::size_t with_value = 0;
   for (const Curve& curve : curves) {
-    const Points points = measured == nullptr ? along_parameter(plot, curve, y.quantity)
-                                              : along_curve(plot, curve, *measured);
+    const Points points = panel.points(curve);
     Text title = curve.style.title;  // once in the key
     for (const auto& [trace, values] : points.traces) {
       traces.push_back(
@@ -176,22 +226,26 @@ FigureTable against_x(const PlotSpec& plot, const CurveMeasure* measured,
       for (const auto& [at, value] : values) traces.back().points.push_back({at, value});
     }
     for (const auto& [at, values] : points.values) {
-      TableRow& row = table.rows.emplace_back(TableRow{curve.variant, at});
+      TableRow& row = table.rows.emplace_back(TableRow{curve.variant});
+      if (panel.cycle) row.emplace_back(*panel.cycle);
+      row.emplace_back(at);
       const RunStatistics over = over_runs(values);
       add_values(over, row);
       row.emplace_back(over.runs);
+      with_value += over.runs;
     }
   }
-  table.chart.series = series_of(curves, columns_against(x, y));
+  table.chart.series = series_of(curves, columns_against(panel.x, panel.y));
   if (plot.traces) table.chart.series = std::move(traces);
   for (Series& series : table.chart.series) {
-    if (measured == nullptr) {
-      series.band = false;
-    } else {
+    if (measured_curves) {
       series.point = 0;  // hundreds of values: symbols would hide the curve
+    } else {
+      series.band = false;
     }
     if (curves.size() == 1) series.title = {};
   }
+  table.chart.note = note_of(plot, panel, runs, with_value);
   return table;
 }
 
@@ -208,13 +262,13 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
                  const NameVariants& names) {
   const CurveMeasure* measured = find_curve_measure(plot.y);
   const ScalarMeasure* x = find_measure(plot.x);
-  const bool by_parameter = measured == nullptr && plot.x != "cycle" && x == nullptr;
+  const bool by_parameter = measured == nullptr && is_parameter(plot.x);
   const bool grouped = by_parameter || !plot.by.empty();
   const std::vector<FigureRun> groups =
       grouped ? by_curve(given, plot, names) : std::vector<FigureRun>();
   const std::vector<Curve> curves =
       curves_by(grouped ? groups : given, {}, [](const FigureRun&) { return nullptr; }, {});
-  if (by_parameter || measured != nullptr) return against_x(plot, measured, curves);
+  if (by_parameter || measured != nullptr) return against_x(plot, given, curves);
   const MeasureColumn column = scalar_column(plot.y);
   if (plot.traces) return traces(plot, curves, column.quantity, x);
   if (plot.x == "cycle") return against_cycle(plot.name, curves, {&column, 1}, {});
@@ -249,22 +303,35 @@ std::vector<const FigureRun*> variant_with(const ClaimSpec& claim, const nlohman
                   claim.name, variants(found), words_of(where)));
 }
 
-FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> runs) {
+Scalar scalar_of(const ClaimSpec& claim) {
+  if (const RunMeasure* of_run = find_run_measure(claim.compare)) {
+    Scalar scalar = onset_phi(of_run->method);
+    if (of_run->value == &RunOnset::cycle) scalar.name = "the cycle of the onset";
+    return scalar;
+  }
   const Quantity quantity = scalar_column(claim.compare).quantity;
   const auto first = static_cast<std::int64_t>(claim.first);
   const auto last = static_cast<std::int64_t>(claim.last);
-  const Scalar scalar = first == last ? at_cycle(claim.compare, quantity, first)
-                                      : over_cycles(claim.compare, quantity, first, last);
+  return first == last ? at_cycle(claim.compare, quantity, first)
+                       : over_cycles(claim.compare, quantity, first, last);
+}
+
+FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> runs) {
+  const bool waits = claim.compare == "onset_size_cycle";  // some runs end before their onset
+  const Scalar scalar = scalar_of(claim);
   const std::string a = words_of(claim.between[0]), b = words_of(claim.between[1]);
   const std::string text =
       claim.higher ? fmt::format("{}: {} is higher by more than {} for {} than for {}", claim.name,
                                  scalar.name, claim.margin, a, b)
                    : fmt::format("{}: {} is the same for {} and {}", claim.name, scalar.name, a, b);
-  const Claimed claimed = claim.higher ? Claimed::above : Claimed::within;
-  return {
-      {},
-      {compare({text, claim.margin, claimed}, scalar, variant_with(claim, claim.between[0], runs),
-               variant_with(claim, claim.between[1], runs))}};
+  const Claim decided{text, claim.margin, claim.higher ? Claimed::above : Claimed::within};
+  const auto first = variant_with(claim, claim.between[0], runs);
+  const auto second = variant_with(claim, claim.between[1], runs);
+  if (waits) {
+    return {{},
+            {compare_waits(decided, "the onset", waits_for_onset(first), waits_for_onset(second))}};
+  }
+  return {{}, {compare(decided, scalar, first, second)}};
 }
 
 }  // namespace
@@ -280,8 +347,8 @@ std::string words_of(const nlohmann::json& values) {
   return text;
 }
 
-bool is_measure(std::string_view name) {
-  return find_measure(name) != nullptr || find_curve_measure(name) != nullptr;
+bool is_parameter(std::string_view x) {
+  return x != "cycle" && find_measure(x) == nullptr;
 }
 
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
@@ -316,7 +383,9 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
 Figure claim_figure(const ClaimSpec& claim) {
   Figure figure{claim.name, "",
                 [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
-  figure.needs.emplace_back(find_measure(claim.compare)->derived());
+  if (const ScalarMeasure* one = find_measure(claim.compare)) {
+    figure.needs.emplace_back(one->derived());
+  }
   return figure;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -17,13 +18,13 @@ struct Figure;
 
 struct PlotSpec {
   std::string name;
-  std::string y;            ///< a scalar or curve measure (analysis/measures.hpp)
+  std::string y;            ///< a scalar, curve (analysis/measures.hpp) or run measure (onset.hpp)
   std::string x = "cycle";  ///< "cycle", a scalar measure, or a parameter; unused by curves
   std::string by = {};      ///< a curve for each value of it; "": for each variant
   bool traces = false;      ///< every run's curve, not their mean with its error
   bool log_x = false, log_y = false;
-  std::optional<std::uint64_t> cycle =
-      {};  ///< of curves, or with a parameter as x; default: the last one
+  /// Of curves, or with a parameter as x; default: the last one that all runs have.
+  std::optional<std::uint64_t> cycle = {};
   /// Cycles first to last, with the checkpoints at their phases; with traces only.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string x_symbol = {}, x_unit = {};  ///< of that parameter; "" for none
@@ -33,11 +34,11 @@ struct PlotSpec {
 
 struct ClaimSpec {
   std::string name;
-  std::string compare;                    ///< a scalar measure
-  std::uint64_t first = 0, last = 0;      ///< its mean over these cycles
+  std::string compare;                    ///< a scalar measure or a run measure
+  std::uint64_t first = 0, last = 0;      ///< its mean over these cycles; 0 of a run measure
   std::array<nlohmann::json, 2> between;  ///< parameters and their values, of one variant each
-  double margin = 0;
-  bool higher = false;  ///< for the first, instead of the same
+  double margin = 0;                      ///< of onset_size_cycle, of log2 of the ratio
+  bool higher = false;                    ///< for the first, instead of the same
 
   bool operator==(const ClaimSpec&) const = default;
 };
@@ -45,17 +46,18 @@ struct ClaimSpec {
 /// "fluid=still, walls=rough" of parameters and their values.
 std::string words_of(const nlohmann::json& values);
 
-/// Whether there is a scalar or curve measure of that name.
-bool is_measure(std::string_view name);
+/// Whether the x of a plot is a parameter: neither "cycle" nor a scalar measure.
+bool is_parameter(std::string_view x);
 
-/// Names for people of variants, which are objects of keys and values; in their order.
-using NameVariants =
-    std::function<std::vector<std::string>(const std::vector<nlohmann::json>& variants)>;
+/// Names for people of variants, which are objects of keys and values.
+using NameVariants = std::function<std::map<nlohmann::json, std::string>(
+    const std::vector<nlohmann::json>& variants)>;
 
 /// One panel NAME: the measure against `x`, as the supplement's figures are drawn. Against phi,
 /// runs are averaged in bins; against another measure, at each cycle; a curve measure against its
-/// own x, at one cycle. `names` names curves that
-/// several variants share by what these have in common; without it they are called "fluid=still".
+/// own x, at one cycle; against a parameter, at one cycle or a number of the whole run. `names`
+/// names curves that several variants share by what these have in common; without it they are
+/// called "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
 /// No panel and one verdict (analysis/claims.hpp). Its function throws UsageError unless each

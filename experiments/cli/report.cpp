@@ -99,8 +99,8 @@ void add_report(CLI::App& app, Context& context) {
   add_common_options(*sub, context);
   sub->footer(
       R"(The file needs no network: figures to zoom and read values from, verdicts, runs, lineage, and
-packings in 3D with their positions rounded to 16 bits an axis. Of the store, only
-the measures that it keeps change.
+packings in 3D with their positions rounded to 16 bits an axis. Only the cached measures in the
+store change.
 Examples:
   shearcell report --out report.html
   shearcell report --run 3f9a --frames 200 --out one-run.html

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -13,70 +13,45 @@
 #include <utility>
 
 #include "analysis/own_figure.hpp"
-#include "core/drive.hpp"
-#include "experiments/figures/own_end.hpp"
-#include "experiments/manifest/conversion.hpp"
+#include "experiments/figures/own_part.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
-#include "experiments/runner/asks.hpp"
 #include "experiments/runner/progress.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell {
 namespace {
 
-/// Steps at which the experiment asks for a checkpoint in cycles first to last; empty for a run
-/// that is no shear.
-std::vector<std::uint64_t> asked_steps(const Store& store, const CollectedRun& run, double first,
-                                       double last) {
-  if (run.run.kind != name_of(Stage::shear)) return {};
-  const Drive motion = drive(read_stage(run.run.resolved).parameters);
-  return checkpoint_steps(ask_of(store, run.run.id, run.membership), motion, first, last);
+constexpr std::array<std::uint64_t, 2> whole_run = {0, StoreLimits::cycles};
+
+/// What the experiment asks of the run as far as the figure sees it: phases of a cycle only where
+/// it names cycles.
+RunAsk ask_for(const Store& store, const Figure& figure, const CollectedRun& run) {
+  return figure.within ? ask_of(store, run.run.id, run.membership)
+                       : RunAsk{.checkpoint_every = run.membership.checkpoint_every};
 }
 
-/// Those of a figure: at whole cycles or, within the cycles that it names, also at the phases that
-/// the experiment asks for. Not beyond the run's end for this experiment; and an interruption
-/// leaves checkpoints of its own. A figure that measures nothing gets the last one only.
+/// Not beyond the run's end for this experiment. A figure that measures nothing gets the last one
+/// only.
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
                                              const CollectedRun& run) {
-  double first = 0, last = run.end;
-  std::vector<std::uint64_t> phases;
-  if (figure.within) {
-    first = static_cast<double>(figure.within->front());
-    last = std::min(last, static_cast<double>(figure.within->back()));
-    phases = asked_steps(store, run, first, last);
-  }
-  std::vector<CheckpointRecord> found = store.checkpoints(run.run.id, Listed::and_pruned);
-  std::erase_if(found, [&](const CheckpointRecord& record) {
-    const bool whole = record.cycle == std::floor(record.cycle);
-    return record.cycle < first || record.cycle > last ||
-           !(whole || std::ranges::binary_search(phases, record.step));
-  });
+  const auto [first, last] = figure.within.value_or(whole_run);
+  std::vector<CheckpointRecord> found =
+      own_checkpoints(store, run.run, ask_for(store, figure, run), static_cast<double>(first),
+                      std::min(run.end, static_cast<double>(last)));
   if (figure.form == FigureForm::table && !found.empty()) {
     found.erase(found.begin(), --found.end());
   }
   return found;
 }
 
-std::size_t missing_of(const CollectedRun& run) {
-  if (run.run.kind != "shear" || run.checkpoints.empty()) return 0;
-  std::set<double> cycles;
-  for (const CheckpointRecord& record : run.checkpoints) cycles.insert(record.cycle);
-  const std::uint64_t every = std::max<std::uint64_t>(run.membership.checkpoint_every, 1);
-  std::size_t missing = 0;
-  for (double cycle = 0; cycle < *cycles.rbegin(); cycle += static_cast<double>(every)) {
-    missing += cycles.contains(cycle) ? 0 : 1;
-  }
-  return missing;
-}
-
-std::size_t missing_within(const Store& store, const std::array<std::uint64_t, 2>& cycles,
-                           const CollectedRun& run) {
-  const double end = std::min(run.run.cycle, run.end);
-  auto asked = asked_steps(store, run, static_cast<double>(cycles[0]),
-                           std::min(end, static_cast<double>(cycles[1])));
+std::size_t missing_of(const Store& store, const Figure& figure, const CollectedRun& run) {
+  const auto [first, last] = figure.within.value_or(whole_run);
+  const double end = std::min({run.run.cycle, run.end, static_cast<double>(last)});
+  auto asked = asked_steps(run.run, ask_for(store, figure, run), static_cast<double>(first), end);
   for (const CheckpointRecord& record : run.checkpoints) std::erase(asked, record.step);
   return asked.size();
 }
@@ -91,8 +66,7 @@ std::vector<std::string> never_made(const Store& store, const Figure& figure,
   };
   std::map<bool, Lack> lacks;  // by whether the run is of LAMMPS
   for (const CollectedRun& run : runs) {
-    const std::size_t missing =
-        figure.within ? missing_within(store, *figure.within, run) : missing_of(run);
+    const std::size_t missing = missing_of(store, figure, run);
     if (missing == 0) continue;
     Lack& lack = lacks[engine_of(run.run.resolved) == EngineKind::lammps];
     lack.checkpoints += missing;
@@ -155,18 +129,15 @@ std::vector<Figure> own_figures(const RegisteredManifest& manifest) {
 /// Names the variants of the figure's runs, which may be of several versions of a manifest.
 void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRuns& collected) {
   for (const RegisteredManifest& manifest : manifests) {
-    std::map<nlohmann::json, std::string> names;  // by swept values
     std::vector<nlohmann::json> variants;
     for (const CollectedRun& run : collected.runs) {
-      if (run.membership.experiment != manifest.experiment) continue;
-      if (names.emplace(run.membership.labels, "").second)
+      if (run.membership.experiment == manifest.experiment)
         variants.push_back(run.membership.labels);
     }
     if (variants.empty()) continue;
     const auto known = read(manifest);
     const auto labels = known ? known->labels : std::vector<VariantLabel>();
-    const std::vector<std::string> found = variant_names(variants, labels);
-    for (std::size_t k = 0; k < variants.size(); ++k) names[variants[k]] = found[k];
+    const auto names = variant_names(variants, labels);
     for (CollectedRun& run : collected.runs) {
       if (run.membership.experiment != manifest.experiment) continue;
       run.name = names.at(run.membership.labels);

@@ -40,7 +40,7 @@ std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures);
 
 /// One run of a figure.
 struct CollectedRun : SelectedRun {
-  std::vector<CheckpointRecord> checkpoints = {};  ///< at whole cycles
+  std::vector<CheckpointRecord> checkpoints = {};  ///< own_checkpoints()
   std::string name = {};                           ///< of its variant, for people
   bool named = false;                              ///< by a label of the manifest
   double end = 0;                                  ///< own_end()

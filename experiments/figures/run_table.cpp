@@ -10,7 +10,7 @@
 
 #include "analysis/onset.hpp"
 #include "experiments/figures/more_measures.hpp"
-#include "experiments/figures/own_end.hpp"
+#include "experiments/figures/own_part.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/registered.hpp"
@@ -190,14 +190,6 @@ std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per
   return columns;
 }
 
-std::vector<CheckpointRecord> checkpoints_of(const Store& store, const SelectedRun& selected,
-                                             const MeasureOptions& options) {
-  std::vector<CheckpointRecord> found = store.checkpoints(selected.run.id, Listed::and_pruned);
-  const double end = own_end(store, selected.run, selected.membership, options);
-  std::erase_if(found, [&](const CheckpointRecord& c) { return c.cycle > end; });
-  return found;
-}
-
 /// Runs with their checkpoints, one after the other, and the measures of each.
 struct Selected {
   std::vector<SelectedRun> runs;
@@ -213,7 +205,10 @@ Selected select(const Store& store, const RunSelection& selection, const Measure
   all.runs = std::move(newest.runs);
   table.notes = std::move(newest.notes);
   for (const SelectedRun& run : all.runs) {
-    std::ranges::move(checkpoints_of(store, run, options), std::back_inserter(all.records));
+    const double end = own_end(store, run.run, run.membership, options);
+    std::ranges::move(
+        own_checkpoints(store, run.run, ask_of(store, run.run.id, run.membership), 0, end),
+        std::back_inserter(all.records));
     all.ends.push_back(all.records.size());
   }
   all.measures.resize(all.records.size());

@@ -77,6 +77,33 @@ std::size_t sort_by_version(const Store& store, std::vector<SelectedRun>& runs) 
   return runs.size() - older.size();
 }
 
+/// Says where an edited manifest asks for fewer cycles than `run --cycles` gave an older version.
+void note_shortened(const std::vector<SelectedRun>& runs, std::vector<std::string>& notes) {
+  struct Shortened {
+    std::size_t runs = 0;
+    std::uint64_t asked = 0, had = 0;
+  };
+  std::map<ExperimentScale, Shortened> shortened;
+  for (const auto& [run, m] : runs) {
+    for (const Membership& older : run.memberships) {
+      const bool same = std::tie(older.experiment, older.scale, older.variant, older.seed) ==
+                        std::tie(m.experiment, m.scale, m.variant, m.seed);
+      if (!same || older.target_cycles <= m.target_cycles) continue;
+      Shortened& found = shortened[experiment_scale(m)];
+      ++found.runs;
+      found.asked = m.target_cycles;
+      found.had = std::max(found.had, older.target_cycles);
+    }
+  }
+  for (const auto& [where, found] : shortened) {
+    notes.push_back(fmt::format(
+        "experiment {}: {} at cycle {}, which its newest manifest asks for, and the store has up "
+        "to {}; `run MANIFEST --cycles {}` adds the others",
+        where.first, found.runs == 1 ? "1 run ends" : fmt::format("{} runs end", found.runs),
+        found.asked, found.had, found.had));
+  }
+}
+
 }  // namespace
 
 Membership first_membership(const RunRecord& run) {
@@ -141,6 +168,7 @@ NewestRuns newest_runs(const Store& store, std::vector<SelectedRun> selected, bo
     known = std::move(run);
   }
   if (newest == selected.size()) chosen.newest = chosen.runs.size();
+  note_shortened(chosen.runs, chosen.notes);
   for (const auto& [where, variants] : left) {
     chosen.notes.push_back(fmt::format(
         "experiment {}: left out: {} of another version of its manifest: {}; --all-versions adds "

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "analysis/measures.hpp"
+#include "analysis/onset.hpp"
 #include "analysis/own_figure.hpp"
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
@@ -219,15 +220,16 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   for (const Scale& scale : scales) {
     std::vector<nlohmann::json> variants;
     for_each_variant(scale, [&](const Variant& variant) { variants.push_back(variant.labels()); });
-    const std::vector<string> names = variant_names(variants, manifest.labels);
+    const auto names = variant_names(variants, manifest.labels);
     std::set<string> seen;
-    for (std::size_t k = 0; k < variants.size(); ++k) {
-      const bool repeated = !seen.insert(names[k]).second;
+    for (const nlohmann::json& variant : variants) {
+      const string& name = names.at(variant);
+      const bool repeated = !seen.insert(name).second;
       for (const VariantLabel& label : manifest.labels) {
-        if (!selects(label, variants[k])) continue;
+        if (!selects(label, variant)) continue;
         used.insert(&label);
         if (!repeated) continue;
-        return problems.add(label.at, "labels", "gives two variants the same name, " + names[k],
+        return problems.add(label.at, "labels", "gives two variants the same name, " + name,
                             label.name, "Give each its own.");
       }
     }
@@ -291,9 +293,11 @@ std::vector<std::string> problems_of(const PlotSpec& plot, const Variants& varia
                     "of each variant.",
                     key));
   }
-  const bool every_cycle =
-      find_curve_measure(plot.y) == nullptr && (plot.x == "cycle" || is_measure(plot.x));
-  if (plot.cycle && every_cycle) {
+  const bool every_cycle = find_curve_measure(plot.y) == nullptr && !is_parameter(plot.x);
+  if (plot.cycle && find_run_measure(plot.y) != nullptr) {
+    found.push_back(
+        fmt::format("at_cycle has no effect on {}, one number of a run. Leave it out.", plot.y));
+  } else if (plot.cycle && every_cycle) {
     found.emplace_back("at_cycle has no effect, since it draws every cycle. Leave it out.");
   }
   const std::uint64_t last = plot.cycles ? plot.cycles->at(1) : plot.cycle.value_or(0);
@@ -328,8 +332,8 @@ std::vector<std::string> own_warnings(const Manifest& manifest, const Scale& sca
   const auto add = [&](const char* kind, const auto& list) {
     for (const auto& own : list) {
       for (const std::string& problem : problems_of(own, variants)) {
-        warnings.push_back(
-            fmt::format("{}: {} {}: {}", manifest.experiment, kind, own.name, problem));
+        warnings.push_back(fmt::format("{}:{}:{}: {} {}: {}", manifest.file, own.at.line,
+                                       own.at.column, kind, own.name, problem));
       }
     }
   };

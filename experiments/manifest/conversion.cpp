@@ -15,7 +15,7 @@ TimeStep time_step(const Parameters& p, double seconds) {
   return {seconds, seconds / contact_time, seconds / stability_limit_s(p)};
 }
 
-/// Whole steps in `duration` at Table I's part of the stability limit; at least 1.
+/// Whole steps in `duration` at Table I's fraction of the stability limit; at least 1.
 double auto_steps(double duration, const Parameters& p) {
   const Parameters table1;
   const double part = shear_time_step_s(table1) / stability_limit_s(table1);
@@ -151,8 +151,9 @@ std::optional<std::string> time_step_advice(const TimeStep& step, const std::str
   return fmt::format(
       "{}: the time step of {:.3g} s is {:.3g} of the stability limit, {} {:g}: {}", key,
       step.seconds, step.over_stability_limit, large ? "above" : "below", wanted,
-      large ? "the fastest vibrations are wrong by more than 10 %"
-            : "it costs time and changes no measure by as much as another seed does");
+      large
+          ? "the fastest vibrations are wrong by more than 10 %"
+          : "it costs time and changes the measures by less than runs of different seeds scatter");
 }
 
 }  // namespace shearcell

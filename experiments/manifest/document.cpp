@@ -215,8 +215,14 @@ std::string syntax_remedy(string_view text, const YAML::Exception& error) {
   if (error.msg.find("anchor") != std::string::npos) {
     return "Anchors and aliases are not read; write the value out.";
   }
-  const int line = tab_indented_line(text, position(error.mark).line);
-  return line == 0 ? "" : fmt::format("Line {} is indented with a tab; use spaces.", line);
+  if (const int line = tab_indented_line(text, position(error.mark).line); line != 0) {
+    return fmt::format("Line {} is indented with a tab; use spaces.", line);
+  }
+  if (error.msg.find("flow") != std::string::npos) {
+    return "A { or [ of this line, or of one above it, is not closed.";
+  }
+  return "Check the indentation, the space after each colon, and the quotes, here and in the line "
+         "above.";
 }
 
 }  // namespace

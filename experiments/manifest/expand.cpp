@@ -85,11 +85,10 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
-void warn_of_variant(const Variant& variant, Plan& plan) {
+void warn_of_variant(const std::string& file, const Variant& variant, Plan& plan) {
   const Parameters& p = variant.parameters;
   const auto warn = [&](const std::string& warning) {
-    plan.warnings.push_back(
-        fmt::format("{}: variant {}: {}", plan.experiment, variant.name(), warning));
+    plan.warnings.push_back(fmt::format("{}: variant {}: {}", file, variant.name(), warning));
   };
   if (!pressure_lifts_column(p)) {
     warn(fmt::format(
@@ -146,15 +145,9 @@ class WithoutEffect {
 
 void name_variants(const Manifest& manifest, Plan& plan) {
   std::vector<nlohmann::json> variants;
-  for (const PlannedRun& run : plan.runs) {
-    if (variants.empty() || variants.back() != run.labels) variants.push_back(run.labels);
-  }
-  const std::vector<std::string> names = variant_names(variants, manifest.labels);
-  std::size_t at = 0;
-  for (PlannedRun& run : plan.runs) {
-    if (run.labels != variants[at]) ++at;
-    run.name = names[at];
-  }
+  for (const PlannedRun& run : plan.runs) variants.push_back(run.labels);
+  const auto names = variant_names(variants, manifest.labels);
+  for (PlannedRun& run : plan.runs) run.name = names.at(run.labels);
 }
 
 }  // namespace
@@ -183,7 +176,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     const Parameters& p = variant.parameters;
     without_effect.visit(p);
     if (!wanted.passes(variant.name())) return;
-    warn_of_variant(variant, plan);
+    warn_of_variant(manifest.file, variant, plan);
     if (options.engine && asks_lammps_to_stiffen(p)) {
       refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", *options.engine,
              "Leave the option out.");
@@ -211,7 +204,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       const std::string& same = variant_of.emplace(run.last.key, run.variant).first->second;
       if (same != run.variant && seed == seeds.front()) {
         plan.warnings.push_back(
-            fmt::format("{}: variants {} and {} are the same runs, computed once", plan.experiment,
+            fmt::format("{}: variants {} and {} are the same runs, computed once", manifest.file,
                         same, run.variant));
       }
       plan.runs.push_back(std::move(run));

@@ -131,6 +131,12 @@ struct VariantLabel {
   Position at;
 };
 
+/// A plot or claim, and where it was written.
+template <class Spec>
+struct Placed : Spec {
+  Position at;
+};
+
 /// A named size of the experiment, or what the manifest states for all of them.
 struct Scale {
   std::string name = {};  ///< "" for the manifest itself
@@ -150,8 +156,8 @@ struct Manifest {
   std::string question;
   std::vector<std::string> figures;
   std::vector<VariantLabel> labels;
-  std::vector<PlotSpec> plots;
-  std::vector<ClaimSpec> claims;
+  std::vector<Placed<PlotSpec>> plots;
+  std::vector<Placed<ClaimSpec>> claims;
   Scale base = {
       .sweep = Sweep(), .seeds = Seeds(), .checkpoints = Checkpoints(), .until = StatedUntil()};
   std::vector<Scale> scales;  ///< in the order of the text; what one does not state is as in `base`

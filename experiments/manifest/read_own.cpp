@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "analysis/figure.hpp"
+#include "analysis/onset.hpp"
 #include "experiments/manifest/read_parts.hpp"
 #include "experiments/manifest/suggest.hpp"
 
@@ -22,10 +23,23 @@ constexpr std::size_t kShownNames = 20;
 constexpr std::size_t kLongestLabel = 60;  // [bytes]
 constexpr std::uint64_t kLastCycle = 1'000'000;
 
+/// The parameters that tell runs apart; the record of a run does not hold the others.
+std::vector<string_view> parameters() {
+  std::vector<string_view> names;
+  for (const Field& field : schema()) {
+    if (field.identity.distinguishes_runs()) names.push_back(field.name);
+  }
+  return names;
+}
+
 /// One parameter and its value.
 void read_where(const Entry& in, json& where) {
   const Field* field = find_field(in.key.text);
-  if (field == nullptr) return in.reject_unknown(names_of(schema()));
+  if (field == nullptr) return in.reject_unknown(parameters());
+  if (!field->identity.distinguishes_runs()) {
+    return in.reject_key("does not tell runs apart", "Name a parameter that does.");
+  }
+  if (where.contains(in.key.text)) return in.reject_key("is stated twice", "State it once.");
   if (auto read = read_parameter(*field, in)) where[in.key.text] = std::move(*read);
 }
 
@@ -88,6 +102,10 @@ std::vector<string_view> joined(std::vector<string_view> names,
   return names;
 }
 
+std::vector<string_view> run_measures() {
+  return names_of(all_run_measures());
+}
+
 /// A name for files, different from those of the supplement's figures and their panels, and of
 /// other plots and claims.
 string read_own_name(const Entry& in, const Manifest& manifest) {
@@ -128,19 +146,19 @@ PlotSpec read_plot(const Entry& in, const Manifest& manifest) {
   PlotSpec plot;
   std::optional<Entry> x, cycles;
   const auto measures = names_of(all_scalar_measures());
-  const auto parameters = names_of(schema());
   const Key keys[] = {
       {"name", [&](const Entry& of) { plot.name = read_own_name(of, manifest); }},
       {"y",
        [&](const Entry& of) {
-         plot.y = read_one_of(of, joined(measures, names_of(all_curve_measures())));
+         plot.y = read_one_of(
+             of, joined(joined(measures, names_of(all_curve_measures())), run_measures()));
        }},
       {"x",
        [&](const Entry& of) {
          x.emplace(of);
-         plot.x = read_one_of(of, joined(joined({"cycle"}, measures), parameters));
+         plot.x = read_one_of(of, joined(joined({"cycle"}, measures), parameters()));
        }},
-      {"by", [&](const Entry& of) { plot.by = read_one_of(of, parameters); }},
+      {"by", [&](const Entry& of) { plot.by = read_one_of(of, parameters()); }},
       {"show",
        [&](const Entry& of) {
          plot.traces = read_one_of(of, {"mean", "traces"}) == "traces";
@@ -161,12 +179,15 @@ PlotSpec read_plot(const Entry& in, const Manifest& manifest) {
     x->reject_value(fmt::format("does not go with {}", curve->name),
                     fmt::format("Leave it out: {} is drawn against {}.", curve->name, curve->x));
   }
-  const bool against_parameter = plot.x != "cycle" && !plot.x.empty() && !is_measure(plot.x);
+  const bool against_parameter = !plot.x.empty() && is_parameter(plot.x);
+  if (find_run_measure(plot.y) != nullptr && !against_parameter && !plot.x.empty()) {
+    in.reject(fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
+  }
   if (cycles && (!plot.traces || against_parameter)) {
     cycles->reject("draws each run along its cycles",
                    "It takes `show: traces`, and `cycle` or a measure as x.");
   }
-  if (const Field* field = is_measure(plot.x) ? nullptr : find_field(plot.x)) {
+  if (const Field* field = against_parameter ? find_field(plot.x) : nullptr) {
     plot.x_symbol = field->symbol;
     if (!field->symbol.empty() && field->unit != "1") plot.x_unit = field->unit;
     if (get_value(*field, Parameters{}).is_string()) {
@@ -196,26 +217,38 @@ ClaimSpec read_claim(const Entry& in, const Manifest& manifest) {
       "margin: 0.001}";
   const Field margin = real_number("margin", "1", {0, std::numeric_limits<double>::max(), true});
   ClaimSpec claim;
-  const Key keys[] = {
-      {"name", [&](const Entry& of) { claim.name = read_own_name(of, manifest); }},
-      {"compare",
-       [&](const Entry& of) { claim.compare = read_one_of(of, names_of(all_scalar_measures())); }},
-      {"between", [&](const Entry& of) { read_between(of, claim.between); }},
-      {"margin",
-       [&](const Entry& of) {
-         claim.margin = read_parameter(margin, of).value_or(0.0).get<double>();
-       }},
-      {"at_cycle",
-       [&](const Entry& of) { claim.first = claim.last = read_count(of, kLastCycle).value_or(1); }},
-      {"cycles",
-       [&](const Entry& of) {
-         const auto [first, last] = read_interval(of, "[1, 15]");
-         claim.first = first, claim.last = last;
-       }},
-      {"is", [&](const Entry& of) {
-         claim.higher = read_one_of(of, {"same", "higher"}) == "higher";
-       }}};
-  if (read_whole(in, keys, 4, example) && claim.last == 0) {
+  std::optional<Entry> when;
+  const Key keys[] = {{"name", [&](const Entry& of) { claim.name = read_own_name(of, manifest); }},
+                      {"compare",
+                       [&](const Entry& of) {
+                         claim.compare = read_one_of(
+                             of, joined(names_of(all_scalar_measures()), run_measures()));
+                       }},
+                      {"between", [&](const Entry& of) { read_between(of, claim.between); }},
+                      {"margin",
+                       [&](const Entry& of) {
+                         claim.margin = read_parameter(margin, of).value_or(0.0).get<double>();
+                       }},
+                      {"at_cycle",
+                       [&](const Entry& of) {
+                         when.emplace(of);
+                         claim.first = claim.last = read_count(of, kLastCycle).value_or(1);
+                       }},
+                      {"cycles",
+                       [&](const Entry& of) {
+                         if (when) of.reject("does not go with at_cycle", "State one of them.");
+                         when.emplace(of);
+                         const auto [first, last] = read_interval(of, "[1, 15]");
+                         claim.first = first, claim.last = last;
+                       }},
+                      {"is", [&](const Entry& of) {
+                         claim.higher = read_one_of(of, {"same", "higher"}) == "higher";
+                       }}};
+  if (!read_whole(in, keys, 4, example)) return claim;
+  const bool of_run = find_run_measure(claim.compare) != nullptr;
+  if (of_run && when) {
+    when->reject(fmt::format("{} is one number of a run", claim.compare), "Leave it out.");
+  } else if (!of_run && !when) {
     in.reject("lacks at_cycle or cycles", fmt::format("It takes `{}`.", example));
   }
   return claim;
@@ -238,13 +271,13 @@ void read_labels(const Entry& in, Manifest& manifest) {
 
 void read_plots(const Entry& in, Manifest& manifest) {
   for (const Entry& item : read_list(in, "[{name: compaction, y: phi}]")) {
-    manifest.plots.push_back(read_plot(item, manifest));
+    manifest.plots.push_back({read_plot(item, manifest), item.node.at});
   }
 }
 
 void read_claims(const Entry& in, Manifest& manifest) {
   for (const Entry& item : read_list(in, "[{name: same, compare: phi}]")) {
-    manifest.claims.push_back(read_claim(item, manifest));
+    manifest.claims.push_back({read_claim(item, manifest), item.node.at});
   }
 }
 

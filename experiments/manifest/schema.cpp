@@ -160,7 +160,7 @@ std::span<const Field> schema() {
           "at 0.384"),
       row("settle_time_step_s", "", "s", &P::settle_time_step_s, from(1e-15, 1), kPrepare,
           "time step while settling; not tied to that of the shear, so that variants of the latter "
-          "share their packing; `auto` keeps Table I's part of the stability limit"),
+          "share their packing; `auto` keeps Table I's fraction of the stability limit"),
       row("settle_force_tolerance", "", "1", &P::settle_force_tolerance, above(0, 1), kPrepare,
           "settling ends when the moving wall's force imbalance over P A_w is below this"),
       row("settle_kinetic_tolerance", "", "1", &P::settle_kinetic_tolerance, above(0, 1), kPrepare,
@@ -180,7 +180,7 @@ std::span<const Field> schema() {
       row("period_s", "T", "s", &P::period_s, from(kSmallest, 1e6), kShear,
           "duration of a cycle, 2 pi/omega (Table I: omega = pi rad/s)"),
       row("steps_per_cycle", "", "1", &P::steps_per_cycle, from(4, 1e9), kShear,
-          "time steps in a cycle (Table I, B.4); `auto` keeps Table I's part of the stability "
+          "time steps in a cycle (Table I, B.4); `auto` keeps Table I's fraction of the stability "
           "limit, 0.355"),
       row("pause_s", "", "s", &P::pause_s, above(0, 1e6),
           {.stage = Stage::shear, .under = ProtocolKind::paused},
@@ -265,7 +265,8 @@ std::variant<json, ValueProblem> read_value(const Field& field, string_view text
   if (std::holds_alternative<ChoiceMember>(field.member)) {
     value = text;
   } else if (quoted) {
-    return ValueProblem{"is a quoted text where a number belongs", "Remove the quotes."};
+    return ValueProblem{"is a quoted text where a number belongs",
+                        "Write the number alone, without quotes or a unit."};
   } else if (names_no_number(text)) {
     return ValueProblem{"is not finite", takes(field)};
   } else if (field.is_whole()) {

@@ -35,36 +35,43 @@ std::vector<std::string> keys_of(const std::vector<json>& variants) {
   return keys;
 }
 
-/// Four digits, if they distinguish the values.
-std::string short_text(const json& value, const std::string& key,
-                       const std::vector<json>& variants) {
-  if (!value.is_number_float()) return value_text(value);
-  std::set<std::string> brief;
-  std::set<double> exact;
-  for (const json& variant : variants) {
-    const json other = variant.value(key, json());
-    if (!other.is_number()) continue;
-    exact.insert(other.get<double>());
-    brief.insert(fmt::format("{:.4g}", other.get<double>()));
+/// The keys whose values four digits distinguish.
+std::set<std::string> keys_in_brief(const std::vector<std::string>& keys,
+                                    const std::vector<json>& variants) {
+  std::set<std::string> found;
+  for (const std::string& key : keys) {
+    std::set<std::string> brief;
+    std::set<double> exact;
+    for (const json& variant : variants) {
+      const json value = variant.value(key, json());
+      if (!value.is_number()) continue;
+      exact.insert(value.get<double>());
+      brief.insert(fmt::format("{:.4g}", value.get<double>()));
+    }
+    if (brief.size() == exact.size()) found.insert(key);
   }
-  return brief.size() == exact.size() ? fmt::format("{:.4g}", value.get<double>())
-                                      : value_text(value);
+  return found;
 }
 
 /// "A=0.05 rad", "fluid=cell".
-std::string setting_text(const std::string& key, const json& variant,
-                         const std::vector<json>& variants) {
-  // `--engine lammps` adds the key to some of the runs.
-  if (!variant.contains(key)) return key == "engine" ? "engine=shearcell" : "no " + key;
+std::string setting_text(const std::string& key, const json& variant, bool brief) {
+  if (!variant.contains(key)) {  // the program adds these keys to some of the runs
+    return key == "engine"     ? "engine=shearcell"
+           : key == "manifest" ? "newest manifest"
+                               : "no " + key;
+  }
   const Field* field = find_field(key);
-  const std::string value = short_text(variant.at(key), key, variants);
-  if (field == nullptr || field->symbol.empty()) return key + "=" + value;
-  return fmt::format("{}={}{}{}", field->symbol, value, field->unit == "1" ? "" : " ",
+  const json& value = variant.at(key);
+  const std::string text = brief && value.is_number_float()
+                               ? fmt::format("{:.4g}", value.get<double>())
+                               : value_text(value);
+  if (field == nullptr || field->symbol.empty()) return key + "=" + text;
+  return fmt::format("{}={}{}{}", field->symbol, text, field->unit == "1" ? "" : " ",
                      field->unit == "1" ? "" : field->unit);
 }
 
-std::string name_of_variant(const json& variant, const std::vector<json>& variants,
-                            const std::vector<std::string>& keys,
+std::string name_of_variant(const json& variant, const std::vector<std::string>& keys,
+                            const std::set<std::string>& brief,
                             const std::vector<const VariantLabel*>& labels) {
   std::set<std::string> named;
   std::vector<std::string> parts;
@@ -77,9 +84,9 @@ std::string name_of_variant(const json& variant, const std::vector<json>& varian
     parts.push_back(label->name);
   }
   for (const std::string& key : keys) {
-    if (!named.contains(key)) parts.push_back(setting_text(key, variant, variants));
+    if (!named.contains(key)) parts.push_back(setting_text(key, variant, brief.contains(key)));
   }
-  return fmt::format("{}", fmt::join(parts, ", "));
+  return parts.empty() ? "base" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
 /// "key=value" without spaces around it, a number as this program writes it: "1.28e-2" is "0.0128".
@@ -226,8 +233,8 @@ bool selects(const VariantLabel& label, const json& variant) {
   return true;
 }
 
-std::vector<std::string> variant_names(const std::vector<json>& variants,
-                                       std::span<const VariantLabel> labels) {
+std::map<json, std::string> variant_names(const std::vector<json>& variants,
+                                          std::span<const VariantLabel> labels) {
   const std::vector<std::string> all = keys_of(variants);
   std::vector<std::string> keys = keys_telling_apart(variants, all);
   if (keys.empty() && !all.empty()) keys = {all.front()};
@@ -235,10 +242,11 @@ std::vector<std::string> variant_names(const std::vector<json>& variants,
   for (const VariantLabel& label : labels) longest_first.push_back(&label);
   std::ranges::stable_sort(longest_first, std::greater{},
                            [](const VariantLabel* label) { return label->where.size(); });
-  std::vector<std::string> names;
+  const std::set<std::string> brief = keys_in_brief(keys, variants);
+  std::map<json, std::string> names;
   for (const json& variant : variants) {
-    std::string name = name_of_variant(variant, variants, keys, longest_first);
-    names.push_back(name.empty() ? "base" : std::move(name));
+    const auto [place, first] = names.try_emplace(variant);
+    if (first) place->second = name_of_variant(variant, keys, brief, longest_first);
   }
   return names;
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -52,9 +53,9 @@ bool selects(const VariantLabel& label, const nlohmann::json& variant);
 /// Names for people (identity and CSV files use Variant::name()) of variants, which are objects of
 /// swept keys and values. A label replaces the keys that it states, one with more keys before one
 /// with fewer; then come the other keys that distinguish the variants: "fluid at rest, A=0.05 rad".
-/// "base" where nothing is swept.
-std::vector<std::string> variant_names(const std::vector<nlohmann::json>& variants,
-                                       std::span<const VariantLabel> labels);
+/// "base" where nothing is swept. Variants may come more than once.
+std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::json>& variants,
+                                                    std::span<const VariantLabel> labels);
 
 /// How many there are; saturates at 2^64 - 1.
 std::uint64_t variant_count(const Sweep& sweep);

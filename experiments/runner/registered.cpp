@@ -34,10 +34,6 @@ std::optional<Manifest> read(const RegisteredManifest& manifest) {
   }
 }
 
-VariantNames::Key VariantNames::key_of(const Membership& m) {
-  return {m.experiment, m.manifest, m.scale, m.variant};
-}
-
 VariantNames::VariantNames(const Store& store)
     : VariantNames(registered_manifests(store), store.runs()) {}
 
@@ -47,28 +43,23 @@ VariantNames::VariantNames(const std::vector<RegisteredManifest>& manifests,
   for (const RegisteredManifest& manifest : manifests) {
     if (auto known = read(manifest)) labels[manifest.sha256] = std::move(known->labels);
   }
-  using Group = std::map<std::string, nlohmann::json>;  // variant -> swept values
-  std::map<std::tuple<std::string, std::string, std::string>, Group> groups;
+  std::map<Group, std::vector<nlohmann::json>> variants;
   for (const RunRecord& run : runs) {
     if (run.kind == "prepare") continue;
     for (const Membership& m : run.memberships) {
-      groups[{m.experiment, m.manifest, m.scale}][m.variant] = m.labels;
+      variants[{m.experiment, m.manifest, m.scale}].push_back(m.labels);
     }
   }
-  for (const auto& [where, group] : groups) {
-    std::vector<nlohmann::json> variants;
-    for (const auto& [variant, values] : group) variants.push_back(values);
-    const auto names = variant_names(variants, labels[std::get<1>(where)]);
-    std::size_t at = 0;
-    for (const auto& [variant, values] : group) {
-      names_[std::tuple_cat(where, std::tuple(variant))] = names[at++];
-    }
+  for (const auto& [group, swept] : variants) {
+    names_[group] = variant_names(swept, labels[std::get<1>(group)]);
   }
 }
 
-std::string VariantNames::of(const Membership& membership) const {
-  const auto found = names_.find(key_of(membership));
-  return found == names_.end() ? membership.variant : found->second;
+std::string VariantNames::of(const Membership& m) const {
+  const auto group = names_.find({m.experiment, m.manifest, m.scale});
+  if (group == names_.end()) return m.variant;
+  const auto name = group->second.find(m.labels);
+  return name == group->second.end() ? m.variant : name->second;
 }
 
 std::vector<RegisteredManifest> newest_manifests(const Store& store) {

@@ -39,9 +39,8 @@ class VariantNames {
   std::string of(const Membership& membership) const;  ///< its variant, if it is unknown
 
  private:
-  using Key = std::tuple<std::string, std::string, std::string, std::string>;
-  static Key key_of(const Membership& membership);
-  std::map<Key, std::string> names_;
+  using Group = std::tuple<std::string, std::string, std::string>;  // experiment, manifest, scale
+  std::map<Group, std::map<nlohmann::json, std::string>> names_;    // by swept values
 };
 
 /// The version of each experiment that was registered last, in the order in which the experiments

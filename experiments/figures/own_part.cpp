@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/figures/own_end.hpp"
+#include "experiments/figures/own_part.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "core/drive.hpp"
 #include "experiments/figures/more_measures.hpp"
-#include "experiments/runner/asks.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "experiments/runner/run_end.hpp"
 
 namespace shearcell {
@@ -47,6 +49,25 @@ double own_end(const Store& store, const RunRecord& run, const Membership& membe
   const double end =
       ended->at("reached_at_cycle").get<double>() + static_cast<double>(ask.until->extra_cycles);
   return std::min(target, std::ceil(end / cadence) * cadence);
+}
+
+std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, double first,
+                                       double last) {
+  if (run.kind != name_of(Stage::shear)) return {};
+  return checkpoint_steps(ask, drive(read_stage(run.resolved).parameters), first, last);
+}
+
+std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecord& run,
+                                              const RunAsk& ask, double first, double last) {
+  std::vector<std::uint64_t> phases;
+  if (!ask.phases.empty()) phases = asked_steps(run, ask, first, last);
+  std::vector<CheckpointRecord> found = store.checkpoints(run.id, Listed::and_pruned);
+  std::erase_if(found, [&](const CheckpointRecord& record) {
+    const bool whole = record.cycle == std::floor(record.cycle);
+    return record.cycle < first || record.cycle > last ||
+           !(whole || std::ranges::binary_search(phases, record.step));
+  });
+  return found;
 }
 
 }  // namespace shearcell

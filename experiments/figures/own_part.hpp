@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The part of a run that belongs to one of the experiments that share it.
+#pragma once
+
+#include <vector>
+
+#include "experiments/runner/asks.hpp"
+#include "experiments/runner/measure.hpp"
+#include "provenance/store.hpp"
+
+namespace shearcell {
+
+/// The last cycle of the run that counts for this experiment: its number of cycles, or where its
+/// `until` ends the run. Another experiment may have continued it; an experiment's figures and
+/// tables are the same whatever shares its runs. May measure checkpoints, and keeps the results.
+/// Throws StoreDamaged where the run's declarations are not as this program writes them.
+double own_end(const Store& store, const RunRecord& run, const Membership& membership,
+               const MeasureOptions& options);
+
+/// Steps of a shear at which `ask` wants a checkpoint in cycles first to last; none of another
+/// kind of run.
+std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, double first,
+                                       double last);
+
+/// The checkpoints of cycles first to last, pruned ones too, at whole cycles and at the phases that
+/// `ask` has. An interruption leaves others, which no figure or table has: they would differ from
+/// those of a run that was never interrupted.
+std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecord& run,
+                                              const RunAsk& ask, double first, double last);
+
+}  // namespace shearcell
