@@ -212,9 +212,9 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
   const bool measured_curves = find_curve_measure(plot.y) != nullptr;
   const Panel panel = panel_of(plot, runs);
   FigureTable table{.name = plot.name, .columns = {"variant", panel.x}};
-  if (panel.cycle) table.columns.insert(table.columns.begin() + 1, "cycle");
   add_columns(panel.y, table.columns);
   table.columns.emplace_back("runs");
+  if (panel.cycle) table.columns.emplace_back("cycle");
   std::vector<Series> traces;
   std::size_t with_value = 0;
   for (const Curve& curve : curves) {
@@ -226,12 +226,11 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
       for (const auto& [at, value] : values) traces.back().points.push_back({at, value});
     }
     for (const auto& [at, values] : points.values) {
-      TableRow& row = table.rows.emplace_back(TableRow{curve.variant});
-      if (panel.cycle) row.emplace_back(*panel.cycle);
-      row.emplace_back(at);
+      TableRow& row = table.rows.emplace_back(TableRow{curve.variant, at});
       const RunStatistics over = over_runs(values);
       add_values(over, row);
       row.emplace_back(over.runs);
+      if (panel.cycle) row.emplace_back(*panel.cycle);
       with_value += over.runs;
     }
   }

@@ -89,7 +89,8 @@ std::string name_of_variant(const json& variant, const std::vector<std::string>&
   return parts.empty() ? "base" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// "key=value" without spaces around it, a number as this program writes it: "1.28e-2" is "0.0128".
+/// "key=value" without spaces around it, a number as this program writes it: "0.0128" of "1.28e-2".
+/// Also of the symbol and unit of variant_names(): "pressure_Pa=954" of "P=954 Pa".
 std::string same_spelling(std::string_view part) {
   const auto trimmed = [](std::string_view text) {
     const auto first = text.find_first_not_of(' ');
@@ -98,10 +99,17 @@ std::string same_spelling(std::string_view part) {
   };
   const std::size_t equal = part.find('=');
   if (equal == part.npos) return std::string(trimmed(part));
-  const std::string_view value = trimmed(part.substr(equal + 1));
+  std::string_view key = trimmed(part.substr(0, equal));
+  std::string_view value = trimmed(part.substr(equal + 1));
+  const auto field = std::ranges::find(schema(), key, &Field::symbol);
+  if (!key.empty() && field != schema().end()) {
+    key = field->name;
+    const std::string_view unit = field->unit;
+    if (unit != "1" && value.ends_with(unit)) value.remove_suffix(unit.size());
+    value = trimmed(value);
+  }
   const auto number = read_number<double>(value);
-  return fmt::format("{}={}", trimmed(part.substr(0, equal)),
-                     number ? fmt::format("{}", *number) : value);
+  return fmt::format("{}={}", key, number ? fmt::format("{}", *number) : value);
 }
 
 /// "a=1" and "b=2" of "b=2,a=1.0".

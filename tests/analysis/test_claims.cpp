@@ -108,7 +108,7 @@ TEST(Compare, MissingCheckpointsShortRunsAndFewRunsAreThreeSentences) {
   Verdict verdict = compare(equal, early_phi(), pointers(a), pointers(b));
   EXPECT_EQ(verdict.note,
             "6 and 8 independent runs; 1 of 16 runs lack a checkpoint of cycles 1 to 15; "
-            "1 of 16 runs end before cycles 1 to 15");
+            "1 of 16 runs end too early for cycles 1 to 15");
   EXPECT_TRUE(verdict.estimate.has_value());
   for (FigureRun& run : a) run.checkpoints.resize(10);
   verdict = compare(equal, early_phi(), pointers(a), pointers(b));

@@ -16,6 +16,7 @@
 namespace shearcell {
 namespace {
 
+using testing::made_up_run;
 using testing::rising_run;
 using testing::s2;
 using testing::two_variants;
@@ -126,8 +127,8 @@ TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
             "mean_overlap_mean_d");
   const FigureTable drag = table({.name = "own", .y = "phi", .x = "drag_kg_per_s", .cycle = 2});
   EXPECT_TRUE(
-      to_csv(drag).starts_with("variant,drag_kg_per_s,phi_mean,phi_standard_error,runs\n"
-                               "fluid=cell,0.001,1.6225,0.000577350269,3\n"))
+      to_csv(drag).starts_with("variant,drag_kg_per_s,phi_mean,phi_standard_error,runs,cycle\n"
+                               "fluid=cell,0.001,1.6225,0.000577350269,3,2\n"))
       << to_csv(drag);
   EXPECT_EQ(drag.chart.series.size(), 2U) << "a curve for each fluid";
   const FigureTable traces = table({.name = "own", .y = "phi", .traces = true});
@@ -138,6 +139,65 @@ TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
       << "each variant once in the key";
   EXPECT_TRUE(table({.name = "own", .y = "phi", .log_y = true}).chart.y.log);
   EXPECT_EQ(table({.name = "own", .y = "phi", .by = "fluid"}).chart.series.size(), 2U);
+}
+
+TEST(OwnPlot, AgainstAParameterComparesTheLastCycleThatAllRunsHave) {
+  std::vector<FigureRun> runs = two_parameters();
+  runs.front().checkpoints.pop_back();
+  const auto result = plot_figure({.name = "own", .y = "phi", .x = "drag_kg_per_s"}).make(runs);
+  const FigureTable& table = result.tables.at(0);
+  ASSERT_EQ(table.columns.back(), "cycle");
+  for (const TableRow& row : table.rows) EXPECT_EQ(row.back(), TableValue(2.0));
+  EXPECT_NE(caption_of("A title", result.tables).find("At cycle 2, the last that all runs have."),
+            std::string::npos)
+      << caption_of("A title", result.tables);
+}
+
+TEST(OwnPlot, AgainstOneOfSeveralKeysThatAdvanceTogetherIsOneCurve) {
+  std::vector<FigureRun> runs;
+  for (const double drag : {0.001, 0.002}) {
+    runs.push_back(rising_run("still", 1, 3, drag));
+    runs.back().labels = {{"amplitude_rad", 50 * drag}, {"drag_kg_per_s", drag}};
+  }
+  for (const char* x : {"amplitude_rad", "drag_kg_per_s"}) {
+    const auto result = plot_figure({.name = "own", .y = "phi", .x = x}).make(runs);
+    EXPECT_EQ(result.tables.at(0).chart.series.size(), 1U) << x;
+  }
+}
+
+/// A crystallite grows by one grain a cycle from `first` on.
+FigureRun crystallizing(double drag, std::uint64_t seed, int first, int cycles) {
+  FigureRun run = made_up_run("drag_kg_per_s", drag, seed, cycles, [=](int n, Measures& m) {
+    m.phi = 0.6 + 0.001 * n;
+    m.largest_crystallite = static_cast<std::size_t>(std::max(0, n - first));
+  });
+  return run;
+}
+
+TEST(OwnPlot, AndClaimOfTheOnsetOfEachRun) {
+  std::vector<FigureRun> runs;  // the critical size is 16 grains
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    runs.push_back(crystallizing(0.001, seed, 2 * static_cast<int>(seed), 60));
+    runs.push_back(crystallizing(0.002, seed, 2 * static_cast<int>(seed) + 20, 60));
+  }
+  runs.push_back(crystallizing(0.002, 5, 20, 30));
+  const auto drawn =
+      plot_figure({.name = "own", .y = "onset_size_phi", .x = "drag_kg_per_s"}).make(runs);
+  EXPECT_TRUE(to_csv(drawn.tables.at(0))
+                  .starts_with("variant,drag_kg_per_s,onset_size_phi_mean,"
+                               "onset_size_phi_standard_error,runs\nall,0.001,0.621,"))
+      << to_csv(drawn.tables.at(0));
+  EXPECT_NE(caption_of("", drawn.tables).find("1 of 9 runs have no value"), std::string::npos);
+  ClaimSpec claim{.name = "own",
+                  .compare = "onset_size_phi",
+                  .between = {{{{"drag_kg_per_s", 0.002}}, {{"drag_kg_per_s", 0.001}}}},
+                  .margin = 0.001};
+  const Verdict phi = claim_figure(claim).make(runs).verdicts.at(0);
+  EXPECT_NEAR(phi.estimate.value(), 0.02, 1e-9);
+  EXPECT_EQ(phi.ruling, Ruling::differs);
+  claim.compare = "onset_size_cycle";
+  const Verdict cycle = claim_figure(claim).make(runs).verdicts.at(0);
+  EXPECT_NE(cycle.note.find("of 5 runs, 1 of which end before"), std::string::npos) << cycle.note;
 }
 
 TEST(OwnPlot, NamesTheStepsOfAStiffening) {

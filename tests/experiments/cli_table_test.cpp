@@ -2,6 +2,8 @@
 // Tables of runs, filters, and exports of several runs, as a user sees them.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/experiments/program.hpp"
 
 namespace shearcell::test {
@@ -129,6 +131,16 @@ TEST_F(CommandLineTable, CallsVariantsByTheLabelsOfTheNewestManifest) {
   EXPECT_TRUE(in_table.contains("water at rest"));
 }
 
+TEST_F(CommandLineTable, SaysWhereAnEditedManifestHasFewerCyclesThanTheStore) {
+  expect(0, {"run", "m.yaml", "--cycles", "2", "-q"});
+  write("m.yaml", read_bytes(path("m.yaml")) + "# edited\n");
+  expect(0, {"run", "m.yaml", "--cycles", "1", "-q"});
+  const Outcome said = expect(0, {"table"});
+  EXPECT_TRUE(contains(said.err, "2 runs end at cycle 1, which its newest manifest asks for"))
+      << said.err;
+  EXPECT_TRUE(contains(said.err, "--cycles 2` adds the others")) << said.err;
+}
+
 TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
   write("other.yaml",
         tiny_manifest("  drag_kg_per_s: 2.0e-3\n", "sweep: {grid: {fluid: [still]}}\n"));
@@ -212,6 +224,9 @@ TEST_F(CommandLineTable, EstimatesWhatIsLeft) {
   EXPECT_NEAR(steps, 2 * 3999 * 300 * 1e4, 2 * 1000 * 300 * 1e4);
   EXPECT_GT(left.at("seconds_left"), 0);
   expect(0, {"status"}, {"\nleft: 2 stages, "});
+  for (const auto& row : table({})) {  // without what the interruption left within a cycle
+    EXPECT_EQ(row.at("cycle"), std::floor(row.at("cycle").get<double>()));
+  }
 }
 
 TEST_F(CommandLineTable, ExportsSelectedRunsWholeOrNotAtAll) {

@@ -172,6 +172,9 @@ TEST(Expand, TakesOnlyTheVariantsAskedFor) {
             Strings{"amplitude_rad=0.1,fluid=cell"});
   EXPECT_EQ(variants(expand(manifest, {.variants = {"fluid=cell,amplitude_rad=0.1"}})),
             Strings{"amplitude_rad=0.1,fluid=cell"});
+  EXPECT_EQ(variants(expand(manifest, {.variants = {"fluid=cell, A=0.1 rad"}})),
+            Strings{"amplitude_rad=0.1,fluid=cell"})
+      << "as figures and tables name it";
   EXPECT_EQ(variants(expand(
                 manifest, {.variants = {"amplitude_rad=0.05", "amplitude_rad=0.1", "fluid=cell"}})),
             (Strings{"amplitude_rad=0.05,fluid=cell", "amplitude_rad=0.1,fluid=cell"}));
