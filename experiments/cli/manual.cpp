@@ -281,9 +281,8 @@ std::string measure_reference() {
       "those of `--per run`.\n\n"
       "| column | use | meaning |\n|---|---|---|\n";
   for (const TableColumn& column : table_columns()) {
-    const bool plots = std::ranges::any_of(
-        all_scalar_measures(),
-        [&](const ScalarMeasure& measure) { return measure.name == column.name; });
+    const bool plots =
+        find_measure(column.name) != nullptr || find_run_measure(column.name) != nullptr;
     text +=
         fmt::format("| `{}` | {} | {} |\n", column.name, plots ? "plot" : "", cell(column.meaning));
   }

@@ -52,23 +52,25 @@ class Store:
             raise ShearcellError(done.stderr.strip() or f"exit code {done.returncode}")
         return done.stdout
 
-    def runs(self, **select: Any) -> list["Run"]:
+    def runs(self, *, all_versions: bool = False, **select: Any) -> list["Run"]:
         """Runs in the order of their declaration, without the packings that they start from.
 
         Args:
+            all_versions: those of older versions of a manifest too, as `shearcell table` has them.
             select: experiment, scale, variant, seed or state, each a value or a list of values.
         """
         listed = json.loads(self.call("status", "--json", *_filters(select)))["runs"]
-        return [Run(self, facts) for facts in listed if facts["kind"] != "prepare"]
+        return [Run(self, facts) for facts in listed
+                if facts["kind"] != "prepare" and (all_versions or facts["newest"])]
 
     def run(self, prefix: str) -> "Run":
         """The run whose id begins so. Raises KeyError if it is none or several."""
-        found = [run for run in self.runs() if run.id.startswith(prefix)]
+        found = {run.id: run for run in self.runs(all_versions=True) if run.id.startswith(prefix)}
         if len(found) != 1:
             raise KeyError(f"{len(found)} runs begin with {prefix!r}")
-        return found[0]
+        return next(iter(found.values()))
 
-    def table(self, per: str = "checkpoint", curve: str = "",
+    def table(self, per: str = "checkpoint", curve: str = "", *, all_versions: bool = False,
               **select: Any) -> "pandas.DataFrame":
         """`shearcell table`: a row for each checkpoint, or for each run (per="run"), or for each
         value of a curve at each checkpoint (curve="pair_correlation"); needs pandas.
@@ -78,18 +80,21 @@ class Store:
         Args:
             per: "checkpoint" or "run".
             curve: name of a curve, or "".
+            all_versions: runs of older versions of a manifest too, with a column `manifest`.
             select: experiment, scale, variant or seed, each a value or a list of values.
         """
         import pandas
 
         rows = ("--curve", curve) if curve else ("--per", per)
-        text = self.call("table", *rows, *_filters(select))
+        more = ("--all-versions",) if all_versions else ()
+        text = self.call("table", *rows, *more, *_filters(select))
         return pandas.read_csv(io.StringIO(text), float_precision="round_trip")
 
-    def measure(self, function: Measure, *, fresh: bool = False,
+    def measure(self, function: Measure, *, fresh: bool = False, all_versions: bool = False,
                 **select: Any) -> "pandas.DataFrame":
-        """An own measure of every checkpoint: experiment, variant, run, seed, cycle, checkpoint and
-        what the function returns, in a column of its name or one for each key; needs pandas.
+        """An own measure of every checkpoint that the experiments ask for: experiment, scale,
+        variant, run, seed, cycle, checkpoint and what the function returns, in a column of its name
+        or one for each key; needs pandas.
 
         Results are kept beside the store, in PATH.measures/NAME.json, with the SHA-256 of the
         function's source and that of each checkpoint, and are computed again when either is
@@ -99,6 +104,7 @@ class Store:
         Args:
             function: from a Checkpoint to a number, or to a mapping of names to numbers.
             fresh: computes everything again.
+            all_versions: of runs of older versions of a manifest too.
             select: experiment, scale, variant, seed or state, each a value or a list of values.
         """
         import pandas
@@ -106,12 +112,15 @@ class Store:
         kept = _KeptMeasure(self.path, function, fresh)
         rows = []
         try:
-            for run in self.runs(**select):
+            for run in self.runs(all_versions=all_versions, **select):
                 for record in run.records():
+                    if not record["asked"]:
+                        continue
                     result = kept.of(record["sha256"], lambda: Checkpoint(run, record))
-                    rows.append({"experiment": run.experiment, "variant": run.facts["name"],
-                                 "run": run.id, "seed": run.seed, "cycle": record["cycle"],
-                                 "checkpoint": record["sha256"], **result})
+                    rows.append({"experiment": run.experiment, "scale": run.scale,
+                                 "variant": run.facts["name"], "run": run.id, "seed": run.seed,
+                                 "cycle": record["cycle"], "checkpoint": record["sha256"],
+                                 **result})
         finally:
             kept.save()
         return pandas.DataFrame(rows)
@@ -148,7 +157,8 @@ class Run:
         return self._shown["resolved"]["parameters"]
 
     def records(self) -> list[dict[str, Any]]:
-        """What the store recorded of each checkpoint whose file it has, by cycle."""
+        """What the store recorded of each checkpoint whose file it has, by cycle. `asked` is false
+        for those that only an interruption left."""
         return [c for c in self._shown["checkpoints"] if c["state"] == "recorded"]
 
     @property
