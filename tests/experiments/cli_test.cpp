@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <sstream>
 
 #include "tests/experiments/program.hpp"
+#include "tests/support/bad_manifests.hpp"
 
 namespace shearcell::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kBad = fs::path(SHEARCELL_TEST_DATA) / "manifests" / "bad";
 const std::string kDrag =
     (fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments" / "drag.yaml").string();
 
@@ -49,20 +48,18 @@ TEST_F(CommandLine, RefusesWhatItDoesNotKnow) {
 
 // The messages are tested with the manifests; here, that the program prints them.
 TEST_F(CommandLine, RefusesABadManifestBeforeItWritesAnything) {
+  const auto manifests = bad_manifests(SHEARCELL_TEST_DATA);
   for (const char* name : {"several", "terminal_escape", "alias_bomb"}) {
-    const fs::path file = kBad / (std::string(name) + ".yaml");
-    std::istringstream lines(read_bytes(file));
-    std::string expected = "shearcell: ";
-    for (std::string line; std::getline(lines, line) && line.starts_with("# expect ");) {
-      expected += file.string() + ":" + line.substr(9) + "\n";
+    const auto& [text, message] = manifests.at(name);
+    const std::string file = write("bad.yaml", text);
+    for (const char* command : {"run", "plan"}) {
+      expect_refused({command, file}, {"shearcell: " + message + "\n"});
     }
-    for (const char* command : {"run", "plan"}) expect_refused({command, file}, {expected});
   }
   expect_refused({"run", "."}, {"is a directory"});
   // One bad manifest among good ones stops all of them.
-  expect_refused(
-      {"run", write("good.yaml", tiny_manifest()), (kBad / "negative_mass.yaml").string()},
-      {"is out of range"});
+  write("bad.yaml", manifests.at("negative_mass").text);
+  expect_refused({"run", write("good.yaml", tiny_manifest()), "bad.yaml"}, {"is out of range"});
 }
 
 TEST_F(CommandLine, TakesTheStoreThatIsNamedElseThatOfTheEnvironment) {
