@@ -176,7 +176,8 @@ TEST_F(VerifyTest, FindsARemovedEvent) {
     restore_without_triggers();
     execute("DELETE FROM events WHERE seq = " + std::to_string(e.seq));
     const bool last = e.seq == events_.size();  // shown only by a head that was kept elsewhere
-    EXPECT_TRUE(last ? names(verify(head_), event(e.seq)) : names(verify(), event(e.seq + 1)));
+    EXPECT_TRUE(last ? names(verify(head_), event(e.seq))
+                     : names(verify(), event(e.seq + 1), event(e.seq) + " is missing here"));
   }
 }
 
