@@ -29,11 +29,11 @@ std::vector<std::string> names_of_bad_manifests() {
 }
 
 std::string message_for(const fs::path& path) {
-  return test::manifest_error([&] { load_manifest(path); });
+  return test::message_of<ManifestError>([&] { load_manifest(path); });
 }
 
 std::string message_for_text(std::string_view text, const std::string& file = "text.yaml") {
-  return test::manifest_error([&] { parse_manifest(text, file); });
+  return test::message_of<ManifestError>([&] { parse_manifest(text, file); });
 }
 
 class BadManifest : public testing::TestWithParam<std::string> {};

@@ -37,7 +37,7 @@ Strings variants(const Plan& plan) {
 }
 
 std::string message(const Manifest& manifest, const ExpandOptions& options) {
-  return test::manifest_error([&] { expand(manifest, options); });
+  return test::message_of<ManifestError>([&] { expand(manifest, options); });
 }
 
 TEST(Drag, ComparesTheFluidsOnTheSamePackings) {
