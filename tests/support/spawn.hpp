@@ -24,14 +24,14 @@ inline pid_t spawn(std::vector<std::string> words, const std::filesystem::path& 
   posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), flags, 0600);
   posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), flags, 0600);
   posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  words.insert(words.begin(), "env");
+  words.insert(words.begin(), "/usr/bin/env");  // a test may change PATH
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   pid_t child = 0;
-  const int error = posix_spawnp(&child, "env", &actions, nullptr, pointers.data(), environ);
+  const int error = posix_spawn(&child, pointers[0], &actions, nullptr, pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error(std::string("posix_spawnp: ") + std::strerror(error));
+  if (error != 0) throw std::runtime_error(std::string("posix_spawn: ") + std::strerror(error));
   return child;
 }
 
