@@ -15,6 +15,7 @@
 #include "analysis/plot.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell {
 namespace {
@@ -247,10 +248,8 @@ TEST_F(Plot, ABadScriptSaysWhatGnuplotSaid) {
 TEST_F(Plot, MissingGnuplotNamesThePackageAndKeepsTheDataAndNoOlderDrawing) {
   const fs::path svg = draw(s2(two_variants())[0]);
   convert_to_pdf(svg);
-  const std::string before = std::getenv("PATH") != nullptr ? std::getenv("PATH") : "";
-  setenv("PATH", "/nonexistent", 1);
+  const test::Variable nowhere("PATH", "/nonexistent");
   const std::string message = trouble_with(s2(two_variants())[0]);
-  setenv("PATH", before.c_str(), 1);
   EXPECT_NE(message.find("gnuplot-nox"), std::string::npos) << message;
   EXPECT_FALSE(fs::exists(fs::path(svg).replace_extension(".pdf")));
 }

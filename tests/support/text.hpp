@@ -16,6 +16,13 @@ inline ::testing::AssertionResult has(std::string_view text, std::string_view pa
          << "'" << part << (found ? "' is in:\n" : "' is not in:\n") << text;
 }
 
+/// The text in single quotes, as SQL has it.
+inline std::string sql_text(std::string_view text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted.append(c == '\'' ? 2 : 1, c);
+  return quoted + "'";
+}
+
 /// The message of the exception that the statement throws; "" when it throws none.
 template <typename Exception, typename Statement>
 std::string message_of(Statement&& statement) {
