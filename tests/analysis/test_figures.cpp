@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -13,6 +12,7 @@
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/plot.hpp"
+#include "provenance/io/child_process.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/variable.hpp"
@@ -180,9 +180,7 @@ TEST(Csv, QuotingAndNumbers) {
 class Plot : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (std::system("gnuplot --version > /dev/null 2>&1") != 0) {
-      GTEST_SKIP() << "gnuplot is not installed";
-    }
+    if (!find_program("gnuplot")) GTEST_SKIP() << "gnuplot is not installed";
   }
   fs::path draw(const FigureTable& table) const {
     write_csv(table, folder_.path());
