@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -13,8 +12,10 @@
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/plot.hpp"
+#include "provenance/io/child_process.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell {
 namespace {
@@ -179,9 +180,7 @@ TEST(Csv, QuotingAndNumbers) {
 class Plot : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (std::system("gnuplot --version > /dev/null 2>&1") != 0) {
-      GTEST_SKIP() << "gnuplot is not installed";
-    }
+    if (!find_program("gnuplot")) GTEST_SKIP() << "gnuplot is not installed";
   }
   fs::path draw(const FigureTable& table) const {
     write_csv(table, folder_.path());
@@ -247,10 +246,8 @@ TEST_F(Plot, ABadScriptSaysWhatGnuplotSaid) {
 TEST_F(Plot, MissingGnuplotNamesThePackageAndKeepsTheDataAndNoOlderDrawing) {
   const fs::path svg = draw(s2(two_variants())[0]);
   convert_to_pdf(svg);
-  const std::string before = std::getenv("PATH") != nullptr ? std::getenv("PATH") : "";
-  setenv("PATH", "/nonexistent", 1);
+  const test::Variable nowhere("PATH", "/nonexistent");
   const std::string message = trouble_with(s2(two_variants())[0]);
-  setenv("PATH", before.c_str(), 1);
   EXPECT_NE(message.find("gnuplot-nox"), std::string::npos) << message;
   EXPECT_FALSE(fs::exists(fs::path(svg).replace_extension(".pdf")));
 }

@@ -14,6 +14,7 @@
 #include "tests/analysis/oracles.hpp"
 #include "tests/analysis/packings.hpp"
 #include "tests/analysis/random_points.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell::testing {
 namespace {
@@ -189,12 +190,7 @@ TEST(Voronoi, SameInputSameBits) {
 }
 
 std::string message_of(const Packing& p) {
-  try {
-    voronoi(p.cell, p.pose, p.grains);
-  } catch (const AnalysisError& error) {
-    return error.what();
-  }
-  return "";
+  return test::message_of<AnalysisError>([&] { voronoi(p.cell, p.pose, p.grains); });
 }
 
 TEST(Voronoi, NamesWhatIsAtOnePlace) {

@@ -4,9 +4,9 @@
 #include <sys/stat.h>
 
 #include <csignal>
-#include <cstdlib>
 
 #include "tests/experiments/program.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -16,13 +16,6 @@ namespace fs = std::filesystem;
 /// Slurm's programs are what the test puts into a folder of its own; nothing else is in PATH.
 class Submit : public ProgramTest {
  protected:
-  Submit() : manifest_(write("m.yaml", tiny_manifest("", kBothFluids))) {
-    const char* path = std::getenv("PATH");
-    if (path != nullptr) before_ = path;
-    setenv("PATH", programs_.path().c_str(), 1);
-  }
-  ~Submit() override { setenv("PATH", before_.c_str(), 1); }
-
   void program(const std::string& name, const std::string& body) const {
     const fs::path file = programs_.path() / name;
     std::ofstream(file) << "#!/bin/sh\n" << body;
@@ -49,8 +42,9 @@ echo $((99 + $(/usr/bin/wc -l < jobs)))
   void queue(const std::string& lines) const { std::ofstream(programs_.path() / "queue") << lines; }
   std::string words() const { return read_bytes(programs_.path() / "words"); }
 
-  std::string manifest_, before_;
+  std::string manifest_ = write("m.yaml", tiny_manifest("", kBothFluids));
   TemporaryFolder programs_;
+  const Variable path_{"PATH", programs_.path()};
 };
 
 TEST_F(Submit, ShowsAllWithoutSlurmAndWritesNothing) {

@@ -137,12 +137,8 @@ TEST_F(LammpsFrame, IsRefusedWhenItIsNotWhole) {
         frame("0 1 2 3 4 5 6\n2 4 5 6 7 8 9\n3 0 2.5 0 0 -1 0\n"),
         frame("1 1 2 x 4 5 6\n2 4 5 6 7 8 9\n3 0 2.5 0 0 -1 0\n"),
         frame("1 1 2 1e999 4 5 6\n2 4 5 6 7 8 9\n3 0 2.5 0 0 -1 0\n")}) {
-    try {
-      read(text);
-      ADD_FAILURE() << "was read: " << text;
-    } catch (const std::runtime_error& error) {
-      EXPECT_TRUE(has(error.what(), "frame.7"));
-    }
+    SCOPED_TRACE(text);
+    expect_refused<std::runtime_error>([&] { read(text); }, {"frame.7"});
   }
 }
 

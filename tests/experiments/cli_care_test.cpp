@@ -92,15 +92,6 @@ TEST_F(Care, VerifyReplaysAndHoldsAgainstAHead) {
   expect(0, {"verify", "--against", before});
 }
 
-TEST_F(Care, RebuildMendsATableThatWasChanged) {
-  campaign(manifest_, {"--cycles", "0"});
-  sqlite::Database(path("shearcell-store/store.sqlite"), Access::write)
-      .execute("UPDATE runs SET state = 'failed'");
-  expect(4, {"verify"}, {"run `rebuild`"});
-  expect(0, {"rebuild"});
-  expect(0, {"verify"});
-}
-
 TEST_F(Care, MergesAndRefusesConflicts) {
   campaign(tiny_manifest(), {"--cycles", "1"}, "a");
   campaign(manifest_, {}, "b");

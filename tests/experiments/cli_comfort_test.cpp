@@ -2,15 +2,13 @@
 // What makes the program pleasant: a manifest to begin with, completion, the manual page, the
 // doctor, and tables that fit a terminal and have colours there alone.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <sstream>
 
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "provenance/io/child_process.hpp"
 #include "tests/experiments/program.hpp"
 
 namespace shearcell::test {
@@ -18,24 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string shell_output(const std::string& command) {
-  std::string out;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return out;
-  std::array<char, 4096> bytes;
-  for (std::size_t n; (n = fread(bytes.data(), 1, bytes.size(), pipe)) > 0;) {
-    out.append(bytes.data(), n);
-  }
-  EXPECT_EQ(pclose(pipe), 0) << command << "\n" << out;
-  return out;
-}
-
-bool has_program(const std::string& name) {
-  return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
-}
-
 class Comfort : public ProgramTest {
  protected:
+  /// Output of a script of sh that must succeed.
+  std::string shell_output(const std::string& script) {
+    const Outcome outcome = shell(script);
+    EXPECT_EQ(outcome.code, 0) << script << "\n" << outcome.out << outcome.err;
+    return outcome.out;
+  }
+
   /// What bash offers after these words, the last of which is being typed.
   std::string completed(const std::string& shell_name, const std::vector<std::string>& words) {
     std::string typed;
@@ -45,14 +34,13 @@ class Comfort : public ProgramTest {
                                : "") +
               std::string("source ./script\nCOMP_WORDS=(") + typed + ")\nCOMP_CWORD=" +
               std::to_string(words.size() - 1) + "\n_shearcell\necho \"${COMPREPLY[@]}\"\n");
-    return shell_output("cd " + path("").string() + " && " + shell_name + " ./try");
+    return shell_output(shell_name + " ./try");
   }
 
   /// Its output on a terminal of that width.
   std::string on_terminal(int columns, const std::string& environment, const std::string& words) {
-    return shell_output("cd " + path("").string() + " && script -qec 'stty cols " +
-                        std::to_string(columns) + "; TERM=xterm " + environment +
-                        " " SHEARCELL_PROGRAM " " + words + "' /dev/null");
+    return shell_output("script -qec 'stty cols " + std::to_string(columns) + "; TERM=xterm " +
+                        environment + " " SHEARCELL_PROGRAM " " + words + "' /dev/null");
   }
 };
 
@@ -96,18 +84,18 @@ TEST_F(Comfort, ShellsCompleteCommandsAndOptions) {
   EXPECT_EQ(completed("bash", {"shearcell", "bench", "sp"}), "speed\n");
   EXPECT_EQ(completed("bash", {"shearcell", "run", "x.yaml", "--sc"}), "--scale\n");
   EXPECT_EQ(completed("bash", {"shearcell", "verify", "--rep"}), "--replay\n");
-  if (has_program("zsh")) {  // which chooses among the words itself
+  if (find_program("zsh")) {  // which chooses among the words itself
     write("script", run({"completion", "zsh"}).out);
     EXPECT_TRUE(contains(completed("zsh", {"shearcell", "ru"}), " run "));
     EXPECT_TRUE(contains(completed("zsh", {"shearcell", "bench", "sp"}), "speed"));
     EXPECT_TRUE(contains(completed("zsh", {"shearcell", "run", "--sc"}), " --scale "));
   }
   write("script", run({"completion", "fish"}).out);
-  if (has_program("fish")) {
-    const std::string in_folder = "cd " + path("").string() + " && fish -c 'source script; ";
-    EXPECT_EQ(shell_output(in_folder + "complete -C \"shearcell bench sp\"'").substr(0, 6),
+  if (find_program("fish")) {
+    const std::string sourced = "fish -c 'source script; ";
+    EXPECT_EQ(shell_output(sourced + "complete -C \"shearcell bench sp\"'").substr(0, 6),
               "speed\t");
-    EXPECT_EQ(shell_output(in_folder + "complete -C \"shearcell run --sc\"'").substr(0, 8),
+    EXPECT_EQ(shell_output(sourced + "complete -C \"shearcell run --sc\"'").substr(0, 8),
               "--scale\t");
   }
   expect_refused({"completion", "tcsh"}, {});
@@ -129,9 +117,9 @@ TEST_F(Comfort, TheManualHasEveryCommand) {
     ++commands;
   }
   EXPECT_GE(commands, 16U);
-  if (has_program("groff")) {
+  if (find_program("groff")) {
     write("page", page);
-    EXPECT_EQ(shell_output("groff -man -Tutf8 -ww -z " + path("page").string() + " 2>&1"), "");
+    EXPECT_EQ(shell_output("groff -man -Tutf8 -ww -z page 2>&1"), "");
   }
 }
 

@@ -10,6 +10,7 @@
 #include "provenance/objects.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell::test {
 
@@ -36,12 +37,6 @@ class RawLog {
  private:
   sqlite3* handle_ = nullptr;
 };
-
-std::string sql_text(const std::string& text) {
-  std::string literal = "'";
-  for (const char c : text) literal.append(c == '\'' ? 2 : 1, c);
-  return literal + "'";
-}
 
 }  // namespace
 

@@ -140,13 +140,8 @@ TEST_F(DrawFigure, ACurveByAKeyHasTheLabelOfThatKeyAndAveragesOverNoOther) {
                         "plots: [{name: mean, y: phi, by: fluid},"
                         " {name: each, y: phi, x: amplitude_rad, by: fluid}]\n"),
           {.cycles = 1});
-  const auto refusal = [&](const WantedFigure& wanted) -> std::string {
-    try {
-      draw("out", wanted);
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "";
+  const auto refusal = [&](const WantedFigure& wanted) {
+    return message_of<UsageError>([&] { draw("out", wanted); });
   };
   EXPECT_EQ(refusal(wanted_figures(store_, {"mean"}).figures.at(0)),
             "figure mean would average over the values of amplitude_rad that experiment tiny "

@@ -38,28 +38,19 @@ TEST_F(HostileManifest, ParametersThatCannotBeComputedAreRefusedWithTheirLine) {
   for (const auto& [base, code, says] :
        {Case{"fill_packing_fraction: 1e-5", 2, ":4:26: fill_packing_fraction: the cell for"},
         Case{"fill_packing_fraction: 1e-10", 2, ":4:26: base.fill_packing_fraction: is out"},
-        Case{"fill_packing_fraction: 1e-300", 2, ":4:26: base.fill_packing_fraction: is out"},
         Case{"nominal_packing_fraction: 1e-15", 2, ":4:29: base.nominal_packing_fraction: is out"},
         Case{"nominal_packing_fraction: 1e-6", 2, ":4:29: nominal_packing_fraction: the grains"},
         Case{"settle_time_step_s: 1e-18", 2, ":4:23: base.settle_time_step_s: is out of range"},
-        Case{"settle_time_step_s: 5e-324", 2, ":4:23: base.settle_time_step_s: is out of range"},
         Case{"settle_time_step_s: 1e-14", 2, ":4:23: settle_time_step_s: settling takes up to"},
-        Case{"period_s: 1e-320", 2, ":4:13: base.period_s: is out of range"},
-        Case{"mass_kg: 1e-320", 2, ":4:12: base.mass_kg: is out of range"},
-        Case{"diameter_m: 1e-320", 2, ":4:15: base.diameter_m: is out of range"},
-        Case{"stiffness_N_per_m: 1e-320", 2, ":4:22: base.stiffness_N_per_m: is out"},
-        Case{"pressure_Pa: 4.9e-324", 2, ":4:16: base.pressure_Pa: is out of range"},
-        Case{"drag_kg_per_s: 1e-320", 0, "left: "},
-        Case{"gravity_m_per_s2: 1e-320", 0, "left: "},
+        Case{"drag_kg_per_s: 1e-320", 0, "left: "}, Case{"gravity_m_per_s2: 1e-320", 0, "left: "},
         Case{"amplitude_rad: 1e-320", 0, "left: "},
         Case{"max_overlap_diameters: 1e-320", 0, "left: "},
         Case{"wall_mass_grains_per_d2: 1e-320", 0, "left: "},
         Case{"settle_force_tolerance: 1e-320", 0, "left: "},
         Case{"settle_time_limit_s: 1e-320", 0, "left: "},
         Case{"height_over_width: 100", 0, "left: "},
-        Case{"cycles: 1000000\n  steps_per_cycle: 1000000000\n  grains: 100000000", 0, " years "},
-        Case{"protocol: paused\n  pause_s: 1e6", 2, ":5:12: pause_s: the pause takes"},
-        Case{"grains: 1", 2, ":4:11: grains: the cell for so few grains"}}) {
+        Case{"cycles: 1000000\n  steps_per_cycle: 1000000000\n  grains: 100000000", 0,
+             " years "}}) {
     SCOPED_TRACE(base);
     write("m.yaml", "experiment: a\n# Hard.\nbase:\n  " + std::string(base) + "\n");
     const Outcome outcome = expect(code, {"plan", "m.yaml"}, {says});

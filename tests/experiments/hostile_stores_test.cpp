@@ -70,20 +70,9 @@ std::vector<Case> damaged_events() {
   const std::string deep =
       "{\"why\":" + std::string(200'000, '[') + std::string(200'000, ']') + "}";
   return {
-      told("hash_flipped", "verify", 4,
-           sql("UPDATE events SET hash = 'f' || substr(hash, 2) WHERE seq = 2 AND hash NOT LIKE "
-               "'f%'; "
-               "UPDATE events SET hash = '0' || substr(hash, 2) WHERE seq = 3"),
-           "event ", "was changed", "from a backup"),
       told("payload_changed", "verify", 4,
            sql("UPDATE events SET payload = replace(payload, '\"seed\":1', '\"seed\":2')"),
            "does not match its content", "from a backup"),
-      told("event_removed", "verify", 4, sql("DELETE FROM events WHERE seq = 3"),
-           "event 3 is missing here"),
-      told("events_swapped", "verify", 4,
-           sql("UPDATE events SET seq = -1 WHERE seq = 2; UPDATE events SET seq = 2 WHERE seq = 3; "
-               "UPDATE events SET seq = 3 WHERE seq = -1"),
-           "event 2"),
       told("payload_no_json", "rebuild", 4, forged([](Event& e) { e.payload = "{\"cut"; }),
            "is not a JSON object"),
       told("payload_a_list", "log", 4, forged([](Event& e) { e.payload = "[1]"; }),

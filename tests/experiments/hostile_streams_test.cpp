@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "tests/experiments/program.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -184,13 +185,12 @@ TEST_F(Signals, EndALammpsThatHangs) {
     write("lmp", script);
     fs::permissions(path("lmp"), fs::perms::owner_all);
     expect(0, {"run", "m.yaml", "--cycles", "0"});
-    setenv("SHEARCELL_LAMMPS", path("lmp").c_str(), 1);
+    const Variable lammps("SHEARCELL_LAMMPS", path("lmp"));
     const Running program = start_beside({"run", "m.yaml", "--engine", "lammps"}, "run");
     while (begins && !contains(read_bytes(program.err), ": started")) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     std::this_thread::sleep_for(std::chrono::seconds(1));
-    unsetenv("SHEARCELL_LAMMPS");
     Outcome outcome;
     EXPECT_LT(stop(program, SIGTERM, outcome), 20);
     if (begins) {

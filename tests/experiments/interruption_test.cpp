@@ -89,25 +89,6 @@ TEST_F(Interruption, LeavesNothingUnbegunThatWasDoneBefore) {
   EXPECT_EQ(result.blocked, 0U);
 }
 
-// Two programs at once on one store share the work, and nothing is mixed up.
-TEST_F(Interruption, ByAnotherProgramOnTheSameStoreLeavesNoTrace) {
-  const std::string text = tiny_manifest("  cycles: 4\n", kBothFluids);
-  compute(whole_, text);
-  std::thread other([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(150));
-    Store same(store_.folder(), Access::create);
-    compute(same, text, {}, 1);
-  });
-  const CampaignResult first = compute(store_, text, {}, 1);
-  other.join();
-  for (const std::string& message : first.messages) std::printf("%s\n", message.c_str());
-  EXPECT_EQ(first.failed + first.damaged, 0U);
-  resume(store_);
-  EXPECT_EQ(final_hashes(store_), final_hashes(whole_));
-  for (const RunRecord& run : store_.runs()) EXPECT_EQ(run.state, RunState::completed);
-  EXPECT_TRUE(store_.verify().ok());
-}
-
 // Two seconds without a record, at a lease of a quarter of it.
 TEST_F(Interruption, IsNotInvitedByALongWayBetweenCheckpoints) {
   const std::string text = tiny_manifest("  cycles: 40\n", "checkpoints: {every_cycles: 40}\n");

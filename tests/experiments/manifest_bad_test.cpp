@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/experiments/plan_of.hpp"
+#include "tests/support/bad_manifests.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/text.hpp"
 
@@ -20,40 +20,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kBad = fs::path(SHEARCELL_TEST_DATA) / "manifests" / "bad";
+const std::map<std::string, test::BadManifest> kBad = test::bad_manifests(SHEARCELL_TEST_DATA);
 
-std::vector<std::string> bad_manifests() {
+std::vector<std::string> names_of_bad_manifests() {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(kBad)) names.push_back(entry.path().stem());
-  std::ranges::sort(names);
+  for (const auto& [name, manifest] : kBad) names.push_back(name);
   return names;
 }
 
 std::string message_for(const fs::path& path) {
-  return test::manifest_error([&] { load_manifest(path); });
+  return test::message_of<ManifestError>([&] { load_manifest(path); });
 }
 
-std::string message_for_text(std::string_view text) {
-  return test::manifest_error([&] { parse_manifest(text, "text.yaml"); });
+std::string message_for_text(std::string_view text, const std::string& file = "text.yaml") {
+  return test::message_of<ManifestError>([&] { parse_manifest(text, file); });
 }
 
 class BadManifest : public testing::TestWithParam<std::string> {};
 
 TEST_P(BadManifest, IsRefusedWithTheStatedMessage) {
-  const fs::path path = kBad / (GetParam() + ".yaml");
-  std::istringstream lines(test::read_bytes(path));
-  constexpr std::string_view mark = "# expect ";
-  std::string expected;
-  for (std::string line; std::getline(lines, line) && line.starts_with(mark);) {
-    if (!expected.empty()) expected += '\n';
-    expected += path.string() + ":" + line.substr(mark.size());
-  }
-  ASSERT_FALSE(expected.empty()) << path << " does not say what to expect";
-  EXPECT_EQ(message_for(path), expected);
+  const auto& [text, message] = kBad.at(GetParam());
+  EXPECT_EQ(message_for_text(text, "bad.yaml"), message);
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, BadManifest, testing::ValuesIn(bad_manifests()),
-                         [](const auto& file) { return file.param; });
+INSTANTIATE_TEST_SUITE_P(Files, BadManifest, testing::ValuesIn(names_of_bad_manifests()),
+                         [](const auto& name) { return name.param; });
 
 TEST(BadFile, IsRefused) {
   const TemporaryFolder temporary;

@@ -34,13 +34,8 @@ TEST(Identity, DependsOnSeedAndParent) {
 TEST(Identity, DamagedRecordsAreRefusedByName) {
   const StageSpec prepare = prepare_stage(oldest(), 1);
   const json good = last_stage(oldest(), 1, prepare).resolved;
-  const auto message = [](const json& record) -> std::string {
-    try {
-      read_stage(record);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "";
+  const auto message = [](const json& record) {
+    return test::message_of<std::runtime_error>([&] { read_stage(record); });
   };
   EXPECT_EQ(message(good), "");
   EXPECT_NE(message(json::array()), "");

@@ -2,7 +2,6 @@
 // Short manifests for tests.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "experiments/manifest/expand.hpp"
@@ -14,16 +13,6 @@ inline Plan plan_of(const std::string& base, const std::string& rest = "",
                     const ExpandOptions& options = {}) {
   return expand(parse_manifest("experiment: a\nbase: {" + base + "}\n" + rest, "test.yaml"),
                 options);
-}
-
-/// The message of the ManifestError that it throws; "" when it throws none.
-inline std::string manifest_error(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const ManifestError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace shearcell::test

@@ -3,17 +3,16 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <thread>
+#include <utility>
 
-extern char** environ;
+#include "tests/support/spawn.hpp"
 
 namespace shearcell::test {
 
@@ -23,34 +22,15 @@ static constexpr int kLimitSeconds = 120;
 
 ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::string& name,
                                         const char* executable) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  const std::string out = outputs_.path() / ("out" + name), err = outputs_.path() / ("err" + name);
-  constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC;
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), flags, 0600);
-  posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), flags, 0600);
-  posix_spawn_file_actions_addchdir_np(&actions, folder_.path().c_str());
-
-  std::vector<std::string> words = {executable};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
+  Running program{0, outputs_.path() / ("out" + name), outputs_.path() / ("err" + name)};
+  for (const fs::path& file : {program.out, program.err}) fs::remove(file);
   // A store that the caller's environment names must not be touched.
-  std::vector<char*> environment;
-  for (char** variable = environ; *variable != nullptr; ++variable) {
-    if (std::strncmp(*variable, "SHEARCELL_STORE=", 16) != 0) environment.push_back(*variable);
-  }
-  std::string named = "SHEARCELL_STORE=" + named_store_;
-  if (!named_store_.empty()) environment.push_back(named.data());
-  environment.push_back(nullptr);
-  pid_t child = 0;
-  const int error =
-      posix_spawn(&child, executable, &actions, nullptr, argv.data(), environment.data());
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error(std::string("posix_spawn: ") + std::strerror(error));
-  return {child, out, err};
+  Arguments words = {"-u", "SHEARCELL_STORE"};
+  if (!named_store_.empty()) words.push_back("SHEARCELL_STORE=" + named_store_);
+  words.emplace_back(executable);
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  program.pid = spawn(std::move(words), folder_.path(), program.out, program.err);
+  return program;
 }
 
 ProgramTest::Running ProgramTest::start_beside(const Arguments& arguments,

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <thread>
-
 #include "analysis/derived_measures.hpp"
 #include "experiments/figures/draw.hpp"
 #include "experiments/figures/run_table.hpp"
@@ -205,17 +203,6 @@ TEST_F(UntilTest, IsTheSameAfterInterruptionsWithinCycles) {
     second = !second;
   });
   EXPECT_GE(interrupted, 3U);
-  expect_end(store_, end_);
-}
-
-TEST_F(UntilTest, IsTheSameForTwoProgramsOnOneStore) {
-  std::thread other([&] {
-    Store same(folder_.path() / "store", Access::write);
-    compute(same, manifest(until()), {}, 1);
-  });
-  const CampaignResult result = compute(store_, manifest(until()), {}, 1);
-  other.join();
-  EXPECT_EQ(result.failed + result.damaged, 0U);
   expect_end(store_, end_);
 }
 

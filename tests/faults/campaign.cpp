@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/faults/campaign.hpp"
 
-#include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 
-#include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
-
-extern char** environ;
+#include "tests/support/spawn.hpp"
 
 namespace shearcell::test {
 
@@ -43,13 +40,7 @@ std::string small_manifest(const std::string& more) {
 }
 
 pid_t start_program(const fs::path& folder, const Words& words, const Fault& fault) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  constexpr int flags = O_WRONLY | O_CREAT | O_APPEND;
-  for (int fd : {1, 2}) {
-    posix_spawn_file_actions_addopen(&actions, fd, (folder / "said").c_str(), flags, 0600);
-  }
-  Words all = {"env", "-u", "SHEARCELL_STORE"};
+  Words all = {"-u", "SHEARCELL_STORE"};
   if (!fault.kind.empty()) {
     all.insert(all.end(),
                {"LD_PRELOAD=" SHEARCELL_FAULT_LAYER, "FAULT_FOLDER=" + (folder / "store").string(),
@@ -59,14 +50,7 @@ pid_t start_program(const fs::path& folder, const Words& words, const Fault& fau
   all.emplace_back(SHEARCELL_PROGRAM);
   all.insert(all.end(), words.begin(), words.end());
   all.insert(all.end(), {"--store", (folder / "store").string()});
-  std::vector<char*> pointers;
-  for (std::string& word : all) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, "env", &actions, nullptr, pointers.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error(std::string("posix_spawnp: ") + std::strerror(error));
-  return child;
+  return spawn(std::move(all), ".", folder / "said", folder / "said");
 }
 
 int wait_for_exit(pid_t program) {

@@ -7,6 +7,7 @@
 #include "provenance/sha256.hpp"
 #include "tests/fuzz/targets.hpp"
 #include "tests/provenance/samples.hpp"
+#include "tests/support/bad_manifests.hpp"
 
 namespace shearcell::fuzz {
 namespace {
@@ -105,11 +106,11 @@ std::vector<Event> forged_events(std::string_view lines) {
 std::vector<std::string> manifest_seeds() {
   std::vector<std::string> seeds = {kManifest};
   const fs::path repository = fs::path(SHEARCELL_TEST_DATA) / ".." / "..";
-  for (const auto& folder :
-       {repository / "experiments", fs::path(SHEARCELL_TEST_DATA) / "manifests" / "bad"}) {
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      if (entry.path().extension() == ".yaml") seeds.push_back(test::read_bytes(entry.path()));
-    }
+  for (const auto& entry : fs::directory_iterator(repository / "experiments")) {
+    if (entry.path().extension() == ".yaml") seeds.push_back(test::read_bytes(entry.path()));
+  }
+  for (const auto& [name, bad] : test::bad_manifests(SHEARCELL_TEST_DATA)) {
+    seeds.push_back(bad.text);
   }
   return seeds;
 }

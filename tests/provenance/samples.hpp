@@ -2,8 +2,6 @@
 // Checkpoints and declarations for the tests of the store.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <random>
 #include <span>
 #include <string>
@@ -12,6 +10,7 @@
 #include "provenance/sha256.hpp"
 #include "provenance/store.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell::test {
 
@@ -68,27 +67,6 @@ inline RunDeclaration sample_run(int number, std::uint64_t target = 5) {
                   .seed = 0xffffffffffffffff - static_cast<std::uint64_t>(number),
                   .manifest = sha256_hex("manifest")};
   return d;
-}
-
-/// The message of the exception that the statement throws.
-template <typename Exception, typename Statement>
-std::string message_of(Statement&& statement) {
-  try {
-    statement();
-  } catch (const Exception& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "the expected exception was not thrown";
-  return {};
-}
-
-/// The statement throws an exception whose message holds each of the parts.
-template <typename Exception, typename Statement>
-void expect_refused(Statement&& statement, const std::vector<std::string>& parts) {
-  const std::string message = message_of<Exception>(statement);
-  for (const std::string& part : parts) {
-    EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks: " << part;
-  }
 }
 
 }  // namespace shearcell::test

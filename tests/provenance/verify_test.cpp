@@ -89,12 +89,6 @@ class VerifyTest : public ::testing::Test {
   Head head_;
 };
 
-std::string literal_of(const std::string& text) {
-  std::string literal = "'";
-  for (const char c : text) literal.append(c == '\'' ? 2 : 1, c);
-  return literal + "'";
-}
-
 TEST_F(VerifyTest, FindsNothingInASoundStore) {
   const VerifyReport report = verify();
   EXPECT_TRUE(report.findings.empty());
@@ -159,9 +153,9 @@ TEST_F(VerifyTest, FindsAChangedByteOfAnyFieldOfAnyEvent) {
            {std::size_t{0}, text.size() - 1, random() % text.size(), random() % text.size()}) {
         std::string changed = text;
         changed[at] = changed[at] == '0' ? '1' : '0';
-        if (changed != text) expect_found(field, literal_of(changed), literal_of(text));
+        if (changed != text) expect_found(field, test::sql_text(changed), test::sql_text(text));
       }
-      expect_found(field, literal_of(text + " "), literal_of(text));
+      expect_found(field, test::sql_text(text + " "), test::sql_text(text));
     }
     expect_found("version", std::to_string(e.version + 100), std::to_string(e.version));
     expect_found("schema", std::to_string(e.schema + 1), std::to_string(e.schema));
@@ -176,7 +170,8 @@ TEST_F(VerifyTest, FindsARemovedEvent) {
     restore_without_triggers();
     execute("DELETE FROM events WHERE seq = " + std::to_string(e.seq));
     const bool last = e.seq == events_.size();  // shown only by a head that was kept elsewhere
-    EXPECT_TRUE(last ? names(verify(head_), event(e.seq)) : names(verify(), event(e.seq + 1)));
+    EXPECT_TRUE(last ? names(verify(head_), event(e.seq))
+                     : names(verify(), event(e.seq + 1), event(e.seq) + " is missing here"));
   }
 }
 
@@ -208,7 +203,7 @@ TEST_F(VerifyTest, FindsARewrittenPastAgainstAKeptHead) {
     if (i == 4) forged.recorded_at = "2001-01-01T00:00:00.000Z";
     forged.prev_hash = prev;
     prev = forged.hash = event_hash(forged);
-    execute("UPDATE events SET recorded_at = " + literal_of(forged.recorded_at) +
+    execute("UPDATE events SET recorded_at = " + test::sql_text(forged.recorded_at) +
             ", prev_hash = '" + forged.prev_hash + "', hash = '" + forged.hash +
             "' WHERE seq = " + std::to_string(forged.seq));
     if (i == 4) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "provenance/io/child_process.hpp"
 #include "tests/provenance/lineage_samples.hpp"
 
 namespace shearcell {
@@ -26,32 +27,23 @@ std::string commands_of_the_readme() {
   return commands;
 }
 
-std::string output_of(const std::string& script, int& status) {
-  FILE* pipe = popen(("PATH=/usr/bin:$PATH sh -eu '" + script + "' 2>&1").c_str(), "r");
-  std::string text;
-  for (int c = 0; pipe != nullptr && (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
-  status = pipe == nullptr ? -1 : pclose(pipe);
-  return text;
-}
-
-bool has(const std::string& command) {
-  return std::system(("PATH=/usr/bin:$PATH; " + command + " > /dev/null 2>&1").c_str()) == 0;
+/// Debian's python3, which has h5py, may stand behind another one.
+ProgramOutcome run_script(const std::string& script) {
+  return run_program({"sh", "-euc", "PATH=/usr/bin:$PATH\n" + script}, "/").value();
 }
 
 TEST(WorkedExample, CommandsOfTheReadmeDoWhatItSays) {
   for (const char* tool : {"sqlite3 -version", "h5dump --version", "sha256sum --version",
                            "python3 -c 'import h5py'"}) {
-    if (!has(tool)) GTEST_SKIP() << "this machine has no " << tool;
+    if (run_script(tool).code != 0) GTEST_SKIP() << "this machine has no " << tool;
   }
   const TemporaryFolder folder;
   Store store(folder.path() / "store", Access::create);
   const test::SampleHistory history(store);
-  const fs::path script = folder.path() / "script";
-  test::write_bytes(script, "cd '" + store.folder().string() + "'\n" + commands_of_the_readme());
-  int status = 0;
-  const std::string output = output_of(script.string(), status);
+  const auto [code, output, messages] =
+      run_script("cd '" + store.folder().string() + "'\n" + commands_of_the_readme());
   std::printf("%.*s\n", 1500, output.c_str());
-  ASSERT_EQ(status, 0) << output;
+  ASSERT_EQ(code, 0) << output << messages;
 
   std::istringstream lines(output);
   std::string computed, recorded;

@@ -6,6 +6,7 @@
 
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell {
 namespace {
@@ -19,12 +20,7 @@ class AccuracyCharts : public testing::Test {
   }
   std::vector<ReportPanel> read() const { return read_accuracy_charts(folder_.path()); }
   std::string trouble() const {
-    try {
-      read();
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "";
+    return message_of<UsageError>([this] { read(); });
   }
   TemporaryFolder folder_;
 };
