@@ -77,8 +77,10 @@ Database::Database(const std::filesystem::path& file, Access access)
   sqlite3_db_config(handle, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
 }
 
-Database Database::in_memory() {
-  return Database(kInMemory, Access::create);
+Database Database::in_memory(const std::string& name) {
+  Database database(kInMemory, Access::create);
+  database.name_ = name;
+  return database;
 }
 
 void Database::require_same_file() const {

@@ -7,10 +7,9 @@
 #include <map>
 #include <set>
 
+#include "provenance/derive.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/events.hpp"
 #include "provenance/projections.hpp"
-#include "provenance/sha256.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -95,24 +94,14 @@ void check_extends(const EventLog& log, const Head& earlier, VerifyReport& repor
 
 /// The tables derived from the events alone. Events that cannot be applied are reported and
 /// skipped.
-sqlite::Database derive(const EventLog& log, VerifyReport& report) {
-  sqlite::Database fresh = sqlite::Database::in_memory();
-  fresh.execute("PRAGMA foreign_keys=ON");
-  create_projections(fresh);
+sqlite::Database derive(const EventLog& log, const std::string& name, VerifyReport& report) {
+  sqlite::Database fresh = empty_projections(name);
   log.for_each([&](const Event& event) {
-    try {
-      apply(fresh, event);
-      const events::Any decoded = events::decode(event);
-      const auto* manifest = std::get_if<events::ManifestRegistered>(&decoded);
-      if (manifest != nullptr && event.stream != "manifest/" + sha256_hex(manifest->text)) {
-        throw StoreDamaged("the manifest's text has another SHA-256");
-      }
-    } catch (const StoreDamaged& damage) {
-      const bool of_run = event.stream.starts_with("run/");
-      add_error(report, event_name(event.seq),
-                fmt::format("it cannot be applied: {}", damage.what()),
-                of_run ? event.stream.substr(4) : "");
-    }
+    const std::string why = try_apply(fresh, event);
+    if (why.empty()) return;
+    const bool of_run = event.stream.starts_with("run/");
+    add_error(report, event_name(event.seq), "it cannot be applied: " + why,
+              of_run ? event.stream.substr(4) : "");
   });
   return fresh;
 }
@@ -217,7 +206,7 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
     check_file(database_, report);
     check_chain(log_, report);
     if (against) check_extends(log_, *against, report);
-    const sqlite::Database fresh = derive(log_, report);
+    const sqlite::Database fresh = derive(log_, database_.name(), report);
     compare_tables(projection_rows(database_), projection_rows(fresh), report);
     for (RunRecord& run : query_runs(fresh)) runs.emplace(run.id, std::move(run));
     records = query_checkpoints(fresh);

@@ -9,12 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/runner/measure.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
 
 using nlohmann::json;
-using namespace nlohmann::literals;
 
 auto first_reached(std::span<const MeasuredCycle> measured, const std::optional<Until>& until) {
   const ScalarMeasure* measure = until ? find_measure(name_of(until->measure)) : nullptr;
@@ -59,7 +59,8 @@ std::optional<json> ended_early(std::span<const RunAsk> asks,
 
 json recorded_end(const Store& store, const std::string& run) {
   const std::vector<Event> ends = store.events("run/" + run, "RunCompleted");
-  return ends.empty() ? json() : ends.back().body().value("/summary/ended"_json_pointer, json());
+  if (ends.empty()) return json();
+  return member_of(member_of(ends.back().body(), "summary"), "ended");
 }
 
 json end_of(const Store& store, const RunRecord& run) {

@@ -133,6 +133,21 @@ TEST_F(VerifyTest, ChecksTheRestOfAStoreWithABadEvent) {
   }
 }
 
+TEST_F(VerifyTest, ReportsTheRestBesideAForgedEndOfARun) {
+  for (const std::string ended : {"[1]", "7", "{\"memberships\":[]}"}) {
+    restore_without_triggers();
+    execute("UPDATE events SET payload = '{\"summary\":{\"ended\":" + ended +
+            "},\"target_cycles\":null}' WHERE type = 'RunCompleted'");
+    const VerifyReport report = verify();
+    EXPECT_TRUE(std::ranges::any_of(report.findings, [](const Finding& finding) {
+      return finding.message.find("match its content") != std::string::npos;
+    })) << ended;
+    EXPECT_EQ(report.checkpoints, 5u);
+    EXPECT_EQ(report.head.seq, events_.size());
+    Store(path_, Access::write).rebuild();
+  }
+}
+
 TEST_F(VerifyTest, FindsAChangedByteOfAnyFieldOfAnyEvent) {
   restore_without_triggers();
   std::mt19937_64 random(1);
