@@ -306,12 +306,12 @@ void rebuild_projections(Database& database, const EventLog& log) {
   lock.commit();
 }
 
-std::map<std::string, std::vector<std::string>> projection_rows(const Database& database) {
-  std::map<std::string, std::vector<std::string>> tables;
+std::map<std::string, TableRows> projection_rows(const Database& database) {
+  std::map<std::string, TableRows> tables;
   for (const std::string_view table : kTableNames) {
-    std::vector<std::string>& rows = tables[std::string(table)];
+    TableRows& rows = tables[std::string(table)];
     Statement query(database, fmt::format("SELECT * FROM {}", table));
-    while (query.step()) rows.push_back(query.row());
+    while (query.step()) rows.push_back(query.cells());
     std::sort(rows.begin(), rows.end());
   }
   return tables;

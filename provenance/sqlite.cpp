@@ -229,22 +229,21 @@ std::vector<std::byte> Statement::blob(int column) const {
   return {bytes, bytes + sqlite3_column_bytes(handle_.get(), column)};
 }
 
-std::string Statement::row() const {
-  std::string row;
+std::vector<std::string> Statement::cells() const {
+  std::vector<std::string> row;
   for (int column = 0; column < sqlite3_column_count(handle_.get()); ++column) {
-    if (column > 0) row += ", ";
     switch (sqlite3_column_type(handle_.get(), column)) {
       case SQLITE_NULL:
-        row += "NULL";
+        row.emplace_back("NULL");
         break;
       case SQLITE_INTEGER:
-        row += std::to_string(sqlite3_column_int64(handle_.get(), column));
+        row.push_back(std::to_string(sqlite3_column_int64(handle_.get(), column)));
         break;
       case SQLITE_FLOAT:
-        row += fmt::format("{:a}", f64(column));  // hexadecimal: every bit counts
+        row.push_back(fmt::format("{:a}", f64(column)));  // hexadecimal: every bit counts
         break;
       default:
-        row += fmt::format("'{}'", text(column));
+        row.push_back(fmt::format("'{}'", text(column)));
     }
   }
   return row;

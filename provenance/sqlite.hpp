@@ -116,7 +116,7 @@ class Statement {
     (get_one(column++, values), ...);
   }
   /// The whole row as SQL literals with all digits, to compare rows.
-  std::string row() const;
+  std::vector<std::string> cells() const;
 
  private:
   Database::Prepared prepared() const;

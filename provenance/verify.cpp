@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Verification of a store: chain, objects, projections.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +50,7 @@ void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const
 }
 
 using Severity = Finding::Severity;
-using Rows = std::map<std::string, std::vector<std::string>>;
+using Rows = std::map<std::string, TableRows>;
 
 void add_error(VerifyReport& report, const std::string& subject, const std::string& message,
                const std::string& run = "") {
@@ -106,16 +107,50 @@ sqlite::Database derive(const EventLog& log, const std::string& name, VerifyRepo
   return fresh;
 }
 
-void compare_tables(const Rows& stored, const Rows& derived, VerifyReport& report) {
+/// At most 60 bytes of a cell, from shortly before `place`.
+std::string excerpt(const std::string& cell, std::size_t place) {
+  const std::size_t begin = place > 40 ? place - 20 : 0;
+  const std::string part = cell.substr(begin, 60);
+  return fmt::format("{}{}{}", begin > 0 ? "..." : "", part,
+                     begin + part.size() < cell.size() ? "..." : "");
+}
+
+/// What is wrong with the first row that differs; `expected` or `found` is null where there is no
+/// row more. Rows begin with their keys.
+std::string row_difference(const sqlite::Database& database, const std::string& table,
+                           const std::vector<std::string>* expected,
+                           const std::vector<std::string>* found) {
+  std::vector<std::string> names, key;
+  const std::vector<std::string>& first =
+      expected == nullptr || (found != nullptr && *found < *expected) ? *found : *expected;
+  sqlite::Statement column(database, "PRAGMA table_info(" + table + ")");
+  while (column.step()) {
+    names.push_back(column.text(1));
+    if (column.u64(5) > 0) key.push_back(first.at(names.size() - 1));
+  }
+  const std::string row = fmt::format("row ({})", fmt::join(key, ", "));
+  if (expected == nullptr || found == nullptr ||
+      !std::equal(key.begin(), key.end(), (&first == found ? expected : found)->begin())) {
+    return row + (&first == found ? " should not be there" : " is missing");
+  }
+  const auto [a, b] = std::ranges::mismatch(*expected, *found);
+  const auto [x, y] = std::ranges::mismatch(*a, *b);
+  const auto place = static_cast<std::size_t>(x - a->begin());
+  return fmt::format("{} should have {} = {}, but has {}", row,
+                     names.at(static_cast<std::size_t>(a - expected->begin())), excerpt(*a, place),
+                     excerpt(*b, place));
+}
+
+void compare_tables(const sqlite::Database& database, const Rows& stored, const Rows& derived,
+                    VerifyReport& report) {
   for (const auto& [table, rows] : derived) {
-    const std::vector<std::string>& found = stored.at(table);
+    const TableRows& found = stored.at(table);
     const auto [a, b] = std::mismatch(rows.begin(), rows.end(), found.begin(), found.end());
     if (a == rows.end() && b == found.end()) continue;
     add_error(report, "table " + table,
-              fmt::format("it is not what the events give: row {} should be ({}) but is ({}); run "
-                          "`rebuild`",
-                          a - rows.begin() + 1, a == rows.end() ? "absent" : *a,
-                          b == found.end() ? "absent" : *b));
+              fmt::format("it is not what the events give: {}; run `rebuild`",
+                          row_difference(database, table, a == rows.end() ? nullptr : &*a,
+                                         b == found.end() ? nullptr : &*b)));
   }
 }
 
@@ -207,7 +242,7 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
     check_chain(log_, report);
     if (against) check_extends(log_, *against, report);
     const sqlite::Database fresh = derive(log_, database_.name(), report);
-    compare_tables(projection_rows(database_), projection_rows(fresh), report);
+    compare_tables(fresh, projection_rows(database_), projection_rows(fresh), report);
     for (RunRecord& run : query_runs(fresh)) runs.emplace(run.id, std::move(run));
     records = query_checkpoints(fresh);
   } catch (const StoreDamaged& damage) {

@@ -61,9 +61,9 @@ class MergeTest : public ::testing::Test {
 
   /// Every row of the tables, without the facts of when, by whom and in how many attempts it was
   /// computed: seq and ordinals, times, attempts, efforts.
-  std::map<std::string, std::set<std::string>> facts(const std::string& name) const {
+  std::map<std::string, std::set<std::vector<std::string>>> facts(const std::string& name) const {
     const sqlite::Database database(path(name) / "store.sqlite", Access::write);
-    std::map<std::string, std::set<std::string>> found;
+    std::map<std::string, std::set<std::vector<std::string>>> found;
     for (const std::string rows :
          {"runs id, parent, kind, resolved, state, grains, target_cycles, cycle, step, state_hash, "
           "error",
@@ -74,7 +74,7 @@ class MergeTest : public ::testing::Test {
           "figures name, provenance"}) {
       const std::string table = rows.substr(0, rows.find(' '));
       sqlite::Statement query(database, "SELECT " + rows.substr(table.size()) + " FROM " + table);
-      while (query.step()) found[table].insert(query.row());
+      while (query.step()) found[table].insert(query.cells());
     }
     return found;
   }
