@@ -160,7 +160,7 @@ class Campaign {
     } catch (const GeometryError& error) {
       note(job, &CampaignResult::failed, error.what());
     } catch (const ProgramError& error) {
-      note(job, &CampaignResult::failed, error.what());
+      note(job, &CampaignResult::blocked, error.what());  // LAMMPS is missing
     } catch (const TooLittleMemory& error) {
       note(job, &CampaignResult::failed, error.what());
     } catch (...) {
