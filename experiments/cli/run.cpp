@@ -88,8 +88,8 @@ void report(const CampaignResult& result, Context& context) {
                 {"not_begun", result.blocked},
                 {"damaged", result.damaged},
                 {"messages", result.messages}});
-  } else if (result.completed + result.already + result.failed + result.interrupted +
-                 result.blocked ==
+  } else if (result.completed + result.already + result.elsewhere + result.failed +
+                 result.interrupted + result.blocked + result.damaged ==
              0) {
     fmt::print("nothing is left to compute\n");
   } else {
@@ -98,6 +98,9 @@ void report(const CampaignResult& result, Context& context) {
         result.completed, result.already, result.failed, result.interrupted, result.blocked);
     if (result.elsewhere > 0) {
       fmt::print("{} were computed by other programs meanwhile\n", result.elsewhere);
+    }
+    if (result.damaged > 0) {
+      fmt::print("{} met damage of the store\n", result.damaged);
     }
   }
   if (context.exit_code == kInterrupted) {

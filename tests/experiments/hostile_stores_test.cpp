@@ -130,7 +130,7 @@ std::vector<Case> damaged_events() {
             })(s);
             Store(s, Access::write).rebuild();
           },
-          "are not those that it is named after"),
+          "are not those that it is named after", "met damage of the store"),
   };
 }
 
