@@ -2,14 +2,17 @@
 #include "provenance/lease.hpp"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <random>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 namespace shearcell {
 
@@ -60,7 +63,8 @@ std::string this_place() {
   return boot + " " + std::string(space.data(), static_cast<std::size_t>(length));
 }
 
-/// Start time of a process [clock ticks since boot]; nothing when it has ended.
+/// Start time of a process [clock ticks since boot]: 0 when it has ended and was not reaped yet,
+/// nothing when it cannot be read: it has ended, or /proc hides it (hidepid).
 std::optional<std::uint64_t> start_of(std::uint64_t pid) {
   std::ifstream file(fmt::format("/proc/{}/stat", pid));
   std::string line;
@@ -71,15 +75,16 @@ std::optional<std::uint64_t> start_of(std::uint64_t pid) {
   std::istringstream rest(line.substr(end_of_name + 1));
   const std::vector<std::string> fields(std::istream_iterator<std::string>(rest), {});
   constexpr std::size_t kState = 0, kStart = 19;  // fields 3 and 22 of the line
-  if (fields.size() <= kStart || fields[kState] == "Z" || fields[kState] == "X") {
-    return std::nullopt;  // dead, maybe not yet reaped
-  }
+  if (fields.size() <= kStart) return std::nullopt;
+  if (fields[kState] == "Z" || fields[kState] == "X") return 0;
   return std::stoull(fields[kStart]);
 }
 
 bool known_dead(const Holder& holder) {
-  return !holder.place.empty() && holder.place == this_place() &&
-         start_of(holder.pid) != holder.started;
+  if (holder.place.empty() || holder.place != this_place()) return false;
+  if (const auto started = start_of(holder.pid)) return *started != holder.started;
+  if (holder.pid == 0 || !std::in_range<pid_t>(holder.pid)) return true;
+  return kill(static_cast<pid_t>(holder.pid), 0) != 0 && errno == ESRCH;
 }
 
 }  // namespace

@@ -13,8 +13,10 @@
 #include <optional>
 #include <utility>
 
+#include "provenance/derive.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/events.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/lease.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/sha256.hpp"
@@ -189,7 +191,9 @@ bool RunMerge::wants(const Database& into, const Event& event) const {
     return attempts.contains(event.seq);
   }
   // A checkpoint was rejected, pruned or regenerated; or something else happened to the run.
-  return !event.type.starts_with("Checkpoint") || !known.contains(event.body().value("sha256", ""));
+  if (!event.type.starts_with("Checkpoint")) return true;
+  const nlohmann::json sha256 = member_of(event.body(), "sha256");
+  return !sha256.is_string() || !known.contains(sha256.get<std::string>());
 }
 
 std::optional<Event> RunMerge::closing_event(const Database& into) const {
@@ -241,7 +245,7 @@ Source read_source(const std::filesystem::path& folder, const std::set<std::stri
   }
   Database database = open_database(file, Access::read);
   const EventLog log(database);
-  Source source{folder, {}, {}, Database::in_memory(), ObjectStore(folder)};
+  Source source{folder, {}, {}, empty_projections(file.string()), ObjectStore(folder)};
   {
     const sqlite::ReadTransaction snapshot(database);
     if (const auto fault = log.verify_chain()) {
@@ -257,8 +261,12 @@ Source read_source(const std::filesystem::path& folder, const std::set<std::stri
              !(event.stream.starts_with("run/") && runs.contains(event.stream.substr(4)));
     });
   }
-  create_projections(source.tables);
-  for (const Event& event : source.events) apply(source.tables, event);
+  for (const Event& event : source.events) {
+    const std::string why = try_apply(source.tables, event);
+    if (why.empty()) continue;
+    throw StoreDamaged(fmt::format("{}: event {} ({}) cannot be applied: {}. Nothing was merged",
+                                   folder.string(), event.seq, event.type, why));
+  }
   return source;
 }
 

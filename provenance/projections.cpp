@@ -129,8 +129,7 @@ class Projector {
   void operator()(const events::RunCompleted& e) const {
     // Work is left when the target was raised while the run was computed, or when the run ended
     // early (`until`) without considering all its experiments.
-    const auto asked =
-        e.summary.is_object() ? e.summary.value("/ended/memberships"_json_pointer, json()) : json();
+    const json asked = member_of(member_of(e.summary, "ended"), "memberships");
     run("UPDATE runs SET error = '', state = CASE WHEN (?2 AND target_cycles > ?3) OR "
         "?4 < (SELECT count(*) FROM memberships WHERE run = ?1) THEN 'declared' ELSE 'completed' "
         "END WHERE id = ?1",
@@ -307,12 +306,12 @@ void rebuild_projections(Database& database, const EventLog& log) {
   lock.commit();
 }
 
-std::map<std::string, std::vector<std::string>> projection_rows(const Database& database) {
-  std::map<std::string, std::vector<std::string>> tables;
+std::map<std::string, TableRows> projection_rows(const Database& database) {
+  std::map<std::string, TableRows> tables;
   for (const std::string_view table : kTableNames) {
-    std::vector<std::string>& rows = tables[std::string(table)];
+    TableRows& rows = tables[std::string(table)];
     Statement query(database, fmt::format("SELECT * FROM {}", table));
-    while (query.step()) rows.push_back(query.row());
+    while (query.step()) rows.push_back(query.cells());
     std::sort(rows.begin(), rows.end());
   }
   return tables;

@@ -25,8 +25,11 @@ void apply(sqlite::Database& database, const Event& event);
 /// Drops the tables and derives them from the whole log in one transaction.
 void rebuild_projections(sqlite::Database& database, const EventLog& log);
 
-/// Every row of every table as text, to compare two derivations.
-std::map<std::string, std::vector<std::string>> projection_rows(const sqlite::Database& database);
+/// The rows of a table in ascending order, each cell as an SQL literal.
+using TableRows = std::vector<std::vector<std::string>>;
+
+/// Every row of every table, to compare two derivations.
+std::map<std::string, TableRows> projection_rows(const sqlite::Database& database);
 
 // Queries. All throw StoreDamaged when a table holds what no event gives.
 

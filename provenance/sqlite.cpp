@@ -77,8 +77,10 @@ Database::Database(const std::filesystem::path& file, Access access)
   sqlite3_db_config(handle, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
 }
 
-Database Database::in_memory() {
-  return Database(kInMemory, Access::create);
+Database Database::in_memory(const std::string& name) {
+  Database database(kInMemory, Access::create);
+  database.name_ = name;
+  return database;
 }
 
 void Database::require_same_file() const {
@@ -227,22 +229,21 @@ std::vector<std::byte> Statement::blob(int column) const {
   return {bytes, bytes + sqlite3_column_bytes(handle_.get(), column)};
 }
 
-std::string Statement::row() const {
-  std::string row;
+std::vector<std::string> Statement::cells() const {
+  std::vector<std::string> row;
   for (int column = 0; column < sqlite3_column_count(handle_.get()); ++column) {
-    if (column > 0) row += ", ";
     switch (sqlite3_column_type(handle_.get(), column)) {
       case SQLITE_NULL:
-        row += "NULL";
+        row.emplace_back("NULL");
         break;
       case SQLITE_INTEGER:
-        row += std::to_string(sqlite3_column_int64(handle_.get(), column));
+        row.push_back(std::to_string(sqlite3_column_int64(handle_.get(), column)));
         break;
       case SQLITE_FLOAT:
-        row += fmt::format("{:a}", f64(column));  // hexadecimal: every bit counts
+        row.push_back(fmt::format("{:a}", f64(column)));  // hexadecimal: every bit counts
         break;
       default:
-        row += fmt::format("'{}'", text(column));
+        row.push_back(fmt::format("'{}'", text(column)));
     }
   }
   return row;

@@ -46,7 +46,8 @@ class Database {
  public:
   /// With Access::read it may be written to all the same: SQLite rolls back what a crash left.
   Database(const std::filesystem::path& file, Access access);
-  static Database in_memory();
+  /// Errors name it `name`.
+  static Database in_memory(const std::string& name = ":memory:");
 
   /// Runs statements and ignores their rows.
   void execute(const std::string& sql);
@@ -115,7 +116,7 @@ class Statement {
     (get_one(column++, values), ...);
   }
   /// The whole row as SQL literals with all digits, to compare rows.
-  std::string row() const;
+  std::vector<std::string> cells() const;
 
  private:
   Database::Prepared prepared() const;

@@ -43,6 +43,21 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   return folder;
 }
 
+/// A program that finds no checkpoint would reject each of them and compute all runs again.
+void require_objects(const std::filesystem::path& folder, const sqlite::Database& database) {
+  sqlite::Statement recorded(database,
+                             "SELECT 1 FROM events WHERE type = 'CheckpointRecorded' LIMIT 1");
+  if (!recorded.step()) return;
+  const std::filesystem::path objects = folder / "objects";  // made before the first event
+  std::error_code unreadable;
+  if (std::filesystem::exists(objects) && !std::filesystem::is_empty(objects, unreadable)) return;
+  if (unreadable) return;
+  throw StoreDamaged(fmt::format(
+      "{}: the log names checkpoints, but this folder is missing or empty; mount it, or copy it "
+      "from where the store was, or name another store with --store",
+      objects.string()));
+}
+
 bool adds_something(const RunRecord& known, const RunDeclaration& declared) {
   const Membership& m = declared.membership;
   return std::none_of(
@@ -65,6 +80,7 @@ Store::Store(std::filesystem::path folder, Access access, const StoreOptions& op
       self_(this_process()),
       lease_ms_(std::min(kLongestLeaseMs,
                          static_cast<std::uint64_t>(std::max(0.0, options.lease_seconds) * 1000))) {
+  if (access_ != Access::read) require_objects(folder_, database_);
 }
 
 Store::~Store() {

@@ -80,8 +80,9 @@ Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRec
 /// ConcurrencyConflict, and it must stop stepping the run. The destructor releases all leases.
 class Store {
  public:
-  /// Throws StoreDamaged when the folder is not a store or has a newer schema, NotFound when it is
-  /// missing and `access` does not create it.
+  /// Throws StoreDamaged when the folder is not a store, has a newer schema, or, if it is to be
+  /// written, has lost the folder of its checkpoints; NotFound when it is missing and `access` does
+  /// not create it.
   Store(std::filesystem::path folder, Access access, const StoreOptions& options = {});
   ~Store();
   Store(const Store&) = delete;

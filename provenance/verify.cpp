@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Verification of a store: chain, objects, projections.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "provenance/derive.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/events.hpp"
 #include "provenance/projections.hpp"
-#include "provenance/sha256.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -50,7 +50,7 @@ void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const
 }
 
 using Severity = Finding::Severity;
-using Rows = std::map<std::string, std::vector<std::string>>;
+using Rows = std::map<std::string, TableRows>;
 
 void add_error(VerifyReport& report, const std::string& subject, const std::string& message,
                const std::string& run = "") {
@@ -95,38 +95,62 @@ void check_extends(const EventLog& log, const Head& earlier, VerifyReport& repor
 
 /// The tables derived from the events alone. Events that cannot be applied are reported and
 /// skipped.
-sqlite::Database derive(const EventLog& log, VerifyReport& report) {
-  sqlite::Database fresh = sqlite::Database::in_memory();
-  fresh.execute("PRAGMA foreign_keys=ON");
-  create_projections(fresh);
+sqlite::Database derive(const EventLog& log, const std::string& name, VerifyReport& report) {
+  sqlite::Database fresh = empty_projections(name);
   log.for_each([&](const Event& event) {
-    try {
-      apply(fresh, event);
-      const events::Any decoded = events::decode(event);
-      const auto* manifest = std::get_if<events::ManifestRegistered>(&decoded);
-      if (manifest != nullptr && event.stream != "manifest/" + sha256_hex(manifest->text)) {
-        throw StoreDamaged("the manifest's text has another SHA-256");
-      }
-    } catch (const StoreDamaged& damage) {
-      const bool of_run = event.stream.starts_with("run/");
-      add_error(report, event_name(event.seq),
-                fmt::format("it cannot be applied: {}", damage.what()),
-                of_run ? event.stream.substr(4) : "");
-    }
+    const std::string why = try_apply(fresh, event);
+    if (why.empty()) return;
+    const bool of_run = event.stream.starts_with("run/");
+    add_error(report, event_name(event.seq), "it cannot be applied: " + why,
+              of_run ? event.stream.substr(4) : "");
   });
   return fresh;
 }
 
-void compare_tables(const Rows& stored, const Rows& derived, VerifyReport& report) {
+/// At most 60 bytes of a cell, from shortly before `place`.
+std::string excerpt(const std::string& cell, std::size_t place) {
+  const std::size_t begin = place > 40 ? place - 20 : 0;
+  const std::string part = cell.substr(begin, 60);
+  return fmt::format("{}{}{}", begin > 0 ? "..." : "", part,
+                     begin + part.size() < cell.size() ? "..." : "");
+}
+
+/// What is wrong with the first row that differs; `expected` or `found` is null where there is no
+/// row more. Rows begin with their keys.
+std::string row_difference(const sqlite::Database& database, const std::string& table,
+                           const std::vector<std::string>* expected,
+                           const std::vector<std::string>* found) {
+  std::vector<std::string> names, key;
+  const std::vector<std::string>& first =
+      expected == nullptr || (found != nullptr && *found < *expected) ? *found : *expected;
+  sqlite::Statement column(database, "PRAGMA table_info(" + table + ")");
+  while (column.step()) {
+    names.push_back(column.text(1));
+    if (column.u64(5) > 0) key.push_back(first.at(names.size() - 1));
+  }
+  const std::string row = fmt::format("row ({})", fmt::join(key, ", "));
+  if (expected == nullptr || found == nullptr ||
+      !std::equal(key.begin(), key.end(), (&first == found ? expected : found)->begin())) {
+    return row + (&first == found ? " should not be there" : " is missing");
+  }
+  const auto [a, b] = std::ranges::mismatch(*expected, *found);
+  const auto [x, y] = std::ranges::mismatch(*a, *b);
+  const auto place = static_cast<std::size_t>(x - a->begin());
+  return fmt::format("{} should have {} = {}, but has {}", row,
+                     names.at(static_cast<std::size_t>(a - expected->begin())), excerpt(*a, place),
+                     excerpt(*b, place));
+}
+
+void compare_tables(const sqlite::Database& database, const Rows& stored, const Rows& derived,
+                    VerifyReport& report) {
   for (const auto& [table, rows] : derived) {
-    const std::vector<std::string>& found = stored.at(table);
+    const TableRows& found = stored.at(table);
     const auto [a, b] = std::mismatch(rows.begin(), rows.end(), found.begin(), found.end());
     if (a == rows.end() && b == found.end()) continue;
     add_error(report, "table " + table,
-              fmt::format("it is not what the events give: row {} should be ({}) but is ({}); run "
-                          "`rebuild`",
-                          a - rows.begin() + 1, a == rows.end() ? "absent" : *a,
-                          b == found.end() ? "absent" : *b));
+              fmt::format("it is not what the events give: {}; run `rebuild`",
+                          row_difference(database, table, a == rows.end() ? nullptr : &*a,
+                                         b == found.end() ? nullptr : &*b)));
   }
 }
 
@@ -217,8 +241,8 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
     check_file(database_, report);
     check_chain(log_, report);
     if (against) check_extends(log_, *against, report);
-    const sqlite::Database fresh = derive(log_, report);
-    compare_tables(projection_rows(database_), projection_rows(fresh), report);
+    const sqlite::Database fresh = derive(log_, database_.name(), report);
+    compare_tables(fresh, projection_rows(database_), projection_rows(fresh), report);
     for (RunRecord& run : query_runs(fresh)) runs.emplace(run.id, std::move(run));
     records = query_checkpoints(fresh);
   } catch (const StoreDamaged& damage) {

@@ -25,7 +25,7 @@ enum ExitCode : int {
   kDone = 0,
   kOtherError = 1,  ///< the machine failed: disk full, store locked, out of memory
   kUsageError = 2,  ///< usage or manifest
-  kRunFailed = 3,   ///< a run failed numerically
+  kRunFailed = 3,   ///< a run failed numerically or does not fit into memory
   kStoreDamaged = 4,
   kInterrupted = 85,  ///< resumable
 };

@@ -32,8 +32,8 @@ constexpr const char* kFooter =
   shearcell resume
 
 Exit codes: 0 done; 1 the machine failed (disk full, store locked, out of memory, output
-lost); 2 usage or manifest error; 3 a run failed numerically; 4 the store is damaged;
-85 interrupted, resumable.)";
+lost); 2 usage or manifest error; 3 a run failed numerically or does not fit into memory;
+4 the store is damaged; 85 interrupted, resumable.)";
 
 std::string version_text() {
   const nlohmann::json facts = host_facts();

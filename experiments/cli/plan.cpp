@@ -28,7 +28,8 @@ struct Line {
   const PlannedRun* run;
   const StageSpec* stage;
   std::string state = "to do";
-  double cycle = 0;
+  double cycle = 0;  // of the newest checkpoint
+  double from = 0;   // cycle from which it is computed
   StageCost left = {};
   std::optional<double> left_until = 0;       // particle-steps; nothing when it is not known
   std::vector<std::string> shared_with = {};  // other experiments that contain it
@@ -147,7 +148,7 @@ std::optional<double> left_until(const Line& line, const std::optional<Store>& s
   PlannedRun shorter = *line.run;
   shorter.target_cycles =
       std::min(shorter.target_cycles, static_cast<std::uint64_t>(std::llround(*end)));
-  return stage_cost(shorter, *line.stage, line.cycle).particle_steps;
+  return stage_cost(shorter, *line.stage, line.from).particle_steps;
 }
 
 // The same of the whole plan; nothing without `until`, or when it is not known of some run.
@@ -191,12 +192,15 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
       if (const RunRecord* record = known.find(stage->key)) {
         line.cycle = record->cycle;
         add_shares(*record, run.experiment, line);
-        const bool done = !cycle_to_continue(run, *stage, record, &*store);
-        line.state = done ? "done" : record->attempts > 0 ? name_of(record->state) : "to do";
-        if (line.state == "completed") line.state = "to extend";
+        const auto from = cycle_to_continue(run, *stage, record, &*store);
+        line.from = from.value_or(line.cycle);
+        line.state = !from ? "done" : record->attempts > 0 ? name_of(record->state) : "to do";
+        // Short of checkpoints that were asked for later, or of cycles.
+        const bool replayed = line.from < line.cycle;
+        if (line.state == "completed") line.state = replayed ? "to replay" : "to extend";
       }
       if (line.state != "done") {
-        line.left = stage_cost(run, *stage, line.cycle);
+        line.left = stage_cost(run, *stage, line.from);
         line.left_until = left_until(line, store, ends);
       }
       lines.push_back(line);

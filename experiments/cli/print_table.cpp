@@ -67,7 +67,8 @@ std::string painted(const std::string& word, const std::string& text) {
       {"pass", terminal_color::green},         {"ok", terminal_color::green},
       {"running", terminal_color::cyan},       {"failed", terminal_color::red},
       {"fail", terminal_color::red},           {"missing", terminal_color::red},
-      {"interrupted", terminal_color::yellow}, {"to extend", terminal_color::yellow}};
+      {"interrupted", terminal_color::yellow}, {"to extend", terminal_color::yellow},
+      {"to replay", terminal_color::yellow}};
   const auto found = colours.find(word);
   return found == colours.end() ? text : fmt::format(fmt::fg(found->second), "{}", text);
 }

@@ -163,8 +163,11 @@ void regenerate(const RegenerateWish& wish, Context& context) {
   catch_stop_signals();
   nlohmann::json list = nlohmann::json::array();
   for (const CheckpointRecord& record : records) {
+    if (stop_requested()) {
+      fail(context, kInterrupted);
+      break;
+    }
     list.push_back(regenerate_one(store, record, wish.threads, context));
-    if (stop_requested()) break;
   }
   if (context.json) print_json({{"checkpoints", list}});
 }

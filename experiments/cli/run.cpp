@@ -8,6 +8,7 @@
 
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/stop.hpp"
 
@@ -21,6 +22,12 @@ struct RunOptions {
   Parallel parallel;
   bool quiet = false;
 };
+
+void require_lammps_for_ranks(const RunOptions& options, bool lammps) {
+  if (options.parallel.ranks == 1 || lammps) return;
+  throw CLI::ValidationError("--mpi",
+                             "has no effect: LAMMPS computes none of these runs. Leave it out");
+}
 
 // As many runs at a time as their threads or processes leave cores for.
 std::size_t workers(const RunOptions& options) {
@@ -39,7 +46,9 @@ void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& 
 void run(const RunOptions& options, Context& context) {
   // All manifests are read before anything is written.
   const auto [manifests, plans] = load_manifests(options.inputs, options.expand);
-  if (std::ranges::any_of(plans, asks_for_lammps)) find_lammps();  // or say what to install
+  const bool lammps = std::ranges::any_of(plans, asks_for_lammps);
+  require_lammps_for_ranks(options, lammps);
+  if (lammps) find_lammps();  // or say what to install
   Store store(context.store, Access::create);
   std::vector<StageJob> jobs;
   std::set<std::string> known;
@@ -79,8 +88,8 @@ void report(const CampaignResult& result, Context& context) {
                 {"not_begun", result.blocked},
                 {"damaged", result.damaged},
                 {"messages", result.messages}});
-  } else if (result.completed + result.already + result.failed + result.interrupted +
-                 result.blocked ==
+  } else if (result.completed + result.already + result.elsewhere + result.failed +
+                 result.interrupted + result.blocked + result.damaged ==
              0) {
     fmt::print("nothing is left to compute\n");
   } else {
@@ -89,6 +98,9 @@ void report(const CampaignResult& result, Context& context) {
         result.completed, result.already, result.failed, result.interrupted, result.blocked);
     if (result.elsewhere > 0) {
       fmt::print("{} were computed by other programs meanwhile\n", result.elsewhere);
+    }
+    if (result.damaged > 0) {
+      fmt::print("{} met damage of the store\n", result.damaged);
     }
   }
   if (context.exit_code == kInterrupted) {
@@ -125,7 +137,12 @@ machine and one store to share the work.)");
   resume->footer("Examples:\n  shearcell resume\n  shearcell resume 3f9a");
   resume->callback([resume_options, &context] {
     Store store(context.store, Access::write);
-    compute(store, unfinished(store, resume_options->inputs), *resume_options, context);
+    const std::vector<StageJob> jobs = unfinished(store, resume_options->inputs);
+    const auto by_lammps = [&](const StageJob& job) {
+      return engine_of(store.run(job.id).resolved) == EngineKind::lammps;
+    };
+    require_lammps_for_ranks(*resume_options, jobs.empty() || std::ranges::any_of(jobs, by_lammps));
+    compute(store, jobs, *resume_options, context);
   });
 }
 

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <set>
 
 #include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"
@@ -13,6 +16,7 @@
 #include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/replay.hpp"
 #include "provenance/derived.hpp"
+#include "provenance/events.hpp"
 
 namespace shearcell {
 namespace {
@@ -53,6 +57,45 @@ void check_run(const RunRecord& run) {
   require_same("grains", run.grains, stage.parameters.grains);
   for (const Membership& membership : run.memberships) {
     check_membership(membership, stage, run.resolved);
+  }
+}
+
+/// Steps at which the run was completed: of each completion the last of its attempt and the
+/// furthest, which differ when attempts of several stores were merged.
+std::set<std::uint64_t> completed_steps(const Store& store, const std::string& run) {
+  std::set<std::uint64_t> steps;
+  std::map<std::string, std::uint64_t> recorded;  // by SHA-256
+  std::optional<std::uint64_t> last;              // of the attempt
+  for (const Event& event : store.events("run/" + run)) {
+    const events::Any decoded = events::decode(event);
+    if (const auto* made = std::get_if<events::CheckpointRecorded>(&decoded)) {
+      last = recorded[made->checkpoint.sha256] = made->checkpoint.step;
+    } else if (const auto* bad = std::get_if<events::CheckpointRejected>(&decoded)) {
+      recorded.erase(bad->sha256);
+    } else if (std::holds_alternative<events::RunCompleted>(decoded)) {
+      if (last) steps.insert(*last);
+      std::uint64_t furthest = 0;
+      for (const auto& [sha256, step] : recorded) furthest = std::max(furthest, step);
+      steps.insert(furthest);
+    }
+    if (events::begins_attempt(event) || events::ends_attempt(event)) last.reset();
+  }
+  return steps;
+}
+
+/// A run starts from the state at which the stage before it was completed. A state that the store
+/// lacks, as a merge leaves it where another HDF5 library wrote it, proves nothing.
+void check_beginning(const Store& store, const RunRecord& run,
+                     const std::set<std::uint64_t>& completed) {
+  for (const Event& event : store.events("run/" + run.id, events::RunStarted::kType)) {
+    const auto started = std::get<events::RunStarted>(events::decode(event));
+    for (const CheckpointRecord& record : store.checkpoints(run.parent, Listed::all)) {
+      if (record.sha256 != started.parent_checkpoint || completed.contains(record.step)) continue;
+      throw StoreDamaged(fmt::format(
+          "event {} started it from checkpoint {:.12} (step {}) of run {:.12}, which was not "
+          "completed there; do not use its states, and compute it again in a new store",
+          event.seq, record.sha256, record.step, run.parent));
+    }
   }
 }
 
@@ -122,7 +165,6 @@ std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCa
   return found;
 }
 
-/// Returns the number of checkpoints.
 void copy_measures(const Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
@@ -141,12 +183,17 @@ void copy_measures(const Store& store, DerivedCache& from) {
 
 std::vector<Finding> check_runs(const Store& store) {
   std::vector<Finding> findings;
+  std::map<std::string, std::set<std::uint64_t>> completed;  // by parent
   for (const RunRecord& run : store.runs()) {
     const auto note = [&](Finding::Severity severity, const std::exception& problem) {
       findings.push_back({severity, fmt::format("run {:.12}", run.id), run.id, problem.what()});
     };
     try {
       check_run(run);
+      if (run.parent.empty()) continue;
+      const auto [ends, fresh] = completed.try_emplace(run.parent);
+      if (fresh) ends->second = completed_steps(store, run.parent);
+      check_beginning(store, run, ends->second);
     } catch (const StoreDamaged& damage) {
       note(Finding::Severity::error, damage);
     } catch (const std::runtime_error& unknown) {  // parameters of another version

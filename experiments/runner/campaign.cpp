@@ -15,6 +15,7 @@
 #include "core/filling.hpp"
 #include "core/threads.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "experiments/runner/asks.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/run_end.hpp"
@@ -159,7 +160,7 @@ class Campaign {
     } catch (const GeometryError& error) {
       note(job, &CampaignResult::failed, error.what());
     } catch (const ProgramError& error) {
-      note(job, &CampaignResult::failed, error.what());
+      note(job, &CampaignResult::blocked, error.what());  // LAMMPS is missing
     } catch (const TooLittleMemory& error) {
       note(job, &CampaignResult::failed, error.what());
     } catch (...) {
@@ -328,12 +329,26 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   return jobs;
 }
 
+namespace {
+
+bool lacks_checkpoints(const Store& store, const RunRecord& run) {
+  try {
+    return !missing_checkpoints(store, run).empty();
+  } catch (const std::exception&) {
+    return false;  // a record that cannot be read; `verify` names it
+  }
+}
+
+}  // namespace
+
 std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes) {
   std::vector<RunRecord> asked;
   for (const std::string& prefix : prefixes) asked.push_back(store.find_run(prefix));
   if (prefixes.empty()) {
     asked = store.runs();
-    std::erase_if(asked, [](const RunRecord& run) { return run.state == RunState::completed; });
+    std::erase_if(asked, [&](const RunRecord& run) {
+      return run.state == RunState::completed && !lacks_checkpoints(store, run);
+    });
   }
   // The stages before are asked for as well: one of them may have lost its last checkpoint.
   std::set<std::string> wanted;

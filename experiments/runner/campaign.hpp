@@ -23,10 +23,11 @@ struct CampaignResult {
   std::size_t completed = 0;  ///< stages computed now
   std::size_t already = 0;    ///< stages that were done before
   std::size_t elsewhere = 0;  ///< stages that another program completed meanwhile
-  std::size_t failed = 0;     ///< stopped by the watchdog
+  std::size_t failed = 0;     ///< stopped by the watchdog, or too large for this machine
   std::size_t interrupted = 0;
-  std::size_t blocked = 0;  ///< not begun, because the stage before failed or was interrupted
-  std::size_t damaged = 0;  ///< met a damaged file of the store
+  /// Not begun, because the stage before failed or was interrupted, or because LAMMPS is missing.
+  std::size_t blocked = 0;
+  std::size_t damaged = 0;            ///< met a damaged file of the store
   std::vector<std::string> messages;  ///< one for each failure or damage
 };
 
@@ -34,8 +35,9 @@ struct CampaignResult {
 /// first and otherwise in the plan's order.
 std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan& plan);
 
-/// Stages of the store that are not completed, or those whose run begins with one of `prefixes`,
-/// with the stages before them. Throws NotFound for a prefix that fits no run or several.
+/// Stages of the store that are not completed or lack checkpoints that were asked for, or those
+/// whose run begins with one of `prefixes`, with the stages before them. Throws NotFound for a
+/// prefix that fits no run or several.
 std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes);
 
 /// Computes every job that is not done. A failure stops only the stages that depend on it. Stages

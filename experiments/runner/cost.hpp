@@ -30,7 +30,8 @@ struct StageCost {
 
 /// Cycle from which the stage is left to compute; nothing when `known`, the record of it in `store`
 /// or null, shows that it is done: it has its length, or an experiment asked for the same `until`
-/// and at least this length, and it ended there.
+/// and at least this length, and it ended there; and it has every checkpoint that was asked for and
+/// that the planned run asks for. Where some are missing, the cycle of the last one before them.
 std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& stage,
                                         const RunRecord* known, const Store* store);
 

@@ -9,12 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/runner/measure.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
 
 using nlohmann::json;
-using namespace nlohmann::literals;
 
 auto first_reached(std::span<const MeasuredCycle> measured, const std::optional<Until>& until) {
   const ScalarMeasure* measure = until ? find_measure(name_of(until->measure)) : nullptr;
@@ -28,6 +28,29 @@ bool all_reached(std::span<const RunAsk> asks, std::span<const MeasuredCycle> me
   return std::ranges::all_of(asks, [&](const RunAsk& ask) {
     return !ask.until || first_reached(measured, ask.until) != measured.end();
   });
+}
+
+/// Whether it is what ended_early() gives.
+bool is_early_end(const json& ended) {
+  return member_of(ended, "by") == "until" && member_of(ended, "measure").is_string() &&
+         member_of(ended, "value").is_number() &&
+         member_of(ended, "reached_at_cycle").is_number() &&
+         member_of(ended, "extra_cycles").is_number_unsigned();
+}
+
+/// The most cycles [at most those that the run has] for which an experiment without `until` asked
+/// when the run ended; 0 without any.
+double longest_length(const Store& store, const RunRecord& run, const json& ended) {
+  const json known = member_of(ended, "memberships");
+  std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
+  double longest = 0;
+  for (const Membership& m : run.memberships) {  // in the order of declaration
+    if (left-- == 0) break;
+    const auto cycles = static_cast<double>(m.target_cycles);
+    if (cycles > run.cycle || cycles <= longest) continue;
+    if (!ask_of(store, run.id, m).until) longest = cycles;
+  }
+  return longest;
 }
 
 }  // namespace
@@ -59,31 +82,44 @@ std::optional<json> ended_early(std::span<const RunAsk> asks,
 
 json recorded_end(const Store& store, const std::string& run) {
   const std::vector<Event> ends = store.events("run/" + run, "RunCompleted");
-  return ends.empty() ? json() : ends.back().body().value("/summary/ended"_json_pointer, json());
+  if (ends.empty()) return json();
+  return member_of(member_of(ends.back().body(), "summary"), "ended");
 }
 
 json end_of(const Store& store, const RunRecord& run) {
   if (run.state != RunState::completed || run.cycle >= static_cast<double>(run.target_cycles)) {
     return json();
   }
-  const json ended = recorded_end(store, run.id);
-  return ended.is_object() && ended.value("by", "") == "until" ? ended : json();
+  json ended = recorded_end(store, run.id);
+  if (!is_early_end(ended)) return json();
+  const double reached =
+      ended["reached_at_cycle"].get<double>() + ended["extra_cycles"].get<double>();
+  if (const double asked = longest_length(store, run, ended); asked > reached) {
+    ended["cycles_asked"] = asked;
+  }
+  return ended;
 }
 
 std::string describe_end(const json& ended) {
   if (ended.is_null()) return "";
   const auto extra = ended.at("extra_cycles").get<std::uint64_t>();
-  return fmt::format("{} >= {} at cycle {}{}", ended.at("measure").get<std::string>(),
-                     ended.at("value").get<double>(), ended.at("reached_at_cycle").get<double>(),
-                     extra > 0 ? fmt::format(" and {} cycles more", extra) : "");
+  std::string why =
+      fmt::format("{} >= {} at cycle {}{}", ended.at("measure").get<std::string>(),
+                  ended.at("value").get<double>(), ended.at("reached_at_cycle").get<double>(),
+                  extra > 0 ? fmt::format(" and {} cycles more", extra) : "");
+  if (const json asked = member_of(ended, "cycles_asked"); !asked.is_null()) {
+    why = fmt::format("another experiment asks for {} cycles; {}", asked.get<double>(), why);
+  }
+  return why;
 }
 
 std::optional<double> expected_end(const Store& store, const Until& until) {
   double sum = 0, count = 0;
   for (const RunRecord& run : store.runs()) {
     const json ended = end_of(store, run);
-    if (ended.is_null() || ended.at("measure") != name_of(until.measure) ||
-        ended.at("value") != until.value || ended.at("extra_cycles") != until.extra_cycles) {
+    if (ended.is_null() || ended.contains("cycles_asked") ||
+        ended.at("measure") != name_of(until.measure) || ended.at("value") != until.value ||
+        ended.at("extra_cycles") != until.extra_cycles) {
       continue;
     }
     sum += run.cycle;

@@ -35,12 +35,14 @@ std::optional<nlohmann::json> ended_early(std::span<const RunAsk> asks,
 nlohmann::json recorded_end(const Store& store, const std::string& run);
 
 /// The reason recorded with the end of a run that is complete before its last cycle; else null.
+/// With "cycles_asked" where the run ended later, at the length that another experiment asked for.
 nlohmann::json end_of(const Store& store, const RunRecord& run);
 
 /// "crystalline_percent >= 10 at cycle 25 and 15 cycles more"; "" for null.
 std::string describe_end(const nlohmann::json& ended);
 
-/// Mean cycle at which runs of the store with this `until` ended; empty if there are no such runs.
+/// Mean cycle at which runs of the store with this `until` ended by it; empty if there are no such
+/// runs.
 std::optional<double> expected_end(const Store& store, const Until& until);
 
 /// Measures the checkpoints of one run until every `until` is reached, and keeps the results in the

@@ -108,10 +108,13 @@ Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::stri
     return {std::move(cell), std::move(state), std::nullopt, ""};
   }
   auto parent = store.newest_valid_checkpoint(run.parent, damage);
-  if (!parent) {
-    throw StoreDamaged("run " + run.parent.substr(0, 12) + ": the settled packing that run " +
-                       run.id.substr(0, 12) +
-                       " starts from is missing; run the manifest again to recompute it");
+  // Without its last state the parent is not completed, or an earlier state was found.
+  const RunRecord ended = store.run(run.parent);
+  if (!parent || ended.state != RunState::completed || parent->record.step != ended.step) {
+    throw StoreDamaged(fmt::format(
+        "run {:.12}: the settled packing that run {:.12} starts from is missing or damaged; "
+        "`shearcell resume` recomputes it first",
+        run.parent, run.id));
   }
   parent->checkpoint.state.step = 0;
   return {std::move(parent->checkpoint.cell), std::move(parent->checkpoint.state), std::nullopt,

@@ -44,9 +44,9 @@ struct Beginning {
   std::string parent_checkpoint;         ///< that the stage begins from, or ""
 };
 
-/// Where the stage itself begins: its parent's last state, or a fresh filling. Throws StoreDamaged
-/// when the parent's last state cannot be read, and Interrupted when the filling is given up.
-/// `damage` as in Store::newest_valid_checkpoint.
+/// Where the stage itself begins: the state at which its parent was completed, or a fresh filling.
+/// Throws StoreDamaged when that state cannot be read or the parent is not completed, and
+/// Interrupted when the filling is given up. `damage` as in Store::newest_valid_checkpoint.
 Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage);
 
 /// The newest checkpoint before a step that verifies, or else where the stage begins.

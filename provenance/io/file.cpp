@@ -152,9 +152,21 @@ void NewFile::add(std::string_view text) {
 }
 
 TemporaryFolder::TemporaryFolder(const std::string& prefix) {
-  std::string pattern = fs::temp_directory_path() / (prefix + std::string(kRandom, 'X'));
+  fs::path whole = prefix + std::string(kRandom, 'X');
+  if (whole.is_relative()) {
+    std::error_code missing;
+    const fs::path folder = fs::temp_directory_path(missing);
+    if (missing) {
+      const char* set = std::getenv("TMPDIR");
+      throw std::system_error(missing, std::string(set != nullptr ? set : "/tmp") +
+                                           ": cannot use the folder for temporary files; make it, "
+                                           "or name another one in TMPDIR");
+    }
+    whole = folder / whole;
+  }
+  std::string pattern = whole;
   if (mkdtemp(pattern.data()) == nullptr) {
-    fail_on(pattern, "make a temporary folder (is TMPDIR writable?)");
+    fail_on(whole.parent_path(), "make a temporary folder in it (TMPDIR names another one)");
   }
   path_ = pattern;
 }

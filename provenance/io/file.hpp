@@ -84,9 +84,9 @@ class NewFile {
   Descriptor file_;
 };
 
-/// A new folder PREFIX + six random characters in the folder for temporary files (TMPDIR), readable
-/// by this user only; deleted with its content at the end of the object's life. The constructor
-/// throws std::system_error.
+/// A new folder PREFIX + six random characters, in the folder for temporary files (TMPDIR) unless
+/// the prefix is an absolute path; readable by this user only, and deleted with its content at the
+/// end of the object's life. The constructor throws std::system_error, which names the folder.
 class TemporaryFolder {
  public:
   static constexpr std::size_t kRandom = 6;

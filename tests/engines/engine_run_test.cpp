@@ -157,6 +157,19 @@ TEST_F(EngineRun, SaysThatLammpsIsMissing) {
   EXPECT_TRUE(has(run({"plan", manifest, "--engine", "lammps"}).out, "Debian package lammps"));
 }
 
+TEST_F(EngineRun, ThatIsResumedWithoutLammpsIsNotBegun) {
+  const Variable nowhere("SHEARCELL_LAMMPS", "/no/such/lmp");
+  {
+    Store store(path("shearcell-store"), Access::create);
+    declared(store, tiny_manifest("  engine: lammps\n"));
+  }
+  const Outcome outcome = run({"resume", "-q", "--mpi", "2"});
+  EXPECT_EQ(outcome.code, 1) << "no run failed";
+  EXPECT_TRUE(has(outcome.err, "Debian package lammps"));
+  const Store store(path("shearcell-store"), Access::read);
+  EXPECT_EQ(sheared(store).state, RunState::declared);
+}
+
 TEST_F(EngineRun, TellsWhatLammpsSaidWhenItFails) {
   const std::string manifest = write("m.yaml", tiny_manifest());
   for (const auto& [body, says] : std::vector<std::pair<std::string, std::string>>{

@@ -78,6 +78,11 @@ TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {
   expect_refused({"resume", "zzz"}, {"no run"});
 }
 
+TEST_F(CommandLine, RefusesProcessesOfLammpsWhereItComputesNothing) {
+  const std::string manifest = write("m.yaml", tiny_manifest());
+  expect_refused({"run", manifest, "--mpi", "2"}, {"--mpi", "has no effect"});
+}
+
 TEST_F(CommandLine, FindsARunByAUniqueBeginning) {
   campaign(tiny_manifest(), {"--cycles", "0", "--seeds", "9"});
   std::vector<std::string> ids;

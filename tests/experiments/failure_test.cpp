@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <string>
 
+#include "experiments/runner/audit.hpp"
 #include "experiments/runner/stage_runner.hpp"
+#include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
 
@@ -203,6 +205,38 @@ TEST_F(Failure, OfThePackingFileIsSeenByResumeToo) {
   ASSERT_FALSE(first.messages.empty());
   resume(store_);
   for (const RunRecord& run : store_.runs()) EXPECT_EQ(run.state, RunState::completed);
+}
+
+// A packing that was sound when the campaign looked at it.
+TEST_F(Failure, OfThePackingFileStartsNoRunFromAnUnsettledState) {
+  const std::vector<StageJob> jobs = declared(store_, tiny_manifest());
+  interrupt_to_the_end(store_, jobs[0].id);
+  const auto settling = store_.checkpoints(jobs[0].id);
+  ASSERT_GT(settling.size(), 1U);
+  truncate_file(file_of(settling.back()));
+  EXPECT_THROW(run_stage(store_, jobs[1].id, {}), StoreDamaged);
+  EXPECT_THROW(run_stage(store_, jobs[1].id, {}), StoreDamaged) << "the damage is known now";
+  EXPECT_EQ(store_.run(jobs[1].id).attempts, 0U);
+  EXPECT_EQ(resume(store_).completed, 2U);
+  EXPECT_TRUE(store_.verify().ok());
+  EXPECT_TRUE(check_runs(store_).empty());
+
+  Store whole(folder_.path() / "whole", Access::create);
+  compute(whole, tiny_manifest());
+  EXPECT_EQ(final_hashes(store_), final_hashes(whole));
+}
+
+TEST_F(Failure, OfARunThatBeganFromAnUnsettledStateIsNamed) {
+  const std::vector<StageJob> jobs = declared(store_, tiny_manifest());
+  interrupt_to_the_end(store_, jobs[0].id);
+  const CheckpointRecord unsettled = store_.checkpoints(jobs[0].id).front();
+  store_.start_run(jobs[1].id, {}, std::nullopt, unsettled.sha256);
+  store_.interrupt_run(jobs[1].id, "a test");
+  const std::vector<Finding> findings = check_runs(store_);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].severity, Finding::Severity::error);
+  EXPECT_EQ(findings[0].run, jobs[1].id);
+  EXPECT_TRUE(has(findings[0].message, unsettled.sha256.substr(0, 12)));
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ std::vector<Case> damaged_events() {
             })(s);
             Store(s, Access::write).rebuild();
           },
-          "are not those that it is named after"),
+          "are not those that it is named after", "met damage of the store"),
   };
 }
 
@@ -180,8 +180,11 @@ std::vector<Case> damaged_objects() {
            "this must be a folder of the store", "remove it"),
       told("objects_is_link", "verify", 4, at("objects", link_instead),
            "this must be a folder of the store"),
-      told("no_objects", "figures S2 --fresh", 4, at("objects", removed),
-           "left out: ", "the file is missing"),
+      told("no_objects", "figures S2 --fresh", 4, at("objects", removed), "objects",
+           "missing or empty"),
+      told("no_objects_to_continue_from", "run m.yaml --cycles 2", 4, at("objects", removed),
+           "objects", "missing or empty"),
+      told("no_objects_of_a_reader", "verify", 4, at("objects", removed), "the file is missing"),
       told("object_of_a_stranger", "verify", 0, at("objects/note.txt", written("x")),
            "no event names this file"),
       told(

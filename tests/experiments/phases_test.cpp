@@ -11,6 +11,7 @@
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/asks.hpp"
+#include "experiments/runner/cost.hpp"
 #include "experiments/runner/replay.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/drawing.hpp"
@@ -47,6 +48,13 @@ class Phases : public DrawingTest {
       if (file.extension() == ".csv") contents[file.filename().string()] = read_bytes(file);
     }
     return contents;
+  }
+
+  // Cycle from which `plan` and `submit` say that the run of the store is left to compute.
+  std::optional<double> left_of(const std::string& text) const {
+    const PlannedRun run = expand(parse_manifest(text, "t")).runs.at(0);
+    const RunRecord known = store_.run(run.last.key);
+    return cycle_to_continue(run, run.last, &known, &store_);
   }
 
   Store plain_{folder_.path() / "plain", Access::create};
@@ -102,7 +110,15 @@ TEST_F(Phases, OfACompletedRunAreMadeByReplay) {
   compute(plain_, manifest(kPhases));
   compute(store_, manifest(""));
   const RunRecord before = sheared(store_);
+  EXPECT_FALSE(left_of(manifest("")));
+  EXPECT_EQ(left_of(manifest(kPhases)), 0) << "not declared yet";
+  declared(store_, manifest(kPhases));
+  EXPECT_EQ(left_of(manifest(kPhases)), 0);
+  EXPECT_EQ(left_of(manifest("")), 0) << "`run` makes what any experiment asked for";
+  EXPECT_EQ(unfinished(store_, {}).size(), 2U) << "the packing before it, and the run";
   EXPECT_EQ(compute(store_, manifest(kPhases)).completed, 1U);
+  EXPECT_FALSE(left_of(manifest(kPhases)));
+  EXPECT_TRUE(unfinished(store_, {}).empty());
   EXPECT_EQ(files(store_, false), files(plain_, false));
   EXPECT_EQ(sheared(store_).state_hash, before.state_hash);
   EXPECT_EQ(sheared(store_).state, RunState::completed);

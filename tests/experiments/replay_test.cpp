@@ -92,6 +92,19 @@ TEST_F(ReplayTest, MendsADamagedFile) {
   EXPECT_EQ(store_.run(sheared().id).cycle, 4);
 }
 
+// The settled packing is damaged, and states of its settling are intact.
+TEST_F(ReplayTest, DoesNotBeginFromAnUnsettledPacking) {
+  Store other(folder_.path() / "other", Access::create);
+  const std::vector<StageJob> jobs = declared(other, tiny_manifest());
+  interrupt_to_the_end(other, jobs[0].id);
+  ASSERT_GT(other.checkpoints(jobs[0].id).size(), 1U);
+  ASSERT_EQ(run_stage(other, jobs[1].id, {}), StageOutcome::completed);
+  truncate_file(other.folder() / other.checkpoints(jobs[0].id).back().file);
+  const CheckpointRecord first = other.checkpoints(jobs[1].id).front();
+  EXPECT_THROW(regenerate_checkpoint(other, first), StoreDamaged);
+  EXPECT_EQ(count_events(other, "ReplayDiverged"), 0U);
+}
+
 TEST_F(ReplayTest, WorksOnPackingsAndOnStatesWithinACycle) {
   // Interrupted after a chunk of steps, and so within the settling and within a cycle.
   Store other(folder_.path() / "other", Access::create);

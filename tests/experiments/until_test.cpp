@@ -174,6 +174,21 @@ TEST_F(UntilTest, OfTwoExperimentsTheLongestCounts) {
   expect_end(store_, 5);
 }
 
+TEST_F(UntilTest, OfTwoExperimentsTheReasonIsThatOfTheLongest) {
+  std::string twin = tiny_manifest("  cycles: 5\n");
+  twin.replace(twin.find("tiny"), 4, "twin");
+  compute(store_, twin);
+  EXPECT_EQ(compute(store_, manifest(until(0))).already, 2U) << "nothing is stepped";
+  const RunRecord run = sheared(store_);
+  EXPECT_EQ(run.cycle, 5);
+  EXPECT_EQ(run.state, RunState::completed);
+  const nlohmann::json why = end_of(store_, run);
+  EXPECT_EQ(why.at("cycles_asked"), 5);
+  EXPECT_TRUE(describe_end(why).starts_with("another experiment asks for 5 cycles; phi >= "));
+  EXPECT_EQ(expected_end(store_, {StopMeasure::phi, value_, 0}), std::nullopt);
+  EXPECT_FALSE(recorded_end(store_, run.id).contains("cycles_asked"));
+}
+
 // Its figures and tables are the same whether or not another experiment continues its runs.
 TEST_F(UntilTest, AnExperimentEndsItsRunsInItsFiguresToo) {
   const WantedFigure s2{*find_figure("S2"), "tiny"};

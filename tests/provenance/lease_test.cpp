@@ -109,9 +109,10 @@ TEST_F(LeaseTest, OfADeadProcessIsTakenAtOnce) {
   ASSERT_EQ(waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT), 0);
   Store store = open();
   EXPECT_TRUE(store.leases().empty());
+  ASSERT_EQ(waitpid(child, nullptr, 0), child);
+  EXPECT_TRUE(store.leases().empty());
   EXPECT_EQ(store.run(id_).state, RunState::running);
   EXPECT_EQ(store.start_run(id_, {}), 2u);
-  waitpid(child, nullptr, 0);
 }
 
 TEST_F(LeaseTest, OfAnotherMachineIsWaitedFor) {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "provenance/projections.hpp"
-#include "tests/provenance/samples.hpp"
+#include "tests/provenance/lineage_samples.hpp"
 
 namespace shearcell {
 namespace {
@@ -61,9 +61,9 @@ class MergeTest : public ::testing::Test {
 
   /// Every row of the tables, without the facts of when, by whom and in how many attempts it was
   /// computed: seq and ordinals, times, attempts, efforts.
-  std::map<std::string, std::set<std::string>> facts(const std::string& name) const {
+  std::map<std::string, std::set<std::vector<std::string>>> facts(const std::string& name) const {
     const sqlite::Database database(path(name) / "store.sqlite", Access::write);
-    std::map<std::string, std::set<std::string>> found;
+    std::map<std::string, std::set<std::vector<std::string>>> found;
     for (const std::string rows :
          {"runs id, parent, kind, resolved, state, grains, target_cycles, cycle, step, state_hash, "
           "error",
@@ -74,7 +74,7 @@ class MergeTest : public ::testing::Test {
           "figures name, provenance"}) {
       const std::string table = rows.substr(0, rows.find(' '));
       sqlite::Statement query(database, "SELECT " + rows.substr(table.size()) + " FROM " + table);
-      while (query.step()) found[table].insert(query.row());
+      while (query.step()) found[table].insert(query.cells());
     }
     return found;
   }
@@ -236,6 +236,21 @@ TEST_F(MergeTest, RefusesDamagedSources) {
   EXPECT_EQ(a.verify().orphans, 0u);
   EXPECT_THROW(a.merge({path("a")}), NotFound);
   EXPECT_THROW(a.merge({path("nowhere")}), NotFound);
+}
+
+TEST_F(MergeTest, NamesTheSourceWhoseEventsDoNotFit) {
+  computed("b", {{0, 2, 2}});
+  const Event recorded = open("b").events("run/" + run_id(0), "CheckpointRecorded").at(0);
+  copy("b", "orphan");
+  test::append_to_run(open("orphan"), run_id(3), {recorded.type, recorded.body()});
+  Store a = open("a");
+  expect_refused<StoreDamaged>([&] { a.merge({path("orphan")}); }, {"orphan: event 7 (Checkpoint"});
+  EXPECT_EQ(a.head().seq, 0u);
+  EXPECT_EQ(a.verify().orphans, 0u);
+  // An event of a later version, whose members may mean something else.
+  copy("b", "later");
+  test::append_to_run(open("later"), run_id(0), {"CheckpointMoved", {{"sha256", 3}}});
+  EXPECT_EQ(a.merge({path("later")}).at(0).events, 7u);
 }
 
 TEST_F(MergeTest, WaitsForNobodyAndDisturbsNobody) {

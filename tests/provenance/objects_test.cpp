@@ -11,6 +11,7 @@
 
 #include "provenance/errors.hpp"
 #include "tests/provenance/samples.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell {
 namespace {
@@ -103,6 +104,15 @@ TEST_F(ObjectStoreTest, TakesTheSameObjectFromSeveralThreads) {
   const std::string sha256 = sha256_hex(large);
   EXPECT_EQ(objects_.get(sha256, large.size()), large);
   EXPECT_TRUE(objects_.strangers({sha256}).empty());
+}
+
+TEST(TemporaryFolder, NamesTheFolderThatIsMissing) {
+  const TemporaryFolder place;
+  const std::string gone = place.path() / "gone";
+  const test::Variable tmpdir("TMPDIR", gone);
+  test::expect_refused<std::system_error>([] { TemporaryFolder(); }, {gone, "TMPDIR"});
+  const TemporaryFolder beside((place.path() / ".x.tmp-").string());  // which does not need it
+  EXPECT_EQ(beside.path().parent_path(), place.path());
 }
 
 TEST(NewFile, LeavesNothingOfWhatCouldNotBeWritten) {

@@ -278,5 +278,19 @@ TEST_F(StoreTest, StartsOverWhereItsCreationWasCutShort) {
   EXPECT_TRUE(store.verify().ok());
 }
 
+TEST_F(StoreTest, WithoutItsObjectsIsOnlyRead) {
+  store_.start_run(id_, {});
+  store_.record_checkpoint(id_, sample_checkpoint(id_));
+  const Head head = store_.head();
+  fs::remove_all(path_ / "objects");
+  for (const bool empty : {false, true}) {
+    for (const Access access : {Access::write, Access::create}) {
+      expect_refused<StoreDamaged>([&] { open(access); }, {"objects", "missing or empty"});
+    }
+    EXPECT_EQ(open(Access::read).head().hash, head.hash);
+    if (!empty) fs::create_directory(path_ / "objects");  // as where nothing is mounted
+  }
+}
+
 }  // namespace
 }  // namespace shearcell

@@ -61,7 +61,7 @@ class VerifyTest : public ::testing::Test {
     return Store(path_, Access::read).verify(against);
   }
 
-  std::map<std::string, std::vector<std::string>> rows() {
+  std::map<std::string, TableRows> rows() {
     return projection_rows(sqlite::Database(log_, Access::write));
   }
 
@@ -109,6 +109,13 @@ TEST_F(VerifyTest, RebuildRepairsTheTables) {
   const Finding finding = only(verify());
   EXPECT_EQ(finding.subject, "table runs");
   EXPECT_NE(finding.message.find("rebuild"), std::string::npos);
+  EXPECT_NE(
+      finding.message.find(run_id(1) + "') should have state = 'failed', but has 'completed'"),
+      std::string::npos)
+      << finding.message;
+  EXPECT_LT(finding.message.size(), 300u);
+  execute("DELETE FROM memberships WHERE run = '" + run_id(1) + "'");
+  EXPECT_TRUE(names(verify(), "table memberships", "') is missing;"));
   execute("DELETE FROM figures; DELETE FROM checkpoints");
   EXPECT_FALSE(verify().ok());
   Store(path_, Access::write).rebuild();
@@ -124,6 +131,21 @@ TEST_F(VerifyTest, ChecksTheRestOfAStoreWithABadEvent) {
     const VerifyReport report = verify();
     EXPECT_FALSE(report.ok());
     EXPECT_EQ(report.checkpoints, 3u) << "the other run's";
+  }
+}
+
+TEST_F(VerifyTest, ReportsTheRestBesideAForgedEndOfARun) {
+  for (const std::string ended : {"[1]", "7", "{\"memberships\":[]}"}) {
+    restore_without_triggers();
+    execute("UPDATE events SET payload = '{\"summary\":{\"ended\":" + ended +
+            "},\"target_cycles\":null}' WHERE type = 'RunCompleted'");
+    const VerifyReport report = verify();
+    EXPECT_TRUE(std::ranges::any_of(report.findings, [](const Finding& finding) {
+      return finding.message.find("match its content") != std::string::npos;
+    })) << ended;
+    EXPECT_EQ(report.checkpoints, 5u);
+    EXPECT_EQ(report.head.seq, events_.size());
+    Store(path_, Access::write).rebuild();
   }
 }
 
