@@ -21,7 +21,9 @@ struct FrameColumn {
 };
 
 /// The grains by id, then the wall grains. Arrays have one entry, or one column, per particle. Wall
-/// grains have measures of zero, and structure, lattice and crystallite -1.
+/// grains have measures of zero, and structure, lattice and crystallite -1. They move with the
+/// shear (x of a wall point at y: (y - y_top) tan(theta)) and with the moving wall. Velocities of
+/// grains and of the moving wall are half a time step before `step`, those of the shear at `step`.
 struct Frame {
   std::uint64_t step = 0;
   double time_s = 0;
