@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <utility>
 
+#include "analysis/error.hpp"
 #include "analysis/packing_fraction.hpp"
 #include "analysis/voronoi.hpp"
 
@@ -209,6 +211,10 @@ const ScalarMeasure* find_measure(std::string_view name) {
 }
 
 Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions) {
+  // A grain would touch its own image. The number of images grows without limit as the depth falls.
+  if (!(cell.depth >= 2)) {
+    throw AnalysisError("the cell is " + std::to_string(cell.depth) + " d deep; 2 d is the least");
+  }
   Analysis analysis;
   Measures& all = analysis.measures;
   GrainMeasures& grains = analysis.grains;
