@@ -111,7 +111,7 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
 
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const SelectedRun& run,
                MeasureSources* sources) {
-  Analysis analysis = analyse(checkpoint);
+  Analysis analysis = analyse_stored(record, checkpoint);
   if (sources != nullptr) add_numbers(checkpoint, record, *sources, analysis);
   analysis.measures.units = mechanical_units(run.run, record);
   add_drive(run.run, record, analysis.measures);

@@ -63,8 +63,7 @@ struct Frame {
   std::size_t particles() const { return type.size(); }
 };
 
-/// Without `sources`, what needs earlier checkpoints is not a number. Throws AnalysisError as
-/// analyse() does.
+/// Without `sources`, what needs earlier checkpoints is not a number. Throws as analyse_stored().
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
                const SelectedRun& run = {}, MeasureSources* sources = nullptr);
 
