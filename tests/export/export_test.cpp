@@ -278,6 +278,30 @@ TEST(Export, WritesTheSameBytesTwice) {
   EXPECT_EQ(bytes[0], bytes[1]);
 }
 
+TEST(Export, FramesOfCloseCheckpointsHaveFilesOfTheirOwn) {
+  const TemporaryFolder folder;
+  Frame frame = frame_of(checkpoints().back(), {}, about());
+  const FrameWriter writers[] = {vtk_writer(folder.path(), 2), lammps_writer(folder.path())};
+  for (const double cycle : {100.00002, 100.00004}) {
+    frame.cycle = cycle;
+    for (const FrameWriter& write : writers) write(frame);
+  }
+  for (const char* name : {"grains_100.00002.vtp", "cell_100.00004.vtp", "frame_100.00004.data"}) {
+    EXPECT_TRUE(fs::exists(folder.path() / name)) << name;
+  }
+}
+
+TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
+  const TemporaryFolder folder;
+  SelectedRun run = about();
+  run.membership.scale.clear();  // a manifest without scales
+  extxyz_writer(folder.path() / "run.xyz",
+                Lengths::diameters)(frame_of(checkpoints().back(), {}, run));
+  const std::string text = read_bytes(folder.path() / "run.xyz");
+  EXPECT_EQ(text.find("scale="), std::string::npos);
+  EXPECT_NE(text.find(" experiment=\"drag\" variant="), std::string::npos);
+}
+
 TEST(Export, SaysWhatItCannotWrite) {
   const Frame frame = frame_of(checkpoints().front());
   EXPECT_THROW(extxyz_writer("/nowhere/run.xyz", Lengths::metres), std::runtime_error);
