@@ -8,6 +8,7 @@
 #include "analysis/motion.hpp"
 #include "analysis/voronoi.hpp"
 #include "experiments/figures/more_measures.hpp"
+#include "experiments/manifest/schema.hpp"
 
 namespace shearcell {
 namespace {
@@ -103,6 +104,9 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
   const nlohmann::json parameters =
       resolved.is_object() ? resolved.value("parameters", nlohmann::json()) : nlohmann::json();
   for (const auto& [key, value] : parameters.items()) {
+    // A key that is no longer part of the identity is recorded as a constant, not as it was.
+    const Field* field = find_field(key);
+    if (field != nullptr && !field->identity.recorded_as.empty()) continue;
     if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);
   }
 }

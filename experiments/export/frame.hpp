@@ -31,7 +31,7 @@ struct Frame {
   double theta = 0;  ///< tilt [rad]
 
   /// What holds for every frame of the run, texts and numbers: id, experiment, scale, variant and
-  /// seed; its parameters by their keys in a manifest.
+  /// seed; its parameters by their keys in a manifest, those that distinguish runs.
   std::vector<std::pair<std::string, nlohmann::json>> run, parameters;
   std::string checkpoint;  ///< SHA-256 of its file
   /// The measures of the frame, by the names that `table` gives them; NaN where one is unknown.

@@ -249,6 +249,9 @@ TEST(Export, WallGrainsMoveWithTheShearOfTheirRun) {
   CheckpointRecord record = record_of(checkpoint);
   record.step = checkpoint.state.step;
   const Frame frame = frame_of(checkpoint, record, run);
+  for (const auto& [key, value] : frame.parameters) {
+    EXPECT_NE(key, "max_overlap_diameters") << "its record is a constant";
+  }
   const double rate = 2 * std::numbers::pi / parameters.period_s * parameters.amplitude_rad;
   const double d = checkpoint.units.diameter_m;
   const double top = wall_pose(checkpoint.cell, 0, checkpoint.state.wall_height).top * d;
