@@ -225,7 +225,7 @@ TEST_F(CommandLineTable, ExportsSelectedRunsWholeOrNotAtAll) {
     EXPECT_TRUE(contains(text, "length_unit=d ") && contains(text, " amplitude_rad=0.0833 "));
   }
   const std::string id = done[0].at("run");
-  expect(0, {"export", id, "--to", "vtk", "--out", "frames/"});
+  expect(0, {"export", id, id, "--to", "vtk", "--out", "frames/"});  // one run
   EXPECT_TRUE(fs::exists(path("frames/run.json")) && fs::exists(path("frames/frames.pvd")));
   expect(2, {"export", id, "--seed", "1", "--to", "vtk", "--out", "other"});
   expect(2, {"export", id, "--to", "extxyz", "--out", "frames"}, {"exists already"});
