@@ -54,7 +54,7 @@ struct Load {
   std::string colour;
 };
 
-/// The default first. Records of runs leave the key out at `moving_wall`.
+/// The default first.
 const std::array<Load, 2>& loads() {
   static const std::array<Load, 2> both = {
       {{"top", "", "", "#000000"},
@@ -65,8 +65,7 @@ const std::array<Load, 2>& loads() {
 std::vector<const FigureRun*> runs_under(const Load& load, std::span<const FigureRun> runs) {
   std::vector<const FigureRun*> found;
   for (const FigureRun& run : runs) {
-    const nlohmann::json at = parameter_of(run, "pressure_at");
-    if ((at.is_null() ? "moving_wall" : at) == load.moves) found.push_back(&run);
+    if (parameter_of(run, "pressure_at") == load.moves) found.push_back(&run);
   }
   return found;
 }

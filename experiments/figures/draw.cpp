@@ -14,6 +14,7 @@
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/manifest.hpp"
+#include "experiments/manifest/schema.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
@@ -38,18 +39,36 @@ std::vector<std::optional<Measures>> measures_of_all(const Store& store, const F
   return std::move(found.measures);
 }
 
+/// The parameters of the run's record, and those that it leaves out at the value of all older runs.
+nlohmann::json parameters_of(const RunRecord& run) {
+  nlohmann::json values = run.resolved.value("parameters", nlohmann::json::object());
+  const std::optional<Stage> stage = value_of<Stage>(run.kind);
+  if (!values.is_object() || !stage) return values;
+  const nlohmann::json protocol = values.value("protocol", nlohmann::json());
+  const auto known =
+      protocol.is_string() ? value_of<ProtocolKind>(protocol.get<std::string>()) : std::nullopt;
+  for (const Field& field : schema()) {
+    const std::string_view omitted = field.identity.omitted_at;
+    if (omitted.empty() || values.contains(field.name)) continue;
+    if (!enters(field.identity, *stage, known, nullptr)) continue;
+    values[std::string(field.name)] = std::get<nlohmann::json>(read_value(field, omitted, false));
+  }
+  return values;
+}
+
 std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
                                    std::vector<std::optional<Measures>> measured) {
   std::vector<FigureRun> runs;
   std::size_t next = 0;
   for (const CollectedRun& input : inputs) {
     FigureRun run{input.run.id,
+                  input.run.parent,
                   input.membership.experiment,
                   input.membership.variant,
                   input.name,
                   input.named,
                   input.membership.labels,
-                  input.run.resolved.value("parameters", nlohmann::json::object()),
+                  parameters_of(input.run),
                   input.membership.seed,
                   {}};
     for (const CheckpointRecord& record : input.checkpoints) {

@@ -160,7 +160,7 @@ TEST(FigureB5, PausesCompactFaster) {
     std::vector<FigureRun> runs = two_groups("protocol", "continuous", "paused", 6, speed, 0);
     for (FigureRun& run : runs) {
       run.seed %= 20;
-      run.checkpoints[0].measures.phi = 0.63;
+      run.parent = std::to_string(run.seed);
       for (CheckpointMeasures& c : run.checkpoints) c.measures.phi_at_rest = c.measures.phi;
       run.parameters["protocol"] = run.labels["protocol"];
     }
@@ -203,7 +203,7 @@ TEST(FigureChoices, OneThatShowsIsFound) {
       FigureRun run = crystallizing("choice", runs.size() / 6, seed + 10 * runs.size(), speed, 0);
       run.labels = {{"wall_mass_grains_per_d2", mass}, {"wall_drag_grains_per_d2_s", drag}};
       run.parameters = run.labels;
-      if (draw != 0) run.parameters["wall_grain_draw"] = draw;
+      run.parameters["wall_grain_draw"] = draw;
       runs.push_back(std::move(run));
     }
   };
@@ -296,7 +296,7 @@ TEST(FigureS1, PhiStaysWherePhiUFalls) {
 TEST(FigureS1, LoadsAreNotPooled) {
   std::vector<FigureRun> runs = stiffened(3, 0.012, 0.0015);
   for (FigureRun run : stiffened(3, 0.035, 0.0025)) {
-    run.parameters.erase("pressure_at");  // as records leave it out at moving_wall
+    run.parameters["pressure_at"] = "moving_wall";
     runs.push_back(run);
   }
   EXPECT_EQ(rulings("S1", runs), (Rulings{agrees, agrees, differs, differs}));

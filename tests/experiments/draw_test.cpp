@@ -131,6 +131,20 @@ TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {
   EXPECT_THROW(wanted_figures(store_, {"overlaps"}), NotFound);
 }
 
+// Records leave these keys out at the values of older runs.
+TEST_F(DrawFigure, AClaimMayNameWhatTheRecordLeavesOut) {
+  compute(store_,
+          tiny_manifest("",
+                        "sweep: {grid: {pressure_at: [top, moving_wall]}}\n"
+                        "claims: [{name: same, compare: phi, at_cycle: 1, margin: 1,"
+                        " between: [{pressure_at: top, wall_grain_draw: 0},"
+                        " {pressure_at: moving_wall, engine: shearcell}]}]\n"),
+          {.cycles = 1});
+  draw("own", "same");
+  const auto verdict = nlohmann::json::parse(contents("own").at("same.verdict.json"));
+  EXPECT_EQ(verdict.at("claims").at(0).at("note").get<std::string>().find("1 and 1 indep"), 0U);
+}
+
 // Two variants share a curve, which the label of neither names.
 TEST_F(DrawFigure, ACurveByAKeyHasTheLabelOfThatKeyAndAveragesOverNoOther) {
   compute(store_,
