@@ -180,11 +180,7 @@ Estimate mapped(Estimate estimate, const std::function<double(double)>& increasi
 }
 
 bool share_packing(const FigureRun& a, const FigureRun& b) {
-  if (a.seed != b.seed || a.checkpoints.empty() || b.checkpoints.empty()) return false;
-  const CheckpointMeasures& x = a.checkpoints.front();
-  const CheckpointMeasures& y = b.checkpoints.front();
-  return x.cycle == 0 && y.cycle == 0 && x.measures.phi == y.measures.phi &&
-         x.measures.mean_overlap == y.measures.mean_overlap;
+  return !a.parent.empty() && a.parent == b.parent;
 }
 
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {
