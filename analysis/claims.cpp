@@ -18,10 +18,6 @@ namespace {
 constexpr const char* no_group =
     "there are no such runs, or they differ in another swept parameter too";
 
-RunValue measured(double value) {
-  return {value, std::isfinite(value) ? Missing::nothing : Missing::undefined};
-}
-
 /// The numbers of a group and the runs without one.
 struct Values {
   std::map<const FigureRun*, double> found;
@@ -102,6 +98,10 @@ std::string wait_in_words(std::span<const Waiting> runs) {
 }
 
 }  // namespace
+
+RunValue measured(double value) {
+  return {value, std::isfinite(value) ? Missing::nothing : Missing::undefined};
+}
 
 Scalar at_cycle(const std::string& name, Quantity quantity, std::int64_t cycle) {
   Scalar scalar = over_cycles(name, std::move(quantity), cycle, cycle);

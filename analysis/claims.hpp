@@ -26,6 +26,9 @@ struct RunValue {
   Missing missing = Missing::nothing;
 };
 
+/// The value, which is missing if it is not finite.
+RunValue measured(double value);
+
 /// One number per run.
 struct Scalar {
   std::string name;   ///< "phi at cycle 10"

@@ -271,6 +271,7 @@ std::vector<FigureRun> stiffened(std::size_t systems, double fall, double drift)
       m.phi_uncorrected = 0.655 - fall * (n - 1) / 8;
       m.mean_overlap = 0.002 * std::pow(10, -0.25 * (n - 1));
     });
+    run.parameters["stiffness_N_per_m"] = 654.0;
     for (CheckpointMeasures& c : run.checkpoints) {
       c.stiffness_N_per_m = 654 * std::pow(10, 0.25 * std::max(0.0, c.cycle - 1));
     }
@@ -291,6 +292,24 @@ TEST(FigureS1, PhiStaysWherePhiUFalls) {
   EXPECT_EQ(std::get<double>(table.rows.front().at(6)), 0.635) << "the minimum at k0";
   EXPECT_EQ(std::get<std::int64_t>(table.rows.front().at(8)), 3);
   EXPECT_EQ(std::get<double>(table.rows.back().at(1)), 2.0);
+}
+
+TEST(FigureS1, ClaimsAreAboutTheHundredfoldAlone) {
+  std::vector<FigureRun> runs = stiffened(3, 0.012, 0.0015);
+  for (FigureRun& run : runs) {
+    CheckpointMeasures harder = run.checkpoints.back();
+    harder.cycle += 1;
+    harder.stiffness_N_per_m *= 10;
+    harder.measures.phi = harder.measures.phi_uncorrected = 0.5;
+    run.checkpoints.push_back(harder);
+  }
+  EXPECT_EQ(rulings("S1", runs), (Rulings{agrees, agrees})) << "harder ones do not enter";
+  for (FigureRun& run : runs) run.checkpoints[9].measures.phi = std::nan("");
+  EXPECT_EQ(rulings("S1", runs), (Rulings{agrees, undecided})) << "no interior grains";
+  for (FigureRun& run : runs)
+    run.checkpoints.erase(run.checkpoints.begin(), run.checkpoints.begin() + 2);
+  EXPECT_EQ(rulings("S1", runs), (Rulings{undecided, undecided})) << "k0 is lost";
+  EXPECT_EQ(std::get<double>(find_figure("S1")->make(runs).tables.at(0).rows.front().at(1)), 0.25);
 }
 
 TEST(FigureS1, LoadsAreNotPooled) {
