@@ -77,6 +77,8 @@ TEST(Verdict, JsonHasSixDigitsAndNull) {
   const auto none = to_json(std::vector{decide({"c", 2}, "q", std::nullopt, 0, "")});
   EXPECT_TRUE(none["claims"][0]["estimate"].is_null() && none["claims"][0]["interval"].is_null());
   EXPECT_TRUE(to_json(std::span<const Verdict>())["verdict"].is_null());
+  const auto tiny = to_json(std::vector{decide({"c", 1e-310}, "q", std::nullopt, 0, "")});
+  EXPECT_EQ(tiny["claims"][0]["margin"], 1e-310);
 }
 
 double noise(std::uint64_t seed, int n) {
