@@ -136,6 +136,12 @@ void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>
     for (const auto& [key, value] : run.labels.items()) {
       if (known->second.value(key, nlohmann::json()) == value) continue;
       const bool of_manifest = find_figure(wanted.figure.name) == nullptr;
+      if (find_field(key) == nullptr) {  // `manifest`, not swept
+        throw UsageError(fmt::format(
+            "figure {} would average over several versions of the manifest of experiment {}; leave "
+            "out --all-versions",
+            wanted.figure.name, wanted.experiment));
+      }
       throw UsageError(fmt::format(
           "figure {} would average over the values of {} that experiment {} sweeps; {}",
           wanted.figure.name, key, wanted.experiment,
@@ -173,6 +179,14 @@ std::string caption(const FigureSummary& summary, const std::map<std::string, st
   return fmt::format("{} Runs: {}. Experiment {}, scale {}.",
                      caption_of(fmt::format("Figure {}. {}", summary.name, summary.title), tables),
                      fmt::join(counts, ", "), summary.experiment, scale_name(summary.scale));
+}
+
+std::string verdict_text(const FigureSummary& summary, std::span<const Verdict> verdicts) {
+  nlohmann::json verdict = to_json(verdicts);
+  verdict["figure"] = summary.name;
+  if (!summary.experiment.empty()) verdict["experiment"] = summary.experiment;
+  verdict["scale"] = summary.scale;
+  return verdict.dump(1) + "\n";
 }
 
 }  // namespace
@@ -222,6 +236,10 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
            beginning.find("\n \"figure\": \"" + result.name + "\"") != beginning.npos;
   });
   const auto write = [&](const char* ending, const std::string& text) {
+    if (text.empty()) {  // nor may that of an older figure stay
+      std::filesystem::remove(base + ending);
+      return;
+    }
     result.files.emplace_back(base + ending);
     write_output(result.files.back(), text);
   };
@@ -235,16 +253,9 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
       result.plot_error = error.what();
     }
   }
-  if (!made.tables.empty() && !made.tables.front().chart.series.empty()) {
-    write(".caption.txt", caption(result, computed.runs_by_variant, made.tables) + "\n");
-  }
-  if (!made.verdicts.empty()) {
-    nlohmann::json verdict = to_json(made.verdicts);
-    verdict["figure"] = result.name;
-    if (!result.experiment.empty()) verdict["experiment"] = result.experiment;
-    verdict["scale"] = result.scale;
-    write(".verdict.json", verdict.dump(1) + "\n");
-  }
+  const bool drawn = !made.tables.empty() && !made.tables.front().chart.series.empty();
+  write(".caption.txt", drawn ? caption(result, computed.runs_by_variant, made.tables) + "\n" : "");
+  write(".verdict.json", made.verdicts.empty() ? "" : verdict_text(result, made.verdicts));
 
   nlohmann::json& facts = computed.lineage;
   for (const auto& file : result.files) {

@@ -174,6 +174,23 @@ TEST_F(DrawFigure, ACurveByAKeyHasTheLabelOfThatKeyAndAveragesOverNoOther) {
   EXPECT_TRUE(has(files.at("each.csv"), "\nfluid=still,0.05,"));
 }
 
+TEST_F(DrawFigure, AGroupedFigureAveragesOverNoVersions) {
+  const std::string sweep = "sweep: {grid: {amplitude_rad: [0.05, 0.08]}}\n";
+  for (const char* base : {"  pressure_Pa: 700\n", ""}) {
+    compute(store_, tiny_manifest(base, sweep), {.cycles = 1});
+  }
+  const WantedFigure onset{*find_figure("S5a"), "tiny"};
+  EXPECT_NO_THROW(draw("newest", onset));
+  FigureOptions every;
+  every.runs.all_versions = true;
+  try {
+    draw("every", onset, every);
+    ADD_FAILURE() << "versions were averaged";
+  } catch (const UsageError& error) {
+    EXPECT_TRUE(has(error.what(), "leave out --all-versions")) << error.what();
+  }
+}
+
 TEST_F(DrawFigure, TheNoteOnMissingCheckpointsSaysWhichRunsCannotMakeThem) {
   compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 2}\n"));
   compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 1}\n"));
@@ -267,6 +284,18 @@ TEST_F(DrawFigure, VerdictsAndLineageAreWrittenAndRecorded) {
   for (const char* name : {"S2a.csv", "S2b.csv", "S2.verdict.json"}) {
     EXPECT_EQ(lineage.at("outputs").at(name), sha256_hex(files.at(name))) << name;
   }
+}
+
+TEST_F(DrawFigure, LeavesNoVerdictOrCaptionOfAnOlderFigure) {
+  compute(store_, tiny_manifest("", kBothFluids), {.cycles = 1});
+  draw("out");
+  ASSERT_TRUE(contents("out").contains("S2.verdict.json"));
+  ASSERT_TRUE(contents("out").contains("S2.caption.txt"));
+  WantedFigure bare = kS2;
+  bare.figure.make = [](std::span<const FigureRun>) { return FigureResult(); };
+  draw("out", bare);
+  EXPECT_FALSE(contents("out").contains("S2.verdict.json"));
+  EXPECT_FALSE(contents("out").contains("S2.caption.txt"));
 }
 
 TEST_F(DrawFigure, LeavesOutADamagedCheckpointAndNamesIt) {
