@@ -172,6 +172,14 @@ void lay_out(std::vector<FigureTable>& tables, bool wide) {
   }
 }
 
+/// Points that are not of the table are those of others.
+bool has_no_value(const FigureTable& table) {
+  if (table.chart.series.empty()) return table.rows.empty();
+  return std::ranges::all_of(table.chart.series, [&](const Series& series) {
+    return series.columns.x.empty() || points_of(table, series).empty();
+  });
+}
+
 std::string caption(const FigureSummary& summary, const std::map<std::string, std::size_t>& runs,
                     const std::vector<FigureTable>& tables) {
   std::vector<std::string> counts;
@@ -212,6 +220,9 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   }
   computed.result = figure.make(runs);
   summary.verdicts = computed.result.verdicts;
+  for (const FigureTable& table : computed.result.tables) {
+    if (has_no_value(table)) summary.empty.push_back(table.name);
+  }
   computed.lineage = lineage_of(store, summary, collected.runs, runs);
   return computed;
 }

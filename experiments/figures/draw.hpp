@@ -30,6 +30,7 @@ struct FigureSummary : MeasureOutcome {
   std::vector<std::filesystem::path> files;  ///< CSV, SVG, PDF of each panel, verdict, lineage
   std::vector<Verdict> verdicts;             ///< on the supplement's claims
   std::vector<std::string> notes;            ///< as CollectedRuns::notes
+  std::vector<std::string> empty;            ///< tables without a value to draw
   std::string plot_error;                    ///< why there is no SVG; "" if there is
 };
 

@@ -138,6 +138,8 @@ TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
   EXPECT_FALSE(rows[0].contains("manifest"));
   const Outcome said = expect(0, {"table", "--per", "run"});
   EXPECT_TRUE(contains(said.err, "left out: 2 runs of another version")) << said.err;
+  const Outcome report = expect(0, {"report", "--out", "report.html"}, {"tiny: left out: 2 runs"});
+  EXPECT_FALSE(contains(report.err, "left out: experiment")) << report.err;
   const nlohmann::json all = table({"--per", "run", "--all-versions"});
   ASSERT_EQ(all.size(), 3U);
   EXPECT_NE(all[0].at("manifest"), all[2].at("manifest"));

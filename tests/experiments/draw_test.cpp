@@ -298,6 +298,22 @@ TEST_F(DrawFigure, LeavesNoVerdictOrCaptionOfAnOlderFigure) {
   EXPECT_FALSE(contents("out").contains("S2.caption.txt"));
 }
 
+TEST_F(DrawFigure, NamesTablesWithoutAValue) {
+  compute(store_, tiny_manifest(), {.cycles = 1});
+  WantedFigure made_up = kS2;
+  made_up.figure.make = [](std::span<const FigureRun>) {
+    FigureTable none{.name = "none", .columns = {"x", "y"}};
+    none.chart.series = {{.columns = {.x = "x", .y = "y"}}, {.points = {{.x = 1, .y = 1}}}};
+    FigureTable unknown = none, known = none;
+    unknown.name = "unknown", known.name = "known";
+    unknown.rows = {{1.0, std::nan("")}};
+    known.rows = {{1.0, 2.0}};
+    return FigureResult{{none, unknown, known}, {}};
+  };
+  EXPECT_EQ(compute_figure(store_, made_up, {}).summary.empty,
+            (std::vector<std::string>{"none", "unknown"}));
+}
+
 TEST_F(DrawFigure, LeavesOutADamagedCheckpointAndNamesIt) {
   compute(store_, tiny_manifest("", kBothFluids));
   const RunRecord run = runs_of_kind(store_, "shear").back();
