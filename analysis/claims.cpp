@@ -18,10 +18,6 @@ namespace {
 constexpr const char* no_group =
     "there are no such runs, or they differ in another swept parameter too";
 
-RunValue measured(double value) {
-  return {value, std::isfinite(value) ? Missing::nothing : Missing::undefined};
-}
-
 /// The numbers of a group and the runs without one.
 struct Values {
   std::map<const FigureRun*, double> found;
@@ -103,6 +99,10 @@ std::string wait_in_words(std::span<const Waiting> runs) {
 
 }  // namespace
 
+RunValue measured(double value) {
+  return {value, std::isfinite(value) ? Missing::nothing : Missing::undefined};
+}
+
 Scalar at_cycle(const std::string& name, Quantity quantity, std::int64_t cycle) {
   Scalar scalar = over_cycles(name, std::move(quantity), cycle, cycle);
   scalar.name = fmt::format("{} at cycle {}", name, cycle);
@@ -180,11 +180,7 @@ Estimate mapped(Estimate estimate, const std::function<double(double)>& increasi
 }
 
 bool share_packing(const FigureRun& a, const FigureRun& b) {
-  if (a.seed != b.seed || a.checkpoints.empty() || b.checkpoints.empty()) return false;
-  const CheckpointMeasures& x = a.checkpoints.front();
-  const CheckpointMeasures& y = b.checkpoints.front();
-  return x.cycle == 0 && y.cycle == 0 && x.measures.phi == y.measures.phi &&
-         x.measures.mean_overlap == y.measures.mean_overlap;
+  return !a.parent.empty() && a.parent == b.parent;
 }
 
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {

@@ -26,6 +26,9 @@ struct RunValue {
   Missing missing = Missing::nothing;
 };
 
+/// The value, which is missing if it is not finite.
+RunValue measured(double value);
+
 /// One number per run.
 struct Scalar {
   std::string name;   ///< "phi at cycle 10"
@@ -53,7 +56,7 @@ Scalar onset_phi(OnsetMethod method);
 /// The estimate of an increasing function of the quantity. The spread stays that of the quantity.
 Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing);
 
-/// Runs share a packing if they have the same seed and the same measures at cycle 0.
+/// Whether one stage prepared the packing that both runs begin with.
 bool share_packing(const FigureRun& a, const FigureRun& b);
 
 using RunGroup = std::span<const FigureRun* const>;

@@ -30,12 +30,13 @@ struct CheckpointMeasures {
 /// One run as a figure sees it.
 struct FigureRun {
   std::string run_id;
+  std::string parent;  ///< id of the stage that prepared its packing
   std::string experiment;
   std::string variant;        ///< its curve, as the manifest expands it: "fluid=cell"
   std::string name;           ///< of the variant, for people; "" for `variant`
   bool named = false;         ///< by a label of the manifest
   nlohmann::json labels;      ///< the swept parameters of the run
-  nlohmann::json parameters;  ///< all parameters, by their keys in a manifest
+  nlohmann::json parameters;  ///< all that its stages feel, by their keys in a manifest
   std::uint64_t seed = 0;
   std::vector<CheckpointMeasures> checkpoints;  ///< by cycle
 };

@@ -163,7 +163,8 @@ GrowthBySize growth_of(const FigureRun& run, std::int64_t cycles) {
   return counts;
 }
 
-std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs) {
+std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
+                                     std::size_t least_counted) {
   GrowthBySize all;
   for (const GrowthBySize& run : runs) {
     for (const auto& [size, count] : run) {
@@ -172,20 +173,27 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs) {
     }
   }
   std::vector<GrowthRate> rates;
+  GrowthCount bin;
+  double log_sizes = 0;
   for (const auto& [size, count] : all) {
+    log_sizes += static_cast<double>(count.grew + count.shrank) * std::log(size);
+    bin.grew += count.grew;
+    bin.shrank += count.shrank;
     GrowthRate rate;
-    rate.size = size;
-    rate.counted = count.grew + count.shrank;
-    if (rate.counted == 0) continue;
+    rate.counted = bin.grew + bin.shrank;
+    if (rate.counted < least_counted) continue;
     const auto n = static_cast<double>(rate.counted);
-    rate.grow = static_cast<double>(count.grew) / n;
-    rate.shrink = static_cast<double>(count.shrank) / n;
-    const double grew = static_cast<double>(count.grew) + 1;
-    const double shrank = static_cast<double>(count.shrank) + 1;
+    rate.size = std::exp(log_sizes / n);
+    rate.grow = static_cast<double>(bin.grew) / n;
+    rate.shrink = static_cast<double>(bin.shrank) / n;
+    const double grew = static_cast<double>(bin.grew) + 1;
+    const double shrank = static_cast<double>(bin.shrank) + 1;
     rate.grow_error = std::sqrt(grew * shrank / (n + 3)) / (n + 2);
     rate.delta = rate.grow - rate.shrink;
     rate.delta_error = 2 * rate.grow_error;
     rates.push_back(rate);
+    bin = {};
+    log_sizes = 0;
   }
   return rates;
 }
@@ -226,30 +234,6 @@ std::optional<Estimate> fitted_delta_rho(std::span<const GrowthBySize> runs, dou
   return over_fits(cases_of(runs, Vanished::shrank), [size](const GrowthFit& fit) {
     return std::optional<double>(fit.delta_rho(size));
   });
-}
-
-std::vector<GrowthBin> binned_growth(std::span<const GrowthBySize> runs,
-                                     std::size_t least_counted) {
-  std::vector<GrowthBin> bins;
-  GrowthBin bin;
-  double grew = 0, log_sizes = 0;
-  for (const GrowthRate& rate : growth_rates(runs)) {
-    const auto n = static_cast<double>(rate.counted);
-    if (bin.counted == 0) bin.low = rate.size;
-    bin.high = rate.size;
-    bin.counted += rate.counted;
-    grew += n * rate.grow;
-    log_sizes += n * std::log(rate.size);
-    if (bin.counted < least_counted) continue;
-    const auto all = static_cast<double>(bin.counted);
-    bin.size = std::exp(log_sizes / all);
-    bin.delta = 2 * grew / all - 1;
-    bin.delta_error = 2 * std::sqrt((grew + 1) * (all - grew + 1) / (all + 3)) / (all + 2);
-    bins.push_back(bin);
-    bin = {};
-    grew = log_sizes = 0;
-  }
-  return bins;
 }
 
 }  // namespace shearcell

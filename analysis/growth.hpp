@@ -33,7 +33,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
 GrowthBySize growth_of(const FigureRun& run, std::int64_t cycles);
 
 struct GrowthRate {
-  std::int32_t size = 0;
+  double size = 0;          ///< geometric mean over crystallites; of one size, that up to rounding
   std::size_t counted = 0;  ///< grew + shrank; the others do not enter the probabilities
   double grow = 0;          ///< rho_g = grew / counted
   double shrink = 0;        ///< rho_s = shrank / counted
@@ -45,8 +45,10 @@ struct GrowthRate {
   double delta_error = 0;  ///< twice grow_error, since rho_g + rho_s = 1
 };
 
-/// Over all runs, by size; sizes of which none was counted are left out.
-std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs);
+/// Over all runs, from the smallest size on: each takes sizes until it has at least `least_counted`
+/// crystallites, by default one size; a rest with fewer is left out.
+std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
+                                     std::size_t least_counted = 1);
 
 /// Larger crystallites are left out of the fit: their growth ends when the cell is one crystal.
 /// [choice]
@@ -83,19 +85,5 @@ std::optional<Estimate> monotone_critical_size(std::span<const GrowthBySize> run
 
 /// The fitted delta_rho at `size` and its interval.
 std::optional<Estimate> fitted_delta_rho(std::span<const GrowthBySize> runs, double size);
-
-/// Sizes low .. high together, for a drawing: mean delta_rho over those that grew or shrank.
-struct GrowthBin {
-  std::int32_t low = 0;
-  std::int32_t high = 0;
-  double size = 0;  ///< geometric mean over crystallites
-  double delta = 0;
-  double delta_error = 0;  ///< as GrowthRate::delta_error
-  std::size_t counted = 0;
-};
-
-/// From the smallest size on, each bin takes sizes until it has at least `least_counted`
-/// crystallites; a rest with fewer is left out.
-std::vector<GrowthBin> binned_growth(std::span<const GrowthBySize> runs, std::size_t least_counted);
 
 }  // namespace shearcell

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <utility>
 
+#include "analysis/error.hpp"
 #include "analysis/packing_fraction.hpp"
 #include "analysis/voronoi.hpp"
 
@@ -60,7 +62,9 @@ std::span<const ScalarMeasure> kept_scalar_measures() {
        MechanicalMember{"stress_yy_k_per_d", &F::stress_yy, &U::stress_Pa}},
       {"stress_zz_Pa", "Pa", "normal stress of interior grains, positive in compression",
        MechanicalMember{"stress_zz_k_per_d", &F::stress_zz, &U::stress_Pa}},
-      {"stress_xy_Pa", "Pa", "shear stress of interior grains",
+      {"stress_xy_Pa", "Pa",
+       "shear stress of interior grains, with the sign of the others: a growing shear_strain makes "
+       "it negative",
        MechanicalMember{"stress_xy_k_per_d", &F::stress_xy, &U::stress_Pa}},
       {"stress_xz_Pa", "Pa", "shear stress of interior grains",
        MechanicalMember{"stress_xz_k_per_d", &F::stress_xz, &U::stress_Pa}},
@@ -98,7 +102,7 @@ std::span<const ScalarMeasure> kept_scalar_measures() {
        "elastic energy of all contacts over the number of grains",
        MechanicalMember{"elastic_energy_per_grain_k_d2", &F::elastic_energy, &U::elastic_J}},
       {"kinetic_energy_per_grain_J", "J",
-       "kinetic energy over the number of grains, half a time step later",
+       "kinetic energy over the number of grains, half a time step earlier",
        MechanicalMember{"kinetic_energy_per_grain_m_d2_per_s2", &F::kinetic_energy, &U::kinetic_J}},
       {"gravitational_energy_per_grain_J", "J", "weight times mean height above the bottom wall",
        MechanicalMember{"height_d", &F::height, &U::weight_J}},
@@ -209,6 +213,10 @@ const ScalarMeasure* find_measure(std::string_view name) {
 }
 
 Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions) {
+  // A grain would touch its own image. The number of images grows without limit as the depth falls.
+  if (!(cell.depth >= 2)) {
+    throw AnalysisError("the cell is " + std::to_string(cell.depth) + " d deep; 2 d is the least");
+  }
   Analysis analysis;
   Measures& all = analysis.measures;
   GrainMeasures& grains = analysis.grains;

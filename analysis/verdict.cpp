@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 namespace shearcell {
@@ -13,7 +14,7 @@ using nlohmann::json;
 
 json rounded(double value) {
   if (!std::isfinite(value)) return nullptr;
-  return std::stod(fmt::format("{:.6g}", value));
+  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);  // subnormal ones too
 }
 
 Ruling ruling_of(const Interval& interval, double margin, Claimed claimed) {

@@ -52,4 +52,21 @@ Eigen::Matrix3Xd wall_grain_positions(const Cell& cell, const WallPose& pose) {
   return positions;
 }
 
+Eigen::Matrix3Xd wall_grain_velocities(const Cell& cell, const WallPose& pose, double shear_rate,
+                                       double wall_velocity) {
+  const double bottom = cell.moving == MovingWall::bottom ? wall_velocity : 0;
+  const double top = cell.moving == MovingWall::top ? wall_velocity : 0;
+  Eigen::Matrix3Xd velocities(3, static_cast<Eigen::Index>(cell.wall_grains.size()));
+  Eigen::Index column = 0;
+  for (const auto& [side, p] : cell.wall_grains) {
+    const double y = side == WallSide::bottom ? pose.bottom : p.y();
+    const double rise = side == WallSide::bottom ? bottom : 0;
+    // Adding 0 makes -0 a 0.
+    const double along = (y - pose.top) * shear_rate + (rise - top) * pose.tan_theta + 0.0;
+    velocities.col(column++) =
+        side == WallSide::top ? Eigen::Vector3d(0, top, 0) : Eigen::Vector3d(along, rise, 0);
+  }
+  return velocities;
+}
+
 }  // namespace shearcell

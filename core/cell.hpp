@@ -75,4 +75,9 @@ Eigen::Vector3d wall_grain_position(const Cell& cell, const WallPose& pose, cons
 /// Centres of all wall grains in a pose, 3 x n [d], in their permanent order.
 Eigen::Matrix3Xd wall_grain_positions(const Cell& cell, const WallPose& pose);
 
+/// Their velocities [d/s], the time derivative of these positions, while tan(theta) changes at
+/// `shear_rate` [1/s] and the moving wall moves at `wall_velocity` [d/s].
+Eigen::Matrix3Xd wall_grain_velocities(const Cell& cell, const WallPose& pose, double shear_rate,
+                                       double wall_velocity);
+
 }  // namespace shearcell

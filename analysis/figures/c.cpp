@@ -106,7 +106,7 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
                             .points = fitted_points(one)});
     Series& data = chart.series.emplace_back(
         Series{.title = title_of(one.amplitude), .colour = colour, .point = filled_symbol(k)});
-    for (const GrowthBin& bin : binned_growth(one.runs, least_counted)) {
+    for (const GrowthRate& bin : growth_rates(one.runs, least_counted)) {
       data.points.push_back({bin.size, bin.delta, std::nullopt, bin.delta_error});
     }
     chart.lines.push_back({.at = one.published->critical_size,

@@ -114,14 +114,13 @@ std::string times(const char* what, double ratio) {
                    : fmt::format("{} /{:.3g}", what, 1 / ratio);
 }
 
-/// In what the run departs from the default. The default draw of wall grains is not recorded.
+/// In what the run departs from the default.
 nlohmann::json choice_of(const FigureRun& run) {
-  const double draw = number_of(run, "wall_grain_draw");
   std::string text;
   for (const std::string& part :
        {times("wall mass", number_of(run, "wall_mass_grains_per_d2") / default_wall_mass),
         times("wall drag", number_of(run, "wall_drag_grains_per_d2_s") / default_wall_drag),
-        std::string(std::isfinite(draw) && draw != 0 ? "other wall grains" : "")}) {
+        std::string(number_of(run, "wall_grain_draw") != 0 ? "other wall grains" : "")}) {
     if (!part.empty()) text += (text.empty() ? "" : ", ") + part;
   }
   return text.empty() ? unchanged : text;
@@ -185,12 +184,10 @@ FigureResult figure_s3(Runs runs) {
                std::move(verdicts));
 }
 
-/// The wall that moves, and where the pressure acts if it lifts the grains with it. Records of runs
-/// leave `pressure_at` out at `moving_wall`.
+/// The wall that moves, and where the pressure acts if it lifts the grains with it.
 nlohmann::json load_of(const FigureRun& run) {
   nlohmann::json moves = parameter_of(run, "moving_wall");
-  const nlohmann::json at = parameter_of(run, "pressure_at");
-  if (moves == "bottom" && (at.is_null() || at == "moving_wall")) moves = lifting;
+  if (moves == "bottom" && parameter_of(run, "pressure_at") == "moving_wall") moves = lifting;
   return moves;
 }
 

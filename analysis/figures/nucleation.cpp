@@ -119,18 +119,20 @@ FigureTable rate_table(const Groups& groups) {
 }
 
 /// The exponent of a rate that is proportional to the area of the walls, N^(2/3), against N_inves,
-/// of which small cells have a smaller share: from the smallest cells to the largest.
+/// of which small cells have a smaller share: from the smallest cells to the largest. Not a number
+/// where those have no interior grains.
 double exponent_of_walls(std::span<const FigureRun> runs) {
   const auto sizes = runs_by(runs, "grains");
   const auto& [smallest, in_smallest] = *sizes.begin();
   const auto& [largest, in_largest] = *sizes.rbegin();
-  return 2.0 / 3 * std::log(largest / smallest) /
-         std::log(interior_grains(in_largest) / interior_grains(in_smallest));
+  const double few = interior_grains(in_smallest), many = interior_grains(in_largest);
+  if (!(few > 0 && many > few)) return std::nan("");
+  return 2.0 / 3 * std::log(largest / smallest) / std::log(many / few);
 }
 
-/// The margin is half of what separates the volume from the walls.
-Verdict rate_follows_volume(std::span<const FigureRun> runs) {
-  const double walls = exponent_of_walls(runs);
+/// `walls` is the exponent for the area of the walls. The margin is half of what separates the
+/// volume from the walls.
+Verdict rate_follows_volume(std::span<const FigureRun> runs, double walls) {
   const std::vector<const FigureRun*> all = pointers(runs);
   std::optional<Estimate> excess = size_exponent(all);
   if (excess) excess = mapped(*excess, [](double exponent) { return exponent - 1; });
@@ -148,7 +150,9 @@ Verdict rate_follows_volume(std::span<const FigureRun> runs) {
 FigureResult figure_nucleation(std::span<const FigureRun> runs) {
   const Groups groups = grouped(runs);
   FigureResult result{{survival_table(groups), rate_table(groups)}, {}};
-  if (runs_by(runs, "grains").size() > 1) result.verdicts.push_back(rate_follows_volume(runs));
+  if (runs_by(runs, "grains").size() < 2) return result;
+  const double walls = exponent_of_walls(runs);
+  if (std::isfinite(walls)) result.verdicts.push_back(rate_follows_volume(runs, walls));
   return result;
 }
 

@@ -21,19 +21,16 @@ struct Stiffness {
   std::vector<double> overlap;
 };
 
-/// By log10(k/k0) in hundredths, so that rounding does not part equal steps; k0 is the smallest
-/// stiffness of the run. Of two checkpoints at one stiffness the later counts: the packing as it
-/// settled, then the minimum.
+/// By log10(k/k0) in hundredths, so that rounding does not part equal steps; k0 is the stiffness at
+/// which the packing settled. Of two checkpoints at one stiffness the later counts: the packing as
+/// it settled, then the minimum.
 std::map<int, Stiffness> by_stiffness(RunGroup runs) {
   std::map<int, Stiffness> found;
   for (const FigureRun* run : runs) {
-    double least = std::nan("");
-    for (const CheckpointMeasures& checkpoint : run->checkpoints) {
-      least = std::fmin(least, checkpoint.stiffness_N_per_m);
-    }
+    const double settled = number_of(*run, "stiffness_N_per_m");
     std::map<int, const Measures*> own;
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
-      const double ratio = std::log10(checkpoint.stiffness_N_per_m / least);
+      const double ratio = std::log10(checkpoint.stiffness_N_per_m / settled);
       if (!std::isfinite(ratio)) continue;
       own[static_cast<int>(std::lround(100 * ratio))] = &checkpoint.measures;
     }
@@ -54,7 +51,7 @@ struct Load {
   std::string colour;
 };
 
-/// The default first. Records of runs leave the key out at `moving_wall`.
+/// The default first.
 const std::array<Load, 2>& loads() {
   static const std::array<Load, 2> both = {
       {{"top", "", "", "#000000"},
@@ -65,8 +62,7 @@ const std::array<Load, 2>& loads() {
 std::vector<const FigureRun*> runs_under(const Load& load, std::span<const FigureRun> runs) {
   std::vector<const FigureRun*> found;
   for (const FigureRun& run : runs) {
-    const nlohmann::json at = parameter_of(run, "pressure_at");
-    if ((at.is_null() ? "moving_wall" : at) == load.moves) found.push_back(&run);
+    if (parameter_of(run, "pressure_at") == load.moves) found.push_back(&run);
   }
   return found;
 }
@@ -109,8 +105,7 @@ FigureTable table_of(std::span<const FigureRun> runs) {
   return table;
 }
 
-/// What `change` computes from the softest and the hardest packing of a run, if k spans the
-/// hundredfold.
+/// What `change` computes from the packings of a run at k0 and 100 k0.
 Scalar over_the_hundredfold(std::string name,
                             double (*change)(const Stiffness& soft, const Stiffness& hard)) {
   const auto of = [change](const FigureRun& run) -> RunValue {
@@ -118,9 +113,10 @@ Scalar over_the_hundredfold(std::string name,
     const std::map<int, Stiffness> own = by_stiffness(RunGroup(&alone, 1));
     constexpr int hundredfold = 200;
     if (own.empty() || own.rbegin()->first < hundredfold) return {0, Missing::too_short};
-    return {change(own.begin()->second, own.rbegin()->second), Missing::nothing};
+    if (!own.contains(0) || !own.contains(hundredfold)) return {0, Missing::checkpoint};
+    return measured(change(own.at(0), own.at(hundredfold)));
   };
-  return {std::move(name), "k/k0 = 100", of};
+  return {std::move(name), "k/k0 from 1 to 100", of};
 }
 
 }  // namespace

@@ -187,7 +187,7 @@ void require_effect(const ExportOptions& options, const ExportFormat& format) {
   if (options.metres && options.format != "extxyz") refuse("--metres");
 }
 
-/// The named runs, or else those of the filters; packings only by name.
+/// The named runs, or else those of the filters, each once; packings only by name.
 std::vector<SelectedRun> wanted(const Store& store, const ExportOptions& options) {
   parse_cycles(options.cycles);  // or throw once, not for each run
   std::vector<SelectedRun> runs;
@@ -197,11 +197,10 @@ std::vector<SelectedRun> wanted(const Store& store, const ExportOptions& options
   }
   if (runs.empty()) {
     runs = select_runs(store, options.selection);
-    std::set<std::string> seen;
-    std::erase_if(runs, [&](const SelectedRun& s) {
-      return s.run.kind == name_of(Stage::prepare) || !seen.insert(s.run.id).second;
-    });
+    std::erase_if(runs, [](const SelectedRun& s) { return s.run.kind == name_of(Stage::prepare); });
   }
+  std::set<std::string> seen;
+  std::erase_if(runs, [&](const SelectedRun& s) { return !seen.insert(s.run.id).second; });
   if (runs.empty()) throw std::invalid_argument("no run of the store is selected");
   return runs;
 }
@@ -227,14 +226,15 @@ struct Exported {
   std::vector<std::string> files;
 };
 
-/// Written in a folder beside `out` and renamed when it is complete, so that an export that is
-/// killed or meets a full disk leaves nothing of that name.
+/// A `single` run to `out` itself, others into that folder. Written in a folder beside `out` and
+/// renamed when it is complete, so that an export that is killed or meets a full disk leaves
+/// nothing of that name.
 std::vector<Exported> write_all(const Store& store, const std::vector<SelectedRun>& runs,
-                                const ExportFormat& format, const ExportOptions& options) {
+                                const ExportFormat& format, const ExportOptions& options,
+                                bool single) {
   // "frames/" has no file name; "frames" is the same folder.
   const fs::path given = fs::absolute(options.out);
   const fs::path out = given.has_filename() ? given : given.parent_path();
-  const bool single = options.runs.size() == 1;
   if (single && format.writer == nullptr) {  // a crate may add to an earlier one
     return {{runs.front(), out, write_run(store, runs.front(), format, options, out)}};
   }
@@ -264,12 +264,14 @@ void export_runs(const ExportOptions& options, Context& context) {
   const ExportFormat& format = *std::ranges::find(kFormats, options.format, &ExportFormat::name);
   require_effect(options, format);
   std::vector<Exported> done;
+  bool single = false;
   try {
-    done = write_all(store, wanted(store, options), format, options);
+    const std::vector<SelectedRun> runs = wanted(store, options);
+    single = !options.runs.empty() && runs.size() == 1;
+    done = write_all(store, runs, format, options, single);
   } catch (const std::invalid_argument& problem) {
     throw CLI::ValidationError("export", problem.what());
   }
-  const bool single = options.runs.size() == 1;
   for (Exported& one : done) {
     if (single) one.out = options.out;
     if (context.json) continue;

@@ -23,10 +23,14 @@ struct FigureArguments {
 };
 
 void complain(const FigureSummary& result, std::set<std::string>& told, Context& context) {
-  for (const std::string& note : result.notes) {  // once for all figures
+  for (const std::string& note : result.notes) {
     if (told.insert(note).second) tell_stderr("{}\n", note);
   }
   tell_problems(result, "left out", context);
+  if (!result.empty.empty()) {
+    tell_stderr("warning: figure {}{}{}: no run has a value for {}\n", result.experiment,
+                result.experiment.empty() ? "" : "/", result.name, fmt::join(result.empty, ", "));
+  }
   if (!result.plot_error.empty()) tell_stderr("no plot: {}\n", result.plot_error);
 }
 
@@ -39,6 +43,7 @@ nlohmann::json facts(const FigureSummary& result) {
           {"measured", result.measured},
           {"files", json_list(result.files, [](const auto& file) { return file.string(); })},
           {"notes", result.notes},
+          {"empty", result.empty},
           {"damage", result.damage},
           {"pruned", result.pruned},
           {"changed", result.changed},
@@ -74,8 +79,9 @@ void figures(FigureArguments& options, Context& context) {
                                fmt::join(options.names, " or ")));
   }
   if (wanted.figures.empty()) tell_stderr("No manifest of this store lists a figure.\n");
+  std::set<std::string> told;                                 // once for all figures
   const auto complain_of = [&](const std::string& problem) {  // the others are made all the same
-    tell_stderr("shearcell: {}\n", problem);
+    if (told.insert(problem).second) tell_stderr("shearcell: {}\n", problem);
     fail(context, kUsageError);
   };
   for (const std::string& problem : wanted.unknown) complain_of(problem);
@@ -83,7 +89,6 @@ void figures(FigureArguments& options, Context& context) {
   how.workers = usable_cores();
   how.report = terminal_counter("measuring checkpoint");
   nlohmann::json list = nlohmann::json::array();
-  std::set<std::string> told;
   for (const WantedFigure& figure : in_order_of_needs(std::move(wanted.figures))) {
     try {
       const FigureSummary result = draw_figure(store, figure, how);

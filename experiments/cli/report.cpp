@@ -41,7 +41,10 @@ void report(ReportCommand& command, Context& context) {
   write_output(command.out, html);
   if (!made.damage.empty()) fail(context, kStoreDamaged);
   for (const std::string& line : made.damage) tell_stderr("left out: {}\n", line);
-  for (const std::string& line : made.notes) tell_stderr("left out: {}\n", line);
+  for (const std::string& line : made.notes) {
+    const bool says_so = line.find("left out") != line.npos;
+    tell_stderr("{}{}\n", says_so ? "" : "left out: ", line);
+  }
   if (!has_front_end() && options.interactive) {
     tell_stderr(
         "Figures are drawings and there are no packings: this program was built without "

@@ -35,7 +35,7 @@ struct SubmitOptions {
 nlohmann::json facts(const Proposal& proposal) {
   const auto task = [&](const Share& share) -> nlohmann::json {
     return {{"runs", share.runs},
-            {"packings", share.packings},
+            {"packings", share.packings.size()},
             {"particle_steps", share.particle_steps},
             {"seconds", seconds_of(share, proposal)}};
   };
@@ -60,7 +60,8 @@ void print_shares(const Proposal& proposal) {
   print_table({"task", "runs", "packings", "particle-steps", "about"}, proposal.shares,
               [&](const Share& share) -> Row {
                 return {std::to_string(++task), std::to_string(share.runs.size()),
-                        std::to_string(share.packings), fmt::format("{:.3g}", share.particle_steps),
+                        std::to_string(share.packings.size()),
+                        fmt::format("{:.3g}", share.particle_steps),
                         format_duration(seconds_of(share, proposal))};
               });
 }

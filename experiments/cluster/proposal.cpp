@@ -2,6 +2,7 @@
 #include "experiments/cluster/proposal.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -15,13 +16,20 @@ constexpr std::size_t kMostCpus = 16;
 
 }  // namespace
 
-std::vector<Bundle> work_left(const std::vector<Plan>& plans, const Store* store) {
+void Share::add(const Share& other) {
+  packings.insert(packings.end(), other.packings.begin(), other.packings.end());
+  runs.insert(runs.end(), other.runs.begin(), other.runs.end());
+  particle_steps += other.particle_steps;
+  core_seconds += other.core_seconds;
+}
+
+std::vector<Share> work_left(const std::vector<Plan>& plans, const Store* store) {
   const auto runs = store == nullptr ? std::vector<RunRecord>{} : store->runs();
   const Rates rates(runs);
   std::map<std::string, const RunRecord*> known;
   for (const RunRecord& run : runs) known.emplace(run.id, &run);
   // Adds what is left of a stage; false when it is done.
-  const auto add = [&](const PlannedRun& run, const StageSpec& stage, Bundle& bundle) {
+  const auto add = [&](const PlannedRun& run, const StageSpec& stage, Share& share) {
     const auto found = known.find(stage.key);
     const auto cycle =
         cycle_to_continue(run, stage, found == known.end() ? nullptr : found->second, store);
@@ -29,43 +37,35 @@ std::vector<Bundle> work_left(const std::vector<Plan>& plans, const Store* store
     const double steps = stage_cost(run, stage, *cycle).particle_steps;
     const Rate rate =
         rates.of(engine_of(stage.resolved), static_cast<double>(run.parameters.grains));
-    bundle.particle_steps += steps;
-    bundle.core_seconds += steps / rate.particle_steps_per_second;
+    share.particle_steps += steps;
+    share.core_seconds += steps / rate.particle_steps_per_second;
     return true;
   };
-  std::vector<Bundle> bundles;
-  std::map<std::string, std::size_t> places;  // of each packing in bundles
+  std::vector<Share> shares;
+  std::map<std::string, std::size_t> places;  // of each packing in shares
   for (const PlannedRun& run : joined(plans).runs) {
-    Bundle left;
+    Share left;
     if (!add(run, run.last, left)) continue;
-    const auto [place, fresh] = places.try_emplace(run.prepare.key, bundles.size());
+    left.runs = {run.last.key};
+    const auto [place, fresh] = places.try_emplace(run.prepare.key, shares.size());
     if (fresh) {
-      bundles.push_back({run.prepare.key, {}});
-      add(run, run.prepare, bundles.back());
+      shares.emplace_back().packings = {run.prepare.key};
+      add(run, run.prepare, shares.back());
     }
-    Bundle& bundle = bundles[place->second];
-    bundle.runs.push_back(run.last.key);
-    bundle.particle_steps += left.particle_steps;
-    bundle.core_seconds += left.core_seconds;
+    shares[place->second].add(left);
   }
-  return bundles;
+  return shares;
 }
 
-std::vector<Share> share_out(std::vector<Bundle> bundles, std::size_t tasks) {
-  std::stable_sort(bundles.begin(), bundles.end(), [](const Bundle& a, const Bundle& b) {
-    return a.particle_steps > b.particle_steps;
-  });
-  std::vector<Share> shares(std::min(tasks, bundles.size()));
-  for (const Bundle& bundle : bundles) {
+std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks) {
+  std::ranges::stable_sort(packings, std::greater(), &Share::core_seconds);
+  std::vector<Share> shares(std::min(tasks, packings.size()));
+  for (const Share& packing : packings) {
     // Costs may be 0, and no share may stay empty.
-    const auto least =
-        std::min_element(shares.begin(), shares.end(), [](const Share& a, const Share& b) {
-          return std::pair(a.particle_steps, a.packings) < std::pair(b.particle_steps, b.packings);
-        });
-    least->runs.insert(least->runs.end(), bundle.runs.begin(), bundle.runs.end());
-    least->particle_steps += bundle.particle_steps;
-    least->core_seconds += bundle.core_seconds;
-    ++least->packings;
+    const auto load = [](const Share& share) {
+      return std::pair(share.core_seconds, share.packings.size());
+    };
+    std::ranges::min_element(shares, std::less(), load)->add(packing);
   }
   return shares;
 }
@@ -73,15 +73,15 @@ std::vector<Share> share_out(std::vector<Bundle> bundles, std::size_t tasks) {
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job) {
   Proposal made;
-  std::vector<Bundle> bundles = work_left(plans, store);
-  std::erase_if(bundles, [&](const Bundle& bundle) {
-    const bool taken = busy.contains(bundle.packing) ||
-                       std::ranges::any_of(
-                           bundle.runs, [&](const std::string& run) { return busy.contains(run); });
-    if (taken) made.left_out += bundle.runs.size();
+  std::vector<Share> packings = work_left(plans, store);
+  std::erase_if(packings, [&](const Share& packing) {
+    const auto is_busy = [&](const std::string& id) { return busy.contains(id); };
+    const bool taken = std::ranges::any_of(packing.packings, is_busy) ||
+                       std::ranges::any_of(packing.runs, is_busy);
+    if (taken) made.left_out += packing.runs.size();
     return taken;
   });
-  made.shares = share_out(std::move(bundles), most_tasks);
+  made.shares = share_out(std::move(packings), most_tasks);
   if (job.cpus == 0) {
     std::size_t most = 1;
     for (const Share& share : made.shares) most = std::max(most, share.runs.size());

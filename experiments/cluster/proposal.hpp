@@ -13,29 +13,24 @@
 
 namespace shearcell {
 
-/// Runs that start from one packing. They stay together, so that it is settled once.
-struct Bundle {
-  std::string packing;            ///< id of the `prepare` stage
-  std::vector<std::string> runs;  ///< ids of the stages left that start from it, as planned
-  double particle_steps = 0;      ///< left, the packing's own included
-  double core_seconds = 0;        ///< that these take at the rates of their engines
-};
-
-/// What one task computes.
+/// Work for one task. Runs that start from one packing stay together, so that it is settled once.
 struct Share {
-  std::vector<std::string> runs;  ///< ids of the stages to compute, without their packings
-  std::size_t packings = 0;
-  double particle_steps = 0;
-  double core_seconds = 0;
+  std::vector<std::string> packings;  ///< ids of the `prepare` stages
+  std::vector<std::string> runs;      ///< ids of the stages left that start from them, as planned
+  double particle_steps = 0;          ///< left, the packings' own included
+  double core_seconds = 0;            ///< that these take at the rates of their engines
+
+  void add(const Share& other);
 };
 
 /// Every run of the plans that the store, which may be null, does not hold completed at its length;
-/// each once, in the order of the plans.
-std::vector<Bundle> work_left(const std::vector<Plan>& plans, const Store* store);
+/// each once, in the order of the plans, a share for each packing.
+std::vector<Share> work_left(const std::vector<Plan>& plans, const Store* store);
 
-/// Distributes the bundles, the largest first, each to the task with the least work; equal ones in
-/// turn. At most `tasks` shares, none empty. The same bundles give the same shares.
-std::vector<Share> share_out(std::vector<Bundle> bundles, std::size_t tasks);
+/// Distributes the shares of packings, the longest first, each to the task with the least core
+/// time; equal ones in turn. At most `tasks` shares, none empty. The same input gives the same
+/// shares.
+std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks);
 
 struct Proposal {
   std::vector<Share> shares;
@@ -43,8 +38,9 @@ struct Proposal {
   JobOptions job;            ///< with a number of cores
 };
 
-/// Leaves out every bundle with a busy run or packing. Where `job` states no number of cores (0), a
-/// task gets one for each of its runs and threads, 16 at most but those of one run.
+/// Leaves out every packing that is busy or has a busy run, with its runs. Where `job` states no
+/// number of cores (0), a task gets one for each of its runs and threads, 16 at most but those of
+/// one run.
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 

@@ -8,6 +8,7 @@
 #include "analysis/motion.hpp"
 #include "analysis/voronoi.hpp"
 #include "experiments/figures/more_measures.hpp"
+#include "experiments/manifest/schema.hpp"
 
 namespace shearcell {
 namespace {
@@ -73,15 +74,15 @@ void add_numbers(const Checkpoint& checkpoint, const CheckpointRecord& record,
   }
 }
 
-void add_wall_grains(const Checkpoint& c, Frame& frame) {
-  auto particle = static_cast<Eigen::Index>(frame.grains);
-  for (const auto& [side, position] : c.cell.wall_grains) {
-    const bool moves =
-        side == (c.cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top);
-    frame.velocity.col(particle++) =
-        Eigen::Vector3d(0, moves ? c.state.wall_velocity * c.units.diameter_m : 0.0, 0);
+void add_wall_grains(const Checkpoint& c, const WallPose& pose, const Measures& measures,
+                     Frame& frame) {
+  const auto rate = measures.numbers.find("shear_rate_per_s");  // only of a shear
+  const double shear_rate = rate == measures.numbers.end() ? 0 : rate->second;
+  frame.velocity.rightCols(static_cast<Eigen::Index>(c.cell.wall_grains.size())) =
+      wall_grain_velocities(c.cell, pose, shear_rate, c.state.wall_velocity) * c.units.diameter_m;
+  for (const WallGrain& grain : c.cell.wall_grains) {
     frame.image.push_back(0);
-    frame.type.push_back(1 + static_cast<std::int32_t>(side));
+    frame.type.push_back(1 + static_cast<std::int32_t>(grain.side));
   }
 }
 
@@ -103,6 +104,9 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
   const nlohmann::json parameters =
       resolved.is_object() ? resolved.value("parameters", nlohmann::json()) : nlohmann::json();
   for (const auto& [key, value] : parameters.items()) {
+    // A key that is no longer part of the identity is recorded as a constant, not as it was.
+    const Field* field = find_field(key);
+    if (field != nullptr && !field->identity.recorded_as.empty()) continue;
     if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);
   }
 }
@@ -111,7 +115,7 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
 
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const SelectedRun& run,
                MeasureSources* sources) {
-  Analysis analysis = analyse(checkpoint);
+  Analysis analysis = analyse_stored(record, checkpoint);
   if (sources != nullptr) add_numbers(checkpoint, record, *sources, analysis);
   analysis.measures.units = mechanical_units(run.run, record);
   add_drive(run.run, record, analysis.measures);
@@ -131,7 +135,7 @@ Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, con
   add_facts(record, run, analysis.measures, frame);
   place_cell(checkpoint, pose, frame);
   add_grains(checkpoint, sites, frame);
-  add_wall_grains(checkpoint, frame);
+  add_wall_grains(checkpoint, pose, analysis.measures, frame);
   const auto earlier = sources == nullptr ? std::nullopt : sources->earlier(record, 1);
   add_columns(checkpoint, pose, analysis.grains, motion_since(earlier, checkpoint), frame);
   return frame;

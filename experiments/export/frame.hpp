@@ -21,7 +21,9 @@ struct FrameColumn {
 };
 
 /// The grains by id, then the wall grains. Arrays have one entry, or one column, per particle. Wall
-/// grains have measures of zero, and structure, lattice and crystallite -1.
+/// grains have measures of zero, and structure, lattice and crystallite -1. They move with the
+/// shear (x of a wall point at y: (y - y_top) tan(theta)) and with the moving wall. Velocities of
+/// grains and of the moving wall are half a time step before `step`, those of the shear at `step`.
 struct Frame {
   std::uint64_t step = 0;
   double time_s = 0;
@@ -29,7 +31,7 @@ struct Frame {
   double theta = 0;  ///< tilt [rad]
 
   /// What holds for every frame of the run, texts and numbers: id, experiment, scale, variant and
-  /// seed; its parameters by their keys in a manifest.
+  /// seed; its parameters by their keys in a manifest, those that distinguish runs.
   std::vector<std::pair<std::string, nlohmann::json>> run, parameters;
   std::string checkpoint;  ///< SHA-256 of its file
   /// The measures of the frame, by the names that `table` gives them; NaN where one is unknown.
@@ -61,8 +63,7 @@ struct Frame {
   std::size_t particles() const { return type.size(); }
 };
 
-/// Without `sources`, what needs earlier checkpoints is not a number. Throws AnalysisError as
-/// analyse() does.
+/// Without `sources`, what needs earlier checkpoints is not a number. Throws as analyse_stored().
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
                const SelectedRun& run = {}, MeasureSources* sources = nullptr);
 

@@ -38,6 +38,7 @@ std::string xyz_comment(const Frame& f, Lengths lengths) {
                       si ? "m/s" : "d/s", d, quoted(f.checkpoint));
   for (const auto* facts : {&f.run, &f.parameters}) {
     for (const auto& [key, value] : *facts) {
+      if (value == "") continue;  // ASE would take the next key for its value
       line += fmt::format(" {}={}", key,
                           value.is_string() ? quoted(value.get<std::string>()) : value.dump());
     }
@@ -107,7 +108,7 @@ FrameWriter lammps_writer(const std::filesystem::path& folder) {
       fmt::format_to(std::back_inserter(text), "{} {:.17g} {:.17g} {:.17g} 0 0 0\n", i + 1, v.x(),
                      v.y(), v.z());
     }
-    NewFile(folder / fmt::format("frame_{:g}.data", f.cycle)).add(text);
+    NewFile(folder / fmt::format("frame_{}.data", f.cycle)).add(text);
   };
 }
 

@@ -104,8 +104,8 @@ void write_cell(const Frame& f, const std::filesystem::path& file) {
 
 FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames) {
   return [folder, left = frames, sets = std::string()](const Frame& f) mutable {
-    const std::string grains = fmt::format("grains_{:g}.vtp", f.cycle);
-    const std::string cell = fmt::format("cell_{:g}.vtp", f.cycle);
+    const std::string grains = fmt::format("grains_{}.vtp", f.cycle);
+    const std::string cell = fmt::format("cell_{}.vtp", f.cycle);
     write_grains(f, folder / grains);
     write_cell(f, folder / cell);
     sets += fmt::format(

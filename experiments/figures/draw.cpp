@@ -14,6 +14,7 @@
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/manifest.hpp"
+#include "experiments/manifest/schema.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
@@ -38,18 +39,36 @@ std::vector<std::optional<Measures>> measures_of_all(const Store& store, const F
   return std::move(found.measures);
 }
 
+/// The parameters of the run's record, and those that it leaves out at the value of all older runs.
+nlohmann::json parameters_of(const RunRecord& run) {
+  nlohmann::json values = run.resolved.value("parameters", nlohmann::json::object());
+  const std::optional<Stage> stage = value_of<Stage>(run.kind);
+  if (!values.is_object() || !stage) return values;
+  const nlohmann::json protocol = values.value("protocol", nlohmann::json());
+  const auto known =
+      protocol.is_string() ? value_of<ProtocolKind>(protocol.get<std::string>()) : std::nullopt;
+  for (const Field& field : schema()) {
+    const std::string_view omitted = field.identity.omitted_at;
+    if (omitted.empty() || values.contains(field.name)) continue;
+    if (!enters(field.identity, *stage, known, nullptr)) continue;
+    values[std::string(field.name)] = std::get<nlohmann::json>(read_value(field, omitted, false));
+  }
+  return values;
+}
+
 std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
                                    std::vector<std::optional<Measures>> measured) {
   std::vector<FigureRun> runs;
   std::size_t next = 0;
   for (const CollectedRun& input : inputs) {
     FigureRun run{input.run.id,
+                  input.run.parent,
                   input.membership.experiment,
                   input.membership.variant,
                   input.name,
                   input.named,
                   input.membership.labels,
-                  input.run.resolved.value("parameters", nlohmann::json::object()),
+                  parameters_of(input.run),
                   input.membership.seed,
                   {}};
     for (const CheckpointRecord& record : input.checkpoints) {
@@ -117,6 +136,12 @@ void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>
     for (const auto& [key, value] : run.labels.items()) {
       if (known->second.value(key, nlohmann::json()) == value) continue;
       const bool of_manifest = find_figure(wanted.figure.name) == nullptr;
+      if (find_field(key) == nullptr) {  // `manifest`, not swept
+        throw UsageError(fmt::format(
+            "figure {} would average over several versions of the manifest of experiment {}; leave "
+            "out --all-versions",
+            wanted.figure.name, wanted.experiment));
+      }
       throw UsageError(fmt::format(
           "figure {} would average over the values of {} that experiment {} sweeps; {}",
           wanted.figure.name, key, wanted.experiment,
@@ -147,6 +172,14 @@ void lay_out(std::vector<FigureTable>& tables, bool wide) {
   }
 }
 
+/// Points that are not of the table are those of others.
+bool has_no_value(const FigureTable& table) {
+  if (table.chart.series.empty()) return table.rows.empty();
+  return std::ranges::all_of(table.chart.series, [&](const Series& series) {
+    return series.columns.x.empty() || points_of(table, series).empty();
+  });
+}
+
 std::string caption(const FigureSummary& summary, const std::map<std::string, std::size_t>& runs,
                     const std::vector<FigureTable>& tables) {
   std::vector<std::string> counts;
@@ -154,6 +187,14 @@ std::string caption(const FigureSummary& summary, const std::map<std::string, st
   return fmt::format("{} Runs: {}. Experiment {}, scale {}.",
                      caption_of(fmt::format("Figure {}. {}", summary.name, summary.title), tables),
                      fmt::join(counts, ", "), summary.experiment, scale_name(summary.scale));
+}
+
+std::string verdict_text(const FigureSummary& summary, std::span<const Verdict> verdicts) {
+  nlohmann::json verdict = to_json(verdicts);
+  verdict["figure"] = summary.name;
+  if (!summary.experiment.empty()) verdict["experiment"] = summary.experiment;
+  verdict["scale"] = summary.scale;
+  return verdict.dump(1) + "\n";
 }
 
 }  // namespace
@@ -179,6 +220,9 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   }
   computed.result = figure.make(runs);
   summary.verdicts = computed.result.verdicts;
+  for (const FigureTable& table : computed.result.tables) {
+    if (has_no_value(table)) summary.empty.push_back(table.name);
+  }
   computed.lineage = lineage_of(store, summary, collected.runs, runs);
   return computed;
 }
@@ -203,6 +247,10 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
            beginning.find("\n \"figure\": \"" + result.name + "\"") != beginning.npos;
   });
   const auto write = [&](const char* ending, const std::string& text) {
+    if (text.empty()) {  // nor may that of an older figure stay
+      std::filesystem::remove(base + ending);
+      return;
+    }
     result.files.emplace_back(base + ending);
     write_output(result.files.back(), text);
   };
@@ -216,16 +264,9 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
       result.plot_error = error.what();
     }
   }
-  if (!made.tables.empty() && !made.tables.front().chart.series.empty()) {
-    write(".caption.txt", caption(result, computed.runs_by_variant, made.tables) + "\n");
-  }
-  if (!made.verdicts.empty()) {
-    nlohmann::json verdict = to_json(made.verdicts);
-    verdict["figure"] = result.name;
-    if (!result.experiment.empty()) verdict["experiment"] = result.experiment;
-    verdict["scale"] = result.scale;
-    write(".verdict.json", verdict.dump(1) + "\n");
-  }
+  const bool drawn = !made.tables.empty() && !made.tables.front().chart.series.empty();
+  write(".caption.txt", drawn ? caption(result, computed.runs_by_variant, made.tables) + "\n" : "");
+  write(".verdict.json", made.verdicts.empty() ? "" : verdict_text(result, made.verdicts));
 
   nlohmann::json& facts = computed.lineage;
   for (const auto& file : result.files) {

@@ -30,6 +30,7 @@ struct FigureSummary : MeasureOutcome {
   std::vector<std::filesystem::path> files;  ///< CSV, SVG, PDF of each panel, verdict, lineage
   std::vector<Verdict> verdicts;             ///< on the supplement's claims
   std::vector<std::string> notes;            ///< as CollectedRuns::notes
+  std::vector<std::string> empty;            ///< tables without a value to draw
   std::string plot_error;                    ///< why there is no SVG; "" if there is
 };
 
@@ -50,10 +51,10 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
                               const FigureOptions& options);
 
 /// Computes the figure; writes into FOLDER/EXPERIMENT (FOLDER for a figure of all): PANEL.csv, .svg
-/// and, with librsvg, .pdf of each panel, NAME.verdict.json if there are claims, and
-/// NAME.lineage.json; and records a FigureGenerated event with host and build, unless the newest
-/// event of this figure says the same. The same checkpoints give the same bytes. Throws as
-/// compute_figure() and require_own_files().
+/// and, with librsvg, .pdf of each panel, NAME.verdict.json if there are claims (else an
+/// older one is deleted), and NAME.lineage.json; and records a FigureGenerated event with host and
+/// build, unless the newest event of this figure says the same. The same checkpoints give the same
+/// bytes. Throws as compute_figure() and require_own_files().
 FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options);
 
 }  // namespace shearcell

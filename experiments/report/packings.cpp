@@ -215,7 +215,7 @@ struct PageFrame {
 PageFrame make_frame(const Store& store, const RunRecord& run, const CheckpointRecord& record,
                      const MeasureSources& sources) {
   const Checkpoint checkpoint = store.load_checkpoint(record);
-  const Analysis analysis = analyse(checkpoint);
+  const Analysis analysis = analyse_stored(record, checkpoint);
   const WallPose pose = pose_of(checkpoint);
   const MechanicalUnits units = mechanical_units(run, record);
   const double pressure_Pa = run.resolved.value("/parameters/pressure_Pa"_json_pointer, 0.0);

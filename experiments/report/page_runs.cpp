@@ -71,7 +71,9 @@ std::vector<ShownColumn> columns_of(const ReportExperiment& experiment) {
     return std::ranges::any_of(rows, [&](const auto& row) { return row[at] != rows.front()[at]; });
   };
   std::vector<std::string> swept;  // between the seed and the cycle
-  for (std::size_t c = place("seed") + 1; c < place("cycle"); ++c) swept.push_back(all[c].name);
+  for (std::size_t c = place("seed") + 1; c < place("cycle"); ++c) {
+    if (all[c].name != "grains") swept.push_back(all[c].name);  // has a column in every table
+  }
 
   std::vector<ShownColumn> shown = {{place("run"), "run", record_link, false}};
   if (several("scale")) shown.push_back({place("scale"), "scale", as_text, false});

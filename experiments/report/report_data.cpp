@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -152,7 +153,7 @@ RowKey key_of(const RunTable& table, const std::vector<json>& row) {
 /// Six significant digits are enough for a drawing.
 json rounded(const json& value) {
   if (!value.is_number_float()) return value;
-  return std::stod(fmt::format("{:.6g}", value.get<double>()));
+  return std::strtod(fmt::format("{:.6g}", value.get<double>()).c_str(), nullptr);
 }
 
 std::map<RowKey, json> traces_of(const RunTable& checkpoints) {

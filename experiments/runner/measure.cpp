@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/measure.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -96,7 +98,7 @@ class Measuring {
         options_.fresh ? std::exchange(results_[i], Results(measures_.size())) : results_[i];
     Checkpoint checkpoint = store_.load_checkpoint(record);
     if (options_.prepare) options_.prepare(record, checkpoint);
-    const Analysis analysis = options_.instead ? Analysis() : analyse(checkpoint);
+    const Analysis analysis = options_.instead ? Analysis() : analyse_stored(record, checkpoint);
     std::vector<DerivedObject> objects;
     bool changed = false;
     for (std::size_t m = 0; m < measures_.size(); ++m) {
@@ -173,6 +175,15 @@ UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
   std::sort(unread.damaged.begin(), unread.damaged.end());
   std::sort(unread.pruned.begin(), unread.pruned.end());
   return unread;
+}
+
+Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint) {
+  try {
+    return analyse(checkpoint);
+  } catch (const AnalysisError& problem) {
+    throw StoreDamaged(fmt::format("checkpoint {:.12} of run {:.12} (cycle {}): {}", record.sha256,
+                                   record.run, record.cycle, problem.what()));
+  }
 }
 
 Measures read_results(std::span<const DerivedMeasure> measures, std::span<const json> results) {

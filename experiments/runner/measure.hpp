@@ -51,6 +51,10 @@ MeasuredCheckpoints measure_checkpoints(const Store& store,
                                         std::span<const DerivedMeasure> measures,
                                         const MeasureOptions& options);
 
+/// The analysis of a stored checkpoint. Throws StoreDamaged, which names the checkpoint and its
+/// run, where analyse() throws AnalysisError: this program records no such state.
+Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
+
 /// All results of one checkpoint, each read by its measure. Throws AnalysisError for a result that
 /// is not what its key says.
 Measures read_results(std::span<const DerivedMeasure> measures,

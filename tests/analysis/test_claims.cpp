@@ -22,6 +22,7 @@ FigureRun rising(std::uint64_t seed, double start, double gain = 0, double exces
     m.mean_overlap = 0.002 * (1 + excess);
     m.largest_crystallite = static_cast<std::size_t>(n);
   });
+  run.parent = std::to_string(seed);
   return run;
 }
 
@@ -78,6 +79,14 @@ TEST(Compare, RunsThatShareAPackingArePaired) {
   EXPECT_EQ(verdict.note, "4 pairs of runs that share a packing");
   EXPECT_EQ(compare(equal, early_phi(), pointers(group(4, 0.002)), pointers(b)).ruling,
             Ruling::differs);
+}
+
+TEST(Compare, RunsArePairedWithoutTheirFirstCheckpointAndWithoutInteriorGrains) {
+  Runs a = group(4, 0.0002), b = group(4, 0);
+  for (FigureRun& run : a) run.checkpoints.erase(run.checkpoints.begin());
+  for (FigureRun& run : b) run.checkpoints.front().measures.phi = std::nan("");
+  EXPECT_EQ(compare(equal, early_phi(), pointers(a), pointers(b)).note,
+            "4 pairs of runs that share a packing");
 }
 
 TEST(Compare, OthersAreIndependent) {

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 
+#include "analysis/error.hpp"
 #include "analysis/packing_fraction.hpp"
 #include "tests/analysis/random_points.hpp"
 
@@ -24,6 +26,14 @@ TEST(Measures, PerfectCrystal) {
   EXPECT_DOUBLE_EQ(a.measures.fcc_percent, 100);
   EXPECT_EQ(a.measures.crystallites, 1U);
   EXPECT_EQ(a.measures.largest_crystallite, a.measures.interior_grains);
+}
+
+TEST(Measures, RefuseACellInWhichAGrainWouldTouchItsImage) {
+  Packing p = lattice(Lattice::fcc, 3);
+  for (const double depth : {1e-6, 1.9, std::nan("")}) {
+    p.cell.depth = depth;
+    EXPECT_THROW(analyse(p.cell, p.pose, p.grains), AnalysisError) << depth;
+  }
 }
 
 TEST(Measures, JammedPackingInATiltedRoughCell) {

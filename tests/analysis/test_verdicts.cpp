@@ -77,6 +77,8 @@ TEST(Verdict, JsonHasSixDigitsAndNull) {
   const auto none = to_json(std::vector{decide({"c", 2}, "q", std::nullopt, 0, "")});
   EXPECT_TRUE(none["claims"][0]["estimate"].is_null() && none["claims"][0]["interval"].is_null());
   EXPECT_TRUE(to_json(std::span<const Verdict>())["verdict"].is_null());
+  const auto tiny = to_json(std::vector{decide({"c", 1e-310}, "q", std::nullopt, 0, "")});
+  EXPECT_EQ(tiny["claims"][0]["margin"], 1e-310);
 }
 
 double noise(std::uint64_t seed, int n) {
@@ -160,7 +162,7 @@ TEST(FigureB5, PausesCompactFaster) {
     std::vector<FigureRun> runs = two_groups("protocol", "continuous", "paused", 6, speed, 0);
     for (FigureRun& run : runs) {
       run.seed %= 20;
-      run.checkpoints[0].measures.phi = 0.63;
+      run.parent = std::to_string(run.seed);
       for (CheckpointMeasures& c : run.checkpoints) c.measures.phi_at_rest = c.measures.phi;
       run.parameters["protocol"] = run.labels["protocol"];
     }
@@ -203,7 +205,7 @@ TEST(FigureChoices, OneThatShowsIsFound) {
       FigureRun run = crystallizing("choice", runs.size() / 6, seed + 10 * runs.size(), speed, 0);
       run.labels = {{"wall_mass_grains_per_d2", mass}, {"wall_drag_grains_per_d2_s", drag}};
       run.parameters = run.labels;
-      if (draw != 0) run.parameters["wall_grain_draw"] = draw;
+      run.parameters["wall_grain_draw"] = draw;
       runs.push_back(std::move(run));
     }
   };
@@ -271,6 +273,7 @@ std::vector<FigureRun> stiffened(std::size_t systems, double fall, double drift)
       m.phi_uncorrected = 0.655 - fall * (n - 1) / 8;
       m.mean_overlap = 0.002 * std::pow(10, -0.25 * (n - 1));
     });
+    run.parameters["stiffness_N_per_m"] = 654.0;
     for (CheckpointMeasures& c : run.checkpoints) {
       c.stiffness_N_per_m = 654 * std::pow(10, 0.25 * std::max(0.0, c.cycle - 1));
     }
@@ -293,10 +296,28 @@ TEST(FigureS1, PhiStaysWherePhiUFalls) {
   EXPECT_EQ(std::get<double>(table.rows.back().at(1)), 2.0);
 }
 
+TEST(FigureS1, ClaimsAreAboutTheHundredfoldAlone) {
+  std::vector<FigureRun> runs = stiffened(3, 0.012, 0.0015);
+  for (FigureRun& run : runs) {
+    CheckpointMeasures harder = run.checkpoints.back();
+    harder.cycle += 1;
+    harder.stiffness_N_per_m *= 10;
+    harder.measures.phi = harder.measures.phi_uncorrected = 0.5;
+    run.checkpoints.push_back(harder);
+  }
+  EXPECT_EQ(rulings("S1", runs), (Rulings{agrees, agrees})) << "harder ones do not enter";
+  for (FigureRun& run : runs) run.checkpoints[9].measures.phi = std::nan("");
+  EXPECT_EQ(rulings("S1", runs), (Rulings{agrees, undecided})) << "no interior grains";
+  for (FigureRun& run : runs)
+    run.checkpoints.erase(run.checkpoints.begin(), run.checkpoints.begin() + 2);
+  EXPECT_EQ(rulings("S1", runs), (Rulings{undecided, undecided})) << "k0 is lost";
+  EXPECT_EQ(std::get<double>(find_figure("S1")->make(runs).tables.at(0).rows.front().at(1)), 0.25);
+}
+
 TEST(FigureS1, LoadsAreNotPooled) {
   std::vector<FigureRun> runs = stiffened(3, 0.012, 0.0015);
   for (FigureRun run : stiffened(3, 0.035, 0.0025)) {
-    run.parameters.erase("pressure_at");  // as records leave it out at moving_wall
+    run.parameters["pressure_at"] = "moving_wall";
     runs.push_back(run);
   }
   EXPECT_EQ(rulings("S1", runs), (Rulings{agrees, agrees, differs, differs}));

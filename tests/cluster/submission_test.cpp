@@ -245,7 +245,7 @@ ExpandOptions of(std::uint64_t seeds, std::uint64_t cycles = 2) {
 TEST(WorkLeft, BundlesRunsByTheirPacking) {
   const auto bundles = work_left(plans(tiny_manifest("", kBothFluids), of(3)), nullptr);
   ASSERT_EQ(bundles.size(), 3U);
-  for (const Bundle& bundle : bundles) {
+  for (const Share& bundle : bundles) {
     EXPECT_EQ(bundle.runs.size(), 2U) << "both fluids shear one packing";
     EXPECT_GT(bundle.particle_steps, 2 * 2 * kStepsPerCycle * kGrains)
         << "and it must settle first";
@@ -293,12 +293,12 @@ TEST(Proposed, TakesTheRateOfTheEngineOfEachStage) {
       << "both settle the packing in this program";
 }
 
-Bundle bundle(const std::string& name, double cost) {
-  return {name, {name + "a", name + "b"}, cost};
+Share bundle(const std::string& name, double seconds, double particle_steps = 0) {
+  return {{name}, {name + "a", name + "b"}, particle_steps, seconds};
 }
 
 TEST(SharingOut, GivesEveryRunToOneTaskWithItsPacking) {
-  std::vector<Bundle> bundles;
+  std::vector<Share> bundles;
   for (int b = 0; b < 23; ++b) bundles.push_back(bundle(fmt::format("p{}", b), 1 + b % 5));
   for (const std::size_t tasks : {1U, 2U, 7U, 22U, 23U, 500U}) {
     const auto shares = share_out(bundles, tasks);
@@ -307,10 +307,10 @@ TEST(SharingOut, GivesEveryRunToOneTaskWithItsPacking) {
     double least = 1e9, most = 0;
     for (const Share& share : shares) {
       EXPECT_FALSE(share.runs.empty());
-      EXPECT_EQ(share.runs.size(), 2 * share.packings);
+      EXPECT_EQ(share.runs.size(), 2 * share.packings.size());
       for (const std::string& run : share.runs) ++times[run];
-      least = std::min(least, share.particle_steps);
-      most = std::max(most, share.particle_steps);
+      least = std::min(least, share.core_seconds);
+      most = std::max(most, share.core_seconds);
     }
     EXPECT_EQ(times.size(), 46U);
     for (const auto& [run, count] : times) EXPECT_EQ(count, 1) << run;
@@ -319,16 +319,22 @@ TEST(SharingOut, GivesEveryRunToOneTaskWithItsPacking) {
 }
 
 TEST(SharingOut, GoesRoundWhenAllCostTheSame) {
-  const std::vector<Bundle> bundles = {bundle("p", 3), bundle("q", 3), bundle("r", 3),
-                                       bundle("s", 3)};
+  const std::vector<Share> bundles = {bundle("p", 3), bundle("q", 3), bundle("r", 3),
+                                      bundle("s", 3)};
   const auto shares = share_out(bundles, 2);
   EXPECT_EQ(shares[0].runs, (std::vector<std::string>{"pa", "pb", "ra", "rb"}));
   EXPECT_EQ(shares[1].runs, (std::vector<std::string>{"qa", "qb", "sa", "sb"}));
 }
 
+TEST(SharingOut, BalancesTimeNotSteps) {
+  const auto shares = share_out({bundle("fast", 1, 8), bundle("slow", 2, 1), bundle("q", 1, 8)}, 2);
+  EXPECT_EQ(shares[0].packings, (std::vector<std::string>{"slow"}));
+  EXPECT_EQ(shares[1].packings, (std::vector<std::string>{"fast", "q"}));
+}
+
 TEST(SharingOut, LeavesNoTaskEmptyWhenNothingCostsAnything) {
   const auto shares = share_out({bundle("p", 0), bundle("q", 0), bundle("r", 0)}, 3);
-  for (const Share& share : shares) EXPECT_EQ(share.packings, 1U);
+  for (const Share& share : shares) EXPECT_EQ(share.packings.size(), 1U);
   EXPECT_TRUE(share_out({}, 5).empty());
 }
 

@@ -133,5 +133,23 @@ TEST(Filling, IsGivenUpWhenTheCallerAsks) {
   EXPECT_THROW(fill_cell(cell, of(5000), 1, third), GivenUp);
 }
 
+TEST(WallGrains, HaveTheVelocityOfTheirPositions) {
+  Cell cell{.width = 10, .depth = 4, .bottom = -1, .top = 12};
+  for (const WallSide side : {WallSide::left, WallSide::right, WallSide::bottom, WallSide::top}) {
+    cell.wall_grains.push_back({side, {1, 3, 2}});
+  }
+  const double theta = 0.1, tilting = 0.3, height = 0.5, rising = 0.7, dt = 1e-6;
+  for (const MovingWall moving : {MovingWall::bottom, MovingWall::top}) {
+    cell.moving = moving;
+    const auto at = [&](double t) {
+      return wall_grain_positions(cell, wall_pose(cell, theta + tilting * t, height + rising * t));
+    };
+    const WallPose pose = wall_pose(cell, theta, height);
+    const double shear_rate = tilting / (pose.cos_theta * pose.cos_theta);
+    const Eigen::Matrix3Xd difference = (at(dt) - at(-dt)) / (2 * dt);
+    EXPECT_TRUE(wall_grain_velocities(cell, pose, shear_rate, rising).isApprox(difference, 1e-7));
+  }
+}
+
 }  // namespace
 }  // namespace shearcell

@@ -150,6 +150,8 @@ TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
   EXPECT_FALSE(rows[0].contains("manifest"));
   const Outcome said = expect(0, {"table", "--per", "run"});
   EXPECT_TRUE(contains(said.err, "left out: 2 runs of another version")) << said.err;
+  const Outcome report = expect(0, {"report", "--out", "report.html"}, {"tiny: left out: 2 runs"});
+  EXPECT_FALSE(contains(report.err, "left out: experiment")) << report.err;
   const nlohmann::json all = table({"--per", "run", "--all-versions"});
   ASSERT_EQ(all.size(), 3U);
   EXPECT_NE(all[0].at("manifest"), all[2].at("manifest"));
@@ -240,7 +242,7 @@ TEST_F(CommandLineTable, ExportsSelectedRunsWholeOrNotAtAll) {
     EXPECT_TRUE(contains(text, "length_unit=d ") && contains(text, " amplitude_rad=0.0833 "));
   }
   const std::string id = done[0].at("run");
-  expect(0, {"export", id, "--to", "vtk", "--out", "frames/"});
+  expect(0, {"export", id, id, "--to", "vtk", "--out", "frames/"});  // one run
   EXPECT_TRUE(fs::exists(path("frames/run.json")) && fs::exists(path("frames/frames.pvd")));
   expect(2, {"export", id, "--seed", "1", "--to", "vtk", "--out", "other"});
   expect(2, {"export", id, "--to", "extxyz", "--out", "frames"}, {"exists already"});

@@ -72,7 +72,10 @@ TEST_F(CommandLine, TakesTheStoreThatIsNamedElseThatOfTheEnvironment) {
 TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {
   campaign(tiny_manifest(), {"--cycles", "0"});
   expect_refused({"figures", "S99"}, {"there is no figure S99"});
-  expect_refused({"figures", "S2", "--scale", "paper"}, {"no run of the store has scale paper"});
+  const std::string no_scale = "no run of the store has scale paper";
+  expect_refused({"figures", "S2", "--scale", "paper"}, {no_scale});
+  const std::string said = run({"figures", "--scale", "paper"}).err;
+  EXPECT_EQ(said.find(no_scale), said.rfind(no_scale)) << "once for all figures";
   expect_refused({"show", "0123456789abcdef"}, {"no run"});
   expect_refused({"log", "zzz"}, {"no run"});
   expect_refused({"resume", "zzz"}, {"no run"});

@@ -131,6 +131,20 @@ TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {
   EXPECT_THROW(wanted_figures(store_, {"overlaps"}), NotFound);
 }
 
+// Records leave these keys out at the values of older runs.
+TEST_F(DrawFigure, AClaimMayNameWhatTheRecordLeavesOut) {
+  compute(store_,
+          tiny_manifest("",
+                        "sweep: {grid: {pressure_at: [top, moving_wall]}}\n"
+                        "claims: [{name: same, compare: phi, at_cycle: 1, margin: 1,"
+                        " between: [{pressure_at: top, wall_grain_draw: 0},"
+                        " {pressure_at: moving_wall, engine: shearcell}]}]\n"),
+          {.cycles = 1});
+  draw("own", "same");
+  const auto verdict = nlohmann::json::parse(contents("own").at("same.verdict.json"));
+  EXPECT_EQ(verdict.at("claims").at(0).at("note").get<std::string>().find("1 and 1 indep"), 0U);
+}
+
 // Two variants share a curve, which the label of neither names.
 TEST_F(DrawFigure, ACurveByAKeyHasTheLabelOfThatKeyAndAveragesOverNoOther) {
   compute(store_,
@@ -153,6 +167,23 @@ TEST_F(DrawFigure, ACurveByAKeyHasTheLabelOfThatKeyAndAveragesOverNoOther) {
   EXPECT_TRUE(has(files.at("each.gp"), "title 'water at rest'"));
   EXPECT_TRUE(has(files.at("each.gp"), "title 'fluid=cell'"));
   EXPECT_TRUE(has(files.at("each.csv"), "\nfluid=still,0.05,"));
+}
+
+TEST_F(DrawFigure, AGroupedFigureAveragesOverNoVersions) {
+  const std::string sweep = "sweep: {grid: {amplitude_rad: [0.05, 0.08]}}\n";
+  for (const char* base : {"  pressure_Pa: 700\n", ""}) {
+    compute(store_, tiny_manifest(base, sweep), {.cycles = 1});
+  }
+  const WantedFigure onset{*find_figure("S5a"), "tiny"};
+  EXPECT_NO_THROW(draw("newest", onset));
+  FigureOptions every;
+  every.runs.all_versions = true;
+  try {
+    draw("every", onset, every);
+    ADD_FAILURE() << "versions were averaged";
+  } catch (const UsageError& error) {
+    EXPECT_TRUE(has(error.what(), "leave out --all-versions")) << error.what();
+  }
 }
 
 TEST_F(DrawFigure, TheNoteOnMissingCheckpointsSaysWhichRunsCannotMakeThem) {
@@ -248,6 +279,34 @@ TEST_F(DrawFigure, VerdictsAndLineageAreWrittenAndRecorded) {
   for (const char* name : {"S2a.csv", "S2b.csv", "S2.verdict.json"}) {
     EXPECT_EQ(lineage.at("outputs").at(name), sha256_hex(files.at(name))) << name;
   }
+}
+
+TEST_F(DrawFigure, LeavesNoVerdictOrCaptionOfAnOlderFigure) {
+  compute(store_, tiny_manifest("", kBothFluids), {.cycles = 1});
+  draw("out");
+  ASSERT_TRUE(contents("out").contains("S2.verdict.json"));
+  ASSERT_TRUE(contents("out").contains("S2.caption.txt"));
+  WantedFigure bare = kS2;
+  bare.figure.make = [](std::span<const FigureRun>) { return FigureResult(); };
+  draw("out", bare);
+  EXPECT_FALSE(contents("out").contains("S2.verdict.json"));
+  EXPECT_FALSE(contents("out").contains("S2.caption.txt"));
+}
+
+TEST_F(DrawFigure, NamesTablesWithoutAValue) {
+  compute(store_, tiny_manifest(), {.cycles = 1});
+  WantedFigure made_up = kS2;
+  made_up.figure.make = [](std::span<const FigureRun>) {
+    FigureTable none{.name = "none", .columns = {"x", "y"}};
+    none.chart.series = {{.columns = {.x = "x", .y = "y"}}, {.points = {{.x = 1, .y = 1}}}};
+    FigureTable unknown = none, known = none;
+    unknown.name = "unknown", known.name = "known";
+    unknown.rows = {{1.0, std::nan("")}};
+    known.rows = {{1.0, 2.0}};
+    return FigureResult{{none, unknown, known}, {}};
+  };
+  EXPECT_EQ(compute_figure(store_, made_up, {}).summary.empty,
+            (std::vector<std::string>{"none", "unknown"}));
 }
 
 TEST_F(DrawFigure, LeavesOutADamagedCheckpointAndNamesIt) {

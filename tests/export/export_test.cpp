@@ -7,11 +7,13 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "analysis/common_neighbours.hpp"
 #include "analysis/near_grains.hpp"
 #include "experiments/bench/packing.hpp"
 #include "experiments/export/formats.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
 namespace shearcell {
@@ -101,18 +103,17 @@ nlohmann::json truth(const Checkpoint& c) {
   measured.measures.units = mechanical_units(654.0, 2e-5, 3e-3, 9.81);
   const Eigen::Index grains = c.state.position.cols();
   const auto walls = static_cast<Eigen::Index>(c.cell.wall_grains.size());
-  Eigen::Matrix3Xd position(3, grains + walls),
-      velocity = Eigen::Matrix3Xd::Zero(3, grains + walls);
+  Eigen::Matrix3Xd position(3, grains + walls), velocity(3, grains + walls);
   position << c.state.position, wall_grain_positions(c.cell, pose);
   for (Eigen::Index i = 0; i < grains; ++i) {
     position(2, i) -= c.cell.depth * std::floor(position(2, i) / c.cell.depth);
   }
-  velocity.leftCols(grains) = c.state.velocity * d;
+  velocity << c.state.velocity * d,
+      wall_grain_velocities(c.cell, pose, 0, c.state.wall_velocity) * d;  // about() names no drive
   std::vector<int> type(static_cast<std::size_t>(grains), 0);
   for (Eigen::Index w = 0; w < walls; ++w) {
     const WallSide side = c.cell.wall_grains[static_cast<std::size_t>(w)].side;
     type.push_back(1 + static_cast<int>(side));
-    if (side == WallSide::bottom) velocity(1, grains + w) = c.state.wall_velocity * d;
   }
   std::vector<double> phi_local = measured.grains.phi_local, q6 = measured.grains.q6,
                       overlap = measured.grains.largest_overlap,
@@ -239,6 +240,33 @@ TEST(Export, OtherProgramsReadEveryNumber) {
       0);
 }
 
+TEST(Export, WallGrainsMoveWithTheShearOfTheirRun) {
+  const Parameters parameters;
+  SelectedRun run = about();
+  run.run.kind = name_of(Stage::shear);
+  run.run.resolved = last_stage(parameters, 1, prepare_stage(parameters, 1)).resolved;
+  const Checkpoint checkpoint = checkpoints().front();  // upright, at the largest shear rate
+  CheckpointRecord record = record_of(checkpoint);
+  record.step = checkpoint.state.step;
+  const Frame frame = frame_of(checkpoint, record, run);
+  for (const auto& [key, value] : frame.parameters) {
+    EXPECT_NE(key, "max_overlap_diameters") << "its record is a constant";
+  }
+  const double rate = 2 * std::numbers::pi / parameters.period_s * parameters.amplitude_rad;
+  const double d = checkpoint.units.diameter_m;
+  const double top = wall_pose(checkpoint.cell, 0, checkpoint.state.wall_height).top * d;
+  const double bottom = checkpoint.state.wall_height * d;
+  ASSERT_GT(frame.particles(), frame.grains);
+  for (std::size_t i = frame.grains; i < frame.particles(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    const bool on_top = frame.type[i] == 1 + static_cast<int>(WallSide::top);
+    const bool below = frame.type[i] == 1 + static_cast<int>(WallSide::bottom);
+    const double y = below ? bottom : frame.position(1, column);
+    EXPECT_NEAR(frame.velocity(0, column), on_top ? 0.0 : (y - top) * rate, 1e-12);
+    EXPECT_EQ(frame.velocity(1, column), below ? checkpoint.state.wall_velocity * d : 0.0);
+  }
+}
+
 TEST(Export, WritesTheSameBytesTwice) {
   const TemporaryFolder folder;
   Frame frame = frame_of(checkpoints().back(), {}, about());
@@ -251,6 +279,30 @@ TEST(Export, WritesTheSameBytesTwice) {
   }
   EXPECT_FALSE(bytes[0].empty());
   EXPECT_EQ(bytes[0], bytes[1]);
+}
+
+TEST(Export, FramesOfCloseCheckpointsHaveFilesOfTheirOwn) {
+  const TemporaryFolder folder;
+  Frame frame = frame_of(checkpoints().back(), {}, about());
+  const FrameWriter writers[] = {vtk_writer(folder.path(), 2), lammps_writer(folder.path())};
+  for (const double cycle : {100.00002, 100.00004}) {
+    frame.cycle = cycle;
+    for (const FrameWriter& write : writers) write(frame);
+  }
+  for (const char* name : {"grains_100.00002.vtp", "cell_100.00004.vtp", "frame_100.00004.data"}) {
+    EXPECT_TRUE(fs::exists(folder.path() / name)) << name;
+  }
+}
+
+TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
+  const TemporaryFolder folder;
+  SelectedRun run = about();
+  run.membership.scale.clear();  // a manifest without scales
+  extxyz_writer(folder.path() / "run.xyz",
+                Lengths::diameters)(frame_of(checkpoints().back(), {}, run));
+  const std::string text = read_bytes(folder.path() / "run.xyz");
+  EXPECT_EQ(text.find("scale="), std::string::npos);
+  EXPECT_NE(text.find(" experiment=\"drag\" variant="), std::string::npos);
 }
 
 TEST(Export, SaysWhatItCannotWrite) {

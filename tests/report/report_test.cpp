@@ -132,7 +132,9 @@ TEST_F(ReportOfRuns, HasTheTableOfRunsInBothForms) {
   };
   for (const std::string& html : {make(), make(drawings())}) {
     EXPECT_EQ(count(html, "<tbody data-row="), 2U);
-    EXPECT_EQ(count(html, "data-key=\"fluid\""), 1U);
+    for (const char* key : {"fluid", "grains"}) {
+      EXPECT_EQ(count(html, "data-key=\"" + std::string(key) + "\""), 1U) << key;
+    }
     for (const auto& row : table.rows) {
       const nlohmann::json& phi = row[static_cast<std::size_t>(column("phi"))];
       EXPECT_EQ(count(html, "data-value=\"" + phi.dump() + "\""), 1U) << phi;
