@@ -16,6 +16,7 @@
 #include "core/drive.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
+#include "experiments/figures/own_part.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/progress.hpp"
@@ -116,7 +117,9 @@ std::vector<CheckpointRecord> chosen(const Store& store, const RunRecord& run,
              : 0;
   std::vector<CheckpointRecord> records;
   std::size_t pruned = 0;
-  for (CheckpointRecord& record : store.checkpoints(run.id, Listed::and_pruned)) {
+  const bool by_name = range.first == range.last;  // also one that an interruption left
+  for (CheckpointRecord& record : by_name ? store.checkpoints(run.id, Listed::and_pruned)
+                                          : own_checkpoints(store, run, asks_of(store, run.id))) {
     if (!range.holds(record.cycle, near)) continue;
     if (record.state == CheckpointState::pruned) ++pruned;
     if (record.state == CheckpointState::recorded) records.push_back(std::move(record));
@@ -173,7 +176,7 @@ std::string check_uri(const std::string& text) {
   const bool web = text.starts_with("https://") || text.starts_with("http://");
   return web && text.find_first_of(" \"<>\\") == std::string::npos
              ? ""
-             : text + " is no URI that begins with https://, as that of a licence does";
+             : text + " is not an https:// URI";
 }
 
 /// Throws for an option that this format would ignore.
@@ -187,7 +190,7 @@ void require_effect(const ExportOptions& options, const ExportFormat& format) {
   if (options.metres && options.format != "extxyz") refuse("--metres");
 }
 
-/// The named runs, or else those of the filters, each once; packings only by name.
+/// The named runs, or else the newest_runs() of the filters, each once; packings only by name.
 std::vector<SelectedRun> wanted(const Store& store, const ExportOptions& options) {
   parse_cycles(options.cycles);  // or throw once, not for each run
   std::vector<SelectedRun> runs;
@@ -196,8 +199,10 @@ std::vector<SelectedRun> wanted(const Store& store, const ExportOptions& options
     runs.push_back({run, first_membership(run)});
   }
   if (runs.empty()) {
-    runs = select_runs(store, options.selection);
-    std::erase_if(runs, [](const SelectedRun& s) { return s.run.kind == name_of(Stage::prepare); });
+    NewestRuns newest =
+        newest_runs(store, select_runs(store, options.selection), options.selection.all_versions);
+    for (const std::string& note : newest.notes) tell_stderr("{}\n", note);
+    runs = std::move(newest.runs);
   }
   std::set<std::string> seen;
   std::erase_if(runs, [&](const SelectedRun& s) { return !seen.insert(s.run.id).second; });
@@ -296,7 +301,9 @@ void add_export(CLI::App& app, Context& context) {
   CLI::Option* named = command->add_option(
       "run", options->runs, "Run ids, or unique beginnings of them (default: all selected)");
   add_selection_options(*command, options->selection);
-  for (const char* filter : {"--experiment", "--scale", "--variant", "--seed"}) {
+  command->add_flag("--all-versions", options->selection.all_versions,
+                    "Runs of older versions of a manifest too");
+  for (const char* filter : {"--experiment", "--scale", "--variant", "--seed", "--all-versions"}) {
     named->excludes(command->get_option(filter));
   }
   std::vector<std::string> names;
@@ -309,7 +316,9 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("--out", options->out, "File or folder to write")
       ->required()
       ->type_name("PATH");
-  command->add_option("--cycles", options->cycles, "Checkpoints of these cycles (default: all)")
+  command
+      ->add_option("--cycles", options->cycles,
+                   "Checkpoints of these cycles (default: all that were asked for)")
       ->type_name("A[:B[:STEP]]");
   command->add_flag("--metres", options->metres, "Extended XYZ in SI units, not in diameters");
   command->add_option("--license", options->licence, "URI of the licence of the data")

@@ -39,8 +39,9 @@ RunAsk ask_for(const Store& store, const Figure& figure, const CollectedRun& run
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
                                              const CollectedRun& run) {
   const auto [first, last] = figure.within.value_or(whole_run);
+  const RunAsk ask = ask_for(store, figure, run);
   std::vector<CheckpointRecord> found =
-      own_checkpoints(store, run.run, ask_for(store, figure, run), static_cast<double>(first),
+      own_checkpoints(store, run.run, {&ask, 1}, static_cast<double>(first),
                       std::min(run.end, static_cast<double>(last)));
   if (figure.form == FigureForm::table && !found.empty()) {
     found.erase(found.begin(), --found.end());

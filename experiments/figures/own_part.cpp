@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
+#include <set>
 #include <vector>
 
 #include "core/drive.hpp"
@@ -58,14 +58,18 @@ std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, 
 }
 
 std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecord& run,
-                                              const RunAsk& ask, double first, double last) {
-  std::vector<std::uint64_t> phases;
-  if (!ask.phases.empty()) phases = asked_steps(run, ask, first, last);
+                                              std::span<const RunAsk> asks, double first,
+                                              double last) {
   std::vector<CheckpointRecord> found = store.checkpoints(run.id, Listed::and_pruned);
+  const double end = found.empty() ? 0 : std::min(last, found.back().cycle);
+  std::set<std::uint64_t> phases;
+  for (const RunAsk& ask : asks) {
+    if (ask.phases.empty()) continue;
+    for (const std::uint64_t step : asked_steps(run, ask, first, end)) phases.insert(step);
+  }
   std::erase_if(found, [&](const CheckpointRecord& record) {
     const bool whole = record.cycle == std::floor(record.cycle);
-    return record.cycle < first || record.cycle > last ||
-           !(whole || std::ranges::binary_search(phases, record.step));
+    return record.cycle < first || record.cycle > last || !(whole || phases.contains(record.step));
   });
   return found;
 }

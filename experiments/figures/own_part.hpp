@@ -2,10 +2,13 @@
 // The part of a run that belongs to one of the experiments that share it.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "experiments/runner/asks.hpp"
 #include "experiments/runner/measure.hpp"
+#include "provenance/limits.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -23,9 +26,10 @@ std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, 
                                        double last);
 
 /// The checkpoints of cycles first to last, pruned ones too, at whole cycles and at the phases that
-/// `ask` has. An interruption leaves others, which no figure or table has: they would differ from
-/// those of a run that was never interrupted.
+/// one of `asks` has. An interruption leaves others, which no figure or table has: they would
+/// differ from those of a run that was never interrupted.
 std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecord& run,
-                                              const RunAsk& ask, double first, double last);
+                                              std::span<const RunAsk> asks, double first = 0,
+                                              double last = StoreLimits::cycles);
 
 }  // namespace shearcell

@@ -206,9 +206,9 @@ Selected select(const Store& store, const RunSelection& selection, const Measure
   table.notes = std::move(newest.notes);
   for (const SelectedRun& run : all.runs) {
     const double end = own_end(store, run.run, run.membership, options);
-    std::ranges::move(
-        own_checkpoints(store, run.run, ask_of(store, run.run.id, run.membership), 0, end),
-        std::back_inserter(all.records));
+    const RunAsk ask = ask_of(store, run.run.id, run.membership);
+    std::ranges::move(own_checkpoints(store, run.run, {&ask, 1}, 0, end),
+                      std::back_inserter(all.records));
     all.ends.push_back(all.records.size());
   }
   all.measures.resize(all.records.size());
