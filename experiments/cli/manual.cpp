@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "analysis/figure.hpp"
+#include "analysis/onset.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/read_parts.hpp"
