@@ -80,7 +80,10 @@ TEST_F(Care, VerifyReplaysAndHoldsAgainstAHead) {
   const std::string before = head();
   const nlohmann::json told = json({"verify", "--replay", "3", "--seed", "5", "--json"});
   ASSERT_EQ(told.at("replay").at("replayed").size(), 3U);
-  for (const auto& replay : told.at("replay").at("replayed")) EXPECT_EQ(replay.at("same"), true);
+  for (const auto& replay : told.at("replay").at("replayed")) {
+    EXPECT_EQ(replay.at("same"), true);
+    EXPECT_GT(replay.at("steps"), 0) << "where a stage begins nothing is computed";
+  }
   const auto colon = before.find(':');
   const std::string seq = before.substr(0, colon), hash = before.substr(colon + 1);
   expect(0, {"verify", "--against", before});
@@ -110,6 +113,10 @@ TEST_F(Care, MergesAndRefusesConflicts) {
   expect(0, {"verify", "--replay", "2", "--store", "all"});
   expect(2, {"merge", "all", "--store", "all"});
   expect(2, {"merge", "nowhere", "--store", "all"});
+  expect_refused({"merge", "a", "nowhere", "--store", "new"},
+                 {"nowhere", "no store here to merge"});
+  expect_refused({"merge", "", "--store", "new"}, {"no store here to merge"});
+  expect_refused({"run", "m.yaml", "--store", ""}, {"--store", "names no folder"});
   {
     // Somebody's own arithmetic: another state for a step that is known.
     Store store(path("odd"), Access::create);
