@@ -137,6 +137,22 @@ TEST_F(Care, MergesAndRefusesConflicts) {
   EXPECT_EQ(hashes("all"), whole);
 }
 
+TEST_F(Care, StatusListsASharedRunUnderEachExperiment) {
+  const std::string text = tiny_manifest("", "sweep: {grid: {grains: [200, 300]}}\n");
+  campaign(text, {"--cycles", "0"});
+  std::string twin = text;
+  twin.replace(twin.find("tiny"), 4, "twin");
+  write("twin.yaml", twin);
+  expect(0, {"run", "twin.yaml", "--cycles", "0", "-q"});
+  const std::string status = expect(0, {"status"},
+                                    {"tiny at scale base", "twin at scale base", "packing N=200 ",
+                                     "packing N=300 ", "4 stages: 4 completed"})
+                                 .out;
+  const std::string run = last_run().substr(0, 8);
+  EXPECT_NE(status.find(run), status.rfind(run)) << status;
+  EXPECT_EQ(json({"status", "--json"}).at("runs").size(), 4U) << "each once";
+}
+
 TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
   campaign(manifest_, {"--cycles", "1"});
   const auto stage = [](const nlohmann::json& plan, const std::string& kind,
