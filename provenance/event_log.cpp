@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "provenance/event_log.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <map>
 #include <set>
 #include <string>
+#include <system_error>
 
 #include "provenance/errors.hpp"
 #include "provenance/events.hpp"
@@ -105,6 +109,18 @@ void migrate(sqlite::Database& database) {
   lock.commit();
 }
 
+/// SQLite would open it for reading only, and fail at the first event. The journal is a new file in
+/// the folder.
+void require_writable(const std::filesystem::path& file) {
+  for (const std::filesystem::path& path : {file, file.parent_path()}) {
+    if (faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) == 0 || errno == ENOENT) continue;
+    throw MachineError(fmt::format(
+        "{}: this user cannot write to it ({}), and a store is written in place; change its "
+        "permissions, or copy the store to a folder of your own",
+        path.string(), std::generic_category().message(errno)));
+  }
+}
+
 constexpr const char* kSelect = "SELECT * FROM events ";
 
 std::string zeros() {
@@ -135,6 +151,7 @@ std::string change_of(const Event& event, const std::string& prev_hash, std::uin
 }  // namespace
 
 sqlite::Database open_database(const std::filesystem::path& file, Access access) {
+  if (access != Access::read) require_writable(file);
   sqlite::Database database(file, access);
   // Rollback journal instead of WAL: SQLite before 3.51.3 can lose committed transactions when
   // several connections checkpoint a WAL at once. EXTRA also syncs the folder after the journal is

@@ -22,7 +22,8 @@ inline constexpr std::int64_t kSchemaVersion = 2;
 /// Opens the log, creates its tables when it is new or empty, and migrates an older schema without
 /// changing events. With Access::read an older schema is not migrated; the file is still opened for
 /// writing if possible, so that SQLite can roll back the transaction of a crashed program. Throws
-/// StoreDamaged when the file is not a store or has a newer schema.
+/// StoreDamaged when the file is not a store or has a newer schema, and MachineError when it is to
+/// be written and this user may not.
 sqlite::Database open_database(const std::filesystem::path& file, Access access);
 
 /// One row of the log.

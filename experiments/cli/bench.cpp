@@ -98,17 +98,16 @@ nlohmann::json json_of(const TableValue& value) {
 }
 
 nlohmann::json json_of(const std::vector<Facts>& results) {
-  nlohmann::json all = nlohmann::json::array();
-  for (const Facts& result : results) {
-    nlohmann::json& one = all.emplace_back();
+  return json_list(results, [](const Facts& result) {
+    nlohmann::json one;
     for (const Fact& fact : result) one[fact.key] = json_of(fact.value);
-  }
-  return all;
+    return one;
+  });
 }
 
 void print_facts(const std::vector<Facts>& results) {
-  std::vector<std::string> header;
-  std::vector<std::vector<std::string>> rows;
+  Row header;
+  std::vector<Row> rows;
   for (const Facts& result : results) {
     header.clear();
     rows.emplace_back();
@@ -117,10 +116,8 @@ void print_facts(const std::vector<Facts>& results) {
       header.push_back(heading);
       const auto* word = std::get_if<std::string>(&value);
       const auto* count = std::get_if<std::int64_t>(&value);
-      rows.back().push_back(!text.empty() ? text
-                            : word        ? *word
-                            : count       ? std::to_string(*count)
-                                          : "");
+      const std::string plain = word ? *word : count ? std::to_string(*count) : "";
+      rows.back().push_back(text.empty() ? plain : text);
     }
   }
   print_table(header, rows);
@@ -173,11 +170,28 @@ FigureTable table_of(const accuracy::Section& section) {
   return table;
 }
 
+constexpr auto is_chart = [](std::string_view text) { return text.starts_with("{\"lines\":"); };
+
+// A table in it is ours if the chart that is written with it is there.
+void make_own_folder(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const char* name :
+       {"accuracy-collision-speed", "accuracy-seeds", "accuracy-stiffness", "accuracy-wall"}) {
+    const std::string base = folder / name, chart = base + ".chart.json";
+    require_ours(chart, is_chart);
+    const auto made = [&](std::string_view) { return std::filesystem::exists(chart); };
+    for (const char* kind : {".csv", ".svg", ".pdf"}) require_ours(base + kind, made);
+  }
+}
+
 // All data before the first figure, which needs gnuplot.
 void write(const std::vector<accuracy::Section>& sections, const std::filesystem::path& folder) {
   std::vector<FigureTable> tables;
   for (const accuracy::Section& section : sections) tables.push_back(table_of(section));
-  for (const FigureTable& table : tables) require_own_files(table, folder);
+  for (const FigureTable& table : tables) {
+    require_own_files(table, folder);
+    require_ours(folder / (table.name + ".chart.json"), is_chart);
+  }
   for (const FigureTable& table : tables) {
     write_csv(table, folder);
     write_output(folder / (table.name + ".chart.json"), chart_json(table).dump() + "\n");
@@ -186,8 +200,8 @@ void write(const std::vector<accuracy::Section>& sections, const std::filesystem
 }
 
 void measure(const accuracy::Options& options, const std::string& out, Context& context) {
-  // A folder that cannot be created is an error before minutes of measuring, not after.
-  if (!out.empty()) std::filesystem::create_directories(out);
+  // A folder that cannot be used is an error before minutes of measuring, not after.
+  if (!out.empty()) make_own_folder(out);
   nlohmann::json all = nlohmann::json::array();
   const std::vector<accuracy::Section> sections = accuracy::measure_accuracy(options);
   for (const accuracy::Section& section : sections) {

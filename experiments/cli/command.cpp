@@ -47,6 +47,7 @@ void add_json_option(CLI::App& command, Context& context) {
 void add_common_options(CLI::App& command, Context& context) {
   command.add_option("--store", context.store, "Folder of the store; else $SHEARCELL_STORE")
       ->capture_default_str()
+      ->check([](const std::string& folder) { return folder.empty() ? "names no folder" : ""; })
       ->type_name("DIR");
   add_json_option(command, context);
 }

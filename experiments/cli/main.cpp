@@ -2,6 +2,7 @@
 // The program: reads the command line and turns errors into messages and exit codes.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -12,6 +13,7 @@
 #include "core/filling.hpp"
 #include "core/watchdog.hpp"
 #include "experiments/cli/command.hpp"
+#include "experiments/manifest/suggest.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
@@ -68,6 +70,29 @@ int complain(int code, const char* what) {
   return code;
 }
 
+/// The words that no command expects, in their order, and what the first of them may mean.
+std::string describe_extras(const CLI::App& app) {
+  const CLI::App* at = &app;
+  while (at->remaining().empty() && !at->get_subcommands().empty()) {
+    at = at->get_subcommands().front();
+  }
+  const std::vector<std::string> words = at->remaining();
+  const std::string problem =
+      fmt::format("The following arguments were not expected: {}", fmt::join(words, " "));
+  std::vector<std::string> known;
+  if (!words.empty() && words.front().starts_with("--")) {
+    for (const CLI::Option* option : at->get_options()) {
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    }
+  } else {
+    for (const CLI::App* command : at->get_subcommands([](const CLI::App*) { return true; })) {
+      known.push_back(command->get_name());
+    }
+  }
+  const std::vector<std::string_view> names(known.begin(), known.end());
+  return words.empty() ? problem : with_nearest(problem, words.front(), names);
+}
+
 // What the caller left open, closed or ignored must change nothing: a closed standard stream would
 // be the next file that is opened, and with SIGCHLD ignored no child could be waited for.
 void make_surroundings_usual() {
@@ -106,6 +131,9 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
     return context.exit_code;
+  } catch (const CLI::ExtrasError&) {
+    tell_stderr("{}\nRun with --help for more information.\n", describe_extras(app));
+    return kUsageError;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kUsageError;
   } catch (const nlohmann::json::exception& error) {

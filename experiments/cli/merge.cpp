@@ -11,6 +11,11 @@ namespace shearcell::cli {
 namespace {
 
 void merge(const std::vector<std::string>& sources, Context& context) {
+  for (const std::string& source : sources) {  // before a store is created
+    if (!source.empty() && std::filesystem::exists(std::filesystem::path(source) / "store.sqlite"))
+      continue;
+    throw NotFound(fmt::format("'{}': there is no store here to merge", source));
+  }
   Store store(context.store, Access::create);
   std::vector<Finding> refused;
   const auto reports = merge_stores(store, {sources.begin(), sources.end()}, {}, &refused);

@@ -10,11 +10,13 @@
 #include <optional>
 #include <set>
 #include <thread>
+#include <tuple>
 
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
 #include "experiments/runner/cost.hpp"
+#include "experiments/runner/packing_names.hpp"
 #include "experiments/runner/progress.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
@@ -25,22 +27,41 @@
 namespace shearcell::cli {
 namespace {
 
-/// What is known of the selected runs, each once: in the first experiment of those selected.
+/// What is known of the selected runs.
 struct View {
   Store store;
-  std::vector<SelectedRun> runs;
+  std::vector<SelectedRun> places;       // one for each experiment and scale that a run is part of
+  std::vector<SelectedRun> runs;         // each once, in the first place of those selected
   std::map<std::string, Lease> holders;  // by run
   QueueView queue;
   VariantNames names;
+  PackingNames packings;
 
   View(const RunSelection& selection, const Context& context)
       : store(context.store, Access::read),
-        runs(select_runs(store, selection)),
         queue(look_at_queue(store)),
-        names(store) {
+        names(store),
+        packings(store.runs()) {
     std::set<std::string> seen;
-    std::erase_if(runs, [&](const SelectedRun& s) { return !seen.insert(s.run.id).second; });
+    std::map<std::tuple<std::string, std::string, std::string>, std::size_t> known;
+    for (SelectedRun& found : select_runs(store, selection)) {
+      if (seen.insert(found.run.id).second) runs.push_back(found);
+      const Membership& m = found.membership;
+      const auto [at, fresh] =
+          known.try_emplace({m.experiment, m.scale, found.run.id}, places.size());
+      // Another version of the manifest gave the variant another name.
+      if (fresh) {
+        places.push_back(std::move(found));
+      } else {
+        places[at->second] = std::move(found);
+      }
+    }
     for (Lease& lease : store.leases()) holders.emplace(lease.run, std::move(lease));
+  }
+
+  std::string called(const SelectedRun& selected) const {
+    const auto& [run, place] = selected;
+    return run.kind == "prepare" ? packings.of(place, run.resolved) : names.of(place);
   }
 
   const QueuedRun* queued(const RunRecord& run) const {
@@ -82,7 +103,7 @@ nlohmann::json facts(const SelectedRun& selected, const View& view) {
           {"experiment", first.experiment},
           {"scale", first.scale},
           {"variant", first.variant},
-          {"name", view.names.of(first)},
+          {"name", view.called(selected)},
           {"seed", first.seed},
           {"state", name_of(run.state)},
           {"cycle", run.cycle},
@@ -183,24 +204,27 @@ void print(const Estimate& left) {
        left.running ? ": until " + local_time(left.seconds()) : "; no program computes them now");
 }
 
-/// A table for each experiment, and a line that counts the states.
+/// A table for each experiment, and a line that counts the states, each stage once.
 void print_tables(const View& view) {
   const bool queued = !view.queue.runs.empty();
   std::vector<std::string> experiments;
   std::map<std::string, std::vector<Row>> tables;
   std::map<RunState, std::size_t> count;
-  for (const auto& [run, first] : view.runs) {
-    const std::string name = first.experiment + " at scale " + scale_name(first.scale);
+  for (const SelectedRun& each : view.runs) {
+    ++count[Shown{each.run, view.queued(each.run)}.state()];
+  }
+  for (const SelectedRun& selected : view.places) {
+    const auto& [run, place] = selected;
+    const std::string name = place.experiment + " at scale " + scale_name(place.scale);
     if (!tables.contains(name)) experiments.push_back(name);
     const Shown shown{run, view.queued(run)};
     Row& row = tables[name].emplace_back(
-        Row{run.id.substr(0, 8), view.names.of(first), std::to_string(first.seed),
+        Row{run.id.substr(0, 8), view.called(selected), std::to_string(place.seed),
             std::to_string(run.grains),
             fmt::format("{}{}", name_of(shown.state()), view.holders.contains(run.id) ? " *" : ""),
             run.kind == "prepare" ? "" : fmt::format("{:.4g}/{}", shown.cycle(), run.target_cycles),
             fmt::format("{:.1f}", rate(run) * 1e-6), format_duration(run.wall_seconds)});
     if (queued) row.push_back(shown.queue());
-    ++count[shown.state()];
   }
   Row header = {"run", "variant", "seed", "N", "state", "cycle", "M/s", "time"};
   if (queued) header.emplace_back("queue");

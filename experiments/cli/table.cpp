@@ -31,7 +31,8 @@ void table(const TableOptions& options, Context& context) {
   const bool json = context.json || options.format == "json";
   const std::string text = json ? to_json(made) : to_csv(made);
   if (options.out.empty()) {
-    fmt::print("{}", text);
+    // A file or a program gets the bytes as they are.
+    fmt::print("{}", terminal_columns(stdout) ? for_terminal(text) : text);
   } else {
     write_output(options.out, text);
     tell_stderr("{} rows of {} columns in {}\n", made.rows.size(), made.columns.size(),

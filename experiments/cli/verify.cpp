@@ -3,6 +3,7 @@
 // `rebuild`: mends its tables.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "experiments/cli/command.hpp"
@@ -77,7 +78,10 @@ std::string describe(const Replay& replay) {
 nlohmann::json replay(const VerifyOptions& options, Context& context) {
   Store store(context.store, Access::write);
   const std::uint64_t seed = options.seed.value_or(seed_of(store.head()));
-  const std::vector<CheckpointRecord> all = replayable(store);
+  std::vector<CheckpointRecord> all = replayable(store);
+  // Where a stage begins nothing is computed.
+  const auto is_beginning = [](const CheckpointRecord& record) { return record.step == 0; };
+  if (!std::ranges::all_of(all, is_beginning)) std::erase_if(all, is_beginning);
   const std::vector<CheckpointRecord> chosen = sample(all, options.replay, seed);
   catch_stop_signals();
   nlohmann::json list = nlohmann::json::array();

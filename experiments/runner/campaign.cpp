@@ -8,6 +8,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -16,6 +17,7 @@
 #include "core/threads.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/asks.hpp"
+#include "experiments/runner/packing_names.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/run_end.hpp"
@@ -167,6 +169,7 @@ class Campaign {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
     }
+    progress_.drop(job.id);
     return JobState::ended;
   }
 
@@ -198,7 +201,7 @@ class Campaign {
       note(job, &CampaignResult::failed, run.error);  // and so it would fail here
       return JobState::ended;
     }
-    progress_.begin(job.name);
+    progress_.begin(job.id, job.name);
     const StageOutcome outcome = run_stage(store_, job.id, options_of(job));
     switch (outcome) {
       case StageOutcome::completed:
@@ -212,11 +215,11 @@ class Campaign {
         return JobState::ended;
       case StageOutcome::failed:
         note(job, &CampaignResult::failed, store_.run(job.id).error);
-        progress_.end(job.name, "FAILED", false);
+        progress_.end(job.id, job.name, "FAILED", false);
         return JobState::ended;
       case StageOutcome::held:
       case StageOutcome::lost:
-        progress_.drop(job.name);
+        progress_.drop(job.id);
         if (++states_[j].losses > kMostLosses && !held_by_another(job.id)) {
           note(job, &CampaignResult::blocked,
                "it cannot be begun; `shearcell verify` may tell why");
@@ -233,7 +236,7 @@ class Campaign {
     options.damaged = [&](const std::string& what) {
       note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
     };
-    options.report = [&](const StageStatus& status) { progress_.update(job.name, status); };
+    options.report = [&](const StageStatus& status) { progress_.update(job.id, status); };
     return options;
   }
 
@@ -248,7 +251,7 @@ class Campaign {
       const std::lock_guard lock(mutex_);
       ++(result_.*count);
     }
-    progress_.end(job.name, how, done);
+    progress_.end(job.id, job.name, how, done);
   }
 
   void note(const StageJob& job, std::size_t CampaignResult::*count, const std::string& why) {
@@ -271,18 +274,26 @@ class Campaign {
   std::exception_ptr error_;
 };
 
-std::string job_name(const Membership& membership, const std::string& kind,
-                     const std::string& variant) {
-  // Variants that start from one packing share it, so its name says no variant.
-  return kind == "prepare"
-             ? fmt::format("{} packing seed={}", membership.experiment, membership.seed)
-             : fmt::format("{} {} seed={}", membership.experiment, variant, membership.seed);
+// Variants that start from one packing share it, so its name says no variant.
+std::string job_name(const Membership& membership, const std::string& name) {
+  return fmt::format("{} {} seed={}", membership.experiment, name, membership.seed);
 }
 
-StageJob job_of(const RunRecord& run, const VariantNames& names) {
+StageJob job_of(const RunRecord& run, const VariantNames& names, const PackingNames& packings) {
   if (run.memberships.empty()) return {run.id, run.parent, run.kind};
-  return {run.id, run.parent,
-          job_name(run.memberships.front(), run.kind, names.of(run.memberships.front()))};
+  const Membership& place = run.memberships.front();
+  return {
+      run.id, run.parent,
+      job_name(place, run.kind == "prepare" ? packings.of(place, run.resolved) : names.of(place))};
+}
+
+/// Adds their ids to equal names, as those of several scales.
+void tell_apart(std::vector<StageJob>& jobs) {
+  std::map<std::string, std::size_t> count;
+  for (const StageJob& job : jobs) ++count[job.name];
+  for (StageJob& job : jobs) {
+    if (count[job.name] > 1) job.name += " " + job.id.substr(0, 8);
+  }
 }
 
 // By scale, where it is not the default.
@@ -307,6 +318,8 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   store.register_manifest(manifest.text, manifest.file, info);
   std::vector<StageJob> jobs;
   std::set<std::string> known;
+  PackingNames packings;
+  for (const PlannedRun& run : plan.runs) packings.add(run, run.prepare.resolved);
   for (const PlannedRun& run : plan.runs) {
     for (const StageSpec* stage : {&run.prepare, &run.last}) {
       const bool prepare = stage->stage == Stage::prepare;
@@ -321,11 +334,13 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
                       .checkpoint_every = run.checkpoint_every};
       }
       const std::string kind(name_of(stage->stage));
-      jobs.push_back({stage->key, stage->parent, job_name(membership, kind, run.name)});
+      const std::string name = prepare ? packings.of(run, stage->resolved) : run.name;
+      jobs.push_back({stage->key, stage->parent, job_name(membership, name)});
       store.declare_run({stage->key, stage->parent, kind, stage->resolved, run.parameters.grains,
                          membership.target_cycles, std::move(membership)});
     }
   }
+  tell_apart(jobs);
   return jobs;
 }
 
@@ -356,10 +371,13 @@ std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& p
     while (wanted.insert(run.id).second && !run.parent.empty()) run = store.run(run.parent);
   }
   std::vector<StageJob> jobs;
+  const std::vector<RunRecord> runs = store.runs();
   const VariantNames names(store);
-  for (const RunRecord& run : store.runs()) {
-    if (wanted.count(run.id) > 0) jobs.push_back(job_of(run, names));
+  const PackingNames packings(runs);
+  for (const RunRecord& run : runs) {
+    if (wanted.count(run.id) > 0) jobs.push_back(job_of(run, names, packings));
   }
+  tell_apart(jobs);
   return jobs;
 }
 

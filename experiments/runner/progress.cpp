@@ -48,30 +48,31 @@ Progress::~Progress() {
   erase();
 }
 
-void Progress::begin(const std::string& name) {
+void Progress::begin(const std::string& id, const std::string& name) {
   const std::lock_guard lock(mutex_);
-  running_[name] = "starting";
-  said_at_[name] = std::chrono::steady_clock::now();
+  running_[id] = {name, "starting", std::chrono::steady_clock::now()};
   if (!terminal_ && !quiet_) tell_stderr("{}: started\n", name);
 }
 
-void Progress::update(const std::string& name, const StageStatus& status) {
+void Progress::update(const std::string& id, const StageStatus& status) {
   const std::lock_guard lock(mutex_);
-  running_[name] = describe(status);
+  Shown& shown = running_[id];
+  shown.text = describe(status);
   if (quiet_) return;
   if (terminal_) {
     draw();
     return;
   }
   const auto now = std::chrono::steady_clock::now();
-  if (now - said_at_[name] < kPlainInterval) return;
-  said_at_[name] = now;
-  tell_stderr("{}: {}\n", name, running_[name]);
+  if (now - shown.said_at < kPlainInterval) return;
+  shown.said_at = now;
+  tell_stderr("{}: {}\n", shown.name, shown.text);
 }
 
-void Progress::end(const std::string& name, const std::string& how, bool done) {
+void Progress::end(const std::string& id, const std::string& name, const std::string& how,
+                   bool done) {
   const std::lock_guard lock(mutex_);
-  running_.erase(name);
+  running_.erase(id);
   if (done) ++done_;
   if (quiet_) return;
   erase();
@@ -84,9 +85,9 @@ void Progress::count() {
   ++done_;
 }
 
-void Progress::drop(const std::string& name) {
+void Progress::drop(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  running_.erase(name);
+  running_.erase(id);
   erase();
 }
 
@@ -108,7 +109,9 @@ void Progress::draw() {
   erase();
   // A longer line would wrap, and drawing over it would leave its beginning behind.
   const std::size_t longest = terminal_columns(stderr).value_or(80) - 1;
-  for (const auto& [name, text] : running_) {
+  std::multimap<std::string, std::string> lines;
+  for (const auto& [id, shown] : running_) lines.emplace(shown.name, shown.text);
+  for (const auto& [name, text] : lines) {
     tell_stderr("{:.{}}\n", fmt::format("{:<28} {}", name, text), longest);
     ++drawn_;
   }

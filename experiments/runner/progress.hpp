@@ -19,29 +19,34 @@ class Progress {
   explicit Progress(std::size_t stages, bool quiet = false);
   ~Progress();
 
-  void begin(const std::string& name);
-  void update(const std::string& name, const StageStatus& status);
+  /// `id` tells stages apart, `name` is shown.
+  void begin(const std::string& id, const std::string& name);
+  void update(const std::string& id, const StageStatus& status);
   /// `done` counts it among the stages that are done.
-  void end(const std::string& name, const std::string& how, bool done);
+  void end(const std::string& id, const std::string& name, const std::string& how, bool done);
   /// Counts a stage that was done before among those that are done.
   void count();
-  /// The stage is left to another program.
-  void drop(const std::string& name);
+  /// The stage is not computed any more, or left to another program.
+  void drop(const std::string& id);
   /// A permanent line, unless progress is off.
   void note(const std::string& line);
   /// A permanent line.
   void say(const std::string& line);
 
  private:
+  struct Shown {
+    std::string name, text;
+    std::chrono::steady_clock::time_point said_at;
+  };
+
   void erase();
   void draw();
 
   std::mutex mutex_;
   std::size_t stages_, done_ = 0;
   bool quiet_, terminal_;
-  std::size_t drawn_ = 0;  ///< lines on the screen that the next drawing replaces
-  std::map<std::string, std::string> running_;
-  std::map<std::string, std::chrono::steady_clock::time_point> said_at_;
+  std::size_t drawn_ = 0;                 ///< lines on the screen that the next drawing replaces
+  std::map<std::string, Shown> running_;  ///< by id
 };
 
 /// "1 run", "2 runs".

@@ -111,10 +111,13 @@ Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::stri
   // Without its last state the parent is not completed, or an earlier state was found.
   const RunRecord ended = store.run(run.parent);
   if (!parent || ended.state != RunState::completed || parent->record.step != ended.step) {
+    const bool recorded = ended.state == RunState::completed && !ended.state_hash.empty();
     throw StoreDamaged(fmt::format(
-        "run {:.12}: the settled packing that run {:.12} starts from is missing or damaged; "
-        "`shearcell resume` recomputes it first",
-        run.parent, run.id));
+        "run {:.12}: the settled packing that run {:.12} starts from is missing or damaged; {}",
+        run.parent, run.id,
+        recorded ? fmt::format("`shearcell regenerate {:.12}` restores its file",
+                               store.checkpoints(run.parent).back().sha256)
+                 : "`shearcell resume` recomputes it first"));
   }
   parent->checkpoint.state.step = 0;
   return {std::move(parent->checkpoint.cell), std::move(parent->checkpoint.state), std::nullopt,

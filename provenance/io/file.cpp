@@ -114,9 +114,10 @@ std::optional<std::string> read_plain(const fs::path& path, std::size_t limit) {
 }
 
 void require_ours(const fs::path& path, const Recognize& ours) {
-  std::error_code ignored;
-  const fs::file_type type = fs::symlink_status(path, ignored).type();
+  std::error_code failure;
+  const fs::file_type type = fs::symlink_status(path, failure).type();
   if (type == fs::file_type::not_found) return;
+  if (failure) throw std::system_error(failure, path.string() + ": cannot write");
   if (type != fs::file_type::regular) {
     throw NotOurs(path.string() +
                   ": this is a folder, link or device; remove it, or write elsewhere with --out");

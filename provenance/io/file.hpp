@@ -66,7 +66,8 @@ std::optional<std::string> read_plain(const std::filesystem::path& path, std::si
 /// Recognizes a file of this program by its first 4096 bytes.
 using Recognize = std::function<bool(std::string_view beginning)>;
 
-/// Throws NotOurs unless the path is free or a regular file that `ours` recognizes.
+/// Throws NotOurs unless the path is free or a regular file that `ours` recognizes, and
+/// std::system_error when this user may not look.
 void require_ours(const std::filesystem::path& path, const Recognize& ours);
 
 /// Writes a whole file under a temporary name beside `path` and renames it (replace_file).

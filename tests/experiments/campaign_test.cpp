@@ -38,6 +38,20 @@ TEST_F(CampaignTest, DeclaresParentsFirstAndEachStageOnce) {
   EXPECT_EQ(store_.head().hash, head.hash) << "declaring again recorded something";
 }
 
+TEST_F(CampaignTest, NamesWhatTellsPackingsApart) {
+  const auto names = [](const std::vector<StageJob>& jobs) {
+    std::set<std::string> found;
+    for (const StageJob& job : jobs) found.insert(job.name);
+    return found;
+  };
+  const std::vector<StageJob> jobs =
+      declared(store_, tiny_manifest("", "sweep: {grid: {grains: [200, 300]}}\n"));
+  const std::set<std::string> expected = {"tiny packing N=200 seed=1", "tiny packing N=300 seed=1",
+                                          "tiny N=200 seed=1", "tiny N=300 seed=1"};
+  EXPECT_EQ(names(jobs), expected);
+  EXPECT_EQ(names(unfinished(store_, {})), expected);
+}
+
 TEST_F(CampaignTest, ComputesEachPackingOnceForBothFluids) {
   const CampaignResult result = compute(store_, tiny_manifest("", kBothFluids));
   EXPECT_EQ(result.completed, 3U);

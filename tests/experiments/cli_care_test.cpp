@@ -80,7 +80,10 @@ TEST_F(Care, VerifyReplaysAndHoldsAgainstAHead) {
   const std::string before = head();
   const nlohmann::json told = json({"verify", "--replay", "3", "--seed", "5", "--json"});
   ASSERT_EQ(told.at("replay").at("replayed").size(), 3U);
-  for (const auto& replay : told.at("replay").at("replayed")) EXPECT_EQ(replay.at("same"), true);
+  for (const auto& replay : told.at("replay").at("replayed")) {
+    EXPECT_EQ(replay.at("same"), true);
+    EXPECT_GT(replay.at("steps"), 0) << "where a stage begins nothing is computed";
+  }
   const auto colon = before.find(':');
   const std::string seq = before.substr(0, colon), hash = before.substr(colon + 1);
   expect(0, {"verify", "--against", before});
@@ -101,6 +104,10 @@ TEST_F(Care, MergesAndRefusesConflicts) {
   expect(0, {"verify", "--replay", "2", "--store", "all"});
   expect(2, {"merge", "all", "--store", "all"});
   expect(2, {"merge", "nowhere", "--store", "all"});
+  expect_refused({"merge", "a", "nowhere", "--store", "new"},
+                 {"nowhere", "no store here to merge"});
+  expect_refused({"merge", "", "--store", "new"}, {"no store here to merge"});
+  expect_refused({"run", "m.yaml", "--store", ""}, {"--store", "names no folder"});
   {
     // Somebody's own arithmetic: another state for a step that is known.
     Store store(path("odd"), Access::create);
@@ -119,6 +126,22 @@ TEST_F(Care, MergesAndRefusesConflicts) {
   }
   expect(4, {"merge", "odd", "--store", "all"}, {"Nothing was merged"});
   EXPECT_EQ(hashes("all"), whole);
+}
+
+TEST_F(Care, StatusListsASharedRunUnderEachExperiment) {
+  const std::string text = tiny_manifest("", "sweep: {grid: {grains: [200, 300]}}\n");
+  campaign(text, {"--cycles", "0"});
+  std::string twin = text;
+  twin.replace(twin.find("tiny"), 4, "twin");
+  write("twin.yaml", twin);
+  expect(0, {"run", "twin.yaml", "--cycles", "0", "-q"});
+  const std::string status = expect(0, {"status"},
+                                    {"tiny at scale base", "twin at scale base", "packing N=200 ",
+                                     "packing N=300 ", "4 stages: 4 completed"})
+                                 .out;
+  const std::string run = last_run().substr(0, 8);
+  EXPECT_NE(status.find(run), status.rfind(run)) << status;
+  EXPECT_EQ(json({"status", "--json"}).at("runs").size(), 4U) << "each once";
 }
 
 TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {

@@ -234,6 +234,12 @@ TEST_F(BenchAccuracy, SaysWhatIsWrongBeforeItMeasures) {
   EXPECT_NE(in_the_way.code, 0);
   EXPECT_TRUE(contains(in_the_way.err, "file/figures")) << in_the_way.err;
   EXPECT_EQ(in_the_way.out, "");
+  std::filesystem::create_directory(path("made"));
+  for (const std::string name : {"accuracy-wall.csv", "accuracy-seeds.chart.json"}) {
+    write("made/" + name, "my own\n");
+    expect_refused({"bench", "accuracy", "--quick", "--out", "made"}, {name, "was not made by"});
+    std::filesystem::remove(path("made/" + name));
+  }
 }
 
 TEST_F(BenchAccuracy, PlanPrintsTimeStepsAndWarns) {

@@ -81,6 +81,12 @@ TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {
   expect_refused({"resume", "zzz"}, {"no run"});
 }
 
+TEST_F(CommandLine, SuggestsTheWordThatWasMeant) {
+  const std::string manifest = write("m.yaml", tiny_manifest());
+  expect_refused({"plam", manifest}, {"not expected: plam m.yaml", "the nearest is plan"});
+  expect_refused({"plan", manifest, "--scal"}, {"not expected: --scal", "the nearest is --scale"});
+}
+
 TEST_F(CommandLine, RefusesProcessesOfLammpsWhereItComputesNothing) {
   const std::string manifest = write("m.yaml", tiny_manifest());
   expect_refused({"run", manifest, "--mpi", "2"}, {"--mpi", "has no effect"});

@@ -99,10 +99,13 @@ TEST_F(ReplayTest, DoesNotBeginFromAnUnsettledPacking) {
   interrupt_to_the_end(other, jobs[0].id);
   ASSERT_GT(other.checkpoints(jobs[0].id).size(), 1U);
   ASSERT_EQ(run_stage(other, jobs[1].id, {}), StageOutcome::completed);
-  truncate_file(other.folder() / other.checkpoints(jobs[0].id).back().file);
+  const CheckpointRecord settled = other.checkpoints(jobs[0].id).back();
+  truncate_file(other.folder() / settled.file);
   const CheckpointRecord first = other.checkpoints(jobs[1].id).front();
   EXPECT_THROW(regenerate_checkpoint(other, first), StoreDamaged);
   EXPECT_EQ(count_events(other, "ReplayDiverged"), 0U);
+  EXPECT_FALSE(regenerate_checkpoint(other, settled).divergence) << "as the message says";
+  EXPECT_FALSE(regenerate_checkpoint(other, first).divergence);
 }
 
 TEST_F(ReplayTest, WorksOnPackingsAndOnStatesWithinACycle) {

@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <thread>
 
@@ -113,6 +114,16 @@ TEST(TemporaryFolder, NamesTheFolderThatIsMissing) {
   test::expect_refused<std::system_error>([] { TemporaryFolder(); }, {gone, "TMPDIR"});
   const TemporaryFolder beside((place.path() / ".x.tmp-").string());  // which does not need it
   EXPECT_EQ(beside.path().parent_path(), place.path());
+}
+
+TEST(Output, ToAFolderThatThisUserMayNotReadIsRefusedForThat) {
+  if (geteuid() == 0) GTEST_SKIP() << "root reads everything";
+  const TemporaryFolder folder;
+  fs::permissions(folder.path(), fs::perms::none);
+  const auto ours = [](std::string_view) { return true; };
+  test::expect_refused<std::system_error>([&] { require_ours(folder.path() / "x.csv", ours); },
+                                          {"x.csv: cannot write", "ermission denied"});
+  fs::permissions(folder.path(), fs::perms::owner_all);
 }
 
 TEST(NewFile, LeavesNothingOfWhatCouldNotBeWritten) {

@@ -3,6 +3,7 @@
 #include "provenance/store.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <optional>
 #include <thread>
@@ -276,6 +277,19 @@ TEST_F(StoreTest, StartsOverWhereItsCreationWasCutShort) {
   Store store(other, Access::create);
   store.declare_run(sample_run(1));
   EXPECT_TRUE(store.verify().ok());
+}
+
+TEST_F(StoreTest, ThatMayNotBeWrittenIsOnlyRead) {
+  if (geteuid() == 0) GTEST_SKIP() << "root writes everything";
+  const auto expect_only_read = [&](const fs::path& path) {
+    fs::permissions(path, fs::perms::owner_write, fs::perm_options::remove);
+    expect_refused<MachineError>([&] { open(Access::write); }, {path.string(), "permissions"});
+    EXPECT_EQ(open(Access::read).runs().size(), 1u);
+    fs::permissions(path, fs::perms::owner_write, fs::perm_options::add);
+  };
+  expect_only_read(path_);
+  expect_only_read(path_ / "store.sqlite");
+  EXPECT_EQ(open(Access::write).runs().size(), 1u);
 }
 
 TEST_F(StoreTest, WithoutItsObjectsIsOnlyRead) {
