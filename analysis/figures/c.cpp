@@ -275,7 +275,7 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
       all.vanished, all.shrank);
   return decide({fmt::format("C: the critical size at A = {} rad is about {} grains", one.amplitude,
                              published),
-                 margin_critical_size.value},
+                 margin_critical_size},
                 fmt::format("critical size, relative difference from {} grains", published),
                 relative, one.runs.size(), note);
 }

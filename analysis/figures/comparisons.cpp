@@ -54,7 +54,7 @@ Verdict same_early_phi(const std::string& section, const std::string& what, cons
                        const Curve* b) {
   return compare_early(
       {fmt::format("{}: phi is the same at cycles 1 to {} for {}", section, early_cycles, what),
-       margin_early_phi.value},
+       margin_early_phi},
       early_phi(), a, b);
 }
 
@@ -62,7 +62,7 @@ Verdict same_percentage(const std::string& section, const std::string& what, con
                         const Curve* b) {
   return compare(
       {fmt::format("{}: percentage crystalline against phi is the same for {}", section, what),
-       margin_percentage.value},
+       margin_percentage},
       percentage_over_phi(), runs_of(a), runs_of(b));
 }
 
@@ -75,7 +75,7 @@ std::vector<Verdict> similar(const std::string& section, const std::string& what
       compare_waits({fmt::format("{}: crystallization begins at the same cycle, within a factor "
                                  "of 2, for {}",
                                  section, what),
-                     margin_onset_cycle.value},
+                     margin_onset_cycle},
                     "the onset", waits_for_onset(runs_of(a)), waits_for_onset(runs_of(b))),
       same_percentage(section, what, a, b)};
 }
@@ -85,19 +85,18 @@ Verdict same_contacts(const std::string& section, const std::string& what, const
                       Quantity quantity, const Curve* a, const Curve* b) {
   Scalar scalar = over_cycles(name, std::move(quantity), 1, early_cycles);
   scalar.relative = true;
-  return compare(
-      {fmt::format("{}: {} is the same for {}", section, name, what), margin_contacts.value},
-      scalar, runs_of(a), runs_of(b));
+  return compare({fmt::format("{}: {} is the same for {}", section, name, what), margin_contacts},
+                 scalar, runs_of(a), runs_of(b));
 }
 
 /// What must be the same for a time step larger than those of Fig. S3 to replace Table I's.
 std::vector<Verdict> equal_physics(const std::string& what, const Curve* a, const Curve* b) {
   const char* section = "time step";
-  return {compare({fmt::format("{}: the onset is the same for {}", section, what),
-                   margin_onset_phi.value},
-                  onset_phi(onset_by_size), runs_of(a), runs_of(b)),
-          same_percentage(section, what, a, b),
-          same_contacts(section, what, "mean overlap", &Measures::mean_overlap, a, b)};
+  return {
+      compare({fmt::format("{}: the onset is the same for {}", section, what), margin_onset_phi},
+              onset_phi(onset_by_size), runs_of(a), runs_of(b)),
+      same_percentage(section, what, a, b),
+      same_contacts(section, what, "mean overlap", &Measures::mean_overlap, a, b)};
 }
 
 // What a manifest has when it does not say (experiments/manifest/README.md; a test compares).
@@ -221,8 +220,8 @@ FigureResult figure_b5(Runs runs) {
        {"B5c", crystallinity_against_phi}},
       {compare_early(
            {fmt::format("B.5: at cycles 1 to {} phi of paused shear is higher by more than {}",
-                        early_cycles, margin_pause_gain.value),
-            margin_pause_gain.value, Claimed::above},
+                        early_cycles, margin_pause_gain),
+            margin_pause_gain, Claimed::above},
            over_cycles("phi at rest", &Measures::phi_at_rest, 1, early_cycles), paused, continuous),
        same_percentage("B.5", "both relaxations", paused, continuous)});
 }
@@ -240,7 +239,7 @@ FigureResult figure_walls(Runs runs) {
   std::vector<Verdict> verdicts = {
       compare_waits({"walls: rough ones delay crystallization (20 % of the grains) by more than a "
                      "factor of 2",
-                     margin_wall_delay.value, Claimed::above},
+                     margin_wall_delay, Claimed::above},
                     "20 % crystalline grains", fifth(rough), fifth(smooth)),
       onset_is_published(runs_of(rough), "walls: between rough ones the onset is phi = 0.646")};
   if (rough != nullptr) {

@@ -51,12 +51,12 @@ Verdict interior_is_published(double grains, RunGroup runs) {
   interior.relative = true;
   return compare_with(
       {fmt::format("C: N = {} has {} grains at least 1.5 d from the walls", grains, published),
-       margin_interior.value},
+       margin_interior},
       interior, runs, published);
 }
 
 Verdict onset_is_published(RunGroup runs, std::string claim) {
-  return compare_with({std::move(claim), margin_onset_phi.value}, onset_phi(onset_by_size), runs,
+  return compare_with({std::move(claim), margin_onset_phi}, onset_phi(onset_by_size), runs,
                       published_onset_phi);
 }
 

@@ -78,7 +78,7 @@ Verdict methods_agree(double amplitude, RunGroup runs) {
     return value;
   };
   return compare_with({fmt::format("C: both methods give the same onset at A = {} rad", amplitude),
-                       margin_onset_phi.value},
+                       margin_onset_phi},
                       shift, runs, 0);
 }
 
@@ -178,12 +178,12 @@ std::vector<Verdict> same_without_gravity(double amplitude, const Curve& without
   return {
       compare({fmt::format("D: the onset at A = {} rad is the same with and without gravity",
                            amplitude),
-               margin_onset_phi.value},
+               margin_onset_phi},
               onset_phi(onset_by_size), without.runs, others),
       compare({fmt::format("D: percentage crystalline against phi at A = {} rad is the same with "
                            "and without gravity",
                            amplitude),
-               margin_percentage.value},
+               margin_percentage},
               percentage_over_phi(), without.runs, others)};
 }
 

@@ -134,14 +134,12 @@ FigureResult figure_s1(std::span<const FigureRun> runs) {
   for (const Load& load : loads()) {
     const std::vector<const FigureRun*> under = runs_under(load, runs);
     if (under.empty()) continue;
-    result.verdicts.push_back(
-        compare_with({"B.2: phi_u falls by about 2 % over a hundredfold k" + load.claims,
-                      margin_fall_of_phi_u.value},
-                     fall, under, published_fall_of_phi_u));
-    result.verdicts.push_back(
-        compare_with({"B.2: phi (Eq. S4) stays the same over a hundredfold k" + load.claims,
-                      margin_hard_phi.value},
-                     change, under, 0));
+    result.verdicts.push_back(compare_with(
+        {"B.2: phi_u falls by about 2 % over a hundredfold k" + load.claims, margin_fall_of_phi_u},
+        fall, under, published_fall_of_phi_u));
+    result.verdicts.push_back(compare_with(
+        {"B.2: phi (Eq. S4) stays the same over a hundredfold k" + load.claims, margin_hard_phi},
+        change, under, 0));
   }
   return result;
 }

@@ -119,7 +119,7 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
 Verdict uniform_in_the_middle(RunGroup runs) {
   const double half = 0.5 - (inaccessible + 1) / (smallest_width(runs) + 2);
   return share_verdict(
-      {"E: crystallites are equally probable over the accessible central x", margin_share.value},
+      {"E: crystallites are equally probable over the accessible central x", margin_share},
       "share of nuclei in the inner half of the accessible width less that in the outer half", runs,
       CellAxis::x, [half](double x) -> std::optional<int> {
         const double away = std::abs(x - 0.5);
@@ -160,15 +160,15 @@ FigureResult figure_s7(std::span<const FigureRun> runs) {
       uniform_in_the_middle(softest),
       upper_less_lower(softest, {fmt::format("E: crystallites are more probable near the top wall "
                                              "than near the bottom wall, by more than {} of all",
-                                             margin_share.value),
-                                 margin_share.value, Claimed::above})};
+                                             margin_share),
+                                 margin_share, Claimed::above})};
   if (by_stiffness.size() > 1) {
     const auto& [k, members] = *by_stiffness.rbegin();
     verdicts.push_back(upper_less_lower(
         members, {fmt::format("E: at k = {} N/m crystallites are as probable near the top wall as "
                               "near the bottom wall",
                               k),
-                  margin_share.value}));
+                  margin_share}));
   }
   const std::span all(places);
   return {{density_table("S7", "axis", x_over_w + ",  " + y_over_h, all.first(2)),

@@ -189,12 +189,13 @@ std::vector<double> phi_at_rest(const Store& store, std::span<const CheckpointRe
     if (scenes.contains(run)) continue;
     scenes[run] = shear_scene(read_stage(store.run(run).resolved).parameters);
   }
+  DerivedMeasure measure = derived_measure("scalars");
   MeasureOptions resting = options;
-  resting.prepare = [&](const CheckpointRecord& record, Checkpoint& checkpoint) {
+  resting.instead = [&](const CheckpointRecord& record, Checkpoint checkpoint) {
     checkpoint.state =
         rested(checkpoint.cell, scenes.at(record.run), std::move(checkpoint.state), kRest);
+    return measure.from({analyse_stored(record, checkpoint)});
   };
-  DerivedMeasure measure = derived_measure("scalars");
   measure.name = "scalars_at_rest";
   measure.parameters["rest_s"] = kRest;
   const auto found = results_of(measure, store, early, resting);

@@ -96,8 +96,7 @@ class Measuring {
     const CheckpointRecord& record = *distinct_[i];
     const Results before =
         options_.fresh ? std::exchange(results_[i], Results(measures_.size())) : results_[i];
-    Checkpoint checkpoint = store_.load_checkpoint(record);
-    if (options_.prepare) options_.prepare(record, checkpoint);
+    const Checkpoint checkpoint = store_.load_checkpoint(record);
     const Analysis analysis = options_.instead ? Analysis() : analyse_stored(record, checkpoint);
     std::vector<DerivedObject> objects;
     bool changed = false;

@@ -20,9 +20,6 @@ struct MeasureOptions {
   bool fresh = false;  ///< compute all of them again and replace the kept ones
   /// Called as checkpoints are computed; may be empty.
   std::function<void(std::size_t done, std::size_t total)> report;
-  /// Changes a checkpoint before it is measured; the names of the measures must say so. May be
-  /// empty.
-  std::function<void(const CheckpointRecord& record, Checkpoint& checkpoint)> prepare = {};
   /// Computes the one measure in place of an analysis. May be empty.
   std::function<nlohmann::json(const CheckpointRecord& record, const Checkpoint& checkpoint)>
       instead = {};
