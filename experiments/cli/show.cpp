@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/more_measures.hpp"
+#include "experiments/figures/own_part.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
@@ -30,6 +32,20 @@ nlohmann::json checkpoint_facts(const CheckpointRecord& c) {
           {"state", name_of(c.state)},
           {"rejected", c.state == CheckpointState::rejected},
           {"observables", c.observables}};
+}
+
+/// `asked`: an experiment asks for it; else only an interruption left it.
+nlohmann::json facts_of_all(const Store& store, const RunRecord& run,
+                            const std::vector<CheckpointRecord>& checkpoints) {
+  std::set<std::uint64_t> asked;
+  for (const CheckpointRecord& c : own_checkpoints(store, run, asks_of(store, run.id))) {
+    asked.insert(c.step);
+  }
+  return json_list(checkpoints, [&](const CheckpointRecord& c) {
+    nlohmann::json facts = checkpoint_facts(c);
+    facts["asked"] = asked.contains(c.step);
+    return facts;
+  });
 }
 
 // The engine of its latest attempt, as that recorded it; null for our own.
@@ -100,7 +116,7 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                 {"attempts", run.attempts},
                 {"engine", engine},
                 {"memberships", json_list(run.memberships, member)},
-                {"checkpoints", json_list(checkpoints, checkpoint_facts)},
+                {"checkpoints", facts_of_all(store, run, checkpoints)},
                 {"measures", as_json(newest_measures(store, checkpoints, context))},
                 {"error", run.error},
                 {"ended", end_of(store, run)}});

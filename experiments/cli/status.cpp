@@ -29,10 +29,17 @@ namespace {
 
 /// What is known of the selected runs.
 struct View {
+  using Place = std::tuple<std::string, std::string, std::string>;  // experiment, scale, run
+  static Place place_of(const SelectedRun& s) {
+    return {s.membership.experiment, s.membership.scale, s.run.id};
+  }
+
   Store store;
-  std::vector<SelectedRun> places;       // one for each experiment and scale that a run is part of
-  std::vector<SelectedRun> runs;         // each once, in the first place of those selected
-  std::map<std::string, Lease> holders;  // by run
+  std::vector<SelectedRun> places;  // one for each experiment and scale that a run is part of
+  std::vector<SelectedRun> runs;    // each once, in the first place of those selected
+  std::map<std::string, std::vector<std::size_t>> places_of;  // by run: indices of its places
+  std::set<Place> newest;                                     // those of newest_runs()
+  std::map<std::string, Lease> holders;                       // by run
   QueueView queue;
   VariantNames names;
   PackingNames packings;
@@ -43,14 +50,17 @@ struct View {
         names(store),
         packings(store.runs()) {
     std::set<std::string> seen;
-    std::map<std::tuple<std::string, std::string, std::string>, std::size_t> known;
-    for (SelectedRun& found : select_runs(store, selection)) {
+    std::map<Place, std::size_t> known;
+    std::vector<SelectedRun> selected = select_runs(store, selection);
+    for (const SelectedRun& one : newest_runs(store, selected, false).runs) {
+      newest.insert(place_of(one));
+    }
+    for (SelectedRun& found : selected) {
       if (seen.insert(found.run.id).second) runs.push_back(found);
-      const Membership& m = found.membership;
-      const auto [at, fresh] =
-          known.try_emplace({m.experiment, m.scale, found.run.id}, places.size());
+      const auto [at, fresh] = known.try_emplace(place_of(found), places.size());
       // Another version of the manifest gave the variant another name.
       if (fresh) {
+        places_of[found.run.id].push_back(places.size());
         places.push_back(std::move(found));
       } else {
         places[at->second] = std::move(found);
@@ -62,6 +72,10 @@ struct View {
   std::string called(const SelectedRun& selected) const {
     const auto& [run, place] = selected;
     return run.kind == "prepare" ? packings.of(place, run.resolved) : names.of(place);
+  }
+
+  bool is_newest(const SelectedRun& selected) const {
+    return selected.run.kind == "prepare" || newest.contains(place_of(selected));
   }
 
   const QueuedRun* queued(const RunRecord& run) const {
@@ -92,33 +106,43 @@ nlohmann::json facts(const QueuedRun& run) {
           {"reported_cycle", reported ? nlohmann::json(reported->cycle) : nullptr}};
 }
 
+nlohmann::json facts_of_place(const SelectedRun& selected, const View& view) {
+  const Membership& m = selected.membership;
+  return {
+      {"experiment", m.experiment},    {"scale", m.scale}, {"variant", m.variant},
+      {"name", view.called(selected)}, {"seed", m.seed},   {"newest", view.is_newest(selected)}};
+}
+
 nlohmann::json facts(const SelectedRun& selected, const View& view) {
   const RunRecord& run = selected.run;
   const Membership& first = selected.membership;
   const auto held = view.holders.find(run.id);
   const QueuedRun* queued = view.queued(run);
-  return {{"id", run.id},
-          {"kind", run.kind},
-          {"parent", run.parent},
-          {"experiment", first.experiment},
-          {"scale", first.scale},
-          {"variant", first.variant},
-          {"name", view.called(selected)},
-          {"seed", first.seed},
-          {"state", name_of(run.state)},
-          {"cycle", run.cycle},
-          {"target_cycles", run.target_cycles},
-          {"N", run.grains},
-          {"step", run.step},
-          {"attempts", run.attempts},
-          {"wall_seconds", run.wall_seconds},
-          {"particle_steps_per_second", rate(run)},
-          {"state_hash", run.state_hash},
-          {"error", run.error},
-          {"updated_at", run.updated_at},
-          {"ended", end_of(view.store, run)},
-          {"holder", held == view.holders.end() ? nlohmann::json() : facts(held->second)},
-          {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)}};
+  return {
+      {"id", run.id},
+      {"kind", run.kind},
+      {"parent", run.parent},
+      {"experiment", first.experiment},
+      {"scale", first.scale},
+      {"variant", first.variant},
+      {"name", view.called(selected)},
+      {"seed", first.seed},
+      {"places", json_list(view.places_of.at(run.id),
+                           [&](std::size_t k) { return facts_of_place(view.places[k], view); })},
+      {"state", name_of(run.state)},
+      {"cycle", run.cycle},
+      {"target_cycles", run.target_cycles},
+      {"N", run.grains},
+      {"step", run.step},
+      {"attempts", run.attempts},
+      {"wall_seconds", run.wall_seconds},
+      {"particle_steps_per_second", rate(run)},
+      {"state_hash", run.state_hash},
+      {"error", run.error},
+      {"updated_at", run.updated_at},
+      {"ended", end_of(view.store, run)},
+      {"holder", held == view.holders.end() ? nlohmann::json() : facts(held->second)},
+      {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)}};
 }
 
 /// What is shown of one run: as the store has it, or further, as the task that computes it reports.
@@ -219,8 +243,9 @@ void print_tables(const View& view) {
     if (!tables.contains(name)) experiments.push_back(name);
     const Shown shown{run, view.queued(run)};
     Row& row = tables[name].emplace_back(
-        Row{run.id.substr(0, 8), view.called(selected), std::to_string(place.seed),
-            std::to_string(run.grains),
+        Row{run.id.substr(0, 8),
+            view.called(selected) + (view.is_newest(selected) ? "" : " (older version)"),
+            std::to_string(place.seed), std::to_string(run.grains),
             fmt::format("{}{}", name_of(shown.state()), view.holders.contains(run.id) ? " *" : ""),
             run.kind == "prepare" ? "" : fmt::format("{:.4g}/{}", shown.cycle(), run.target_cycles),
             fmt::format("{:.1f}", rate(run) * 1e-6), format_duration(run.wall_seconds)});

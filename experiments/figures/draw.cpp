@@ -197,6 +197,15 @@ std::string verdict_text(const FigureSummary& summary, std::span<const Verdict> 
   return verdict.dump(1) + "\n";
 }
 
+/// Names what the runs differ in where the figure's title is about other parameters.
+std::string title_of(const Figure& figure, const std::vector<FigureRun>& runs) {
+  const std::vector<std::string> varied = varied_keys(runs);
+  const bool of_its_keys = std::ranges::any_of(
+      varied, [&](const std::string& key) { return std::ranges::count(figure.keys, key) > 0; });
+  if (figure.keys.empty() || varied.empty() || of_its_keys) return figure.title;
+  return fmt::format("{}; these runs differ in {}", figure.title, fmt::join(varied, ", "));
+}
+
 }  // namespace
 
 ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
@@ -207,12 +216,12 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   CollectedRuns collected = collect_runs(store, wanted, options.runs, options);
   summary.name = figure.name;
   summary.experiment = wanted.experiment;
-  summary.title = figure.title;
   summary.notes = std::move(collected.notes);
   summary.scale = collected.scale;
   const std::vector<FigureRun> runs =
       figure_runs(collected.runs, measures_of_all(store, figure, collected.runs, options, summary));
   require_told_apart(wanted, runs);
+  summary.title = title_of(figure, runs);
   summary.runs = runs.size();
   for (const FigureRun& run : runs) {
     summary.checkpoints += run.checkpoints.size();

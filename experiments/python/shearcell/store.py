@@ -53,15 +53,17 @@ class Store:
         return done.stdout
 
     def runs(self, *, all_versions: bool = False, **select: Any) -> list["Run"]:
-        """Runs in the order of their declaration, without the packings that they start from.
+        """Runs in the order of their declaration, without the packings that they start from; a run
+        of several experiments comes once for each.
 
         Args:
             all_versions: those of older versions of a manifest too, as `shearcell table` has them.
             select: experiment, scale, variant, seed or state, each a value or a list of values.
         """
         listed = json.loads(self.call("status", "--json", *_filters(select)))["runs"]
-        return [Run(self, facts) for facts in listed
-                if facts["kind"] != "prepare" and (all_versions or facts["newest"])]
+        return [Run(self, {**facts, **place})
+                for facts in listed if facts["kind"] != "prepare"
+                for place in facts["places"] if all_versions or place["newest"]]
 
     def run(self, prefix: str) -> "Run":
         """The run whose id begins so. Raises KeyError if it is none or several."""
