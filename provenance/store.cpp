@@ -45,9 +45,12 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
 
 /// A program that finds no checkpoint would reject each of them and compute all runs again.
 void require_objects(const std::filesystem::path& folder, const sqlite::Database& database) {
-  sqlite::Statement recorded(database,
-                             "SELECT 1 FROM events WHERE type = 'CheckpointRecorded' LIMIT 1");
-  if (!recorded.step()) return;
+  try {
+    sqlite::Statement kept(database, "SELECT 1 FROM checkpoints WHERE state = 'recorded' LIMIT 1");
+    if (!kept.step()) return;
+  } catch (const StoreDamaged&) {
+    return;  // `rebuild` derives the table again
+  }
   const std::filesystem::path objects = folder / "objects";  // made before the first event
   std::error_code unreadable;
   if (std::filesystem::exists(objects) && !std::filesystem::is_empty(objects, unreadable)) return;
