@@ -96,7 +96,7 @@ json to_json(std::span<const Verdict> verdicts) {
 
 std::string numbers_of(const Verdict& verdict) {
   std::string text = verdict.estimate
-                         ? fmt::format("{:.3g}, interval {:.3g} to {:.3g}", *verdict.estimate,
+                         ? fmt::format("{:.3g}, 90 % interval {:.3g} to {:.3g}", *verdict.estimate,
                                        verdict.interval.low, verdict.interval.high)
                          : std::string("not measured");
   text += fmt::format(", margin {:.3g}, {} runs", verdict.margin, verdict.runs);

@@ -54,7 +54,7 @@ std::optional<Ruling> overall(std::span<const Verdict> verdicts);
 /// bytes.
 nlohmann::json to_json(std::span<const Verdict> verdicts);
 
-/// "0.0012, interval -0.0003 to 0.0027, margin 0.001, 6 runs of 24 needed".
+/// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs of 24 needed".
 std::string numbers_of(const Verdict& verdict);
 
 }  // namespace shearcell

@@ -31,6 +31,12 @@ std::vector<Difference> differences(const json& planned, const json& known) {
   return found;
 }
 
+std::string short_text(const json& value) {
+  return value.is_null()           ? "none"
+         : value.is_number_float() ? fmt::format("{:.6g}", value.get<double>())
+                                   : value.dump();
+}
+
 std::string text_of(const std::string& key, const json& value) {
   return fmt::format("{}={}", key, value.dump());
 }
@@ -77,9 +83,9 @@ std::string describe(const Novelty& novelty) {
   const std::size_t count = novelty.differences.size();
   for (std::size_t i = 0; i < std::min(kNamed, count); ++i) {
     const Difference& d = novelty.differences[i];
-    const std::string known = d.known.is_null() ? "none" : d.known.dump();
-    text +=
-        fmt::format("{}{} {} (store has {})", i == 0 ? "" : ", ", d.field, d.planned.dump(), known);
+    std::string planned = short_text(d.planned), known = short_text(d.known);
+    if (planned == known) planned = d.planned.dump(), known = d.known.dump();
+    text += fmt::format("{}{} {} (store has {})", i == 0 ? "" : ", ", d.field, planned, known);
   }
   if (count > kNamed) text += fmt::format(" and {} more", count - kNamed);
   return text;
