@@ -14,6 +14,7 @@
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/own_part.hpp"
 #include "experiments/figures/run_table.hpp"
+#include "experiments/manifest/schema.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
 
@@ -144,7 +145,11 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   tell("\n");
   for (const auto& [key, value] : run.resolved.items()) {
     if (value.is_object()) {
-      for (const auto& [name, inner] : value.items()) tell("{:<32} {}\n", name, inner.dump());
+      for (const auto& [name, inner] : value.items()) {
+        const Field* field = find_field(name);  // a constant of the record is not what the run had
+        const bool constant = field != nullptr && !field->identity.recorded_as.empty();
+        if (!constant) tell("{:<32} {}\n", name, inner.dump());
+      }
     } else {
       tell("{:<32} {}\n", key, value.dump());
     }
