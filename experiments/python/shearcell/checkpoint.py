@@ -50,7 +50,7 @@ class Checkpoint:
         position: (N, 3) [d]; z is not folded back into the cell.
         velocity: (N, 3) [d/s].
         wall_position: (M, 3) [d], centres of the wall grains.
-        wall_velocity: (M, 3) [d/s]; only the wall that feels the pressure moves by itself.
+        wall_velocity: (M, 3) [d/s], with the shear and of the moving wall; by the program.
         wall_side: (M,) 1 left, 2 right, 3 bottom, 4 top.
         cell: (3, 3) [d], the edges of the cell as rows; only the third is periodic.
         origin: (3,) [d], its lower left corner.
@@ -80,9 +80,6 @@ class Checkpoint:
             self.wall_position: Floats = every["position/value"][0, grains:] / self.diameter_m
             self.wall_side: Integers = every["species"][grains:].astype(np.int64)
             self.cell, self.origin = _cell(state, self.theta)
-            self.wall_velocity: Floats = np.zeros_like(self.wall_position)
-            moving = self.wall_side == 3 + int(state["cell"].attrs["moving"])
-            self.wall_velocity[moving, 1] = state.attrs["wall_velocity"]
 
     @property
     def grains(self) -> int:
@@ -98,7 +95,13 @@ class Checkpoint:
                                 repr(self.cycle), "--out", str(file))
             with h5py.File(file, "r") as exported:
                 every = exported["particles/all"]
-                return {name: every[name + "/value"][0, : self.grains] for name in GRAIN_MEASURES}
+                found = {name: every[name + "/value"][0, : self.grains] for name in GRAIN_MEASURES}
+                found["wall_velocity"] = every["velocity/value"][0, self.grains:] / self.diameter_m
+                return found
+
+    @property
+    def wall_velocity(self) -> Floats:
+        return self._measured["wall_velocity"]
 
     q6 = _of_grains("q6", "(N,) bond order of each grain, Eq. S1.")
     phi_local = _of_grains("phi_local", "(N,) local volume fraction.")
@@ -137,9 +140,9 @@ class Checkpoint:
         )
         atoms.set_array("type", np.concatenate([np.zeros(self.grains, int), self.wall_side]))
         atoms.set_array("velo", np.concatenate([self.velocity, self.wall_velocity]))
-        for name, values in self._measured.items():
+        for name in GRAIN_MEASURES:
             missing = -1 if name in ("structure", "lattice", "crystallite") else 0
-            atoms.set_array(name, np.concatenate([values, np.full(walls, missing)]))
+            atoms.set_array(name, np.concatenate([self._measured[name], np.full(walls, missing)]))
         return atoms
 
     def __repr__(self) -> str:
