@@ -213,9 +213,9 @@ const ScalarMeasure* find_measure(std::string_view name) {
 }
 
 Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions) {
-  // A grain would touch its own image. The number of images grows without limit as the depth falls.
-  if (!(cell.depth >= 2)) {
-    throw AnalysisError("the cell is " + std::to_string(cell.depth) + " d deep; 2 d is the least");
+  // A grain would overlap its own image, and the number of images grows as the depth falls.
+  if (!(cell.depth >= 1)) {
+    throw AnalysisError("the cell is " + std::to_string(cell.depth) + " d deep; 1 d is the least");
   }
   Analysis analysis;
   Measures& all = analysis.measures;

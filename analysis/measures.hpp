@@ -116,7 +116,7 @@ struct Analysis {
 };
 
 /// Measures of a packing and of each of its grains; mechanics of a checkpoint only. Throws
-/// AnalysisError as voronoi() does, and for a cell less than 2 d deep, which no engine takes.
+/// AnalysisError as voronoi() does, and for a cell less than 1 d deep, which no engine takes.
 Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions);
 Analysis analyse(const Checkpoint& checkpoint);
 

@@ -21,7 +21,7 @@ double own_end(const Store& store, const RunRecord& run, const Membership& membe
                const MeasureOptions& options);
 
 /// Steps of a shear at which `ask` wants a checkpoint in cycles first to last; none of another
-/// kind of run.
+/// kind of run, or of a record that this program cannot read.
 std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, double first,
                                        double last);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/packing_names.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "experiments/manifest/variants.hpp"
@@ -24,10 +26,9 @@ void PackingNames::add(const Membership& place, const nlohmann::json& resolved) 
 std::string PackingNames::of(const Membership& place, const nlohmann::json& resolved) const {
   const auto known = parameters_.find({place.experiment, place.scale});
   if (known == parameters_.end() || known->second.size() < 2) return "packing";
-  const auto own = std::ranges::find(known->second, member_of(resolved, "parameters"));
-  if (own == known->second.end()) return "packing";
-  const auto at = static_cast<std::size_t>(own - known->second.begin());
-  return "packing " + variant_names(known->second, {})[at];
+  const auto names = variant_names(known->second, {});
+  const auto own = names.find(member_of(resolved, "parameters"));
+  return own == names.end() ? "packing" : fmt::format("packing {}", own->second);
 }
 
 }  // namespace shearcell

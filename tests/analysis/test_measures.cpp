@@ -30,7 +30,7 @@ TEST(Measures, PerfectCrystal) {
 
 TEST(Measures, RefuseACellInWhichAGrainWouldTouchItsImage) {
   Packing p = lattice(Lattice::fcc, 3);
-  for (const double depth : {1e-6, 1.9, std::nan("")}) {
+  for (const double depth : {1e-6, 0.9, std::nan("")}) {
     p.cell.depth = depth;
     EXPECT_THROW(analyse(p.cell, p.pose, p.grains), AnalysisError) << depth;
   }
