@@ -90,7 +90,9 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
   std::map<std::string, std::set<std::string>> names;
   for (FigureRun& run : found) {
     nlohmann::json labels = nlohmann::json::object();
-    for (const std::string& key : keys) labels[key] = parameter_of(run, key);
+    for (const std::string& key : keys) {
+      if (nlohmann::json value = parameter_of(run, key); !value.is_null()) labels[key] = value;
+    }
     if (run.labels.is_object()) run.parameters.update(run.labels);
     run.labels = std::move(labels);
     run.variant = run.labels.empty() ? "all" : words_of(run.labels);
@@ -101,7 +103,7 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
   const auto shared = name ? name(curves) : std::map<nlohmann::json, std::string>();
   for (FigureRun& run : found) {
     if (names.at(run.variant).size() == 1 && !run.name.empty()) continue;
-    run.name = name && !run.labels.empty() ? shared.at(run.labels) : run.variant;
+    run.name = name && !keys.empty() ? shared.at(run.labels) : run.variant;
   }
   return found;
 }

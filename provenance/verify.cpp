@@ -120,19 +120,19 @@ std::string excerpt(const std::string& cell, std::size_t place) {
 std::string row_difference(const sqlite::Database& database, const std::string& table,
                            const std::vector<std::string>* expected,
                            const std::vector<std::string>* found) {
+  const std::vector<std::string>* first = expected == nullptr ? found : expected;
+  if (expected != nullptr && found != nullptr && *found < *expected) first = found;
   std::vector<std::string> names, key;
-  const std::vector<std::string>& first =
-      expected == nullptr || (found != nullptr && *found < *expected) ? *found : *expected;
   sqlite::Statement column(database, "PRAGMA table_info(" + table + ")");
   while (column.step()) {
     names.push_back(column.text(1));
-    if (column.u64(5) > 0) key.push_back(first.at(names.size() - 1));
+    if (column.u64(5) > 0) key.push_back(first->at(names.size() - 1));
   }
   const std::string row = fmt::format("row ({})", fmt::join(key, ", "));
-  if (expected == nullptr || found == nullptr ||
-      !std::equal(key.begin(), key.end(), (&first == found ? expected : found)->begin())) {
-    return row + (&first == found ? " should not be there" : " is missing");
-  }
+  const bool alone =
+      expected == nullptr || found == nullptr || expected->size() != found->size() ||
+      !std::equal(key.begin(), key.end(), (first == found ? expected : found)->begin());
+  if (alone) return row + (first == found ? " should not be there" : " is missing");
   const auto [a, b] = std::ranges::mismatch(*expected, *found);
   const auto [x, y] = std::ranges::mismatch(*a, *b);
   const auto place = static_cast<std::size_t>(x - a->begin());

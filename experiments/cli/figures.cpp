@@ -28,7 +28,7 @@ void complain(const FigureSummary& result, std::set<std::string>& told, Context&
   }
   tell_problems(result, "left out", context);
   if (!result.empty.empty()) {
-    tell_stderr("warning: figure {}{}{}: no run has a value for {}\n", result.experiment,
+    tell_stderr("warning: figure {}{}{}: nothing to draw in {}\n", result.experiment,
                 result.experiment.empty() ? "" : "/", result.name, fmt::join(result.empty, ", "));
   }
   if (!result.plot_error.empty()) tell_stderr("no plot: {}\n", result.plot_error);

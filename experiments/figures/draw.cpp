@@ -172,11 +172,12 @@ void lay_out(std::vector<FigureTable>& tables, bool wide) {
   }
 }
 
-/// Points that are not of the table are those of others.
+/// Nothing to draw; points that are neither of the table nor traces of runs are those of others.
 bool has_no_value(const FigureTable& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   return std::ranges::all_of(table.chart.series, [&](const Series& series) {
-    return series.columns.x.empty() || points_of(table, series).empty();
+    const bool of_runs = series.thin || !series.columns.x.empty();
+    return !of_runs || points_of(table, series).empty();
   });
 }
 
