@@ -202,14 +202,11 @@ class VariantCheck {
 };
 
 void check_scale_against_sweep(const Scale& scale, const Sweep& sweep, ProblemList& problems) {
-  for (const auto* axes : {&sweep.grid, &sweep.zip}) {
-    for (const SweepAxis& axis : *axes) {
-      const auto overridden = scale.settings.find(axis.key);
-      if (overridden == scale.settings.end()) continue;
-      problems.add(overridden->second.at, fmt::format("scales.{}.{}", scale.name, axis.key),
-                   "has no effect, since the sweep sets this key", overridden->second.value.dump(),
-                   "Give the scale a sweep of its own instead.");
-    }
+  for (const auto& [key, setting] : scale.settings) {
+    if (find_axis(sweep, key) == nullptr) continue;
+    problems.add(setting.at, fmt::format("scales.{}.{}", scale.name, key),
+                 "has no effect, since the sweep sets this key", setting.value.dump(),
+                 "Give the scale a sweep of its own instead.");
   }
 }
 
@@ -219,7 +216,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   std::set<const VariantLabel*> used;
   for (const Scale& scale : scales) {
     std::vector<nlohmann::json> variants;
-    for_each_variant(scale, [&](const Variant& variant) { variants.push_back(variant.labels()); });
+    for (const Variant& variant : variants_of(scale)) variants.push_back(variant.labels());
     const auto names = variant_names(variants, manifest.labels);
     std::set<string> seen;
     for (const nlohmann::json& variant : variants) {
@@ -241,51 +238,43 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   }
 }
 
-/// What the variants of a scale have that a plot or claim may ask for.
-struct Variants {
-  std::vector<Parameters> parameters;
-  std::vector<nlohmann::json> labels;
-  std::uint64_t longest = 0;  ///< cycles
-};
-
-Variants variants_of(const Scale& scale) {
-  Variants all;
-  for_each_variant(scale, [&](const Variant& variant) {
-    all.parameters.push_back(variant.parameters);
-    all.labels.push_back(variant.labels());
-    all.longest = std::max(all.longest, target_cycles(variant.parameters));
-  });
-  return all;
+void check_last(std::uint64_t cycle, const std::vector<Variant>& variants,
+                std::vector<std::string>& found) {
+  std::uint64_t longest = 0;
+  for (const Variant& variant : variants) {
+    longest = std::max(longest, target_cycles(variant.parameters));
+  }
+  if (cycle <= longest) return;
+  found.push_back(fmt::format("it asks for cycle {}, and the runs have {}.", cycle, longest));
 }
 
-std::size_t count_of(const nlohmann::json& where, const Variants& variants) {
-  return static_cast<std::size_t>(std::ranges::count_if(variants.parameters, [&](const auto& p) {
+std::size_t count_of(const nlohmann::json& where, const std::vector<Variant>& variants) {
+  return static_cast<std::size_t>(std::ranges::count_if(variants, [&](const Variant& variant) {
     return std::ranges::all_of(where.items(), [&](const auto& item) {
-      return get_value(*find_field(item.key()), p) == item.value();
+      return get_value(*find_field(item.key()), variant.parameters) == item.value();
     });
   }));
 }
 
 /// A swept key over which the plot would average: two variants have the same curve and x.
-std::string averaged_over(const PlotSpec& plot, const Variants& variants) {
+std::string averaged_over(const PlotSpec& plot, const std::vector<Variant>& variants) {
   if (plot.by.empty()) return "";
-  std::map<std::array<nlohmann::json, 2>, nlohmann::json>
-      curves;  // swept values of the first variant
-  for (std::size_t k = 0; k < variants.labels.size(); ++k) {
+  std::map<std::array<nlohmann::json, 2>, nlohmann::json> curves;  // labels of the first variant
+  for (const Variant& variant : variants) {
     const auto value = [&](const std::string& key) {
       const Field* field = find_field(key);
-      return field == nullptr ? nlohmann::json() : get_value(*field, variants.parameters[k]);
+      return field == nullptr ? nlohmann::json() : get_value(*field, variant.parameters);
     };
-    const auto [known, first] =
-        curves.try_emplace({value(plot.by), value(plot.x)}, variants.labels[k]);
-    for (const auto& [key, swept] : variants.labels[k].items()) {
+    const nlohmann::json labels = variant.labels();
+    const auto known = curves.try_emplace({value(plot.by), value(plot.x)}, labels).first;
+    for (const auto& [key, swept] : labels.items()) {
       if (known->second.at(key) != swept) return key;
     }
   }
   return "";
 }
 
-std::vector<std::string> problems_of(const PlotSpec& plot, const Variants& variants) {
+std::vector<std::string> problems_of(const PlotSpec& plot, const std::vector<Variant>& variants) {
   std::vector<std::string> found;
   if (const std::string key = averaged_over(plot, variants); !key.empty()) {
     found.push_back(
@@ -301,14 +290,11 @@ std::vector<std::string> problems_of(const PlotSpec& plot, const Variants& varia
     found.emplace_back("at_cycle has no effect, since it draws every cycle. Leave it out.");
   }
   const std::uint64_t last = plot.cycles ? plot.cycles->at(1) : plot.cycle.value_or(0);
-  if (last > variants.longest && !(plot.cycle && every_cycle)) {
-    found.push_back(
-        fmt::format("it asks for cycle {}, and the runs have {}.", last, variants.longest));
-  }
+  if (!(plot.cycle && every_cycle)) check_last(last, variants, found);
   return found;
 }
 
-std::vector<std::string> problems_of(const ClaimSpec& claim, const Variants& variants) {
+std::vector<std::string> problems_of(const ClaimSpec& claim, const std::vector<Variant>& variants) {
   std::vector<std::string> found;
   for (const nlohmann::json& side : claim.between) {
     const std::size_t count = count_of(side, variants);
@@ -316,19 +302,15 @@ std::vector<std::string> problems_of(const ClaimSpec& claim, const Variants& var
     found.push_back(fmt::format("{} variants have {}; `between` must name one on each side.", count,
                                 words_of(side)));
   }
-  if (claim.last > variants.longest) {
-    found.push_back(
-        fmt::format("it asks for cycle {}, and the runs have {}.", claim.last, variants.longest));
-  }
+  check_last(claim.last, variants, found);
   return found;
 }
 
 }  // namespace
 
-std::vector<std::string> own_warnings(const Manifest& manifest, const Scale& scale) {
+std::vector<std::string> own_warnings(const Manifest& manifest,
+                                      const std::vector<Variant>& variants) {
   std::vector<std::string> warnings;
-  if (manifest.plots.empty() && manifest.claims.empty()) return warnings;
-  const Variants variants = variants_of(scale);
   const auto add = [&](const char* kind, const auto& list) {
     for (const auto& own : list) {
       for (const std::string& problem : problems_of(own, variants)) {
@@ -382,9 +364,9 @@ void check_variants(const Manifest& manifest) {
   }
   if (!manifest.labels.empty()) check_labels(manifest, scales, problems);
   for (const Scale& scale : scales) {
-    for_each_variant(scale, [&](const Variant& variant) {
+    for (const Variant& variant : variants_of(scale)) {
       VariantCheck(manifest, scale, variant, problems).run();
-    });
+    }
   }
   problems.raise();
 }

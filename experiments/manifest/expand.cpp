@@ -75,14 +75,26 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
 // As one more swept key, so that runs of two engines are never taken for one curve.
 void set_engine(const Manifest& manifest, const std::string& engine, Scale& scale) {
   check_option(manifest, "engine", engine);
-  std::vector<SweepAxis>& grid = scale.sweep->grid;
-  for (const auto* axes : {&grid, &scale.sweep->zip}) {
-    if (std::ranges::find(*axes, "engine", &SweepAxis::key) == axes->end()) continue;
+  if (find_axis(*scale.sweep, "engine") != nullptr) {
     refuse(manifest, "engine", "the manifest sweeps this key itself", engine,
            "Leave the option out.");
   }
   if (value_at(scale, "engine") == engine) return;
+  std::vector<SweepAxis>& grid = scale.sweep->grid;
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
+}
+
+// Of a variant whose engine an option may have changed.
+void check_engine(const Manifest& manifest, const Scale& scale, const Parameters& p) {
+  const std::string engine(name_of(p.engine));
+  if (asks_lammps_to_stiffen(p)) {
+    refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", engine,
+           "Leave the option out.");
+  }
+  if (p.engine == EngineKind::lammps && !scale.checkpoints->phases.empty()) {
+    refuse(manifest, "engine", "LAMMPS makes no checkpoints within a cycle", engine,
+           "Leave the option out, or checkpoints.phases.");
+  }
 }
 
 void warn_of_variant(const std::string& file, const Variant& variant, Plan& plan) {
@@ -111,37 +123,44 @@ void warn_of_variant(const std::string& file, const Variant& variant, Plan& plan
   }
 }
 
-// Stated keys that no variant feels, with the line where each was written.
-class WithoutEffect {
- public:
-  explicit WithoutEffect(const Scale& scale) {
-    for (const auto& [key, setting] : scale.settings) unfelt_[key] = {setting.at, ""};
-    for (const auto* axes : {&scale.sweep->grid, &scale.sweep->zip}) {
-      for (const SweepAxis& axis : *axes) unfelt_[axis.key] = {axis.at, ""};
-    }
-    if (scale.until->until) unfelt_["until"] = {scale.until->at, ""};
+// Of stated keys that no variant feels, with the line where each was written.
+void warn_of_unfelt(const Manifest& manifest, const Scale& scale,
+                    const std::vector<Variant>& variants, Plan& plan) {
+  std::map<std::string, Position> stated;
+  for (const auto& [key, setting] : scale.settings) stated[key] = setting.at;
+  for (const auto* axes : {&scale.sweep->grid, &scale.sweep->zip}) {
+    for (const SweepAxis& axis : *axes) stated[axis.key] = axis.at;
   }
-  void visit(const Parameters& parameters) {
-    for (auto stated = unfelt_.begin(); stated != unfelt_.end();) {
-      stated->second.when = without_effect(stated->first, parameters);
-      stated = stated->second.when.empty() ? unfelt_.erase(stated) : std::next(stated);
-    }
-  }
-  void warn(const std::string& file, Plan& plan) const {
-    for (const auto& [key, stated] : unfelt_) {
-      const ManifestProblem problem{file, stated.at,      key, "has no effect: " + stated.when,
-                                    "",   "Leave it out."};
-      plan.warnings.push_back(problem.text());
-    }
-  }
-
- private:
-  struct Stated {
-    Position at;
+  if (scale.until->until) stated["until"] = scale.until->at;
+  for (const auto& [key, at] : stated) {
     std::string when;
-  };
-  std::map<std::string, Stated> unfelt_;
-};
+    for (const Variant& variant : variants) {
+      when = without_effect(key, variant.parameters);
+      if (when.empty()) break;
+    }
+    if (when.empty()) continue;
+    const ManifestProblem problem{manifest.file,  at, key, "has no effect: " + when, "",
+                                  "Leave it out."};
+    plan.warnings.push_back(problem.text());
+  }
+}
+
+// `common`: what all runs of the scale have.
+PlannedRun planned_run(const Membership& common, const Scale& scale, const Variant& variant,
+                       std::uint64_t seed) {
+  PlannedRun run;
+  static_cast<Membership&>(run) = common;
+  run.variant = variant.name();
+  run.labels = variant.labels();
+  run.seed = seed;
+  run.parameters = variant.parameters;
+  run.target_cycles = target_cycles(run.parameters);
+  run.prepare = prepare_stage(run.parameters, seed);
+  run.last = last_stage(run.parameters, seed, run.prepare);
+  if (run.last.stage == Stage::shear) run.ends_early = scale.until->until;
+  if (run.ends_early) run.until = to_json(*run.ends_early);
+  return run;
+}
 
 void name_variants(const Manifest& manifest, Plan& plan) {
   std::vector<nlohmann::json> variants;
@@ -167,49 +186,28 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
            "Use fewer seeds.");
   }
 
+  const std::vector<Variant> variants = variants_of(scale);
   Plan plan{manifest.experiment, scale.name, {}, {}};
+  const Membership common = {.experiment = plan.experiment,
+                             .scale = plan.scale,
+                             .variant = {},
+                             .manifest = sha256_hex(manifest.text),
+                             .checkpoint_every = scale.checkpoints->every_cycles,
+                             .checkpoint_phases = scale.checkpoints->phases};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
-  WithoutEffect without_effect(scale);
   Filter wanted(options.variants, has_values, keys_of);
-  const std::string manifest_sha = sha256_hex(manifest.text);
-  for_each_variant(scale, [&](const Variant& variant) {
-    const Parameters& p = variant.parameters;
-    without_effect.visit(p);
-    if (!wanted.passes(variant.name())) return;
+  for (const Variant& variant : variants) {
+    if (!wanted.passes(variant.name())) continue;
     warn_of_variant(manifest.file, variant, plan);
-    if (options.engine && asks_lammps_to_stiffen(p)) {
-      refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", *options.engine,
-             "Leave the option out.");
-    }
-    if (options.engine && p.engine == EngineKind::lammps && !scale.checkpoints->phases.empty()) {
-      refuse(manifest, "engine", "LAMMPS makes no checkpoints within a cycle", *options.engine,
-             "Leave the option out, or checkpoints.phases.");
-    }
+    if (options.engine) check_engine(manifest, scale, variant.parameters);
     for (const std::uint64_t seed : seeds) {
-      PlannedRun run;
-      static_cast<Membership&>(run) = {.experiment = plan.experiment,
-                                       .scale = plan.scale,
-                                       .variant = variant.name(),
-                                       .labels = variant.labels(),
-                                       .seed = seed,
-                                       .manifest = manifest_sha,
-                                       .checkpoint_every = scale.checkpoints->every_cycles,
-                                       .target_cycles = target_cycles(p),
-                                       .checkpoint_phases = scale.checkpoints->phases};
-      run.prepare = prepare_stage(p, seed);
-      run.last = last_stage(p, seed, run.prepare);
-      if (run.last.stage == Stage::shear) run.ends_early = scale.until->until;
-      if (run.ends_early) run.until = to_json(*run.ends_early);
-      run.parameters = p;
+      const PlannedRun& run = plan.runs.emplace_back(planned_run(common, scale, variant, seed));
       const std::string& same = variant_of.emplace(run.last.key, run.variant).first->second;
-      if (same != run.variant && seed == seeds.front()) {
-        plan.warnings.push_back(
-            fmt::format("{}: variants {} and {} are the same runs, computed once", manifest.file,
-                        same, run.variant));
-      }
-      plan.runs.push_back(std::move(run));
+      if (same == run.variant || seed != seeds.front()) continue;
+      plan.warnings.push_back(fmt::format("{}: variants {} and {} are the same runs, computed once",
+                                          manifest.file, same, run.variant));
     }
-  });
+  }
   if (const std::string* missing = wanted.unfound()) {
     refuse(manifest, "variant", "no variant has these values", printable(*missing),
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
@@ -220,8 +218,8 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
   }
   name_variants(manifest, plan);
-  std::ranges::move(own_warnings(manifest, scale), std::back_inserter(plan.warnings));
-  without_effect.warn(manifest.file, plan);
+  std::ranges::move(own_warnings(manifest, variants), std::back_inserter(plan.warnings));
+  warn_of_unfelt(manifest, scale, variants, plan);
   return plan;
 }
 

@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 
 #include "experiments/manifest/conversion.hpp"
@@ -176,11 +175,10 @@ StageRecord read_stage(const json& resolved) {
       stage_after_settling(record.parameters.protocol) != Stage::shear) {
     throw damaged("protocol", "is not one that shears");
   }
-  const std::set<std::string> known =
-      prepares ? std::set<std::string>{"stage", "seed", "parameters"}
-               : std::set<std::string>{"stage", "seed", "parameters", "parent"};
   for (const auto& [key, value] : resolved.items()) {
-    if (!known.contains(key)) throw damaged(key.substr(0, 64), "is unknown");
+    const bool known =
+        key == "stage" || key == "seed" || key == "parameters" || (key == "parent" && !prepares);
+    if (!known) throw damaged(key.substr(0, 64), "is unknown");
   }
   return record;
 }

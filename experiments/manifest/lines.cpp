@@ -39,28 +39,28 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
     const auto stated = std::ranges::find(manifest.scales, scale, &Scale::name);
     const Scale* own = stated == manifest.scales.end() ? nullptr : &*stated;
     const std::string path = "scales." + std::string(scale);
-    const Sweep* own_sweep = own != nullptr && own->sweep ? &*own->sweep : nullptr;
-    const std::string sweep_path = own_sweep != nullptr ? path + ".sweep." : "sweep.";
+    const bool sweeps = own != nullptr && own->sweep;
     const auto add_labels = [&](const std::vector<SweepAxis>& axes, const std::string& kind) {
       for (const SweepAxis& axis : axes) {
         const auto label = labels.find(axis.key);
         if (label == labels.end()) continue;
         const auto value = std::ranges::find(axis.values, *label, &Setting::value);
-        add(sweep_path + kind + axis.key, value == axis.values.end() ? axis.at : value->at);
+        add((sweeps ? path + ".sweep." : "sweep.") + kind + axis.key,
+            value == axis.values.end() ? axis.at : value->at);
       }
     };
-    const auto add_cycles = [&](const Scale* in, const std::string& prefix) {
-      if (in == nullptr || !in->settings.contains("cycles")) return false;
-      add(prefix + ".cycles", in->settings.at("cycles").at);
-      return true;
+    const auto add_cycles = [&](const Scale& in, const std::string& prefix) {
+      const auto cycles = in.settings.find("cycles");
+      if (cycles != in.settings.end()) add(prefix + ".cycles", cycles->second.at);
+      return cycles != in.settings.end();
     };
 
     add("experiment", manifest.experiment_at);
     if (own != nullptr) add(path, own->at);
-    const Sweep& sweep = own_sweep != nullptr ? *own_sweep : *manifest.base.sweep;
+    const Sweep& sweep = sweeps ? *own->sweep : *manifest.base.sweep;
     add_labels(sweep.grid, "grid.");
     add_labels(sweep.zip, "zip.");
-    if (!add_cycles(own, path)) add_cycles(&manifest.base, "base");
+    if (own == nullptr || !add_cycles(*own, path)) add_cycles(manifest.base, "base");
     if (own != nullptr && own->seeds) {
       add(path + ".seeds", own->seeds->at);
     } else if (manifest.base.seeds->at.line > 0) {
@@ -86,23 +86,19 @@ nlohmann::json overrides(std::string_view text, const Membership& membership) {
       const auto label = membership.labels.find(swept.first);
       return label != membership.labels.end() && *label == swept.second->value;
     };
-    for_each_variant(stated, [&](const Variant& variant) {
+    for (const Variant& variant : variants_of(stated)) {
       const std::uint64_t cycles = target_cycles(variant.parameters);
       if (found.is_null() && cycles != membership.target_cycles &&
           std::ranges::all_of(variant.swept, labelled)) {
         add("cycles", membership.target_cycles, cycles);
       }
-    });
+    }
     const std::vector<std::uint64_t>& seeds = stated.seeds->values;
     if (std::ranges::find(seeds, membership.seed) == seeds.end()) {
       add("seed", membership.seed, seeds);
     }
-    const auto swept = [](const std::vector<SweepAxis>& axes) {
-      return std::ranges::find(axes, "engine", &SweepAxis::key) != axes.end();
-    };
     const auto engine = membership.labels.find("engine");
-    if (engine != membership.labels.end() && !swept(stated.sweep->grid) &&
-        !swept(stated.sweep->zip)) {
+    if (engine != membership.labels.end() && find_axis(*stated.sweep, "engine") == nullptr) {
       add("engine", *engine, value_at(stated, "engine"));
     }
   } catch (const ManifestError&) {

@@ -176,6 +176,14 @@ std::string keys_of(const std::string& wanted) {
   return keys;
 }
 
+const SweepAxis* find_axis(const Sweep& sweep, std::string_view key) {
+  for (const auto* axes : {&sweep.grid, &sweep.zip}) {
+    const auto found = std::ranges::find(*axes, key, &SweepAxis::key);
+    if (found != axes->end()) return &*found;
+  }
+  return nullptr;
+}
+
 std::uint64_t variant_count(const Sweep& sweep) {
   std::uint64_t count = sweep.zip.empty() ? 1 : sweep.zip.front().values.size();
   for (const SweepAxis& axis : sweep.grid) {
@@ -188,7 +196,7 @@ std::uint64_t variant_count(const Sweep& sweep) {
   return count;
 }
 
-void for_each_variant(const Scale& scale, const std::function<void(const Variant&)>& visit) {
+std::vector<Variant> variants_of(const Scale& scale) {
   Parameters base;
   std::vector<std::string> autos;
   for (const auto& [key, setting] : scale.settings) {
@@ -201,35 +209,30 @@ void for_each_variant(const Scale& scale, const std::function<void(const Variant
   const std::vector<SweepAxis>& grid = scale.sweep->grid;
   const std::vector<SweepAxis>& zip = scale.sweep->zip;
   const std::uint64_t rows = zip.empty() ? 1 : zip.front().values.size();
-  const std::uint64_t count = variant_count(*scale.sweep);
-  for (std::uint64_t index = 0; index < count; ++index) {
-    Variant variant;
-    variant.parameters = base;
-    // The number `index`, read with one digit for each axis.
-    std::uint64_t rest = index / rows;
-    std::vector<std::size_t> digit(grid.size());
-    for (std::size_t axis = grid.size(); axis-- > 0;) {
-      digit[axis] = rest % grid[axis].values.size();
-      rest /= grid[axis].values.size();
-    }
-    for (std::size_t axis = 0; axis < grid.size(); ++axis) {
-      variant.swept.emplace_back(grid[axis].key, &grid[axis].values[digit[axis]]);
+  std::vector<Variant> variants(variant_count(*scale.sweep), Variant{{}, base});
+  for (std::uint64_t index = 0; index < variants.size(); ++index) {
+    auto& [swept, parameters] = variants[index];
+    std::uint64_t block =
+        variants.size() / rows;  // of the grid, with equal values before this axis
+    for (const SweepAxis& axis : grid) {
+      const std::uint64_t place = index / rows % block;
+      block /= axis.values.size();
+      swept.emplace_back(axis.key, &axis.values[place / block]);
     }
     for (const SweepAxis& axis : zip) {
       const Setting& setting = axis.values[index % rows];
       if (is_length(axis.key)) {
-        apply(axis.key, setting, variant.parameters);
+        apply(axis.key, setting, parameters);
       } else {
-        variant.swept.emplace_back(axis.key, &setting);
+        swept.emplace_back(axis.key, &setting);
       }
     }
-    for (const auto& [key, setting] : variant.swept) apply(key, *setting, variant.parameters);
+    for (const auto& [key, setting] : swept) apply(key, *setting, parameters);
     for (const std::string& key : autos) {
-      const auto is_key = [&](const auto& entry) { return entry.first == key; };
-      if (std::ranges::none_of(variant.swept, is_key)) resolve_auto(key, variant.parameters);
+      if (find_axis(*scale.sweep, key) == nullptr) resolve_auto(key, parameters);
     }
-    visit(variant);
   }
+  return variants;
 }
 
 bool selects(const VariantLabel& label, const json& variant) {

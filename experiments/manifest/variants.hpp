@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -26,7 +25,7 @@ std::vector<Scale> whole_scales(const Manifest& manifest);
 /// The value of a parameter that is not swept, or "auto".
 nlohmann::json value_at(const Scale& scale, std::string_view key);
 
-/// Whether the setting is `auto`, which for_each_variant() resolves.
+/// Whether the setting is `auto`, which variants_of() resolves.
 bool is_auto(const Setting& setting);
 
 /// Points into the scale.
@@ -57,12 +56,15 @@ bool selects(const VariantLabel& label, const nlohmann::json& variant);
 std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::json>& variants,
                                                     std::span<const VariantLabel> labels);
 
+/// The swept axis of this key, or nullptr.
+const SweepAxis* find_axis(const Sweep& sweep, std::string_view key);
+
 /// How many there are; saturates at 2^64 - 1.
 std::uint64_t variant_count(const Sweep& sweep);
 
 /// In manifest order: the first grid axis varies slowest, the rows of the zip fastest. The scale
-/// states everything.
-void for_each_variant(const Scale& scale, const std::function<void(const Variant&)>& visit);
+/// states everything, outlives the result, and has no more variants than ManifestLimits::runs.
+std::vector<Variant> variants_of(const Scale& scale);
 
 /// When a variant feels the parameter or `until`, as "only under protocol paused", if this variant
 /// does not; else "".
@@ -70,9 +72,10 @@ std::string without_effect(std::string_view key, const Parameters& parameters);
 
 /// A warning for each plot or claim that `shearcell figures` would refuse or leave without data: a
 /// side of `between` that is not one variant, a plot that would average over a swept key that it
-/// does not name, cycles beyond the end of the runs, `at_cycle` where every cycle is drawn. `scale`
-/// states everything (whole_scale()).
-std::vector<std::string> own_warnings(const Manifest& manifest, const Scale& scale);
+/// does not name, cycles beyond the end of the runs, `at_cycle` where every cycle is drawn.
+/// `variants`: those of one scale.
+std::vector<std::string> own_warnings(const Manifest& manifest,
+                                      const std::vector<Variant>& variants);
 
 /// Time steps, units and geometry of every variant of every scale, and how many runs there are.
 /// Only for a manifest that is well formed otherwise. Throws ManifestError.
