@@ -7,7 +7,6 @@
 #include <system_error>
 #include <utility>
 
-#include "core/machine.hpp"
 #include "provenance/io/read_number.hpp"
 
 namespace shearcell::cli {
@@ -98,10 +97,6 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths,
     }
   }
   return loaded;
-}
-
-MeasureOptions measure_options() {
-  return {.workers = usable_cores(), .report = terminal_counter("measuring checkpoint")};
 }
 
 template <class Number>

@@ -46,28 +46,12 @@ std::optional<Store> open_if_there(const std::string& folder);
 /// Says what came in the way of measuring, each checkpoint after `left_out`; damage is a failure.
 void tell_problems(const MeasureOutcome& outcome, const char* left_out, Context& context);
 
-// Each subcommand lives in a file of its own, or with its closest relative, and adds itself here.
-void add_plan(CLI::App& app, Context& context);
-void add_run(CLI::App& app, Context& context);  ///< and `resume`
-void add_status(CLI::App& app, Context& context);
-void add_log(CLI::App& app, Context& context);
-void add_show(CLI::App& app, Context& context);
-void add_verify(CLI::App& app, Context& context);
-void add_rebuild(CLI::App& app, Context& context);
-void add_prune(CLI::App& app, Context& context);
-void add_regenerate(CLI::App& app, Context& context);
-void add_submit(CLI::App& app, Context& context);
-void add_work(CLI::App& app, Context& context);
-void add_merge(CLI::App& app, Context& context);
-void add_table(CLI::App& app, Context& context);
-void add_figures(CLI::App& app, Context& context);
-void add_report(CLI::App& app, Context& context);
-void add_export(CLI::App& app, Context& context);
-void add_bench(CLI::App& app, Context& context);
-void add_new(CLI::App& app, Context& context);
-void add_doctor(CLI::App& app, Context& context);
-void add_completion(CLI::App& app, Context& context);
-void add_manual(CLI::App& app, Context& context);
+// Each subcommand is in a file of its own, or with its closest relative, and adds itself here.
+// add_run adds `resume` too.
+using AddCommand = void(CLI::App& app, Context& context);
+AddCommand add_plan, add_run, add_status, add_log, add_show, add_verify, add_rebuild, add_prune,
+    add_regenerate, add_submit, add_work, add_merge, add_table, add_figures, add_report, add_export,
+    add_bench, add_new, add_doctor, add_completion, add_manual;
 
 /// Prints what came of a campaign and sets the exit code.
 void report(const CampaignResult& result, Context& context);
@@ -99,9 +83,6 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths, const Expa
 
 /// --experiment, --scale, --variant and --seed, each as often as wanted; with `states`, --state.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);
-
-/// All cores; progress on standard error if that is a terminal.
-MeasureOptions measure_options();
 
 /// What is wrong with a number in decimal digits from `low` to `high`; "" when nothing is. A double
 /// may have a fraction and an exponent, a std::uint64_t no leading zeros.

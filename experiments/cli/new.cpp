@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <sstream>
 #include <system_error>
 
 #include "analysis/figure.hpp"
@@ -17,20 +18,19 @@
 namespace shearcell::cli {
 namespace {
 
-std::string wrapped(const std::string& text, std::size_t width, const std::string& before) {
-  std::string lines;
-  std::string line;
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
-    if (!line.empty() && before.size() + line.size() + 1 + (end - at) > width) {
-      lines += before + line + "\n";
-      line.clear();
+/// As comment lines of at most 90 columns.
+std::string commented(const std::string& text) {
+  const std::string begin = "  #";
+  std::string lines, line = begin;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (line != begin && line.size() + 1 + word.size() > 90) {
+      lines += line + "\n";
+      line = begin;
     }
-    line += (line.empty() ? "" : " ") + text.substr(at, end - at);
-    at = end + 1;
+    line += " " + word;
   }
-  return line.empty() ? lines : lines + before + line + "\n";
+  return lines + line + "\n";
 }
 
 /// One key, commented out, with its meaning above it; it shows the default.
@@ -38,7 +38,7 @@ std::string entry(const Field& field) {
   std::string about(field.doc);
   if (!field.symbol.empty()) about += fmt::format("; {} in the supplement", field.symbol);
   about += fmt::format("; {}", expected_values(field));
-  return wrapped(about, 90, "  # ") +
+  return commented(about) +
          fmt::format("  # {}: {}\n", field.name, value_text(get_value(field, {})));
 }
 

@@ -20,10 +20,9 @@ namespace {
 
 // A recorded text, fit for a terminal and for what is left of its line; whole in a file or a pipe.
 std::string cut(const std::string& text, std::size_t used) {
-  const auto width = terminal_columns(stdout);
-  if (!width) return printable(text, std::string::npos);
-  const std::size_t left = *width > used + 3 ? *width - used : 4;
   const std::string shown = printable(text, std::string::npos);
+  const std::size_t width = terminal_columns(stdout).value_or(std::string::npos);
+  const std::size_t left = width > used + 3 ? width - used : 4;
   if (characters(shown) <= left) return shown;
   return std::string(first_characters(shown, left - 3)) + "...";
 }
@@ -107,12 +106,9 @@ void print_checkpoints(const std::vector<std::string>& checkpoints, const RunLin
   tell("  {:>6}  {:>2}  checkpoint\n", "cycle", "at");
   for (const std::string& sha256 : checkpoints) {
     const CheckpointHistory* known = run.find(sha256);
-    if (known == nullptr) {
-      tell("  {:>6}  {:>2}  {}\n", "?", "?", sha256);
-      continue;
-    }
-    tell("  {:>6g}  {:>2}  {}\n", known->record.cycle,
-         known->attempt ? std::to_string(*known->attempt + 1) : "?", sha256);
+    const bool has_attempt = known != nullptr && known->attempt;
+    tell("  {:>6}  {:>2}  {}\n", known != nullptr ? fmt::format("{:g}", known->record.cycle) : "?",
+         has_attempt ? std::to_string(*known->attempt + 1) : "?", sha256);
   }
 }
 
@@ -161,8 +157,9 @@ void print(const FigureLineage& lineage) {
   tell("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at), lineage.record.seq,
        by);
   std::size_t widest = 0;
-  for (const auto& [name, sha256] : lineage.outputs)
+  for (const auto& [name, sha256] : lineage.outputs) {
     widest = std::max(widest, cut(name, 66).size());
+  }
   for (const auto& [name, sha256] : lineage.outputs) {
     tell("  {:<{}}  {}\n", cut(name, 66), widest, sha256);
   }

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "provenance/io/file.hpp"
@@ -23,11 +24,13 @@ struct TableOptions {
 void table(const TableOptions& options, Context& context) {
   const Store store(context.store, Access::read);
   if (!options.out.empty()) require_ours(options.out, is_table);
+  const MeasureOptions how{.workers = usable_cores(),
+                           .report = terminal_counter("measuring checkpoint")};
   const CurveMeasure* curve = find_curve_measure(options.curve);
-  const RunTable made =
-      curve != nullptr ? curve_table(store, options.selection, *curve, measure_options())
-                       : run_table(store, options.selection, value_of<RowPer>(options.per).value(),
-                                   measure_options(), options.ledger);
+  const RunTable made = curve != nullptr
+                            ? curve_table(store, options.selection, *curve, how)
+                            : run_table(store, options.selection,
+                                        value_of<RowPer>(options.per).value(), how, options.ledger);
   const bool json = context.json || options.format == "json";
   const std::string text = json ? to_json(made) : to_csv(made);
   if (options.out.empty()) {
