@@ -45,23 +45,17 @@ json resolve(Stage stage, const Parameters& given, std::uint64_t seed) {
 }
 
 void append_canonical(const json& value, std::string& text) {
-  if (value.is_object()) {
-    char separator = '{';
-    for (const auto& [key, item] : value.items()) {  // a std::map, sorted by bytes
+  if (value.is_structured()) {
+    const bool object = value.is_object();  // a std::map, sorted by bytes
+    const char* separator = "";
+    text += object ? '{' : '[';
+    for (const auto& [key, item] : value.items()) {
       text += separator;
-      text += json(key).dump() + ':';
+      if (object) text += json(key).dump() + ':';
       append_canonical(item, text);
-      separator = ',';
+      separator = ",";
     }
-    text += value.empty() ? "{}" : "}";
-  } else if (value.is_array()) {
-    char separator = '[';
-    for (const json& item : value) {
-      text += separator;
-      append_canonical(item, text);
-      separator = ',';
-    }
-    text += value.empty() ? "[]" : "]";
+    text += object ? '}' : ']';
   } else if (value.is_number_float()) {
     const double number = value.get<double>();
     if (!std::isfinite(number)) throw std::invalid_argument("canonical JSON: not a finite number");

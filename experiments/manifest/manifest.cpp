@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <fstream>
 #include <system_error>
-#include <tuple>
 
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -17,13 +16,6 @@ namespace shearcell {
 namespace {
 
 constexpr std::size_t kMostReported = 20;
-
-std::vector<ManifestProblem> in_text_order(std::vector<ManifestProblem> problems) {
-  std::ranges::stable_sort(problems, {}, [](const ManifestProblem& problem) {
-    return std::tuple(problem.at.line, problem.at.column);
-  });
-  return problems;
-}
 
 std::string join(const std::vector<ManifestProblem>& problems) {
   std::vector<std::string> lines;
@@ -74,7 +66,7 @@ std::string ManifestProblem::text() const {
 }
 
 ManifestError::ManifestError(std::vector<ManifestProblem> problems)
-    : UsageError(join(in_text_order(problems))), problems_(in_text_order(std::move(problems))) {}
+    : UsageError(join(problems)), problems_(std::move(problems)) {}
 
 Manifest load_manifest(const std::filesystem::path& path) {
   const std::string name = path.string();

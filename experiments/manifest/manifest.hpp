@@ -48,7 +48,7 @@ struct ManifestProblem {
   std::string text() const;
 };
 
-/// All problems of one manifest; what() has one per line, in the order of the text.
+/// The problems of one manifest; what() has one per line.
 class ManifestError : public UsageError {
  public:
   explicit ManifestError(std::vector<ManifestProblem> problems);

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "experiments/manifest/read_parts.hpp"
 #include "experiments/manifest/schema.hpp"
@@ -22,7 +23,12 @@ void ProblemList::add(Position at, string key, string problem, string got, strin
 }
 
 void ProblemList::raise() {
-  if (!problems_.empty()) throw ManifestError(std::move(problems_));
+  if (problems_.empty()) return;
+  const auto place = [](const ManifestProblem& problem) {
+    return std::tuple(problem.at.line, problem.at.column);
+  };
+  std::ranges::stable_sort(problems_, {}, place);
+  throw ManifestError(std::move(problems_));
 }
 
 std::vector<Entry> Entry::entries() const {

@@ -23,7 +23,7 @@ class ProblemList {
 
   std::size_t size() const { return problems_.size(); }
 
-  /// Throws ManifestError when there are any.
+  /// Throws ManifestError, in the order of the text, when there are any.
   void raise();
 
  private:

@@ -146,34 +146,25 @@ PlotSpec read_plot(const Entry& in, const Manifest& manifest) {
   PlotSpec plot;
   std::optional<Entry> x, cycles;
   const auto measures = names_of(all_scalar_measures());
+  const auto can_be_x = joined(joined({"cycle"}, measures), parameters());
+  const auto can_be_y = joined(joined(measures, names_of(all_curve_measures())), run_measures());
   const Key keys[] = {
-      {"name", [&](const Entry& of) { plot.name = read_own_name(of, manifest); }},
-      {"y",
-       [&](const Entry& of) {
-         plot.y = read_one_of(
-             of, joined(joined(measures, names_of(all_curve_measures())), run_measures()));
-       }},
-      {"x",
-       [&](const Entry& of) {
-         x.emplace(of);
-         plot.x = read_one_of(of, joined(joined({"cycle"}, measures), parameters()));
-       }},
-      {"by", [&](const Entry& of) { plot.by = read_one_of(of, parameters()); }},
+      {"name", [&](auto& of) { plot.name = read_own_name(of, manifest); }},
+      {"y", [&](auto& of) { plot.y = read_one_of(of, can_be_y); }},
+      {"x", [&](auto& of) { plot.x = read_one_of(x.emplace(of), can_be_x); }},
+      {"by", [&](auto& of) { plot.by = read_one_of(of, parameters()); }},
       {"show",
-       [&](const Entry& of) {
+       [&](auto& of) {
          plot.traces = read_one_of(of, {"mean", "traces"}) == "traces";
        }},
       {"log",
-       [&](const Entry& of) {
+       [&](auto& of) {
          const string axes = read_one_of(of, {"none", "x", "y", "xy"});
          plot.log_x = axes.starts_with('x');
          plot.log_y = axes.ends_with('y');
        }},
-      {"at_cycle", [&](const Entry& of) { plot.cycle = read_count(of, kLastCycle); }},
-      {"cycles", [&](const Entry& of) {
-         cycles.emplace(of);
-         plot.cycles = read_interval(of, "[20, 21]");
-       }}};
+      {"at_cycle", [&](auto& of) { plot.cycle = read_count(of, kLastCycle); }},
+      {"cycles", [&](auto& of) { plot.cycles = read_interval(cycles.emplace(of), "[20, 21]"); }}};
   read_whole(in, keys, 2, "{name: compaction, y: phi, x: cycle}");
   if (const CurveMeasure* curve = find_curve_measure(plot.y); curve != nullptr && x) {
     x->reject_value(fmt::format("does not go with {}", curve->name),
@@ -218,32 +209,25 @@ ClaimSpec read_claim(const Entry& in, const Manifest& manifest) {
   const Field margin = real_number("margin", "1", {0, std::numeric_limits<double>::max(), true});
   ClaimSpec claim;
   std::optional<Entry> when;
-  const Key keys[] = {{"name", [&](const Entry& of) { claim.name = read_own_name(of, manifest); }},
-                      {"compare",
-                       [&](const Entry& of) {
-                         claim.compare = read_one_of(
-                             of, joined(names_of(all_scalar_measures()), run_measures()));
-                       }},
-                      {"between", [&](const Entry& of) { read_between(of, claim.between); }},
-                      {"margin",
-                       [&](const Entry& of) {
-                         claim.margin = read_parameter(margin, of).value_or(0.0).get<double>();
-                       }},
-                      {"at_cycle",
-                       [&](const Entry& of) {
-                         when.emplace(of);
-                         claim.first = claim.last = read_count(of, kLastCycle).value_or(1);
-                       }},
-                      {"cycles",
-                       [&](const Entry& of) {
-                         if (when) of.reject("does not go with at_cycle", "State one of them.");
-                         when.emplace(of);
-                         const auto [first, last] = read_interval(of, "[1, 15]");
-                         claim.first = first, claim.last = last;
-                       }},
-                      {"is", [&](const Entry& of) {
-                         claim.higher = read_one_of(of, {"same", "higher"}) == "higher";
-                       }}};
+  const auto can_be_compared = joined(names_of(all_scalar_measures()), run_measures());
+  const Key keys[] = {
+      {"name", [&](auto& of) { claim.name = read_own_name(of, manifest); }},
+      {"compare", [&](auto& of) { claim.compare = read_one_of(of, can_be_compared); }},
+      {"between", [&](auto& of) { read_between(of, claim.between); }},
+      {"margin", [&](auto& of) { claim.margin = read_parameter(margin, of).value_or(0.0); }},
+      {"at_cycle",
+       [&](auto& of) {
+         claim.first = claim.last = read_count(when.emplace(of), kLastCycle).value_or(1);
+       }},
+      {"cycles",
+       [&](auto& of) {
+         if (when) of.reject("does not go with at_cycle", "State one of them.");
+         const auto [first, last] = read_interval(when.emplace(of), "[1, 15]");
+         claim.first = first, claim.last = last;
+       }},
+      {"is", [&](auto& of) {
+         claim.higher = read_one_of(of, {"same", "higher"}) == "higher";
+       }}};
   if (!read_whole(in, keys, 4, example)) return claim;
   const bool of_run = find_run_measure(claim.compare) != nullptr;
   if (of_run && when) {

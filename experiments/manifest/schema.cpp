@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "experiments/manifest/suggest.hpp"
+#include "provenance/io/read_number.hpp"
 
 namespace shearcell {
 namespace {
@@ -270,12 +271,10 @@ std::variant<json, ValueProblem> read_value(const Field& field, string_view text
   } else if (names_no_number(text)) {
     return ValueProblem{"is not finite", takes(field)};
   } else if (field.is_whole()) {
-    std::uint64_t whole = 0;
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, whole);
+    const auto whole = read_number<std::uint64_t>(text);
     const bool leading_zero = text.size() > 1 && text.front() == '0';
-    if (error != std::errc() || stop != end || leading_zero) return not_an_integer(field, text);
-    value = whole;
+    if (!whole || leading_zero) return not_an_integer(field, text);
+    value = *whole;
   } else {
     const std::optional<double> real = parse_real(text);
     if (!real) return ValueProblem{"is not a number", takes(field)};
