@@ -85,7 +85,7 @@ std::string describe_extras(const CLI::App& app) {
       for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
     }
   } else {
-    for (const CLI::App* command : at->get_subcommands([](const CLI::App*) { return true; })) {
+    for (const CLI::App* command : at->get_subcommands({})) {
       known.push_back(command->get_name());
     }
   }

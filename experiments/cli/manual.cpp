@@ -33,7 +33,7 @@ struct CommandEntry {
   std::vector<std::string> path;  ///< below the program: {} for itself, {"bench", "speed"}
   const CLI::App* app;
   std::vector<OptionEntry> options;  ///< positionals first
-  std::vector<const CLI::App*> subcommands;
+  std::vector<const CLI::App*> subcommands() const { return app->get_subcommands({}); }
 };
 
 constexpr std::size_t kLongestChoice = 60;
@@ -60,27 +60,21 @@ OptionEntry entry(const CLI::Option& option) {
   return made;
 }
 
-void append(const CLI::App& app, const std::vector<std::string>& path,
-            std::vector<CommandEntry>& tree) {
-  CommandEntry made{path, &app, {}, app.get_subcommands([](const CLI::App* sub) {
-                      return !sub->get_group().empty();
-                    })};
-  for (const bool positional : {true, false}) {
-    for (const CLI::Option* option : app.get_options()) {
-      const bool hidden = option->get_group().empty();
-      if (!hidden && option->get_positional() == positional) made.options.push_back(entry(*option));
-    }
-  }
+void append(const CLI::App& app, std::vector<std::string> path, std::vector<CommandEntry>& tree) {
+  CommandEntry made{path, &app, {}};
+  for (const CLI::Option* option : app.get_options()) made.options.push_back(entry(*option));
+  const auto is_positional = [](const OptionEntry& option) { return option.names.empty(); };
+  std::ranges::stable_partition(made.options, is_positional);
   tree.push_back(made);
-  for (const CLI::App* sub : made.subcommands) {
-    std::vector<std::string> deeper = path;
-    deeper.push_back(sub->get_name());
-    append(*sub, deeper, tree);
+  for (const CLI::App* sub : made.subcommands()) {
+    path.push_back(sub->get_name());
+    append(*sub, path, tree);
+    path.pop_back();
   }
 }
 
 /// The program first, then its subcommands in the order in which they were added, each before its
-/// own. Groups named "" are hidden and left out.
+/// own.
 std::vector<CommandEntry> command_tree(const CLI::App& app) {
   std::vector<CommandEntry> tree;
   append(app, {}, tree);
@@ -104,7 +98,7 @@ std::string option_words(const CommandEntry& command) {
 
 std::string subcommand_words(const CommandEntry& command) {
   std::vector<std::string> names;
-  for (const CLI::App* sub : command.subcommands) names.push_back(sub->get_name());
+  for (const CLI::App* sub : command.subcommands()) names.push_back(sub->get_name());
   return fmt::format("{}", fmt::join(names, " "));
 }
 
@@ -151,11 +145,11 @@ std::string fish(const std::vector<CommandEntry>& tree) {
     for (const std::string& word : command.path) {
       here += fmt::format("{}__fish_seen_subcommand_from {}", here.empty() ? "" : "; and ", word);
     }
-    if (!command.subcommands.empty()) {
+    if (!command.subcommands().empty()) {
       here += fmt::format("{}not __fish_seen_subcommand_from {}", here.empty() ? "" : "; and ",
                           subcommand_words(command));
     }
-    for (const CLI::App* sub : command.subcommands) {
+    for (const CLI::App* sub : command.subcommands()) {
       all += fmt::format("complete -c shearcell -f -n {} -a {} -d {}\n", shell_quoted(here),
                          sub->get_name(), shell_quoted(sub->get_description()));
     }

@@ -250,7 +250,6 @@ std::string value_text(const json& value) {
 
 std::string expected_values(const Field& field) {
   if (const auto* member = std::get_if<ChoiceMember>(&field.member)) {
-    if (member->names.size() == 1) return fmt::format("{}", member->names.front());
     return fmt::format("one of {}", fmt::join(member->names, ", "));
   }
   if (field.is_whole()) {
