@@ -27,15 +27,12 @@ using std::string;
 using std::string_view;
 
 // Of one variant at one scale, which states everything.
-class VariantCheck {
- public:
-  VariantCheck(const Manifest& manifest, const Scale& scale, const Variant& variant,
-               ProblemList& problems)
-      : manifest_(manifest),
-        scale_(scale),
-        variant_(variant),
-        p_(variant.parameters),
-        problems_(problems) {}
+struct VariantCheck {
+  const Manifest& manifest;
+  const Scale& scale;
+  const Variant& variant;
+  ProblemList& problems;
+  const Parameters& p = variant.parameters;
 
   void run() {
     if (!autos_are_in_range()) return;
@@ -43,14 +40,13 @@ class VariantCheck {
     check_settle_steps();
     check_pause();
     check_cell();
-    if (asks_lammps_to_stiffen(p_)) {
+    if (asks_lammps_to_stiffen(p)) {
       report("engine", "LAMMPS cannot do the protocol stiffen", "Leave the engine out, or shear.");
     }
     check_density();
-    if (!scale_.checkpoints->phases.empty()) check_phases();
+    if (!scale.checkpoints->phases.empty()) check_phases();
   }
 
- private:
   struct Place {
     Position at;
     string got;
@@ -58,15 +54,15 @@ class VariantCheck {
   };
 
   Place find(string_view key) const {
-    for (const auto& [name, setting] : variant_.swept) {
+    for (const auto& [name, setting] : variant.swept) {
       if (name == key) return {setting->at, setting->value.dump()};
     }
-    const auto found = scale_.settings.find(key);
-    if (found != scale_.settings.end()) {
+    const auto found = scale.settings.find(key);
+    if (found != scale.settings.end()) {
       return {found->second.at, is_auto(found->second) ? "auto" : found->second.value.dump()};
     }
-    const nlohmann::json value = get_value(*find_field(key), p_);
-    return {manifest_.base.at, fmt::format("the default {}", value.dump()), false};
+    const nlohmann::json value = get_value(*find_field(key), p);
+    return {manifest.base.at, fmt::format("the default {}", value.dump()), false};
   }
 
   void report(string_view key, string problem, string remedy) {
@@ -74,16 +70,16 @@ class VariantCheck {
   }
 
   void report(string_view key, const Place& place, string problem, string remedy) {
-    problems_.add(place.at, string(key), std::move(problem), place.got, std::move(remedy));
+    problems.add(place.at, string(key), std::move(problem), place.got, std::move(remedy));
   }
 
   // Whether what `auto` came to may be used.
   bool autos_are_in_range() {
     bool sound = true;
-    for (const auto& [key, setting] : scale_.settings) {
+    for (const auto& [key, setting] : scale.settings) {
       if (!is_auto(setting)) continue;
       const Field& field = *find_field(key);
-      const nlohmann::json value = get_value(field, p_);
+      const nlohmann::json value = get_value(field, p);
       if (!check_value(field, value)) continue;
       report(key, fmt::format("comes to {}, which is out of range", value_text(value)),
              fmt::format("State {}, or change stiffness_N_per_m, mass_kg or period_s.",
@@ -94,9 +90,9 @@ class VariantCheck {
   }
 
   void check_shear_step() {
-    const double limit = stability_limit_s(p_);
-    if (shear_time_step_s(p_) < limit) return;
-    const double enough = std::floor(p_.period_s / limit) + 1;
+    const double limit = stability_limit_s(p);
+    if (shear_time_step_s(p) < limit) return;
+    const double enough = std::floor(p.period_s / limit) + 1;
     Place place = find("steps_per_cycle");
     // Left at its default, it was made wrong by one of these.
     for (const char* cause : {"period_s", "stiffness_N_per_m", "mass_kg"}) {
@@ -107,33 +103,33 @@ class VariantCheck {
     report("steps_per_cycle", place,
            fmt::format("the time step period_s/steps_per_cycle = {:.4g} s is over the stability "
                        "limit 2/sqrt(8 k/m) = {:.4g} s",
-                       shear_time_step_s(p_), limit),
+                       shear_time_step_s(p), limit),
            find_field("steps_per_cycle")->range.contains(enough)
                ? fmt::format("Use at least {:.0f} steps per cycle, or `auto`.", enough)
                : "Lower period_s or stiffness_N_per_m.");
   }
 
   void check_settle_steps() {
-    const double limit = stability_limit_s(p_);
-    if (p_.settle_time_step_s >= limit) {
+    const double limit = stability_limit_s(p);
+    if (p.settle_time_step_s >= limit) {
       report("settle_time_step_s",
              fmt::format("the time step {:.4g} s is over the stability limit 2/sqrt(8 k/m) = "
                          "{:.4g} s",
-                         p_.settle_time_step_s, limit),
+                         p.settle_time_step_s, limit),
              fmt::format("Use less than {:.4g} s, or `auto`.", limit));
     }
-    const double seconds = std::max(p_.settle_time_limit_s, kLookInterval);
-    if (seconds / p_.settle_time_step_s <= kMostSteps) return;
+    const double seconds = std::max(p.settle_time_limit_s, kLookInterval);
+    if (seconds / p.settle_time_step_s <= kMostSteps) return;
     report("settle_time_step_s",
            fmt::format("settling takes up to {:.3g} time steps, more than {:g}",
-                       seconds / p_.settle_time_step_s, kMostSteps),
+                       seconds / p.settle_time_step_s, kMostSteps),
            fmt::format("Use at least {:.3g} s, or lower settle_time_limit_s.",
                        1.001 * seconds / kMostSteps));
   }
 
   void check_pause() {
-    const double steps = pause_time_steps(p_);
-    if (p_.protocol != ProtocolKind::paused || steps <= kMostPauseSteps) return;
+    const double steps = pause_time_steps(p);
+    if (p.protocol != ProtocolKind::paused || steps <= kMostPauseSteps) return;
     constexpr std::array<string_view, 3> keys = {"pause_s", "period_s", "steps_per_cycle"};
     const auto* stated = std::ranges::find_if(keys, [&](auto key) { return find(key).stated; });
     report(stated == keys.end() ? keys[0] : *stated,
@@ -145,7 +141,7 @@ class VariantCheck {
   void check_cell() {
     // Below, a grain could meet another one through both ends of the period.
     constexpr double smallest_depth = 3;
-    const Geometry shape = geometry(p_);
+    const Geometry shape = geometry(p);
     if (cell_width(shape) < smallest_depth) {
       report("grains",
              fmt::format("the cell for so few grains is {:.3g} d wide and deep, less than {} d",
@@ -153,38 +149,35 @@ class VariantCheck {
              "Use more grains.");
     }
     if (!too_large(shape)) return;
-    report(p_.fill_packing_fraction < 0.1 * p_.nominal_packing_fraction
-               ? "fill_packing_fraction"
-               : "nominal_packing_fraction",
+    report(p.fill_packing_fraction < 0.1 * p.nominal_packing_fraction ? "fill_packing_fraction"
+                                                                      : "nominal_packing_fraction",
            fmt::format("the cell for the loose grains is {:.3g} d wide and {:.3g} d high with "
                        "{:.2g} wall grains, too large for {} grains",
-                       cell_width(shape), fill_height(shape), wall_grain_count(shape), p_.grains),
+                       cell_width(shape), fill_height(shape), wall_grain_count(shape), p.grains),
            "Raise it.");
   }
 
   void check_density() {
-    if (p_.fill_packing_fraction < p_.nominal_packing_fraction) return;
-    const char* problem = "the grains are placed at random more densely than they are to settle";
-    if (find("fill_packing_fraction").stated) {
-      report("fill_packing_fraction", problem,
-             fmt::format("Choose it below nominal_packing_fraction ({}).",
-                         p_.nominal_packing_fraction));
-    } else {
-      report("nominal_packing_fraction", problem,
-             fmt::format("Choose it above fill_packing_fraction ({}).", p_.fill_packing_fraction));
-    }
+    if (p.fill_packing_fraction < p.nominal_packing_fraction) return;
+    const bool loose_stated = find("fill_packing_fraction").stated;
+    report(loose_stated ? "fill_packing_fraction" : "nominal_packing_fraction",
+           "the grains are placed at random more densely than they are to settle",
+           loose_stated ? fmt::format("Choose it below nominal_packing_fraction ({}).",
+                                      p.nominal_packing_fraction)
+                        : fmt::format("Choose it above fill_packing_fraction ({}).",
+                                      p.fill_packing_fraction));
   }
 
   void check_phases() {
     const auto refuse = [&](string problem, string remedy) {
-      report("checkpoints.phases", {scale_.checkpoints->at, ""}, std::move(problem),
+      report("checkpoints.phases", {scale.checkpoints->at, ""}, std::move(problem),
              std::move(remedy));
     };
-    const Drive motion = drive(p_);
-    const std::vector<double>& phases = scale_.checkpoints->phases;
-    if (p_.protocol == ProtocolKind::stiffen) {
+    const Drive motion = drive(p);
+    const std::vector<double>& phases = scale.checkpoints->phases;
+    if (p.protocol == ProtocolKind::stiffen) {
       refuse("protocol stiffen has no phases of a cycle", "Leave them out.");
-    } else if (p_.engine == EngineKind::lammps) {
+    } else if (p.engine == EngineKind::lammps) {
       refuse("LAMMPS makes no checkpoints within a cycle", "Leave them out, or the engine.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
       refuse(fmt::format("two of them are one step, or the end of the cycle, with {} steps in a "
@@ -193,12 +186,6 @@ class VariantCheck {
              "Use fewer of them, or more steps_per_cycle.");
     }
   }
-
-  const Manifest& manifest_;
-  const Scale& scale_;
-  const Variant& variant_;
-  const Parameters& p_;
-  ProblemList& problems_;
 };
 
 void check_scale_against_sweep(const Scale& scale, const Sweep& sweep, ProblemList& problems) {
@@ -365,7 +352,7 @@ void check_variants(const Manifest& manifest) {
   if (!manifest.labels.empty()) check_labels(manifest, scales, problems);
   for (const Scale& scale : scales) {
     for (const Variant& variant : variants_of(scale)) {
-      VariantCheck(manifest, scale, variant, problems).run();
+      VariantCheck{manifest, scale, variant, problems}.run();
     }
   }
   problems.raise();

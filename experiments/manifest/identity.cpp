@@ -31,7 +31,8 @@ json as_json(const Field& field, std::string_view text) {
   return std::get<json>(read_value(field, text, false));
 }
 
-json resolve(Stage stage, const Parameters& given, std::uint64_t seed) {
+StageSpec stage_spec(Stage stage, const Parameters& given, std::uint64_t seed,
+                     const std::string& parent) {
   const Parameters parameters = without_what_is_not_felt(given);
   json values = json::object();
   for (const Field& field : schema()) {
@@ -41,7 +42,9 @@ json resolve(Stage stage, const Parameters& given, std::uint64_t seed) {
       values[std::string(field.name)] = std::move(value);
     }
   }
-  return {{"stage", name_of(stage)}, {"seed", seed}, {"parameters", std::move(values)}};
+  json resolved = {{"stage", name_of(stage)}, {"seed", seed}, {"parameters", std::move(values)}};
+  if (!parent.empty()) resolved["parent"] = parent;
+  return {stage, stage_key(resolved), parent, resolved};
 }
 
 void append_canonical(const json& value, std::string& text) {
@@ -127,17 +130,11 @@ Parameters read_parameters(Stage stage, const json& values) {
 }  // namespace
 
 StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed) {
-  json resolved = resolve(Stage::prepare, parameters, seed);
-  std::string key = stage_key(resolved);
-  return {Stage::prepare, std::move(key), "", std::move(resolved)};
+  return stage_spec(Stage::prepare, parameters, seed, "");
 }
 
 StageSpec last_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent) {
-  const Stage stage = stage_after_settling(parameters.protocol);
-  json resolved = resolve(stage, parameters, seed);
-  resolved["parent"] = parent.key;
-  std::string key = stage_key(resolved);
-  return {stage, std::move(key), parent.key, std::move(resolved)};
+  return stage_spec(stage_after_settling(parameters.protocol), parameters, seed, parent.key);
 }
 
 std::string stage_key(const json& resolved) {
