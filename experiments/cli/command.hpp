@@ -37,13 +37,13 @@ struct Context {
   int exit_code = kDone;
 };
 
-/// Keeps the gravest: 4, 3, 2, 1, then 85.
+/// Sets the exit code unless it is a more serious one: 4, 3, 2, 1, then 85.
 void fail(Context& context, ExitCode code);
 
-/// A store to look into, or nothing where `run` would make one.
+/// The store, for reading; nothing where there is none yet.
 std::optional<Store> open_if_there(const std::string& folder);
 
-/// Says what came in the way of measuring, each checkpoint after `left_out`; damage is a failure.
+/// Prints the problems of measuring, each checkpoint after `left_out`; damage sets the exit code.
 void tell_problems(const MeasureOutcome& outcome, const char* left_out, Context& context);
 
 // Each subcommand is in a file of its own, or with its closest relative, and adds itself here.
@@ -53,7 +53,7 @@ AddCommand add_plan, add_run, add_status, add_log, add_show, add_verify, add_reb
     add_regenerate, add_submit, add_work, add_merge, add_table, add_figures, add_report, add_export,
     add_bench, add_new, add_doctor, add_completion, add_manual;
 
-/// Prints what came of a campaign and sets the exit code.
+/// Prints the result of a campaign and sets the exit code.
 void report(const CampaignResult& result, Context& context);
 
 /// The part of `show` for figures: what a figure came from, within 80 columns or as JSON.
@@ -70,7 +70,7 @@ void add_json_option(CLI::App& command, Context& context);
 /// --store DIR and --json.
 void add_common_options(CLI::App& command, Context& context);
 
-/// --scale, --cycles and --seeds: what of a manifest is meant.
+/// --scale, --cycles, --seeds and --variant: which runs of a manifest.
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
 struct LoadedManifests {

@@ -98,7 +98,8 @@ void print_numerics(const std::vector<Line>& lines) {
       {"stage", "variant", "steps/cycle", "dt [s]", "dt/contact", "dt/limit", "overlap [d]"}, rows);
 }
 
-// A run goes on to the longest target that it was ever declared with; returns how many do.
+// Raises each target to the longest that the run was ever declared with, as `run` does. Returns how
+// many were raised.
 std::size_t take_longer_targets(const std::vector<RunRecord>& known, Plan& plan) {
   std::map<std::string, const RunRecord*> unfinished;
   for (const RunRecord& run : known) {

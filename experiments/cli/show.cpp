@@ -96,33 +96,33 @@ void print(const Facts& facts) {
   }
 }
 
-void show_run(const Store& store, const RunRecord& run, Context& context) {
-  const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, Listed::all);
+nlohmann::json run_facts(const Store& store, const RunRecord& run,
+                         const std::vector<CheckpointRecord>& checkpoints, Context& context) {
+  const auto member = [&](const Membership& m) -> nlohmann::json {
+    return {{"experiment", m.experiment},
+            {"scale", m.scale},
+            {"variant", m.variant},
+            {"seed", m.seed},
+            {"target_cycles", m.target_cycles},
+            {"manifest", m.manifest},
+            {"overrides", overrides_of(store, run, m)}};
+  };
+  return {{"id", run.id},
+          {"parent", run.parent},
+          {"kind", run.kind},
+          {"state", name_of(run.state)},
+          {"resolved", run.resolved},
+          {"attempts", run.attempts},
+          {"engine", engine_of_run(store, run.id)},
+          {"memberships", json_list(run.memberships, member)},
+          {"checkpoints", facts_of_all(store, run, checkpoints)},
+          {"measures", as_json(newest_measures(store, checkpoints, context))},
+          {"error", run.error},
+          {"ended", end_of(store, run)}};
+}
+
+void print_run(const Store& store, const RunRecord& run) {
   const nlohmann::json engine = engine_of_run(store, run.id);
-  if (context.json) {
-    const auto member = [&](const Membership& m) -> nlohmann::json {
-      return {{"experiment", m.experiment},
-              {"scale", m.scale},
-              {"variant", m.variant},
-              {"seed", m.seed},
-              {"target_cycles", m.target_cycles},
-              {"manifest", m.manifest},
-              {"overrides", overrides_of(store, run, m)}};
-    };
-    print_json({{"id", run.id},
-                {"parent", run.parent},
-                {"kind", run.kind},
-                {"state", name_of(run.state)},
-                {"resolved", run.resolved},
-                {"attempts", run.attempts},
-                {"engine", engine},
-                {"memberships", json_list(run.memberships, member)},
-                {"checkpoints", facts_of_all(store, run, checkpoints)},
-                {"measures", as_json(newest_measures(store, checkpoints, context))},
-                {"error", run.error},
-                {"ended", end_of(store, run)}});
-    return;
-  }
   tell("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {} attempts\n",
        run.id, run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state), run.cycle,
        run.target_cycles, run.attempts);
@@ -131,8 +131,9 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
          engine.value("processes", 1));
   }
   if (!run.error.empty()) tell("error    {}\n", run.error);
-  if (const std::string why = describe_end(end_of(store, run)); !why.empty())
+  if (const std::string why = describe_end(end_of(store, run)); !why.empty()) {
     tell("ended    {}\n", why);
+  }
   for (const Membership& m : run.memberships) {
     tell("part of  {} ({}) {} seed {}, manifest {:.8}\n", m.experiment, scale_name(m.scale),
          m.variant, m.seed, m.manifest);
@@ -142,18 +143,28 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
            values.at("run").dump(), values.at("manifest").dump());
     }
   }
-  tell("\n");
-  for (const auto& [key, value] : run.resolved.items()) {
-    if (value.is_object()) {
-      for (const auto& [name, inner] : value.items()) {
-        const Field* field = find_field(name);  // a constant of the record is not what the run had
-        const bool constant = field != nullptr && !field->identity.recorded_as.empty();
-        if (!constant) tell("{:<32} {}\n", name, inner.dump());
-      }
-    } else {
+}
+
+void print_resolved(const nlohmann::json& resolved) {
+  for (const auto& [key, value] : resolved.items()) {
+    if (!value.is_object()) {
       tell("{:<32} {}\n", key, value.dump());
+      continue;
+    }
+    for (const auto& [name, inner] : value.items()) {
+      const Field* field = find_field(name);  // a constant of the record is not what the run had
+      const bool constant = field != nullptr && !field->identity.recorded_as.empty();
+      if (!constant) tell("{:<32} {}\n", name, inner.dump());
     }
   }
+}
+
+void show_run(const Store& store, const RunRecord& run, Context& context) {
+  const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, Listed::all);
+  if (context.json) return print_json(run_facts(store, run, checkpoints, context));
+  print_run(store, run);
+  tell("\n");
+  print_resolved(run.resolved);
   tell("\n");
   print_table({"cycle", "step", "checkpoint", "state", "size", ""}, checkpoints,
               [](const CheckpointRecord& c) -> Row {
@@ -170,7 +181,7 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   }
 }
 
-/// `file`: what has become of it.
+/// `file`: its name, or that it was pruned.
 void print_head(const CheckpointRecord& record, const std::string& file) {
   tell("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
        record.run);

@@ -335,7 +335,7 @@ void watch(const RunSelection& selection, const Context& context, double interva
     } else if (!stages_remain(view.runs) || now - busy_at > kIdle) {
       return;
     }
-    // A cluster's queue serves many, and is not asked so often.
+    // Many users share the queue of a cluster: it is asked at most every 10 s.
     const bool asks = !view.queue.submissions.empty();
     if (sleep_or_stop(asks ? std::max(interval, 10.0) : interval)) return;
   }

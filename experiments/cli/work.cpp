@@ -29,16 +29,16 @@ struct WorkOptions {
   bool leave_failed = false;
 };
 
-// How often others learn how far the task is, and how often the states on a node's own disk are
-// brought to safety: what is lost with a node is what it computed since.
+// Intervals of the progress report, and of saving the states on a node's own disk: a node that
+// fails loses what it computed since.
 constexpr seconds kReportEvery{10};
 constexpr seconds kSaveEvery{300};
 
-/// The deed of a Repeated; when it fails, that is told, and it is tried again next time.
-std::function<void()> tried(std::function<void()> deed, seconds interval) {
-  return [interval, deed = std::move(deed)] {
+/// For Repeated: prints the error of an action that fails, which is then repeated next time.
+std::function<void()> tried(std::function<void()> action, seconds interval) {
+  return [interval, action = std::move(action)] {
     try {
-      deed();
+      action();
     } catch (const std::exception& problem) {
       tell_stderr("shearcell: {}; tried again in {} s\n", problem.what(), interval.count());
     }

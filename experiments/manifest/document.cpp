@@ -173,7 +173,7 @@ class TreeBuilder : public YAML::EventHandler {
       open_.back().node.items.push_back(std::move(node));
     } else {
       auto& [key, value] = open_.back().node.entries.back();
-      // What is not there is best looked for where its key stands.
+      // An empty value is reported at its key.
       if (node.kind == Node::Kind::null) node.at = key.at;
       value = std::move(node);
       open_.back().awaits_value = false;
@@ -199,8 +199,8 @@ class TreeBuilder : public YAML::EventHandler {
   Node root_;
 };
 
-// The first line up to `last` that is indented with a tab; 0 when none is. The parser's own words
-// for it differ from place to place.
+// The first line up to `last` that is indented with a tab; 0 when there is none. The parser's own
+// message for it varies.
 int tab_indented_line(string_view text, int last) {
   for (int line = 1; line <= last && !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());

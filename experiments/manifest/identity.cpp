@@ -21,7 +21,7 @@ using nlohmann::json;
 // Changes with the meaning of a key, so that keys of different meanings never meet.
 constexpr std::string_view kDomain = "shearcell stage 1\n";
 
-// One value for all that make the same run.
+// What has no effect gets one value, so that equal runs have equal records.
 Parameters without_what_is_not_felt(Parameters parameters) {
   if (!feels_pressure_at(parameters)) parameters.pressure_at = PressureAt::moving_wall;
   return parameters;

@@ -70,7 +70,7 @@ std::string takes(const Field& field) {
   return fmt::format("It takes {}.", expected_values(field));
 }
 
-// Not written as an unsigned integer.
+// Of a text that is no unsigned integer.
 ValueProblem not_an_integer(const Field& field, string_view text) {
   const std::optional<double> number = parse_real(text);
   if (number && !field.range.contains(*number)) return {"is out of range", takes(field)};
