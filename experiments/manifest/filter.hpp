@@ -25,7 +25,7 @@ class Filter {
 
   bool passes(const std::string& value) {
     if (wanted_.empty()) return true;
-    seen_.push_back(value);
+    if (known_.insert(value).second) seen_.push_back(value);
     std::map<std::string, bool> fits;  // by kind
     for (const std::string& one : wanted_) fits[kind_(one)] |= fits_(one, value);
     return std::ranges::all_of(fits, [](const auto& kind) { return kind.second; });
@@ -41,20 +41,14 @@ class Filter {
   }
 
   /// Each once, in order.
-  std::vector<std::string> seen() const {
-    std::set<std::string> known;
-    std::vector<std::string> distinct;
-    for (const std::string& value : seen_) {
-      if (known.insert(value).second) distinct.push_back(value);
-    }
-    return distinct;
-  }
+  const std::vector<std::string>& seen() const { return seen_; }
 
  private:
   std::vector<std::string> wanted_;
   Fits fits_;
   Kind kind_;
   std::vector<std::string> seen_;
+  std::set<std::string> known_;  ///< those of seen_
 };
 
 }  // namespace shearcell

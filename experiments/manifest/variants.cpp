@@ -77,9 +77,8 @@ std::string name_of_variant(const json& variant, const std::vector<std::string>&
   std::vector<std::string> parts;
   for (const VariantLabel* label : labels) {
     if (!selects(*label, variant)) continue;
-    bool free = true;
-    for (const auto& [key, value] : label->where.items()) free = free && !named.contains(key);
-    if (!free) continue;
+    const auto is_named = [&](const auto& item) { return named.contains(item.key()); };
+    if (std::ranges::any_of(label->where.items(), is_named)) continue;
     for (const auto& [key, value] : label->where.items()) named.insert(key);
     parts.push_back(label->name);
   }
@@ -237,11 +236,10 @@ std::vector<Variant> variants_of(const Scale& scale) {
 
 bool selects(const VariantLabel& label, const json& variant) {
   if (!variant.is_object() || label.where.empty()) return false;
-  for (const auto& [key, value] : label.where.items()) {
-    const auto found = variant.find(key);
-    if (found == variant.end() || *found != value) return false;
-  }
-  return true;
+  return std::ranges::all_of(label.where.items(), [&](const auto& item) {
+    const auto found = variant.find(item.key());
+    return found != variant.end() && *found == item.value();
+  });
 }
 
 std::map<json, std::string> variant_names(const std::vector<json>& variants,
