@@ -44,7 +44,8 @@ StageSpec stage_spec(Stage stage, const Parameters& given, std::uint64_t seed,
   }
   json resolved = {{"stage", name_of(stage)}, {"seed", seed}, {"parameters", std::move(values)}};
   if (!parent.empty()) resolved["parent"] = parent;
-  return {stage, stage_key(resolved), parent, resolved};
+  std::string key = stage_key(resolved);
+  return {stage, std::move(key), parent, std::move(resolved)};
 }
 
 void append_canonical(const json& value, std::string& text) {
