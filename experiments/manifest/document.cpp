@@ -149,21 +149,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void add(Node node) {
     count(node.at);
-    if (!open_.empty() && awaits_key()) {
-      add_key(std::move(node));
-    } else {
-      place(std::move(node));
-    }
-  }
-
-  void add_key(Node key) {
-    if (key.kind != Node::Kind::scalar) refuse_key(key.at);
-    Open& map = open_.back();
-    if (!map.keys.insert(key.text).second) {
-      refuse(file_, key.at, "appears twice in one map", "Keep one of them.", printable(key.text));
-    }
-    map.node.entries.emplace_back(std::move(key), Node{});
-    map.awaits_value = true;
+    place(std::move(node));
   }
 
   void place(Node node) {
@@ -171,6 +157,8 @@ class TreeBuilder : public YAML::EventHandler {
       root_ = std::move(node);
     } else if (open_.back().node.kind == Node::Kind::list) {
       open_.back().node.items.push_back(std::move(node));
+    } else if (awaits_key()) {
+      place_key(std::move(node), open_.back());
     } else {
       auto& [key, value] = open_.back().node.entries.back();
       // An empty value is reported at its key.
@@ -178,6 +166,15 @@ class TreeBuilder : public YAML::EventHandler {
       value = std::move(node);
       open_.back().awaits_value = false;
     }
+  }
+
+  void place_key(Node key, Open& map) {
+    if (key.kind != Node::Kind::scalar) refuse_key(key.at);
+    if (!map.keys.insert(key.text).second) {
+      refuse(file_, key.at, "appears twice in one map", "Keep one of them.", printable(key.text));
+    }
+    map.node.entries.emplace_back(std::move(key), Node{});
+    map.awaits_value = true;
   }
 
   bool awaits_key() const {
