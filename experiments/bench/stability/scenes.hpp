@@ -70,17 +70,10 @@ Answer expect_balance(const Packing& packing, const State& state, double most);
 /// As expected if all parts are.
 Answer all_of(const std::vector<Answer>& parts);
 
-/// Adds a case; `compute` takes HardCase::run's `quick`, or nothing.
-template <class Compute>
-void add(Cases& cases, const std::string& name, const std::string& done,
-         const std::string& expected, Compute compute) {
-  cases.push_back({name, done, expected, [compute](bool quick) -> Answer {
-                     if constexpr (std::is_invocable_v<Compute, bool>) {
-                       return compute(quick);
-                     } else {
-                       return compute();
-                     }
-                   }});
+/// Adds one case.
+inline void add(Cases& cases, const std::string& name, const std::string& done,
+                const std::string& expected, std::function<Answer()> run) {
+  cases.push_back({name, done, expected, std::move(run)});
 }
 
 /// Adds a case for each value, which appears in its name and description.
@@ -88,8 +81,8 @@ template <class Value>
 void add_each(Cases& cases, const std::vector<Value>& values, const std::string& name,
               const std::string& done, const std::string& expected, Answer (*compute)(Value)) {
   for (const Value value : values) {
-    add(cases, fmt::format(fmt::runtime(name), value), fmt::format(fmt::runtime(done), value),
-        expected, [compute, value] { return compute(value); });
+    cases.push_back({fmt::format(fmt::runtime(name), value), fmt::format(fmt::runtime(done), value),
+                     expected, [compute, value] { return compute(value); }});
   }
 }
 
