@@ -101,14 +101,17 @@ std::vector<CheckpointCadence> phase_cadences(std::span<const RunAsk> asks, cons
   return cadences;
 }
 
-std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run) {
+std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run,
+                                               const std::optional<RunAsk>& planned) {
   if (run.kind != name_of(Stage::shear) || engine_of(run.resolved) != EngineKind::shearcell) {
     return {};
   }
   if (stage_key(run.resolved) != run.id) return {};  // plan_stage() reports it
   const Drive motion = drive(read_stage(run.resolved).parameters);
   std::set<std::uint64_t> steps;
-  for (const RunAsk& ask : asks_of(store, run.id)) {
+  std::vector<RunAsk> asks = asks_of(store, run.id);
+  if (planned) asks.push_back(*planned);
+  for (const RunAsk& ask : asks) {
     const double end = std::min(run.cycle, static_cast<double>(ask.target_cycles));
     for (const std::uint64_t step : checkpoint_steps(ask, motion, 0, end)) {
       if (static_cast<double>(step) < end * static_cast<double>(cycle_steps(motion))) {
