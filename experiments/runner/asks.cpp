@@ -17,6 +17,7 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/manifest.hpp"
+#include "protocols/cyclic_shear.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/limits.hpp"
 
@@ -90,15 +91,6 @@ std::uint64_t checkpoint_cadence(const RunRecord& run) {
   std::uint64_t cadence = 0;
   for (const Membership& m : run.memberships) cadence = std::gcd(cadence, m.checkpoint_every);
   return std::max<std::uint64_t>(cadence, 1);
-}
-
-std::vector<CheckpointCadence> phase_cadences(std::span<const RunAsk> asks, const Drive& drive) {
-  std::vector<CheckpointCadence> cadences;
-  for (const RunAsk& ask : asks) {
-    if (ask.phases.empty()) continue;
-    cadences.push_back({ask.checkpoint_every, steps_at(ask.phases, drive)});
-  }
-  return cadences;
 }
 
 std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run,

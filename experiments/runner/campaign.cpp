@@ -17,7 +17,6 @@
 #include "core/threads.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/asks.hpp"
-#include "experiments/runner/packing_names.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/run_end.hpp"
@@ -279,12 +278,10 @@ std::string job_name(const Membership& membership, const std::string& name) {
   return fmt::format("{} {} seed={}", membership.experiment, name, membership.seed);
 }
 
-StageJob job_of(const RunRecord& run, const VariantNames& names, const PackingNames& packings) {
+StageJob job_of(const RunRecord& run, const VariantNames& names) {
   if (run.memberships.empty()) return {run.id, run.parent, run.kind};
   const Membership& place = run.memberships.front();
-  return {
-      run.id, run.parent,
-      job_name(place, run.kind == "prepare" ? packings.of(place, run.resolved) : names.of(place))};
+  return {run.id, run.parent, job_name(place, names.of(run, place))};
 }
 
 /// Adds their ids to equal names, as those of several scales.
@@ -371,11 +368,9 @@ std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& p
     while (wanted.insert(run.id).second && !run.parent.empty()) run = store.run(run.parent);
   }
   std::vector<StageJob> jobs;
-  const std::vector<RunRecord> runs = store.runs();
   const VariantNames names(store);
-  const PackingNames packings(runs);
-  for (const RunRecord& run : runs) {
-    if (wanted.count(run.id) > 0) jobs.push_back(job_of(run, names, packings));
+  for (const RunRecord& run : store.runs()) {
+    if (wanted.contains(run.id)) jobs.push_back(job_of(run, names));
   }
   tell_apart(jobs);
   return jobs;

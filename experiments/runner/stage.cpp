@@ -58,8 +58,12 @@ std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t 
     stiffen.minimize.force_tolerance = p.minimize_force_tolerance;
     return std::make_unique<Stiffen>(stiffen, stiffen_scene(p));
   }
-  return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every,
-                                       phase_cadences(asks, drive(p)));
+  std::vector<CheckpointCadence> within;
+  for (const RunAsk& ask : asks) {
+    if (!ask.phases.empty())
+      within.push_back({ask.checkpoint_every, steps_at(ask.phases, drive(p))});
+  }
+  return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every, std::move(within));
 }
 
 // The limit is not part of a run's identity. Manifests that state one other than the default have
@@ -82,23 +86,7 @@ double overlap_limit(const Store& store, const RunRecord& run, double otherwise)
   return limit;
 }
 
-}  // namespace
-
-StagePlan plan_stage(const Store& store, RunRecord run) {
-  if (stage_key(run.resolved) != run.id) {
-    throw StoreDamaged("run " + run.id.substr(0, 12) +
-                       ": its recorded parameters are not those that it is named after");
-  }
-  StageRecord stage = read_stage(run.resolved);
-  double& limit = stage.parameters.max_overlap_diameters;
-  limit = overlap_limit(store, run, limit);
-  require_memory(stage);
-  const Scene scene = make_scene(stage);
-  const std::uint64_t every = checkpoint_cadence(run);
-  auto protocol = make_protocol(stage, run.target_cycles, every, asks_of(store, run.id));
-  return {std::move(run), std::move(stage), scene, std::move(protocol), every};
-}
-
+// Where the stage itself begins.
 Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage) {
   const RunRecord& run = plan.run;
   if (run.parent.empty()) {
@@ -122,6 +110,23 @@ Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::stri
   parent->checkpoint.state.step = 0;
   return {std::move(parent->checkpoint.cell), std::move(parent->checkpoint.state), std::nullopt,
           parent->record.sha256};
+}
+
+}  // namespace
+
+StagePlan plan_stage(const Store& store, RunRecord run) {
+  if (stage_key(run.resolved) != run.id) {
+    throw StoreDamaged("run " + run.id.substr(0, 12) +
+                       ": its recorded parameters are not those that it is named after");
+  }
+  StageRecord stage = read_stage(run.resolved);
+  double& limit = stage.parameters.max_overlap_diameters;
+  limit = overlap_limit(store, run, limit);
+  require_memory(stage);
+  const Scene scene = make_scene(stage);
+  const std::uint64_t every = checkpoint_cadence(run);
+  auto protocol = make_protocol(stage, run.target_cycles, every, asks_of(store, run.id));
+  return {std::move(run), std::move(stage), scene, std::move(protocol), every};
 }
 
 Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage,

@@ -44,12 +44,10 @@ struct Beginning {
   std::string parent_checkpoint;         ///< that the stage begins from, or ""
 };
 
-/// Where the stage itself begins: the state at which its parent was completed, or a fresh filling.
-/// Throws StoreDamaged when that state cannot be read or the parent is not completed, and
-/// Interrupted when the filling is given up. `damage` as in Store::newest_valid_checkpoint.
-Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage);
-
-/// The newest checkpoint before a step that verifies, or else where the stage begins.
+/// The newest checkpoint before a step that verifies, or else where the stage begins: the state at
+/// which its parent was completed, or a fresh filling. Throws StoreDamaged when the parent's state
+/// cannot be read or the parent is not completed, and Interrupted when the filling is given up.
+/// `damage` as in Store::newest_valid_checkpoint.
 Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage,
                          std::uint64_t before_step = UINT64_MAX);
 
