@@ -73,10 +73,6 @@ std::string directives(const JobOptions& options, const std::vector<std::string>
          "#SBATCH --open-mode=append\n";
 }
 
-constexpr const char* kNoSlurm =
-    "{} is not installed here (Debian package slurm-client); submit from a machine of the cluster, "
-    "or see what would be submitted with --dry-run";
-
 std::string trimmed(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   return text;
@@ -88,15 +84,15 @@ constexpr double kAnswerSeconds = 15;
 // `seconds` only for questions: a job may be queued although sbatch does not answer.
 std::string ask(const std::vector<std::string>& words, const std::filesystem::path& folder,
                 std::optional<double> seconds = std::nullopt) {
-  std::optional<ProgramOutcome> outcome;
-  try {
-    outcome = run_program(words, folder, {}, seconds);
-  } catch (const ProgramError& problem) {
-    throw ClusterError(problem.what());
+  const auto outcome = run_program(words, folder, {}, seconds);
+  if (!outcome) {
+    throw ProgramError(fmt::format(
+        "{} is not installed here (Debian package slurm-client); submit from a machine of the "
+        "cluster, or see what would be submitted with --dry-run",
+        words.front()));
   }
-  if (!outcome) throw ClusterError(fmt::format(fmt::runtime(kNoSlurm), words.front()));
   if (outcome->code != 0) {
-    throw ClusterError(fmt::format("{} failed: {}", words.front(), trimmed(outcome->messages)));
+    throw ProgramError(fmt::format("{} failed: {}", words.front(), trimmed(outcome->messages)));
   }
   return outcome->output;
 }
@@ -185,7 +181,7 @@ std::string queue_job(const std::filesystem::path& folder, const std::string& sc
   const std::string answer = ask(words, folder);
   std::string job = trimmed(answer.substr(0, answer.find(';')));  // then the cluster's name
   if (!read_number<std::uint64_t>(job)) {
-    throw ClusterError(fmt::format("sbatch gave no job number but '{}'", trimmed(answer)));
+    throw ProgramError(fmt::format("sbatch gave no job number but '{}'", trimmed(answer)));
   }
   return job;
 }

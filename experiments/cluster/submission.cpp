@@ -10,6 +10,7 @@
 
 #include "experiments/runner/audit.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
@@ -211,7 +212,7 @@ QueueView look_at_queue(const Store& store) {
   view.submissions = unfinished_submissions(store);
   try {
     ask_queue(view.submissions);
-  } catch (const ClusterError& error) {
+  } catch (const ProgramError& error) {
     view.problem = error.what();
   }
   std::map<std::string, std::string> packing_of;
