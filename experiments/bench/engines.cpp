@@ -9,7 +9,6 @@
 #include "analysis/statistics.hpp"
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/lammps/lammps_run.hpp"
 #include "provenance/io/clock.hpp"
 
 namespace shearcell::bench {

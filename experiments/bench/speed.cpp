@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <stdexcept>
 
+#include "core/kernel.hpp"
 #include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "provenance/checkpoint.hpp"

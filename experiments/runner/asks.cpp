@@ -16,7 +16,6 @@
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/manifest/manifest.hpp"
 #include "protocols/cyclic_shear.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/limits.hpp"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"

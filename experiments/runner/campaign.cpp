@@ -11,7 +11,6 @@
 #include <map>
 #include <mutex>
 #include <set>
-#include <thread>
 
 #include "core/filling.hpp"
 #include "core/threads.hpp"

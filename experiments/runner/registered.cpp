@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "experiments/manifest/variants.hpp"
-#include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
