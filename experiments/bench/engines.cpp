@@ -149,7 +149,7 @@ Settling settle_by(std::size_t ranks, const LammpsProgram& program, const Packin
   const Stopwatch watch;
   LammpsResult result;
   if (ranks == kOurs) {
-    Simulation simulation(loose.cell, loose.scene, loose.state);
+    Simulation simulation = simulate(loose);
     settle(simulation, parameters, loose.scene);
     result = {simulation.state(), watch.seconds(), simulation.bytes()};
   } else {

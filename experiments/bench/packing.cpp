@@ -23,6 +23,16 @@ Packing pressed_packing(const Parameters& parameters, std::uint64_t seed) {
   return packing;
 }
 
+Simulation simulate(const Packing& packing, const EngineSettings& settings) {
+  return {packing.cell, packing.scene, packing.state, settings};
+}
+
+State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive) {
+  Simulation simulation = simulate(packing);
+  simulation.advance(drive, steps);
+  return simulation.state();
+}
+
 void settle(Simulation& simulation, const SettleParameters& parameters, const Scene& scene) {
   const Settle protocol(parameters, scene);
   while (!protocol.advance(simulation, std::numeric_limits<std::uint64_t>::max()).finished) {
@@ -31,7 +41,7 @@ void settle(Simulation& simulation, const SettleParameters& parameters, const Sc
 
 Packing settled_packing(const Parameters& parameters, std::uint64_t seed) {
   Packing packing = loose_packing(parameters, seed);
-  Simulation simulation(packing.cell, packing.scene, packing.state);
+  Simulation simulation = simulate(packing);
   settle(simulation, {}, packing.scene);
   packing.state = simulation.state();
   packing.state.step = 0;

@@ -32,6 +32,11 @@ Packing pressed_packing(const Parameters& parameters, std::uint64_t seed);
 /// settle.
 Packing settled_packing(const Parameters& parameters, std::uint64_t seed);
 
+Simulation simulate(const Packing& packing, const EngineSettings& settings = {});
+
+/// The state after `steps`. Throws NumericalFailure.
+State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive = {});
+
 void settle(Simulation& simulation, const SettleParameters& parameters, const Scene& scene);
 
 struct PackingNumbers {

@@ -302,6 +302,14 @@ nlohmann::json overlap_limits(const Manifest& manifest) {
   return limits;
 }
 
+bool lacks_checkpoints(const Store& store, const RunRecord& run) {
+  try {
+    return !missing_checkpoints(store, run).empty();
+  } catch (const std::exception&) {
+    return false;  // a record that cannot be read; `verify` names it
+  }
+}
+
 }  // namespace
 
 std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan& plan) {
@@ -339,18 +347,6 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   tell_apart(jobs);
   return jobs;
 }
-
-namespace {
-
-bool lacks_checkpoints(const Store& store, const RunRecord& run) {
-  try {
-    return !missing_checkpoints(store, run).empty();
-  } catch (const std::exception&) {
-    return false;  // a record that cannot be read; `verify` names it
-  }
-}
-
-}  // namespace
 
 std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes) {
   std::vector<RunRecord> asked;

@@ -197,16 +197,6 @@ Packing row_between_walls(int count, const Scene& scene) {
   return placed(scene, positions, {4, 1, 3});
 }
 
-Simulation simulate(const Packing& packing, const EngineSettings& settings) {
-  return {packing.cell, packing.scene, packing.state, settings};
-}
-
-State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive) {
-  Simulation simulation = simulate(packing);
-  simulation.advance(drive, steps);
-  return simulation.state();
-}
-
 double kinetic_energy(const State& state) {
   return 0.5 * state.velocity.squaredNorm() / static_cast<double>(state.velocity.cols());
 }

@@ -9,7 +9,9 @@
 
 namespace shearcell::stability {
 
+using bench::advanced;
 using bench::Packing;
+using bench::simulate;
 using V = Eigen::Vector3d;
 
 /// Table I of the supplement, in units of d, m and s.
@@ -40,11 +42,6 @@ void disturb(State& state, const V& speed);
 
 /// `count` grains side by side, apart, each touching the bottom and the top wall.
 Packing row_between_walls(int count, const Scene& scene);
-
-Simulation simulate(const Packing& packing, const EngineSettings& settings = {});
-
-/// The state after `steps`. Throws NumericalFailure.
-State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive = {});
 
 /// Largest distance [d] between the positions of a grain, or of the moving wall, in two states.
 double largest_difference(const State& a, const State& b);
