@@ -48,7 +48,7 @@ std::string array_script(const JobOptions& options, const JobPlaces& places, std
 /// Folds every task's store into STORE, each by itself; ends with the last code that was not 0.
 std::string fold_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks);
 
-/// Of `--output`, whose patterns may mean nothing in the folder's own name.
+/// Value of `--output`: patterns in `file` are kept, those in the folder's name are escaped.
 std::string output_pattern(const std::filesystem::path& folder, std::string_view file);
 
 /// One line of the queue.

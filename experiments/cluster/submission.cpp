@@ -98,7 +98,7 @@ std::vector<Submission> unfinished_submissions(const Store& store) {
     if (run.state == RunState::completed) completed.insert(run.id);
   }
   std::erase_if(open, [&](const Submission& submission) {
-    // Others came by `merge` from stores elsewhere.
+    // Those without a folder were merged from other stores.
     return !fs::exists(submission.folder(store.folder())) || all_completed(submission, completed);
   });
   return open;
@@ -183,7 +183,7 @@ void write_task_report(const fs::path& folder, const std::vector<RunRecord>& run
   try {
     write_output(report_file(folder), json{{"runs", list}}.dump() + "\n");
   } catch (const std::system_error&) {
-    // It only informs, and is written again soon.
+    // It is for information only, and written again soon.
   }
 }
 
@@ -198,7 +198,7 @@ std::map<std::string, ReportedRun> read_task_report(const fs::path& folder) {
       reported[run.at("id").get<std::string>()] = {*state, run.at("cycle").get<double>()};
     }
   } catch (const json::exception&) {
-    reported.clear();  // it only informs
+    reported.clear();  // it is for information only
   }
   return reported;
 }

@@ -28,12 +28,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// held: another program is at work on it. ended: without reaching its target.
+// held: another program computes it. ended: without reaching its target.
 enum class JobState { waiting, running, held, done, ended };
 
-// How often a run that another program holds is looked at.
+// Time between two checks of a run that another program holds.
 constexpr std::chrono::milliseconds kLook{500};
-// A run that slips away so often, while nobody holds it, has a fault of its own.
+// A run that was lost so often while no other program holds it cannot be computed.
 constexpr int kMostLosses = 20;
 
 class Campaign {
@@ -47,7 +47,7 @@ class Campaign {
         states_(jobs.size()) {}
 
   CampaignResult run(std::size_t workers) {
-    // Shows that this program is alive, while simulations take their time.
+    // Shows other programs that this one is alive, also during long simulations.
     const Repeated heartbeat(std::chrono::duration<double>(store_.lease_seconds() / 4), [this] {
       try {
         store_.renew_leases();
@@ -68,13 +68,13 @@ class Campaign {
 
   struct Job {
     JobState state = JobState::waiting;
-    // Of one that another program holds, or took; used by the one thread that runs the job.
+    // Of a run that another program holds or took; used only by the thread that runs the job.
     Clock::time_point look_at = {};
     int losses = 0;
   };
 
-  // The first job that may begin, or that was held and may be looked at again; kNone when there is
-  // none now. Jobs that can no longer begin are ended.
+  // The first job that may begin, or else the first held one that is due for a check; kNone if
+  // there is none now. Jobs that can no longer begin are ended.
   std::size_t next_job() {
     std::size_t look = kNone;
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
@@ -94,12 +94,13 @@ class Campaign {
     return look;
   }
 
-  // Of a job that is not looked at any more: by the log alone, since the user waits for the end.
+  // Of a job that is not computed any more. Reads the log alone, because the user waits for the
+  // end.
   bool was_done(const StageJob& job) const {
     try {
       return store_.run(job.id).state == RunState::completed;
     } catch (const std::exception&) {
-      return false;  // whoever computes it next will say why
+      return false;  // the next attempt to compute it reports why
     }
   }
 
@@ -196,7 +197,7 @@ class Campaign {
     }
     if (held_by_another(job.id)) return put_off(j);
     if (was_held && run.state == RunState::failed) {
-      note(job, &CampaignResult::failed, run.error);  // and so it would fail here
+      note(job, &CampaignResult::failed, run.error);  // it would fail here too
       return JobState::ended;
     }
     progress_.begin(job.id, job.name);

@@ -22,7 +22,7 @@ struct MeasuredRate {
 constexpr MeasuredRate kOurRates[] = {{5200, 74e6}, {1e5, 57e6}, {1e6, 53e6}};
 constexpr MeasuredRate kLammpsRates[] = {{5200, 6.6e6}, {1e5, 3.0e6}};
 
-// Between two sizes a power of N; beyond the outermost as there.
+// A power law in N between two measured sizes, constant beyond the outermost ones.
 double assumed_rate(std::span<const MeasuredRate> rates, double grains) {
   if (grains <= rates.front().grains) return rates.front().rate;
   for (std::size_t i = 1; i < rates.size(); ++i) {

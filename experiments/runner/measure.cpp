@@ -35,7 +35,7 @@ class Measuring {
         measures_(measures),
         options_(options),
         cache_(store.folder()) {
-    std::map<std::string_view, std::size_t> known;  // a run of two experiments comes twice
+    std::map<std::string_view, std::size_t> known;  // a run of two experiments is listed twice
     for (const CheckpointRecord& record : records) {
       const auto [entry, fresh] = known.try_emplace(record.sha256, distinct_.size());
       if (fresh) distinct_.push_back(&record);
@@ -52,7 +52,7 @@ class Measuring {
     look_up();
     for (std::size_t i = 0; i < distinct_.size(); ++i) {
       const bool lacks = std::ranges::any_of(results_[i], &json::is_null);
-      // Of a pruned checkpoint what is kept is all there is.
+      // A pruned checkpoint cannot be measured again.
       const bool again = options_.fresh && distinct_[i]->state != CheckpointState::pruned;
       if (again || lacks) todo_.push_back(i);
     }

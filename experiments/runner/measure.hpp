@@ -25,7 +25,7 @@ struct MeasureOptions {
       instead = {};
 };
 
-struct MeasureOutcome {             // what came of measuring many checkpoints
+struct MeasureOutcome {
   std::size_t measured = 0;         ///< checkpoints that were analysed now
   std::size_t kept = 0;             ///< checkpoints whose results were kept
   std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each, sorted

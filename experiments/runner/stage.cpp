@@ -66,8 +66,8 @@ std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t 
   return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every, std::move(within));
 }
 
-// The limit is not part of a run's identity. Manifests that state one other than the default have
-// it beside their text (campaign.cpp); the others count with `otherwise`.
+// The limit is not part of a run's identity. Limits other than the default are recorded with the
+// manifest (campaign.cpp); for the other manifests it is `otherwise`.
 double overlap_limit(const Store& store, const RunRecord& run, double otherwise) {
   double limit = run.memberships.empty() ? otherwise : 0;
   for (const Membership& membership : run.memberships) {
@@ -96,7 +96,7 @@ Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::stri
     return {std::move(cell), std::move(state), std::nullopt, ""};
   }
   auto parent = store.newest_valid_checkpoint(run.parent, damage);
-  // Without its last state the parent is not completed, or an earlier state was found.
+  // The checkpoint must be the one at which the parent was completed.
   const RunRecord ended = store.run(run.parent);
   if (!parent || ended.state != RunState::completed || parent->record.step != ended.step) {
     const bool recorded = ended.state == RunState::completed && !ended.state_hash.empty();

@@ -22,7 +22,7 @@ struct Parallel {
   std::size_t ranks = 1;    ///< processes of LAMMPS, under mpirun when more than one
 };
 
-/// What acts during the stage, and what is done to it.
+/// The scene and the protocol of a stage.
 struct StagePlan {
   RunRecord run;
   StageRecord stage;
@@ -50,7 +50,7 @@ struct Beginning {
 Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage,
                          std::uint64_t before_step = UINT64_MAX);
 
-/// Takes the beginning's cell and state over.
+/// Takes ownership of the beginning's cell and state.
 Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads);
 
 /// Steps between two checks for signals and leases: about 50 ms of work.
