@@ -10,6 +10,23 @@
 
 namespace shearcell::bench {
 
+Packing placed(const Scene& scene, const std::vector<Eigen::Vector3d>& positions,
+               const Eigen::Vector3d& size) {
+  Packing made;
+  made.scene = scene;
+  made.cell.width = size.x();
+  made.cell.top = size.y();
+  made.cell.depth = size.z();
+  const auto n = static_cast<Eigen::Index>(positions.size());
+  made.state.position.resize(3, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    made.state.position.col(i) = positions[static_cast<std::size_t>(i)];
+  }
+  made.state.velocity = Eigen::Matrix3Xd::Zero(3, n);
+  made.state.wall_height = made.cell.bottom;
+  return made;
+}
+
 Packing loose_packing(const Parameters& parameters, std::uint64_t seed) {
   Packing packing{parameters, make_cell(geometry(parameters), seed), settle_scene(parameters), {}};
   packing.state = fill_cell(packing.cell, geometry(parameters), seed);

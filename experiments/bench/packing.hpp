@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "analysis/statistics.hpp"
 #include "core/simulation.hpp"
@@ -19,6 +20,10 @@ struct Packing {
   Scene scene;
   State state;
 };
+
+/// Grains at rest in a smooth cell (width, height, depth) whose bottom wall moves.
+Packing placed(const Scene& scene, const std::vector<Eigen::Vector3d>& positions,
+               const Eigen::Vector3d& size = Eigen::Vector3d::Constant(40));
 
 /// The cell of these parameters with its loose grains and the scene of settling. Throws
 /// GeometryError.

@@ -43,7 +43,6 @@ TEST(Accuracy, OrderIsThatOfTheoryOnEveryClosedForm) {
 double found_row_frequency(int grains, int n) {
   constexpr double overlap = 0.003, amplitude = 1e-6;
   constexpr double across = 1 - 2 * overlap;  // the planes of the duct hold each grain as deep
-  const Box box{{across, across, grains * (1 - overlap)}, kScene.stiffness};
   Eigen::Matrix3Xd rest(3, grains);
   Eigen::RowVectorXd wave(grains);
   for (int i = 0; i < grains; ++i) {
@@ -51,11 +50,14 @@ double found_row_frequency(int grains, int n) {
     wave[i] = std::cos(2 * std::numbers::pi * n * i / grains);
   }
   wave.normalize();
-  Motion start{rest, Eigen::Matrix3Xd::Zero(3, grains)};
-  start.position.row(2) += amplitude * wave;
+  Packing box =
+      bench::placed(contacts_only(kScene.stiffness), {}, {across, across, grains * (1 - overlap)});
+  box.state.position = rest;
+  box.state.position.row(2) += amplitude * wave;
+  box.state.velocity = Eigen::Matrix3Xd::Zero(3, grains);
   std::vector<double> x;
-  integrate(box, methods().front(), start, kStep, 500, [&](std::uint64_t, const Motion& m) {
-    x.push_back(wave.dot(m.position.row(2) - rest.row(2)));
+  integrate(box, methods().front(), kStep, 500, [&](std::uint64_t, const State& state) {
+    x.push_back(wave.dot(state.position.row(2) - rest.row(2)));
   });
   double both = 0, square = 0;  // cos(w dt) = sum x_k (x_(k+1) + x_(k-1)) / (2 sum x_k^2)
   for (std::size_t k = 1; k + 1 < x.size(); ++k) {

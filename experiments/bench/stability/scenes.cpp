@@ -121,22 +121,6 @@ Scene only_springs() {
   return scene;
 }
 
-Packing placed(const Scene& scene, const std::vector<V>& positions, const V& size) {
-  Packing made;
-  made.scene = scene;
-  made.cell.width = size.x();
-  made.cell.top = size.y();
-  made.cell.depth = size.z();
-  const auto n = static_cast<Eigen::Index>(positions.size());
-  made.state.position.resize(3, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    made.state.position.col(i) = positions[static_cast<std::size_t>(i)];
-  }
-  made.state.velocity = Eigen::Matrix3Xd::Zero(3, n);
-  made.state.wall_height = made.cell.bottom;
-  return made;
-}
-
 Packing settled() {
   static const Packing packing = [] {
     Parameters parameters;

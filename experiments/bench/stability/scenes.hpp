@@ -11,6 +11,7 @@ namespace shearcell::stability {
 
 using bench::advanced;
 using bench::Packing;
+using bench::placed;
 using bench::simulate;
 using V = Eigen::Vector3d;
 
@@ -19,10 +20,6 @@ Scene table_1();
 
 /// Contacts only: no drag, gravity or pressure, and a moving wall too heavy to move.
 Scene only_springs();
-
-/// Grains at rest in a smooth cell (width, height, depth) whose bottom wall moves.
-Packing placed(const Scene& scene, const std::vector<V>& positions,
-               const V& size = V::Constant(40));
 
 /// 60 grains between rough walls, settled under Table I.
 Packing settled();
