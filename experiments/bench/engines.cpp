@@ -9,7 +9,6 @@
 #include "analysis/statistics.hpp"
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/lammps/lammps_run.hpp"
 #include "provenance/io/clock.hpp"
 
 namespace shearcell::bench {
@@ -59,32 +58,28 @@ TrajectoryCheck compare(const LammpsProgram& program, const std::string& scene,
           farthest(computed_by(kOurs, program, moved).state, ours)};
 }
 
-EngineMean mean_of(const std::string& name,
-                   const std::vector<std::vector<PackingNumbers>>& of_engine,
-                   double PackingNumbers::*member) {
-  EngineMean mean{name, {}, {}};
-  for (const std::vector<PackingNumbers>& packings : of_engine) {
-    mean.of.push_back(over(packings, member));
-    const RunStatistics &a = mean.of.front(), &b = mean.of.back();
-    const double error = std::hypot(a.standard_error.value_or(0), b.standard_error.value_or(0));
-    mean.apart.push_back(error > 0 ? std::fabs(*b.mean - *a.mean) / error : 0);
-  }
-  return mean;
-}
-
 // `of_engine`: the numbers of the same packings by each engine.
 EngineMeans compare_means(const std::vector<std::size_t>& engines,
                           const std::vector<std::vector<PackingNumbers>>& of_engine) {
   using N = PackingNumbers;
-  EngineMeans result{
-      {},
-      {mean_of("phi", of_engine, &N::phi), mean_of("contacts per grain", of_engine, &N::contacts),
-       mean_of("mean overlap [d]", of_engine, &N::overlap),
-       mean_of("force imbalance of the wall", of_engine, &N::imbalance),
-       mean_of("height [d]", of_engine, &N::height)},
-      0};
-  for (const std::size_t ranks : engines) result.engines.push_back(engine_name(ranks));
-  const std::size_t comparisons = result.means.size() * (of_engine.size() - 1);
+  constexpr std::pair<const char*, double N::*> quantities[] = {
+      {"phi", &N::phi},
+      {"contacts per grain", &N::contacts},
+      {"mean overlap [d]", &N::overlap},
+      {"force imbalance of the wall", &N::imbalance},
+      {"height [d]", &N::height}};
+  EngineMeans result;
+  for (const auto& [quantity, number] : quantities) {
+    const RunStatistics ours = over(of_engine.front(), number);
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      const RunStatistics of = over(of_engine[e], number);
+      const double error =
+          std::hypot(ours.standard_error.value_or(0), of.standard_error.value_or(0));
+      result.means.push_back({quantity, engine_name(engines[e]), of,
+                              error > 0 ? std::fabs(*of.mean - *ours.mean) / error : 0});
+    }
+  }
+  const std::size_t comparisons = std::size(quantities) * (engines.size() - 1);
   // Two standard errors for many runs, shared among the comparisons (Bonferroni).
   constexpr double outside = 0.0455;
   const auto freedom = static_cast<double>(2 * (of_engine[0].size() - 1));
@@ -154,7 +149,7 @@ Settling settle_by(std::size_t ranks, const LammpsProgram& program, const Packin
   const Stopwatch watch;
   LammpsResult result;
   if (ranks == kOurs) {
-    Simulation simulation(loose.cell, loose.scene, loose.state);
+    Simulation simulation = simulate(loose);
     settle(simulation, parameters, loose.scene);
     result = {simulation.state(), watch.seconds(), simulation.bytes()};
   } else {
@@ -172,9 +167,7 @@ Settling settle_by(std::size_t ranks, const LammpsProgram& program, const Packin
 }
 
 bool EngineMeans::agree() const {
-  return std::ranges::all_of(means, [&](const EngineMean& mean) {
-    return std::ranges::all_of(mean.apart, [&](double errors) { return errors <= limit; });
-  });
+  return std::ranges::all_of(means, [&](const EngineMean& mean) { return mean.apart <= limit; });
 }
 
 bool EngineCheck::agree() const {

@@ -41,17 +41,15 @@ struct EngineSpeed {
   double bytes = 0;  ///< ours: of the simulation; LAMMPS: of its largest process
 };
 
-/// One quantity, averaged over the packings of each engine, ours first.
+/// One quantity, averaged over the packings of one engine.
 struct EngineMean {
-  std::string name;
-  std::vector<RunStatistics> of;
-  std::vector<double> apart;  ///< |mean - ours| in standard errors of the difference; 0 for ours
+  std::string quantity, engine;
+  RunStatistics of;
+  double apart = 0;  ///< |mean - ours| in standard errors of the difference; 0 for ours
 };
 
-/// Means of several engines, ours first.
 struct EngineMeans {
-  std::vector<std::string> engines;
-  std::vector<EngineMean> means;  ///< empty for a single seed
+  std::vector<EngineMean> means;  ///< of each quantity ours first; empty for a single seed
   double limit = 0;               ///< of `apart`, by Student's t, shared among all comparisons
 
   bool agree() const;

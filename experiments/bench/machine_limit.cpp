@@ -9,10 +9,8 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "core/aligned.hpp"
-#include "core/kernel.hpp"
 #include "provenance/io/clock.hpp"
 
 HWY_BEFORE_NAMESPACE();

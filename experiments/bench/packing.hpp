@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "analysis/statistics.hpp"
 #include "core/simulation.hpp"
@@ -20,6 +21,10 @@ struct Packing {
   State state;
 };
 
+/// Grains at rest in a smooth cell (width, height, depth) whose bottom wall moves.
+Packing placed(const Scene& scene, const std::vector<Eigen::Vector3d>& positions,
+               const Eigen::Vector3d& size = Eigen::Vector3d::Constant(40));
+
 /// The cell of these parameters with its loose grains and the scene of settling. Throws
 /// GeometryError.
 Packing loose_packing(const Parameters& parameters, std::uint64_t seed);
@@ -31,6 +36,11 @@ Packing pressed_packing(const Parameters& parameters, std::uint64_t seed);
 /// Settled, at step 0, with the scene of settling. Throws NumericalFailure if the grains do not
 /// settle.
 Packing settled_packing(const Parameters& parameters, std::uint64_t seed);
+
+Simulation simulate(const Packing& packing, const EngineSettings& settings = {});
+
+/// The state after `steps`. Throws NumericalFailure.
+State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive = {});
 
 void settle(Simulation& simulation, const SettleParameters& parameters, const Scene& scene);
 

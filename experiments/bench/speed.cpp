@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <stdexcept>
 
+#include "core/kernel.hpp"
 #include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "provenance/checkpoint.hpp"
@@ -105,15 +104,13 @@ Packing prepare(std::size_t grains) {
   Parameters parameters;
   parameters.grains = (grains + parts - 1) / parts;
   Packing made = pressed_packing(parameters, 1);
-  Simulation simulation(made.cell, made.scene, made.state);
-  simulation.advance(Drive{}, 2000);  // under the grains' weight too
-  made.state = simulation.state();
+  made.state = advanced(made, 2000);  // under the grains' weight too
   made.state.step = 0;
   return parts == 1 ? made : repeated(made, parts);
 }
 
 std::string hash_after(const Packing& made, const EngineSettings& settings, std::uint64_t steps) {
-  Simulation simulation(made.cell, made.scene, made.state, settings);
+  Simulation simulation = simulate(made, settings);
   simulation.advance(drive(made.parameters), steps);
   Checkpoint checkpoint;
   checkpoint.cell = made.cell;
@@ -124,9 +121,7 @@ std::string hash_after(const Packing& made, const EngineSettings& settings, std:
 void measure_shares(const Packing& made, const Kernels& kernels, std::uint64_t steps,
                     SpeedResult& result) {
   const Kernels table = timed_kernels(kernels);
-  EngineSettings settings;
-  settings.kernels = &table;
-  Simulation simulation(made.cell, made.scene, made.state, settings);
+  Simulation simulation = simulate(made, {&table, 1, {}, {}});
   const Stopwatch watch;
   simulation.advance(drive(made.parameters), steps);
   const double total = watch.seconds() - times.sampled;
@@ -158,7 +153,7 @@ void measure_limits(std::size_t lanes, SpeedResult& result) {
 
 void measure_rate(const Packing& made, const EngineSettings& settings, const SpeedOptions& options,
                   SpeedResult& result) {
-  Simulation simulation(made.cell, made.scene, made.state, settings);
+  Simulation simulation = simulate(made, settings);
   const Stopwatch warm_up;
   std::uint64_t steps = 0;
   for (; warm_up.seconds() < options.seconds_per_repeat || steps == 0; steps += 20) {
@@ -190,9 +185,7 @@ void measure_size(std::size_t grains, const SpeedOptions& options,
     for (const std::size_t threads : options.threads) {
       SpeedResult result{.grains = grains, .simd = kernels->name, .threads = threads};
       say(fmt::format("{}, {} thread{}", kernels->name, threads, threads == 1 ? "" : "s"));
-      EngineSettings settings;
-      settings.kernels = kernels;
-      settings.threads = threads;
+      const EngineSettings settings{kernels, threads, {}, {}};
       result.state_hash = hash_after(made, settings, 200);
       if (results.size() > first && result.state_hash != results[first].state_hash) {
         throw std::runtime_error(

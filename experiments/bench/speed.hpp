@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel.hpp"
-
 namespace shearcell::bench {
 
 // How fast the kernel could run at most on this machine: its counted operations at the measured

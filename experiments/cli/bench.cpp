@@ -83,6 +83,14 @@ Facts facts(const bench::Settling& s) {
           {"height_d", n.height}};
 }
 
+Facts facts(const bench::EngineMean& m) {
+  return {{"quantity", m.quantity},
+          {"engine", m.engine},
+          {"mean", m.of.mean.value_or(0)},
+          {"standard_error", m.of.standard_error.value_or(0)},
+          {"standard_errors_apart", m.apart}};
+}
+
 template <class Result>
 std::vector<Facts> all_facts(const std::vector<Result>& results) {
   std::vector<Facts> all;
@@ -235,34 +243,18 @@ void add_accuracy(CLI::App& bench, Context& context) {
   });
 }
 
-nlohmann::json json_of(const bench::EngineMeans& all) {
-  nlohmann::json means = nlohmann::json::array();
-  for (const bench::EngineMean& mean : all.means) {
-    for (std::size_t e = 0; e < mean.of.size(); ++e) {
-      means.push_back({{"quantity", mean.name},
-                       {"engine", all.engines[e]},
-                       {"mean", mean.of[e].mean.value_or(0)},
-                       {"standard_error", mean.of[e].standard_error.value_or(0)},
-                       {"standard_errors_apart", mean.apart[e]}});
-    }
-  }
-  return means;
-}
-
 void print_means(const char* title, const bench::EngineMeans& all) {
   if (all.means.empty()) return;
-  std::vector<std::string> header = {title};
-  header.insert(header.end(), all.engines.begin(), all.engines.end());
-  std::vector<std::vector<std::string>> rows;
-  for (const bench::EngineMean& mean : all.means) {
-    rows.push_back({mean.name});
-    for (std::size_t e = 0; e < mean.of.size(); ++e) {
-      const RunStatistics& of = mean.of[e];
-      std::string text = significant(of.mean.value_or(0), 4);
-      if (of.standard_error) text += " +- " + significant(*of.standard_error, 1);
-      if (e > 0) text += fmt::format(" ({:.1f})", mean.apart[e]);
-      rows.back().push_back(text);
-    }
+  Row header = {title};
+  std::vector<Row> rows;
+  for (const auto& [quantity, engine, of, apart] : all.means) {
+    const bool ours = rows.empty() || rows.back().front() != quantity;
+    if (ours) rows.push_back({quantity});
+    if (rows.size() == 1) header.push_back(engine);
+    std::string text = significant(of.mean.value_or(0), 4);
+    if (of.standard_error) text += " +- " + significant(*of.standard_error, 1);
+    if (!ours) text += fmt::format(" ({:.1f})", apart);
+    rows.back().push_back(text);
   }
   print_table(header, rows);
   fmt::print("In brackets: standard errors from ours, at most {:.1f} by chance.\n\n", all.limit);
@@ -272,10 +264,10 @@ nlohmann::json json_of(const bench::EngineCheck& check) {
   return {{"lammps", check.lammps_version},
           {"N", check.grains},
           {"settlings", json_of(all_facts(check.settlings))},
-          {"settled_means", json_of(check.settled)},
+          {"settled_means", json_of(all_facts(check.settled.means))},
           {"settled_limit_in_standard_errors", check.settled.limit},
           {"trajectories", json_of(all_facts(check.trajectories))},
-          {"means", json_of(check.sheared)},
+          {"means", json_of(all_facts(check.sheared.means))},
           {"limit_in_standard_errors", check.sheared.limit},
           {"speeds", json_of(all_facts(check.speeds))},
           {"agree", check.agree()}};

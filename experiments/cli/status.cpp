@@ -16,7 +16,6 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
 #include "experiments/runner/cost.hpp"
-#include "experiments/runner/packing_names.hpp"
 #include "experiments/runner/progress.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
@@ -42,13 +41,9 @@ struct View {
   std::map<std::string, Lease> holders;                       // by run
   QueueView queue;
   VariantNames names;
-  PackingNames packings;
 
   View(const RunSelection& selection, const Context& context)
-      : store(context.store, Access::read),
-        queue(look_at_queue(store)),
-        names(store),
-        packings(store.runs()) {
+      : store(context.store, Access::read), queue(look_at_queue(store)), names(store) {
     std::set<std::string> seen;
     std::map<Place, std::size_t> known;
     std::vector<SelectedRun> selected = select_runs(store, selection);
@@ -71,7 +66,7 @@ struct View {
 
   std::string called(const SelectedRun& selected) const {
     const auto& [run, place] = selected;
-    return run.kind == "prepare" ? packings.of(place, run.resolved) : names.of(place);
+    return names.of(run, place);
   }
 
   bool is_newest(const SelectedRun& selected) const {

@@ -6,11 +6,13 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <stdexcept>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/proposal.hpp"
 #include "experiments/cluster/submission.hpp"
 #include "experiments/runner/progress.hpp"
+#include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
 
@@ -86,7 +88,7 @@ fs::path whole_path(const std::string& store) {
 JobPlaces places_of(const fs::path& store, const fs::path& folder) {
   JobPlaces places{fs::read_symlink("/proc/self/exe"), store, folder};
   for (const fs::path& path : {places.program, places.folder}) {
-    if (const std::string why = unfit_path(path); !why.empty()) throw ClusterError(why);
+    if (const std::string why = unfit_path(path); !why.empty()) throw std::runtime_error(why);
   }
   return places;
 }
@@ -134,7 +136,7 @@ void queue(const Submission& submission, const Proposal& proposal, Store& store,
     std::vector<std::string> words = output_option(folder, "fold.log");
     words.push_back("--dependency=afterany:" + job);
     fold_job = queue_job(folder, "fold.sh", submission.fold_name(), words);
-  } catch (const ClusterError& error) {
+  } catch (const ProgramError& error) {
     tell_stderr(
         "warning: {}\nThe stores of the tasks are not folded by themselves: `shearcell "
         "submit` again, or `merge` them, when the job has ended\n",
@@ -216,7 +218,7 @@ void submit(const SubmitOptions& options, Context& context) {
     std::vector<Submission> open = unfinished_submissions(*store);
     try {
       ask_queue(open);
-    } catch (const ClusterError& error) {
+    } catch (const ProgramError& error) {
       tell_stderr("warning: runs that are queued already are not left out: {}\n", error.what());
     }
     busy = busy_runs(*store, open);

@@ -99,7 +99,8 @@ bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
 
 void work(const WorkOptions& options, Context& context) {
   catch_batch_signals();
-  const fs::path task = context.store;
+  // Files beside it have its name: without a slash at the end.
+  const fs::path task = (fs::path(context.store) / "").parent_path();
   WorkStore place(task, options.scratch);
   Store& store = place.store();
   const auto tell = [&] { write_task_report(task, store.runs()); };

@@ -38,9 +38,9 @@ struct Proposal {
   JobOptions job;            ///< with a number of cores
 };
 
-/// Leaves out every packing that is busy or has a busy run, with its runs. Where `job` states no
-/// number of cores (0), a task gets one for each of its runs and threads, 16 at most but those of
-/// one run.
+/// Leaves out every packing that is busy or has a busy run, with its runs. If the number of cores
+/// in `job` is 0, a task gets one for each thread of each of its runs: at most 16, at least those
+/// of one run.
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <optional>
 #include <ranges>
 #include <sstream>
 
@@ -16,9 +15,9 @@ namespace shearcell {
 namespace {
 
 // Slurm sends USR1 some time before the limit (to the shell alone: B) and TERM to all processes
-// when a job is cancelled or preempted. Both make the program record its states and end with 85;
-// after USR1 the task is queued again, by its own number, because the number of its job may be that
-// of the whole array. A program that was killed, as for lack of memory, is begun again here.
+// when a job is cancelled or preempted. Both make the program record its states and end with 85.
+// After USR1 the task is queued again by its own number, because the number of its job may be that
+// of the whole array. A program that was killed (out of memory) is started again here.
 constexpr std::string_view kTaskBody = R"sh(
 again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
 pass_on() {
@@ -62,7 +61,7 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
 
 std::string directives(const JobOptions& options, const std::vector<std::string>& own) {
   std::string text;
-  // The user's first: of two equal ones Slurm takes the last.
+  // The user's options come first: of two equal options Slurm takes the last.
   for (const std::string& option : options.sbatch) text += "#SBATCH " + option + "\n";
   if (!options.partition.empty()) text += "#SBATCH --partition=" + options.partition + "\n";
   if (!options.account.empty()) text += "#SBATCH --account=" + options.account + "\n";
@@ -73,30 +72,26 @@ std::string directives(const JobOptions& options, const std::vector<std::string>
          "#SBATCH --open-mode=append\n";
 }
 
-constexpr const char* kNoSlurm =
-    "{} is not installed here (Debian package slurm-client); submit from a machine of the cluster, "
-    "or see what would be submitted with --dry-run";
-
 std::string trimmed(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   return text;
 }
 
-// Slurm's own limit for an answer of its controller is 10 s.
+// Slurm waits 10 s for an answer of its controller.
 constexpr double kAnswerSeconds = 15;
 
-// `seconds` only for questions: a job may be queued although sbatch does not answer.
+// Only queries may have a limit in seconds: a job may be queued although sbatch does not answer.
 std::string ask(const std::vector<std::string>& words, const std::filesystem::path& folder,
                 std::optional<double> seconds = std::nullopt) {
-  std::optional<ProgramOutcome> outcome;
-  try {
-    outcome = run_program(words, folder, {}, seconds);
-  } catch (const ProgramError& problem) {
-    throw ClusterError(problem.what());
+  const auto outcome = run_program(words, folder, {}, seconds);
+  if (!outcome) {
+    throw ProgramError(fmt::format(
+        "{} is not installed here (Debian package slurm-client); submit from a machine of the "
+        "cluster, or see what would be submitted with --dry-run",
+        words.front()));
   }
-  if (!outcome) throw ClusterError(fmt::format(fmt::runtime(kNoSlurm), words.front()));
   if (outcome->code != 0) {
-    throw ClusterError(fmt::format("{} failed: {}", words.front(), trimmed(outcome->messages)));
+    throw ProgramError(fmt::format("{} failed: {}", words.front(), trimmed(outcome->messages)));
   }
   return outcome->output;
 }
@@ -183,9 +178,9 @@ std::string queue_job(const std::filesystem::path& folder, const std::string& sc
   words.insert(words.end(), options.begin(), options.end());
   words.push_back(script);
   const std::string answer = ask(words, folder);
-  std::string job = trimmed(answer.substr(0, answer.find(';')));  // then the cluster's name
+  std::string job = trimmed(answer.substr(0, answer.find(';')));  // the name of the cluster follows
   if (!read_number<std::uint64_t>(job)) {
-    throw ClusterError(fmt::format("sbatch gave no job number but '{}'", trimmed(answer)));
+    throw ProgramError(fmt::format("sbatch gave no job number but '{}'", trimmed(answer)));
   }
   return job;
 }

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,14 +48,8 @@ std::string array_script(const JobOptions& options, const JobPlaces& places, std
 /// Folds every task's store into STORE, each by itself; ends with the last code that was not 0.
 std::string fold_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks);
 
-/// Of `--output`, whose patterns may mean nothing in the folder's own name.
+/// Value of `--output`: patterns in `file` are kept, those in the folder's name are escaped.
 std::string output_pattern(const std::filesystem::path& folder, std::string_view file);
-
-/// Slurm is missing, does not answer, or refuses. The message holds its answer and the remedy.
-class ClusterError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// One line of the queue.
 struct QueuedTask {
@@ -68,15 +61,15 @@ struct QueuedTask {
   std::string node;                   ///< where it runs
 };
 
-/// Throws ClusterError when `sbatch` is not installed.
+/// Throws ProgramError when `sbatch` is not installed.
 void require_slurm();
 
 /// Queues the script `folder/script` as a job of this name and returns its number. Throws
-/// ClusterError.
+/// ProgramError, with Slurm's answer, when it refuses.
 std::string queue_job(const std::filesystem::path& folder, const std::string& script,
                       const std::string& name, const std::vector<std::string>& options);
 
-/// The jobs of these names that wait, run or are about to end. Throws ClusterError.
+/// The jobs of these names that wait, run or are about to end. Throws ProgramError.
 std::vector<QueuedTask> ask_queue(const std::vector<std::string>& names);
 
 /// What `squeue` printed, line by line; other lines are skipped.

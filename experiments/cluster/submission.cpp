@@ -10,6 +10,7 @@
 
 #include "experiments/runner/audit.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
@@ -97,7 +98,7 @@ std::vector<Submission> unfinished_submissions(const Store& store) {
     if (run.state == RunState::completed) completed.insert(run.id);
   }
   std::erase_if(open, [&](const Submission& submission) {
-    // Others came by `merge` from stores elsewhere.
+    // Those without a folder were merged from other stores.
     return !fs::exists(submission.folder(store.folder())) || all_completed(submission, completed);
   });
   return open;
@@ -182,7 +183,7 @@ void write_task_report(const fs::path& folder, const std::vector<RunRecord>& run
   try {
     write_output(report_file(folder), json{{"runs", list}}.dump() + "\n");
   } catch (const std::system_error&) {
-    // It only informs, and is written again soon.
+    // It is for information only, and written again soon.
   }
 }
 
@@ -197,7 +198,7 @@ std::map<std::string, ReportedRun> read_task_report(const fs::path& folder) {
       reported[run.at("id").get<std::string>()] = {*state, run.at("cycle").get<double>()};
     }
   } catch (const json::exception&) {
-    reported.clear();  // it only informs
+    reported.clear();  // it is for information only
   }
   return reported;
 }
@@ -211,7 +212,7 @@ QueueView look_at_queue(const Store& store) {
   view.submissions = unfinished_submissions(store);
   try {
     ask_queue(view.submissions);
-  } catch (const ClusterError& error) {
+  } catch (const ProgramError& error) {
     view.problem = error.what();
   }
   std::map<std::string, std::string> packing_of;

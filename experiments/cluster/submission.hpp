@@ -42,7 +42,7 @@ std::vector<Submission> read_submissions(const Store& store);
 /// Those that are in this store's folder and have runs that the store does not hold completed.
 std::vector<Submission> unfinished_submissions(const Store& store);
 
-/// Adds what the queue says of each. Asks Slurm only when there are any. Throws ClusterError.
+/// Adds what the queue says of each. Asks Slurm only when there are any. Throws ProgramError.
 void ask_queue(std::vector<Submission>& submissions);
 
 /// Runs that somebody computes now, or will: those of submissions in the queue, and those that

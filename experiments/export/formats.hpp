@@ -6,8 +6,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <string>
-#include <vector>
 
 #include "experiments/export/frame.hpp"
 

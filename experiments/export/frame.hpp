@@ -46,7 +46,7 @@ struct Frame {
   double mass = 0;                  ///< of every grain [kg]
   Eigen::Matrix3Xd position;        ///< [m], z within the cell
   Eigen::Matrix3Xd velocity;        ///< [m/s]; of wall grains that of their wall
-  std::vector<std::int32_t> image;  ///< periods in z to add for the way of a grain as a whole
+  std::vector<std::int32_t> image;  ///< periods in z to add for the unwrapped position
   std::vector<std::int32_t> type;   ///< 0 grain; wall grain: 1 left, 2 right, 3 bottom, 4 top
   /// Everything beside these:
   ///   phi_local, q6

@@ -315,7 +315,7 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
       records.size(), workers,
       [&](std::size_t k) { frames[k] = make_frame(store, *of_run[k], records[k], sources); },
       report);
-  for (const auto* list : {&unread.damaged, &unread.pruned}) {
+  for (const auto* list : {&unread.damage, &unread.pruned}) {
     packings.notes.insert(packings.notes.end(), list->begin(), list->end());
   }
   std::ranges::sort(packings.notes);

@@ -16,7 +16,7 @@
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/manifest/manifest.hpp"
+#include "protocols/cyclic_shear.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/limits.hpp"
 
@@ -92,23 +92,17 @@ std::uint64_t checkpoint_cadence(const RunRecord& run) {
   return std::max<std::uint64_t>(cadence, 1);
 }
 
-std::vector<CheckpointCadence> phase_cadences(std::span<const RunAsk> asks, const Drive& drive) {
-  std::vector<CheckpointCadence> cadences;
-  for (const RunAsk& ask : asks) {
-    if (ask.phases.empty()) continue;
-    cadences.push_back({ask.checkpoint_every, steps_at(ask.phases, drive)});
-  }
-  return cadences;
-}
-
-std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run) {
+std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run,
+                                               const std::optional<RunAsk>& planned) {
   if (run.kind != name_of(Stage::shear) || engine_of(run.resolved) != EngineKind::shearcell) {
     return {};
   }
   if (stage_key(run.resolved) != run.id) return {};  // plan_stage() reports it
   const Drive motion = drive(read_stage(run.resolved).parameters);
   std::set<std::uint64_t> steps;
-  for (const RunAsk& ask : asks_of(store, run.id)) {
+  std::vector<RunAsk> asks = asks_of(store, run.id);
+  if (planned) asks.push_back(*planned);
+  for (const RunAsk& ask : asks) {
     const double end = std::min(run.cycle, static_cast<double>(ask.target_cycles));
     for (const std::uint64_t step : checkpoint_steps(ask, motion, 0, end)) {
       if (static_cast<double>(step) < end * static_cast<double>(cycle_steps(motion))) {

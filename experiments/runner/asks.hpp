@@ -5,13 +5,11 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "core/scene.hpp"
 #include "experiments/manifest/manifest.hpp"
-#include "protocols/cyclic_shear.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -39,12 +37,10 @@ std::vector<std::uint64_t> checkpoint_steps(const RunAsk& ask, const Drive& driv
 /// The cadence [cycles] that has the checkpoints at whole cycles of every experiment.
 std::uint64_t checkpoint_cadence(const RunRecord& run);
 
-/// The checkpoints within cycles that experiments ask for.
-std::vector<CheckpointCadence> phase_cadences(std::span<const RunAsk> asks, const Drive& drive);
-
-/// Steps before the run's last one at which an experiment asks for a checkpoint that was never
-/// recorded, ascending: it asked for a denser cadence later. None for a run of LAMMPS, which cannot
-/// be repeated.
-std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run);
+/// Steps before the run's last one at which an experiment, or the one `planned`, asks for a
+/// checkpoint that was never recorded, ascending: it asked for a denser cadence later. None for a
+/// run of LAMMPS, which cannot be repeated.
+std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run,
+                                               const std::optional<RunAsk>& planned = std::nullopt);
 
 }  // namespace shearcell

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"
@@ -29,8 +28,7 @@ void require_same(const std::string& what, const json& recorded, const json& exp
                                  recorded.dump(), expected.dump()));
 }
 
-/// A label of a parameter that the run does not feel, or that is not part of its id, proves
-/// nothing.
+/// Labels of parameters that do not act on the run, or are not part of its id, are not checked.
 void check_membership(const Membership& m, const StageRecord& stage, const json& resolved) {
   require_same("seed", m.seed, stage.seed);
   for (const auto& [key, value] : m.labels.items()) {
@@ -83,8 +81,8 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
   return steps;
 }
 
-/// A run starts from the state at which the stage before it was completed. A state that the store
-/// lacks, as a merge leaves it where another HDF5 library wrote it, proves nothing.
+/// A run must start from the state at which the stage before it was completed. States that the
+/// store lacks are not checked: a merge leaves out files that another HDF5 library wrote.
 void check_beginning(const Store& store, const RunRecord& run,
                      const std::set<std::uint64_t>& completed) {
   for (const Event& event : store.events("run/" + run.id, events::RunStarted::kType)) {
@@ -145,7 +143,7 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record, co
   } catch (const AnalysisError& error) {
     return error.what();
   } catch (const CheckpointPruned&) {
-    // Meanwhile, by another program.
+    // Another program pruned it meanwhile.
   }
   return "";
 }
@@ -228,7 +226,7 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       std::vector<Finding>* refused) {
   constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
-  const std::uint64_t seed = seed_of(store.head());  // whoever made a source does not know it
+  const std::uint64_t seed = seed_of(store.head());  // not predictable for the author of a source
   for (const std::filesystem::path& source : sources) {
     const MeasureCheck check = check_measures(store, source, kSampled, seed);
     if (check.findings.empty()) {

@@ -25,15 +25,15 @@ struct MeasureCheck {
   std::vector<Finding> findings;
 };
 
-/// Computes the measures that derived.sqlite in `folder` keeps again, for `count` sampled
-/// checkpoints of the store, and compares to 1e-9 (libraries of mathematics differ in the last
+/// Recomputes the measures that derived.sqlite in `folder` keeps, for `count` sampled checkpoints
+/// of the store, and compares them to a relative 1e-9 (mathematical libraries differ in the last
 /// bits).
 MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
                             std::size_t count, std::uint64_t seed);
 
-/// Store::merge, and copies the measures that the sources keep of checkpoints that the store has
-/// now. A source of which one of three sampled measures is wrong gives none: it is named in
-/// `refused`.
+/// Store::merge; then copies the measures that the sources keep for checkpoints of the store. No
+/// measures are copied from a source if one of three sampled checkpoints has a wrong one; the error
+/// is added to `refused`.
 std::vector<MergeReport> merge_stores(Store& store,
                                       const std::vector<std::filesystem::path>& sources,
                                       const std::set<std::string>& runs = {},

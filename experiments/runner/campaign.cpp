@@ -11,13 +11,11 @@
 #include <map>
 #include <mutex>
 #include <set>
-#include <thread>
 
 #include "core/filling.hpp"
 #include "core/threads.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/asks.hpp"
-#include "experiments/runner/packing_names.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/run_end.hpp"
@@ -30,12 +28,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// held: another program is at work on it. ended: without reaching its target.
+// held: another program computes it. ended: without reaching its target.
 enum class JobState { waiting, running, held, done, ended };
 
-// How often a run that another program holds is looked at.
+// Time between two checks of a run that another program holds.
 constexpr std::chrono::milliseconds kLook{500};
-// A run that slips away so often, while nobody holds it, has a fault of its own.
+// A run that was lost so often while no other program holds it cannot be computed.
 constexpr int kMostLosses = 20;
 
 class Campaign {
@@ -49,7 +47,7 @@ class Campaign {
         states_(jobs.size()) {}
 
   CampaignResult run(std::size_t workers) {
-    // Shows that this program is alive, while simulations take their time.
+    // Shows other programs that this one is alive, also during long simulations.
     const Repeated heartbeat(std::chrono::duration<double>(store_.lease_seconds() / 4), [this] {
       try {
         store_.renew_leases();
@@ -70,13 +68,13 @@ class Campaign {
 
   struct Job {
     JobState state = JobState::waiting;
-    // Of one that another program holds, or took; used by the one thread that runs the job.
+    // Of a run that another program holds or took; used only by the thread that runs the job.
     Clock::time_point look_at = {};
     int losses = 0;
   };
 
-  // The first job that may begin, or that was held and may be looked at again; kNone when there is
-  // none now. Jobs that can no longer begin are ended.
+  // The first job that may begin, or else the first held one that is due for a check; kNone if
+  // there is none now. Jobs that can no longer begin are ended.
   std::size_t next_job() {
     std::size_t look = kNone;
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
@@ -96,12 +94,13 @@ class Campaign {
     return look;
   }
 
-  // Of a job that is not looked at any more: by the log alone, since the user waits for the end.
+  // Of a job that is not computed any more. Reads the log alone, because the user waits for the
+  // end.
   bool was_done(const StageJob& job) const {
     try {
       return store_.run(job.id).state == RunState::completed;
     } catch (const std::exception&) {
-      return false;  // whoever computes it next will say why
+      return false;  // the next attempt to compute it reports why
     }
   }
 
@@ -198,7 +197,7 @@ class Campaign {
     }
     if (held_by_another(job.id)) return put_off(j);
     if (was_held && run.state == RunState::failed) {
-      note(job, &CampaignResult::failed, run.error);  // and so it would fail here
+      note(job, &CampaignResult::failed, run.error);  // it would fail here too
       return JobState::ended;
     }
     progress_.begin(job.id, job.name);
@@ -279,12 +278,10 @@ std::string job_name(const Membership& membership, const std::string& name) {
   return fmt::format("{} {} seed={}", membership.experiment, name, membership.seed);
 }
 
-StageJob job_of(const RunRecord& run, const VariantNames& names, const PackingNames& packings) {
+StageJob job_of(const RunRecord& run, const VariantNames& names) {
   if (run.memberships.empty()) return {run.id, run.parent, run.kind};
   const Membership& place = run.memberships.front();
-  return {
-      run.id, run.parent,
-      job_name(place, run.kind == "prepare" ? packings.of(place, run.resolved) : names.of(place))};
+  return {run.id, run.parent, job_name(place, names.of(run, place))};
 }
 
 /// Adds their ids to equal names, as those of several scales.
@@ -304,6 +301,14 @@ nlohmann::json overlap_limits(const Manifest& manifest) {
     if (found != scale.settings.end()) limits[scale.name] = found->second.value;
   }
   return limits;
+}
+
+bool lacks_checkpoints(const Store& store, const RunRecord& run) {
+  try {
+    return !missing_checkpoints(store, run).empty();
+  } catch (const std::exception&) {
+    return false;  // a record that cannot be read; `verify` names it
+  }
 }
 
 }  // namespace
@@ -344,18 +349,6 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   return jobs;
 }
 
-namespace {
-
-bool lacks_checkpoints(const Store& store, const RunRecord& run) {
-  try {
-    return !missing_checkpoints(store, run).empty();
-  } catch (const std::exception&) {
-    return false;  // a record that cannot be read; `verify` names it
-  }
-}
-
-}  // namespace
-
 std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes) {
   std::vector<RunRecord> asked;
   for (const std::string& prefix : prefixes) asked.push_back(store.find_run(prefix));
@@ -371,11 +364,9 @@ std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& p
     while (wanted.insert(run.id).second && !run.parent.empty()) run = store.run(run.parent);
   }
   std::vector<StageJob> jobs;
-  const std::vector<RunRecord> runs = store.runs();
   const VariantNames names(store);
-  const PackingNames packings(runs);
-  for (const RunRecord& run : runs) {
-    if (wanted.count(run.id) > 0) jobs.push_back(job_of(run, names, packings));
+  for (const RunRecord& run : store.runs()) {
+    if (wanted.contains(run.id)) jobs.push_back(job_of(run, names));
   }
   tell_apart(jobs);
   return jobs;

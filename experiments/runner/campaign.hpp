@@ -41,8 +41,8 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
 std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes);
 
 /// Computes every job that is not done. A failure stops only the stages that depend on it. Stages
-/// that another program is at work on are left to it while there is other work, then waited for,
-/// and taken over when that program ends or its lease expires.
+/// that another program computes are left to it while there is other work, then waited for, and
+/// continued here when that program ends or its lease expires.
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
                             Progress& progress, const Parallel& parallel = {});
 

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 #include <span>
 
 #include "core/drive.hpp"
@@ -24,7 +22,7 @@ struct MeasuredRate {
 constexpr MeasuredRate kOurRates[] = {{5200, 74e6}, {1e5, 57e6}, {1e6, 53e6}};
 constexpr MeasuredRate kLammpsRates[] = {{5200, 6.6e6}, {1e5, 3.0e6}};
 
-// Between two sizes a power of N; beyond the outermost as there.
+// A power law in N between two measured sizes, constant beyond the outermost ones.
 double assumed_rate(std::span<const MeasuredRate> rates, double grains) {
   if (grains <= rates.front().grains) return rates.front().rate;
   for (std::size_t i = 1; i < rates.size(); ++i) {
@@ -51,46 +49,20 @@ double settling_time(double height) {
 // of B.2: 7e3 to 21e3 measured at N = 600 and 2000.
 constexpr double kMinimization = 15e3;
 
-bool same_place(const Membership& a, const Membership& b) {
-  return a.experiment == b.experiment && a.scale == b.scale && a.variant == b.variant &&
-         a.seed == b.seed && a.manifest == b.manifest;
-}
-
-/// Steps of `known` at which a checkpoint is asked for and was not recorded: by experiments that
-/// declared the run, and by the planned run if it is not declared yet.
-std::set<std::uint64_t> steps_to_replay(const PlannedRun& run, const StageSpec& stage,
-                                        const RunRecord& known,
-                                        const std::vector<CheckpointRecord>& recorded,
-                                        const Store& store) {
-  const std::vector<std::uint64_t> missing = missing_checkpoints(store, known);
-  std::set<std::uint64_t> steps(missing.begin(), missing.end());
-  const bool declared = std::ranges::any_of(
-      known.memberships, [&](const Membership& m) { return same_place(m, run); });
-  if (declared || stage.stage != Stage::shear ||
-      engine_of(stage.resolved) != EngineKind::shearcell) {
-    return steps;
-  }
-  const Drive motion = drive(run.parameters);
-  const double end = std::min(known.cycle, static_cast<double>(run.target_cycles));
-  const double last = end * static_cast<double>(cycle_steps(motion));
+/// Cycle of the last checkpoint before the first one that is missing; nothing when none is missing.
+std::optional<double> cycle_to_replay(const PlannedRun& run, const RunRecord& known,
+                                      const Store& store) {
+  const bool declared = std::ranges::any_of(known.memberships, [&](const Membership& m) {
+    return m.experiment == run.experiment && m.scale == run.scale && m.variant == run.variant &&
+           m.seed == run.seed && m.manifest == run.manifest;
+  });
   const RunAsk ask{run.target_cycles, {}, run.checkpoint_every, run.checkpoint_phases};
-  for (const std::uint64_t step : checkpoint_steps(ask, motion, 0, end)) {
-    if (static_cast<double>(step) < last) steps.insert(step);
-  }
-  for (const CheckpointRecord& record : recorded) steps.erase(record.step);
-  return steps;
-}
-
-/// Cycle of the last checkpoint before the first of these steps; nothing without any.
-std::optional<double> cycle_to_replay(const PlannedRun& run, const StageSpec& stage,
-                                      const RunRecord& known, const Store& store) {
-  const auto recorded = store.checkpoints(known.id, Listed::and_pruned);
-  const auto steps = steps_to_replay(run, stage, known, recorded, store);
-  if (steps.empty()) return std::nullopt;
+  const auto missing =
+      missing_checkpoints(store, known, declared ? std::nullopt : std::optional(ask));
+  if (missing.empty()) return std::nullopt;
   double from = 0;
-  for (const CheckpointRecord& record : recorded) {
-    const bool kept = record.state == CheckpointState::recorded;
-    if (kept && record.step < *steps.begin()) from = record.cycle;
+  for (const CheckpointRecord& record : store.checkpoints(known.id)) {
+    if (record.step < missing.front()) from = record.cycle;
   }
   return from;
 }
@@ -116,7 +88,7 @@ std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& 
       run.ends_early && std::ranges::any_of(asks_of(*store, known->id), [&](const RunAsk& a) {
         return a.until == run.ends_early && a.target_cycles >= run.target_cycles;
       });
-  const std::optional<double> replayed = cycle_to_replay(run, stage, *known, *store);
+  const std::optional<double> replayed = cycle_to_replay(run, *known, *store);
   if (completed && (long_enough || ended_as_asked)) return replayed;
   return std::min(known->cycle, replayed.value_or(known->cycle));
 }

@@ -12,9 +12,9 @@
 
 namespace shearcell {
 
-/// Memory [bytes] a grain that a run may take: grains, lists, wall grains, and a checkpoint on its
-/// way to the store. While a cell is sheared 405 to 460 were measured (`bench speed`), while
-/// 100,000 grains settled 710 (`bench engines --settle`).
+/// Memory [bytes] that a run may need per grain: grains, lists, wall grains, and a checkpoint while
+/// it is written. Measured: 405 to 460 under shear (`bench speed`), 710 while 100,000 grains settle
+/// (`bench engines --settle`).
 inline constexpr double kRunBytesPerGrain = 750;
 
 /// The same of a whole run.
@@ -52,8 +52,8 @@ class Rates {
  public:
   explicit Rates(const std::vector<RunRecord>& runs);
 
-  /// Of stages of one engine: the mean of the runs, or else what was measured elsewhere with about
-  /// so many grains.
+  /// Of stages of one engine: the mean of the runs, or without any the rate that was measured on
+  /// another machine for this number of grains.
   Rate of(EngineKind engine, double grains) const;
 
  private:
@@ -63,7 +63,7 @@ class Rates {
   std::map<EngineKind, Sum> sums_;
 };
 
-/// What is left of recorded stages, those that failed apart.
+/// What is left of recorded stages, except those that failed.
 struct RemainingWork {
   std::size_t stages = 0;
   double particle_steps = 0;

@@ -10,8 +10,8 @@
 namespace shearcell {
 namespace {
 
-// For LAMMPS to write a frame and end. It looks every half second whether it is to stop; batch
-// systems kill half a minute after their first signal.
+// Time for LAMMPS to write a frame and end. It checks for a stop every half second; batch systems
+// kill half a minute after their first signal.
 constexpr std::chrono::seconds kPatience{10};
 
 class OwnEngine final : public Engine {
@@ -82,7 +82,7 @@ class LammpsEngine final : public Engine {
   std::uint64_t evaluations() const override { return step_ - first_; }
 
  private:
-  // Our watchdog looks at what LAMMPS computed when it takes the first step from there.
+  // The first step of our own engine from the frame runs the watchdog on it.
   bool take(std::optional<State> frame) {
     if (!frame) return false;
     state_ = std::move(*frame);

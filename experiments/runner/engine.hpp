@@ -24,8 +24,8 @@ class Engine {
   /// there is no state beyond the last recorded one.
   virtual StageProgress halt() = 0;
 
-  /// What is recorded of the state at which the last call to one of these left it, or of the
-  /// beginning. Throws NumericalFailure.
+  /// The checkpoint of the state after the last of these calls, or of the beginning. Throws
+  /// NumericalFailure.
   virtual Checkpoint checkpoint(double cycle) const = 0;
 
   virtual std::uint64_t step() const = 0;         ///< where it is

@@ -12,7 +12,6 @@
 
 #include "core/kernel.hpp"
 #include "experiments/runner/build_facts.hpp"
-#include "provenance/store.hpp"
 
 namespace shearcell {
 namespace {

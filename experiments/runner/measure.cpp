@@ -35,7 +35,7 @@ class Measuring {
         measures_(measures),
         options_(options),
         cache_(store.folder()) {
-    std::map<std::string_view, std::size_t> known;  // a run of two experiments comes twice
+    std::map<std::string_view, std::size_t> known;  // a run of two experiments is listed twice
     for (const CheckpointRecord& record : records) {
       const auto [entry, fresh] = known.try_emplace(record.sha256, distinct_.size());
       if (fresh) distinct_.push_back(&record);
@@ -52,12 +52,12 @@ class Measuring {
     look_up();
     for (std::size_t i = 0; i < distinct_.size(); ++i) {
       const bool lacks = std::ranges::any_of(results_[i], &json::is_null);
-      // Of a pruned checkpoint what is kept is all there is.
+      // A pruned checkpoint cannot be measured again.
       const bool again = options_.fresh && distinct_[i]->state != CheckpointState::pruned;
       if (again || lacks) todo_.push_back(i);
     }
     outcome_.kept = distinct_.size() - todo_.size();
-    UnreadCheckpoints unread;
+    UnreadCheckpoints& unread = outcome_;
     try {
       unread = read_in_parallel(
           todo_.size(), options_.workers, [this](std::size_t n) { compute(todo_[n]); },
@@ -67,9 +67,7 @@ class Measuring {
       throw;
     }
     keep();
-    outcome_.measured = todo_.size() - unread.damaged.size() - unread.pruned.size();
-    outcome_.damage = std::move(unread.damaged);
-    outcome_.pruned = std::move(unread.pruned);
+    outcome_.measured = todo_.size() - unread.damage.size() - unread.pruned.size();
     std::sort(outcome_.changed.begin(), outcome_.changed.end());
     const bool distinct = place_.size() == distinct_.size();
     for (const std::size_t i : place_) {
@@ -155,7 +153,7 @@ UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
         if (progress) progress(done, count);
       } catch (const StoreDamaged& damage) {
         const std::lock_guard lock(mutex);
-        unread.damaged.emplace_back(damage.what());
+        unread.damage.emplace_back(damage.what());
       } catch (const CheckpointPruned& pruned) {
         const std::lock_guard lock(mutex);
         unread.pruned.emplace_back(pruned.what());
@@ -171,7 +169,7 @@ UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
     work_on_some(0);
   }
   if (error) std::rethrow_exception(error);
-  std::sort(unread.damaged.begin(), unread.damaged.end());
+  std::sort(unread.damage.begin(), unread.damage.end());
   std::sort(unread.pruned.begin(), unread.pruned.end());
   return unread;
 }

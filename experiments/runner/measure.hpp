@@ -25,11 +25,15 @@ struct MeasureOptions {
       instead = {};
 };
 
-struct MeasureOutcome {             // what came of measuring many checkpoints
-  std::size_t measured = 0;         ///< checkpoints that were analysed now
-  std::size_t kept = 0;             ///< checkpoints whose results were kept
-  std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each, sorted
-  std::vector<std::string> pruned;  ///< likewise, whose files were pruned
+/// A line for each checkpoint that could not be read; sorted.
+struct UnreadCheckpoints {
+  std::vector<std::string> damage;
+  std::vector<std::string> pruned;  ///< whose files were pruned
+};
+
+struct MeasureOutcome : UnreadCheckpoints {
+  std::size_t measured = 0;  ///< checkpoints that were analysed now
+  std::size_t kept = 0;      ///< checkpoints whose results were kept
   /// With `fresh`: checkpoints whose kept results were different.
   std::vector<std::string> changed;
   std::string cache_trouble;  ///< why results cannot be kept; "" if they can
@@ -64,14 +68,8 @@ MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& c
 /// Called after each item that succeeded, by one thread at a time; may be empty.
 using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// A message for each checkpoint that is damaged, or whose file was pruned; sorted.
-struct UnreadCheckpoints {
-  std::vector<std::string> damaged;
-  std::vector<std::string> pruned;
-};
-
 /// Calls work(0) .. work(count - 1), at most `workers` at once. StoreDamaged and CheckpointPruned
-/// become messages; the first other exception ends the work and is rethrown.
+/// become lines; the first other exception ends the work and is rethrown.
 UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
                                    const std::function<void(std::size_t)>& work,
                                    const ReadProgress& progress);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/registered.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <utility>
 
 #include "experiments/manifest/variants.hpp"
-#include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
+
 std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   std::vector<RegisteredManifest> found;
   for (const Event& event : store.events("", "ManifestRegistered")) {
@@ -34,6 +35,20 @@ std::optional<Manifest> read(const RegisteredManifest& manifest) {
   }
 }
 
+void PackingNames::add(const Membership& place, const nlohmann::json& resolved) {
+  std::vector<nlohmann::json>& known = parameters_[{place.experiment, place.scale}];
+  nlohmann::json parameters = member_of(resolved, "parameters");
+  if (std::ranges::find(known, parameters) == known.end()) known.push_back(std::move(parameters));
+}
+
+std::string PackingNames::of(const Membership& place, const nlohmann::json& resolved) const {
+  const auto known = parameters_.find({place.experiment, place.scale});
+  if (known == parameters_.end() || known->second.size() < 2) return "packing";
+  const auto names = variant_names(known->second, {});
+  const auto own = names.find(member_of(resolved, "parameters"));
+  return own == names.end() ? "packing" : fmt::format("packing {}", own->second);
+}
+
 VariantNames::VariantNames(const Store& store)
     : VariantNames(registered_manifests(store), store.runs()) {}
 
@@ -45,9 +60,12 @@ VariantNames::VariantNames(const std::vector<RegisteredManifest>& manifests,
   }
   std::map<Group, std::vector<nlohmann::json>> variants;
   for (const RunRecord& run : runs) {
-    if (run.kind == "prepare") continue;
     for (const Membership& m : run.memberships) {
-      variants[{m.experiment, m.manifest, m.scale}].push_back(m.labels);
+      if (run.kind == "prepare") {
+        packings_.add(m, run.resolved);
+      } else {
+        variants[{m.experiment, m.manifest, m.scale}].push_back(m.labels);
+      }
     }
   }
   for (const auto& [group, swept] : variants) {
@@ -60,6 +78,10 @@ std::string VariantNames::of(const Membership& m) const {
   if (group == names_.end()) return m.variant;
   const auto name = group->second.find(m.labels);
   return name == group->second.end() ? m.variant : name->second;
+}
+
+std::string VariantNames::of(const RunRecord& run, const Membership& m) const {
+  return run.kind == "prepare" ? packings_.of(m, run.resolved) : of(m);
 }
 
 std::vector<RegisteredManifest> newest_manifests(const Store& store) {

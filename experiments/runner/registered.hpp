@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The manifests that are registered in a store, and their names for variants.
+// The manifests that are registered in a store, and names for people of variants and packings.
 #pragma once
 
 #include <map>
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "experiments/manifest/manifest.hpp"
@@ -29,6 +30,19 @@ std::vector<RegisteredManifest> registered_manifests(const Store& store);
 /// Its labels, plots and claims; nothing if this version of the program cannot read it.
 std::optional<Manifest> read(const RegisteredManifest& manifest);
 
+/// Names for people of settled packings, which no sweep names: "packing", and where an experiment
+/// has others at the same scale, what tells them apart: "packing N=600".
+class PackingNames {
+ public:
+  /// `resolved`: of the stage that settles it.
+  void add(const Membership& place, const nlohmann::json& resolved);
+  std::string of(const Membership& place, const nlohmann::json& resolved) const;
+
+ private:
+  using Group = std::pair<std::string, std::string>;         // experiment and scale
+  std::map<Group, std::vector<nlohmann::json>> parameters_;  // different ones
+};
+
 /// Names for people of all variants of the runs of a store, from the labels of each manifest and
 /// what varies in it (experiments/manifest/variants.hpp).
 class VariantNames {
@@ -37,10 +51,13 @@ class VariantNames {
   VariantNames(const std::vector<RegisteredManifest>& manifests,
                const std::vector<RunRecord>& runs);
   std::string of(const Membership& membership) const;  ///< its variant, if it is unknown
+  /// The same; of a packing its own name.
+  std::string of(const RunRecord& run, const Membership& membership) const;
 
  private:
   using Group = std::tuple<std::string, std::string, std::string>;  // experiment, manifest, scale
   std::map<Group, std::map<nlohmann::json, std::string>> names_;    // by swept values
+  PackingNames packings_;
 };
 
 /// The version of each experiment that was registered last, in the order in which the experiments

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Something that is done every so often beside the work.
+// Calls a function periodically in the background.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 
 namespace shearcell {
 
-/// Calls `deed`, which must not throw, every so often in a thread of its own, until it goes away.
+/// Calls `deed`, which must not throw, at every interval in its own thread, until it is destroyed.
 class Repeated {
  public:
   Repeated(std::chrono::duration<double> interval, std::function<void()> deed)
@@ -26,7 +26,7 @@ class Repeated {
  private:
   std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::jthread thread_;  // last, so that it ends before what it uses
+  std::jthread thread_;  // last: it ends before the members that it uses are destroyed
 };
 
 }  // namespace shearcell

@@ -21,7 +21,7 @@
 namespace shearcell {
 namespace {
 
-// Numbers in the order of the reals, so that neighbours are one apart; -0 and +0 are, too.
+// Integers in the order of the reals: neighbouring doubles differ by 1, and so do -0 and +0.
 std::int64_t ordered_bits(double x) {
   const auto bits = std::bit_cast<std::int64_t>(x);
   return bits >= 0 ? bits : std::int64_t{-1} - (bits & INT64_MAX);
@@ -104,7 +104,7 @@ class Replaying {
     }
   }
 
-  // What is recorded beside the state, in the log and in the file.
+  // Compares the numbers that the log and the file have beside the state.
   void compare_numbers(const Checkpoint& found) {
     const auto require = [this](const std::string& field, double computed, double recorded) {
       if (computed == recorded || replay_.divergence) return;
@@ -188,7 +188,7 @@ std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std:
 
 std::uint64_t seed_of(const Head& head) {
   const std::string digits = head.hash.substr(0, 12);
-  std::uint64_t seed = 0;  // stays so where a damaged log has no digits
+  std::uint64_t seed = 0;  // 0 if a damaged log has no digits
   std::from_chars(digits.data(), digits.data() + digits.size(), seed, 16);
   return seed;
 }

@@ -43,7 +43,7 @@ std::optional<std::string> why_not_again(const RunRecord& run);
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
                                      std::uint64_t seed);
 
-/// A new sample for every new event, and the same one again for the same log.
+/// A seed for sample() that changes with every new event of the log.
 std::uint64_t seed_of(const Head& head);
 
 /// Computes from the nearest earlier checkpoint that is kept, or the beginning of the stage, up to
@@ -51,8 +51,8 @@ std::uint64_t seed_of(const Head& head);
 /// observables), and records ReplayVerified or ReplayDiverged.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
-/// The same, and keeps the file: a pruned, missing or damaged checkpoint is restored with the
-/// same SHA-256. If the bytes differ, ReplayDiverged is recorded and nothing is kept.
+/// The same; also writes the file, so that a pruned, missing or damaged checkpoint is restored with
+/// the same SHA-256. If the bytes differ, ReplayDiverged is recorded and no file is written.
 Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 }  // namespace shearcell

@@ -23,7 +23,7 @@ auto first_reached(std::span<const MeasuredCycle> measured, const std::optional<
   });
 }
 
-// Whether no `until` waits for a measure any more: what remains is a number of cycles.
+// Whether every `until` is reached; then only numbers of cycles decide.
 bool all_reached(std::span<const RunAsk> asks, std::span<const MeasuredCycle> measured) {
   return std::ranges::all_of(asks, [&](const RunAsk& ask) {
     return !ask.until || first_reached(measured, ask.until) != measured.end();

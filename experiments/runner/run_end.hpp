@@ -2,8 +2,8 @@
 // When a run ends before its last cycle (`until` of a manifest).
 //
 // The decision depends on the recorded checkpoints alone, so every process that continues a run
-// ends it at the same checkpoint. Checkpoints off the cadence of whole cycles, which
-// an interruption or `phases` leaves, have no part in it.
+// ends it at the same checkpoint. Checkpoints off the cadence of whole cycles (from interruptions
+// or `phases`) are ignored.
 #pragma once
 
 #include <cstddef>
@@ -56,8 +56,8 @@ class RunEnd {
   /// A checkpoint that has just been recorded.
   void add(const CheckpointRecord& record);
 
-  /// Why the run ends at its last checkpoint, as ended_early(). Measures what an experiment that
-  /// came meanwhile needs.
+  /// Why the run ends at its last checkpoint, as ended_early(). Takes into account experiments that
+  /// declared the run meanwhile.
   std::optional<nlohmann::json> ended();
 
  private:

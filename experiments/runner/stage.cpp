@@ -58,12 +58,16 @@ std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t 
     stiffen.minimize.force_tolerance = p.minimize_force_tolerance;
     return std::make_unique<Stiffen>(stiffen, stiffen_scene(p));
   }
-  return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every,
-                                       phase_cadences(asks, drive(p)));
+  std::vector<CheckpointCadence> within;
+  for (const RunAsk& ask : asks) {
+    if (!ask.phases.empty())
+      within.push_back({ask.checkpoint_every, steps_at(ask.phases, drive(p))});
+  }
+  return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every, std::move(within));
 }
 
-// The limit is not part of a run's identity. Manifests that state one other than the default have
-// it beside their text (campaign.cpp); the others count with `otherwise`.
+// The limit is not part of a run's identity. Limits other than the default are recorded with the
+// manifest (campaign.cpp); for the other manifests it is `otherwise`.
 double overlap_limit(const Store& store, const RunRecord& run, double otherwise) {
   double limit = run.memberships.empty() ? otherwise : 0;
   for (const Membership& membership : run.memberships) {
@@ -82,6 +86,32 @@ double overlap_limit(const Store& store, const RunRecord& run, double otherwise)
   return limit;
 }
 
+// Where the stage itself begins.
+Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage) {
+  const RunRecord& run = plan.run;
+  if (run.parent.empty()) {
+    const Geometry shape = geometry(plan.stage.parameters);
+    Cell cell = make_cell(shape, plan.stage.seed, give_up_if_requested);
+    State state = fill_cell(cell, shape, plan.stage.seed, give_up_if_requested);
+    return {std::move(cell), std::move(state), std::nullopt, ""};
+  }
+  auto parent = store.newest_valid_checkpoint(run.parent, damage);
+  // The checkpoint must be the one at which the parent was completed.
+  const RunRecord ended = store.run(run.parent);
+  if (!parent || ended.state != RunState::completed || parent->record.step != ended.step) {
+    const bool recorded = ended.state == RunState::completed && !ended.state_hash.empty();
+    throw StoreDamaged(fmt::format(
+        "run {:.12}: the settled packing that run {:.12} starts from is missing or damaged; {}",
+        run.parent, run.id,
+        recorded ? fmt::format("`shearcell regenerate {:.12}` restores its file",
+                               store.checkpoints(run.parent).back().sha256)
+                 : "`shearcell resume` recomputes it first"));
+  }
+  parent->checkpoint.state.step = 0;
+  return {std::move(parent->checkpoint.cell), std::move(parent->checkpoint.state), std::nullopt,
+          parent->record.sha256};
+}
+
 }  // namespace
 
 StagePlan plan_stage(const Store& store, RunRecord run) {
@@ -97,31 +127,6 @@ StagePlan plan_stage(const Store& store, RunRecord run) {
   const std::uint64_t every = checkpoint_cadence(run);
   auto protocol = make_protocol(stage, run.target_cycles, every, asks_of(store, run.id));
   return {std::move(run), std::move(stage), scene, std::move(protocol), every};
-}
-
-Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage) {
-  const RunRecord& run = plan.run;
-  if (run.parent.empty()) {
-    const Geometry shape = geometry(plan.stage.parameters);
-    Cell cell = make_cell(shape, plan.stage.seed, give_up_if_requested);
-    State state = fill_cell(cell, shape, plan.stage.seed, give_up_if_requested);
-    return {std::move(cell), std::move(state), std::nullopt, ""};
-  }
-  auto parent = store.newest_valid_checkpoint(run.parent, damage);
-  // Without its last state the parent is not completed, or an earlier state was found.
-  const RunRecord ended = store.run(run.parent);
-  if (!parent || ended.state != RunState::completed || parent->record.step != ended.step) {
-    const bool recorded = ended.state == RunState::completed && !ended.state_hash.empty();
-    throw StoreDamaged(fmt::format(
-        "run {:.12}: the settled packing that run {:.12} starts from is missing or damaged; {}",
-        run.parent, run.id,
-        recorded ? fmt::format("`shearcell regenerate {:.12}` restores its file",
-                               store.checkpoints(run.parent).back().sha256)
-                 : "`shearcell resume` recomputes it first"));
-  }
-  parent->checkpoint.state.step = 0;
-  return {std::move(parent->checkpoint.cell), std::move(parent->checkpoint.state), std::nullopt,
-          parent->record.sha256};
 }
 
 Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage,

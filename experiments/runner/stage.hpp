@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,7 +22,7 @@ struct Parallel {
   std::size_t ranks = 1;    ///< processes of LAMMPS, under mpirun when more than one
 };
 
-/// What acts during the stage, and what is done to it.
+/// The scene and the protocol of a stage.
 struct StagePlan {
   RunRecord run;
   StageRecord stage;
@@ -44,16 +43,14 @@ struct Beginning {
   std::string parent_checkpoint;         ///< that the stage begins from, or ""
 };
 
-/// Where the stage itself begins: the state at which its parent was completed, or a fresh filling.
-/// Throws StoreDamaged when that state cannot be read or the parent is not completed, and
-/// Interrupted when the filling is given up. `damage` as in Store::newest_valid_checkpoint.
-Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage);
-
-/// The newest checkpoint before a step that verifies, or else where the stage begins.
+/// The newest checkpoint before a step that verifies, or else where the stage begins: the state at
+/// which its parent was completed, or a fresh filling. Throws StoreDamaged when the parent's state
+/// cannot be read or the parent is not completed, and Interrupted when the filling is given up.
+/// `damage` as in Store::newest_valid_checkpoint.
 Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage,
                          std::uint64_t before_step = UINT64_MAX);
 
-/// Takes the beginning's cell and state over.
+/// Takes ownership of the beginning's cell and state.
 Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads);
 
 /// Steps between two checks for signals and leases: about 50 ms of work.

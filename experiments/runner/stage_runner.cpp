@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <utility>
 
@@ -18,7 +17,7 @@
 namespace shearcell {
 namespace {
 
-// A stage in progress, and what has not been recorded of it yet.
+// One attempt to compute a stage.
 class StageAttempt {
  public:
   StageAttempt(Store& store, RunRecord run, const StageOptions& options)
@@ -121,7 +120,7 @@ class StageAttempt {
         complete({{"by", plan_.stage.stage == Stage::prepare ? "settled" : "cycles"}});
         return StageOutcome::completed;
       }
-      // Whole cycles alone decide.
+      // `until` is checked at whole cycles only.
       const bool whole = progress.cycle == std::floor(progress.cycle);
       if (progress.checkpoint_due && whole && ends_early()) return StageOutcome::completed;
       if (stop) return interrupted();
@@ -194,7 +193,7 @@ class StageAttempt {
   Stopwatch started_, recorded_, reported_;
 };
 
-// Else run_stage says what is wrong with it.
+// If it is not, run_stage reports what is wrong with it.
 bool newest_is_sound(const Store& store, const RunRecord& run) {
   const auto recorded = store.checkpoints(run.id);
   return !recorded.empty() && store.load_if_readable(recorded.back());

@@ -150,6 +150,14 @@ TEST_F(Submit, TasksRunWhatWasSubmitted) {
   expect(0, {"work", "--store", folder + "/task-1", "-j", "2"});
 }
 
+TEST_F(Submit, ASlashBehindTheStoreOfATaskChangesNothing) {
+  const std::string folder = submitted();
+  fs::create_directory(path("scratch"));
+  expect(0, {"work", "--store", folder + "/task-1/", "--scratch", path("scratch").string()});
+  EXPECT_TRUE(fs::exists(folder + "/task-1.progress.json"));
+  EXPECT_FALSE(fs::exists(folder + "/task-1/.progress.json"));
+}
+
 TEST_F(Submit, WorkStopsWhenItIsWarnedHoweverOftenAndGoesOn) {
   const std::string task = submitted({"--cycles", "16"}) + "/task-1";
   const Running worker = start_beside({"work", "--store", task, "-j", "2"}, "worker");

@@ -1,38 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engine's integrator and two others behind one call, for a few grains in a box at rest, and
-// their errors against motions that are known in closed form.
+// The engine's integrator and two others behind one call, for a few grains between smooth walls at
+// rest, and their errors against motions that are known in closed form.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "core/scene.hpp"
+#include "experiments/bench/packing.hpp"
 
 namespace shearcell::accuracy {
 
-/// Smooth planes at 0 and at the size in x and y, touched at distance 1/2; periodic in z.
-struct Box {
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< [d]
-  double stiffness = 0;                            ///< k/m [1/s^2]
-  double drag_rate = 0;                            ///< b/m [1/s]
-  double gravity = 0;                              ///< g/d [1/s^2], along -y
-};
+using bench::Packing;
 
-/// Column i is grain i.
-struct Motion {
-  Eigen::Matrix3Xd position;  ///< [d]
-  Eigen::Matrix3Xd velocity;  ///< [d/s]
-};
+/// Contacts alone: no drag, gravity or pressure, and walls that stay at rest.
+Scene contacts_only(double stiffness);
 
 struct Method {
   std::string name;
   int evaluations;  ///< of the forces in one time step
   int order;        ///< where forces are smooth
   /// One time step; null for the engine, whose velocities are those of half a time step before.
-  void (*step)(const Box& box, double dt, Motion& motion);
+  void (*step)(const Packing& box, double dt, State& state);
 };
 
 /// The engine (leapfrog with implicit drag, through `Simulation`); PEFRL of Omelyan, Mryglod and
@@ -40,14 +30,14 @@ struct Method {
 /// method.
 const std::vector<Method>& methods();
 
-/// Called with the number of steps done and the motion then.
-using Visit = std::function<void(std::uint64_t step, const Motion& motion)>;
+/// Called with the number of steps done and the state then.
+using Visit = std::function<void(std::uint64_t step, const State& state)>;
 
-/// The motion `steps` time steps of `dt` [s] after `start` (positions and velocities of one
-/// instant); visits each step. The engine gets its first velocity from a Runge-Kutta step of -dt/2.
-/// Throws NumericalFailure as the engine does.
-Motion integrate(const Box& box, const Method& method, const Motion& start, double dt,
-                 std::uint64_t steps, const Visit& visit = {});
+/// The state `steps` time steps of `dt` [s] after that of `box`, whose positions and velocities are
+/// of one instant; visits each step. The engine gets its first velocity from a Runge-Kutta step of
+/// -dt/2. Throws NumericalFailure as the engine does.
+State integrate(const Packing& box, const Method& method, double dt, std::uint64_t steps,
+                const Visit& visit = {});
 
 /// Half the period of two grains on one spring, pi/sqrt(2 k/m) [s]: how long a collision lasts.
 double contact_time(const Scene& scene);

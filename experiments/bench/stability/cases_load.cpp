@@ -156,7 +156,7 @@ Answer light_wall() {
 
 }  // namespace
 
-void add_load_cases(Cases& cases) {
+void add_load_cases(Cases& cases, bool quick) {
   const std::string overlap_stop = "stopped: the overlap over its limit";
   const std::string balanced = "all forces in balance";
   for (const double ratio : {1.0, 10.0, 100.0, 1e3, 1e4}) {
@@ -165,7 +165,7 @@ void add_load_cases(Cases& cases) {
     add(cases, fmt::format("k-{:g}-scaled-dt", ratio),
         fmt::format("{:g} k0 with dt ~ 1/sqrt(k) under the loads of Table I", ratio),
         "overlaps P A / 3 k below and that less m g / k above",
-        [ratio](bool quick) { return balance(ratio, quick); });
+        [ratio, quick] { return balance(ratio, quick); });
   }
   const std::string fixed_dt = "{:g} k0 at the time step of Table I";
   add_each(cases, {1.0, 4.0}, "k-{:g}-fixed-dt", fixed_dt, "at rest with " + balanced, fixed_step);

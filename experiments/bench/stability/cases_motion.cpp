@@ -133,10 +133,7 @@ Answer few_grains(int count) {
   const State early = advanced(row, 400, drive);
   bool same = true;
   for (const Kernels* kernels : kernels_here()) {
-    EngineSettings settings;
-    settings.kernels = kernels;
-    settings.threads = 4;
-    Simulation other = simulate(row, settings);
+    Simulation other = simulate(row, {kernels, 4, {}, {}});
     other.advance(drive, 400);
     const State state = other.state();
     same = same && same_bits(state.position, early.position) &&

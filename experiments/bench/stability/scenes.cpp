@@ -121,22 +121,6 @@ Scene only_springs() {
   return scene;
 }
 
-Packing placed(const Scene& scene, const std::vector<V>& positions, const V& size) {
-  Packing made;
-  made.scene = scene;
-  made.cell.width = size.x();
-  made.cell.top = size.y();
-  made.cell.depth = size.z();
-  const auto n = static_cast<Eigen::Index>(positions.size());
-  made.state.position.resize(3, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    made.state.position.col(i) = positions[static_cast<std::size_t>(i)];
-  }
-  made.state.velocity = Eigen::Matrix3Xd::Zero(3, n);
-  made.state.wall_height = made.cell.bottom;
-  return made;
-}
-
 Packing settled() {
   static const Packing packing = [] {
     Parameters parameters;
@@ -195,16 +179,6 @@ Packing row_between_walls(int count, const Scene& scene) {
   std::vector<V> positions;
   for (int i = 0; i < count; ++i) positions.emplace_back(0.7 + 1.2 * i, 0.5, 1.5);
   return placed(scene, positions, {4, 1, 3});
-}
-
-Simulation simulate(const Packing& packing, const EngineSettings& settings) {
-  return {packing.cell, packing.scene, packing.state, settings};
-}
-
-State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive) {
-  Simulation simulation = simulate(packing);
-  simulation.advance(drive, steps);
-  return simulation.state();
 }
 
 double kinetic_energy(const State& state) {

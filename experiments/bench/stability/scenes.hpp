@@ -9,7 +9,10 @@
 
 namespace shearcell::stability {
 
+using bench::advanced;
 using bench::Packing;
+using bench::placed;
+using bench::simulate;
 using V = Eigen::Vector3d;
 
 /// Table I of the supplement, in units of d, m and s.
@@ -17,10 +20,6 @@ Scene table_1();
 
 /// Contacts only: no drag, gravity or pressure, and a moving wall too heavy to move.
 Scene only_springs();
-
-/// Grains at rest in a smooth cell (width, height, depth) whose bottom wall moves.
-Packing placed(const Scene& scene, const std::vector<V>& positions,
-               const V& size = V::Constant(40));
 
 /// 60 grains between rough walls, settled under Table I.
 Packing settled();
@@ -40,11 +39,6 @@ void disturb(State& state, const V& speed);
 
 /// `count` grains side by side, apart, each touching the bottom and the top wall.
 Packing row_between_walls(int count, const Scene& scene);
-
-Simulation simulate(const Packing& packing, const EngineSettings& settings = {});
-
-/// The state after `steps`. Throws NumericalFailure.
-State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive = {});
 
 /// Largest distance [d] between the positions of a grain, or of the moving wall, in two states.
 double largest_difference(const State& a, const State& b);
@@ -70,17 +64,10 @@ Answer expect_balance(const Packing& packing, const State& state, double most);
 /// As expected if all parts are.
 Answer all_of(const std::vector<Answer>& parts);
 
-/// Adds a case; `compute` takes HardCase::run's `quick`, or nothing.
-template <class Compute>
-void add(Cases& cases, const std::string& name, const std::string& done,
-         const std::string& expected, Compute compute) {
-  cases.push_back({name, done, expected, [compute](bool quick) -> Answer {
-                     if constexpr (std::is_invocable_v<Compute, bool>) {
-                       return compute(quick);
-                     } else {
-                       return compute();
-                     }
-                   }});
+/// Adds one case.
+inline void add(Cases& cases, const std::string& name, const std::string& done,
+                const std::string& expected, std::function<Answer()> run) {
+  cases.push_back({name, done, expected, std::move(run)});
 }
 
 /// Adds a case for each value, which appears in its name and description.
@@ -88,8 +75,8 @@ template <class Value>
 void add_each(Cases& cases, const std::vector<Value>& values, const std::string& name,
               const std::string& done, const std::string& expected, Answer (*compute)(Value)) {
   for (const Value value : values) {
-    add(cases, fmt::format(fmt::runtime(name), value), fmt::format(fmt::runtime(done), value),
-        expected, [compute, value] { return compute(value); });
+    cases.push_back({fmt::format(fmt::runtime(name), value), fmt::format(fmt::runtime(done), value),
+                     expected, [compute, value] { return compute(value); }});
   }
 }
 

@@ -21,7 +21,7 @@
 namespace shearcell::stability {
 
 // The child writes '+' or '-' and the text to a temporary file.
-Answer compute_apart(const HardCase& hard, bool quick, double seconds) {
+Answer compute_apart(const HardCase& hard, double seconds) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "outcome";
   std::fflush(nullptr);
@@ -32,7 +32,7 @@ Answer compute_apart(const HardCase& hard, bool quick, double seconds) {
   if (child == 0) {
     Answer outcome;
     try {
-      outcome = hard.run(quick);
+      outcome = hard.run();
     } catch (const std::exception& error) {
       outcome = {false, std::string("threw: ") + error.what()};
     }
@@ -58,21 +58,19 @@ Answer compute_apart(const HardCase& hard, bool quick, double seconds) {
   return {message[0] == '+', message.substr(1)};
 }
 
-const Cases& hard_cases() {
-  static const Cases cases = [] {
-    Cases all;
-    add_time_step_cases(all);
-    add_load_cases(all);
-    add_motion_cases(all);
-    add_crystal_cases(all);
-    return all;
-  }();
-  return cases;
+Cases hard_cases(bool quick) {
+  Cases all;
+  add_time_step_cases(all);
+  add_load_cases(all, quick);
+  add_motion_cases(all);
+  add_crystal_cases(all, quick);
+  return all;
 }
 
 std::string unknown_case(const std::string& name) {
+  const Cases cases = hard_cases(true);
   std::vector<std::string_view> names;
-  for (const HardCase& hard : hard_cases()) {
+  for (const HardCase& hard : cases) {
     if (hard.name.starts_with(name)) return "";
     names.push_back(hard.name);
   }
@@ -83,12 +81,12 @@ std::string unknown_case(const std::string& name) {
 
 std::vector<Result> map_stability(const Options& options) {
   std::vector<Result> results;
-  for (const HardCase& hard : hard_cases()) {
+  for (const HardCase& hard : hard_cases(options.quick)) {
     const auto named = [&](const std::string& name) { return hard.name.starts_with(name); };
     if (!options.only.empty() && std::ranges::none_of(options.only, named)) continue;
     options.report(hard.name + ": " + hard.done);
     const Stopwatch watch;
-    const Answer outcome = compute_apart(hard, options.quick, options.seconds_per_case);
+    const Answer outcome = compute_apart(hard, options.seconds_per_case);
     results.push_back({hard, outcome, watch.seconds()});
   }
   return results;
