@@ -10,7 +10,7 @@
 #include "analysis/clip.hpp"
 #include "analysis/error.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 std::array<HalfSpace, 6> cube(double half) {
@@ -108,4 +108,4 @@ TEST(ConvexCell, OrderOfCutsDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -14,7 +14,7 @@
 #include "analysis/packing_fraction.hpp"
 #include "tests/analysis/packings.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 /// q6 and phi_local of the grains at least 1.7 d from the walls.
@@ -164,7 +164,7 @@ double share(const Packing& p, shearcell::Lattice wanted) {
 }
 
 TEST(CommonNeighbours, PerfectAndShakenLatticesAreClassifiedAsKnown) {
-  const std::pair<testing::Lattice, shearcell::Lattice> known[] = {
+  const std::pair<test::Lattice, shearcell::Lattice> known[] = {
       {Lattice::fcc, shearcell::Lattice::fcc},
       {Lattice::hcp, shearcell::Lattice::hcp},
       {Lattice::bcc, shearcell::Lattice::bcc},
@@ -199,4 +199,4 @@ TEST(CommonNeighbours, AgreesWithQ6WhereThatIsUnambiguous) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

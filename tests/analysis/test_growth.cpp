@@ -9,7 +9,7 @@
 
 #include "tests/analysis/made_up_runs.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 GrowthCount fate(const std::vector<std::int32_t>& crystallite, const CrystalliteMap& later) {
@@ -174,4 +174,4 @@ TEST(GrowthRates, OfBinsLeaveOutWhatIsRarelySeen) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -12,7 +12,7 @@
 #include "analysis/packing_fraction.hpp"
 #include "tests/analysis/random_points.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 TEST(Measures, PerfectCrystal) {
@@ -119,4 +119,4 @@ PROPERTY(BondOrder, IsUnchangedByRotation, 1000) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -13,7 +13,7 @@
 #include "core/contact.hpp"
 #include "tests/analysis/packings.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 TEST(Motion, ACellThatIsOnlyShearedMovesNoGrain) {
@@ -122,4 +122,4 @@ TEST(Motion, TheBoundaryOfACrystalHasOtherNeighbours) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

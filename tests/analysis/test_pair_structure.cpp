@@ -14,7 +14,7 @@
 #include "core/contact.hpp"
 #include "tests/analysis/packings.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -145,4 +145,4 @@ TEST(PairStructure, StructureFactorIsTheSumOverWaveVectors) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -16,7 +16,7 @@
 #include "tests/analysis/random_points.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 double sum(const std::vector<double>& values) {
@@ -226,4 +226,4 @@ TEST(Voronoi, NamesTheGrainOutside) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

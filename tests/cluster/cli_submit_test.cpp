@@ -98,8 +98,8 @@ TEST_F(Submit, QueuesBothJobsOnceAndKnowsThemAfterwards) {
   const std::string id = said.at("submission");
   EXPECT_EQ(said.at("job"), "100");
   EXPECT_EQ(said.at("fold_job"), "101");
-  EXPECT_TRUE(contains(words(), "--job-name=shearcell-" + id + "\n"));
-  EXPECT_TRUE(contains(words(), "--dependency=afterany:100\n"));
+  EXPECT_TRUE(has(words(), "--job-name=shearcell-" + id + "\n"));
+  EXPECT_TRUE(has(words(), "--dependency=afterany:100\n"));
   queue("shearcell-" + id + "|100|1|RUNNING|None|n1\nshearcell-" + id +
         "|100|2|PENDING|Priority|\nshearcell-" + id + "-fold|101|N/A|PENDING|Dependency|\n");
   const auto status = json({"status", "--json"});

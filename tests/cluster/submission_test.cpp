@@ -14,10 +14,9 @@
 #include "experiments/runner/run_end.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 namespace fs = std::filesystem;
 
 class Submitted : public testing::Test {
@@ -339,4 +338,4 @@ TEST(SharingOut, LeavesNoTaskEmptyWhenNothingCostsAnything) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

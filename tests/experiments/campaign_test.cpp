@@ -12,10 +12,8 @@
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 using CampaignTest = StoreTest;
 
@@ -233,4 +231,4 @@ TEST_F(CampaignTest, OfThreeMachinesIsWholeOnceMergedAndGoesOn) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

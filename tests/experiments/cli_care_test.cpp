@@ -270,15 +270,15 @@ TEST_F(Sharing, TheOtherTakesOverWhatAKilledOneHeld) {
   const Running first = start_beside({"run", text, "-q"}, "first");
   wait_for_objects(5);
   const Running second = start_beside({"run", text}, "second");
-  while (!contains(read_bytes(second.err), "waiting")) {
+  while (!has(read_bytes(second.err), "waiting")) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    if (contains(read_bytes(second.err), "done")) break;
+    if (has(read_bytes(second.err), "done")) break;
   }
   kill(first.pid, SIGKILL);
   EXPECT_EQ(wait_for(first).signal, SIGKILL);
   const Outcome rest = wait_for(second);
   EXPECT_EQ(rest.code, 0) << rest.err;
-  EXPECT_TRUE(contains(rest.err, "waiting for 1 stage")) << rest.err;
+  EXPECT_TRUE(has(rest.err, "waiting for 1 stage"));
   EXPECT_EQ(hashes(), hashes("whole"));
   expect(0, {"verify"});
 }
@@ -342,7 +342,7 @@ TEST_P(Signals, LeaveNoTrace) {
     EXPECT_EQ(stopped.signal, SIGKILL);
   } else {
     EXPECT_EQ(stopped.code, 85) << stopped.err;
-    EXPECT_TRUE(contains(stopped.err, "shearcell resume --store")) << stopped.err;
+    EXPECT_TRUE(has(stopped.err, "shearcell resume --store"));
   }
   const nlohmann::json sheared = json({"status", "--json"}).at("runs").back();
   EXPECT_EQ(sheared.at("state"), killed ? "running" : "interrupted");

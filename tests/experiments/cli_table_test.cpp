@@ -47,7 +47,7 @@ TEST_F(CommandLineTable, HasARowForEachCheckpointAndEachRun) {
   }
   const Outcome help = run({"table", "--help"});
   for (const auto& [key, value] : runs[0].items()) {
-    EXPECT_TRUE(key == "fluid" || contains(help.out, "  " + key + " ")) << key;
+    EXPECT_TRUE(key == "fluid" || has(help.out, "  " + key + " ")) << key;
   }
 }
 
@@ -136,9 +136,8 @@ TEST_F(CommandLineTable, SaysWhereAnEditedManifestHasFewerCyclesThanTheStore) {
   write("m.yaml", read_bytes(path("m.yaml")) + "# edited\n");
   expect(0, {"run", "m.yaml", "--cycles", "1", "-q"});
   const Outcome said = expect(0, {"table"});
-  EXPECT_TRUE(contains(said.err, "2 runs end at cycle 1, which its newest manifest asks for"))
-      << said.err;
-  EXPECT_TRUE(contains(said.err, "--cycles 2` adds the others")) << said.err;
+  EXPECT_TRUE(has(said.err, "2 runs end at cycle 1, which its newest manifest asks for"));
+  EXPECT_TRUE(has(said.err, "--cycles 2` adds the others"));
 }
 
 TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
@@ -149,9 +148,9 @@ TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_FALSE(rows[0].contains("manifest"));
   const Outcome said = expect(0, {"table", "--per", "run"});
-  EXPECT_TRUE(contains(said.err, "left out: 2 runs of another version")) << said.err;
+  EXPECT_TRUE(has(said.err, "left out: 2 runs of another version"));
   const Outcome report = expect(0, {"report", "--out", "report.html"}, {"tiny: left out: 2 runs"});
-  EXPECT_FALSE(contains(report.err, "left out: experiment")) << report.err;
+  EXPECT_FALSE(has(report.err, "left out: experiment"));
   const nlohmann::json all = table({"--per", "run", "--all-versions"});
   ASSERT_EQ(all.size(), 3U);
   EXPECT_NE(all[0].at("manifest"), all[2].at("manifest"));
@@ -173,7 +172,7 @@ TEST_F(CommandLineTable, ANumberOfGrainsIsAParameter) {
   expect(0, {"figures", "n", "--out", "figures"});
   const std::string csv = read_bytes(path("figures/sizes/n.csv"));
   for (const char* row : {"pressure_Pa=700,300,", "pressure_Pa=700,400,", "pressure_Pa=954,400,"}) {
-    EXPECT_TRUE(contains(csv, row)) << csv;
+    EXPECT_TRUE(has(csv, row));
   }
 }
 
@@ -238,8 +237,8 @@ TEST_F(CommandLineTable, ExportsSelectedRunsWholeOrNotAtAll) {
   ASSERT_EQ(done.size(), 2U);
   for (const auto& one : done) {
     const std::string text = read_bytes(one.at("out").get<std::string>());
-    EXPECT_TRUE(contains(text, "run=\"" + one.at("run").get<std::string>() + '"'));
-    EXPECT_TRUE(contains(text, "length_unit=d ") && contains(text, " amplitude_rad=0.0833 "));
+    EXPECT_TRUE(has(text, "run=\"" + one.at("run").get<std::string>() + '"'));
+    EXPECT_TRUE(has(text, "length_unit=d ") && has(text, " amplitude_rad=0.0833 "));
   }
   const std::string id = done[0].at("run");
   expect(0, {"export", id, id, "--to", "vtk", "--out", "frames/"});  // one run
@@ -257,7 +256,7 @@ TEST_F(CommandLineTable, ExportsSelectedRunsWholeOrNotAtAll) {
         EXPECT_NE(cut.signal, 0) << format;
       } else {
         EXPECT_EQ(cut.code, 1) << format;
-        EXPECT_TRUE(contains(cut.err, "cut")) << cut.err;
+        EXPECT_TRUE(has(cut.err, "cut"));
       }
     }
   }

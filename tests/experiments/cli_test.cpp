@@ -22,7 +22,7 @@ TEST_F(CommandLine, EverySubcommandHasHelpWithAnExample) {
   const Outcome all = expect(0, {"--help"}, {"Exit codes"});
   for (const char* command : {"plan", "run", "resume", "status", "log", "show", "verify", "rebuild",
                               "prune", "regenerate", "merge", "figures", "report"}) {
-    EXPECT_TRUE(contains(all.out, std::string("  ") + command)) << command;
+    EXPECT_TRUE(has(all.out, std::string("  ") + command));
     EXPECT_EQ(expect(0, {command, "--help"}, {"Example", "--store"}).err, "") << command;
   }
   EXPECT_TRUE(expect(0, {"--version"}).out.starts_with("shearcell "));
@@ -66,7 +66,7 @@ TEST_F(CommandLine, TakesTheStoreThatIsNamedElseThatOfTheEnvironment) {
   name_store("from-environment");
   expect_refused({"status"}, {"from-environment"});
   const Outcome named = expect(2, {"status", "--store", "named"}, {"named"});
-  EXPECT_FALSE(contains(named.err, "from-environment")) << named.err;
+  EXPECT_FALSE(has(named.err, "from-environment"));
 }
 
 TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {

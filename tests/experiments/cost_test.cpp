@@ -17,10 +17,8 @@
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 PlannedRun only_run(const std::string& text) {
   return expand(parse_manifest(text, "t")).runs.at(0);
@@ -202,4 +200,4 @@ TEST(Cost, AssumesRatesThatFallWithTheNumberOfGrains) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

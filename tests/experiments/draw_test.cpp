@@ -18,10 +18,8 @@
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class DrawFigure : public DrawingTest {
  protected:
@@ -182,7 +180,7 @@ TEST_F(DrawFigure, AGroupedFigureAveragesOverNoVersions) {
     draw("every", onset, every);
     ADD_FAILURE() << "versions were averaged";
   } catch (const UsageError& error) {
-    EXPECT_TRUE(has(error.what(), "leave out --all-versions")) << error.what();
+    EXPECT_TRUE(has(error.what(), "leave out --all-versions"));
   }
 }
 
@@ -380,4 +378,4 @@ TEST_F(DrawFigure, NamesTheNearestFigureOfAnUnknownOne) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -11,10 +11,8 @@
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class Failure : public StoreTest {
  protected:
@@ -240,4 +238,4 @@ TEST_F(Failure, OfARunThatBeganFromAnUnsettledStateIsNamed) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

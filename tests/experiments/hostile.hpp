@@ -54,7 +54,7 @@ class HostileStore : public ProgramTest, public testing::WithParamInterface<Case
                              .starts_with("Logs/");
     const std::string before = refused ? read_bytes(log) : "";
     const Outcome outcome = expect(damaged.code, command, damaged.says);
-    EXPECT_FALSE(contains(outcome.out + outcome.err, "\x1b"));
+    EXPECT_FALSE(has(outcome.out + outcome.err, "\x1b"));
     if (refused) {
       EXPECT_EQ(read_bytes(log), before) << "a log that is refused was changed";
     }

@@ -55,7 +55,7 @@ TEST_F(HostileManifest, ParametersThatCannotBeComputedAreRefusedWithTheirLine) {
     write("m.yaml", "experiment: a\n# Hard.\nbase:\n  " + std::string(base) + "\n");
     const Outcome outcome = expect(code, {"plan", "m.yaml"}, {says});
     for (const char* odd : {"-1537", "nan", "inf "}) {
-      EXPECT_FALSE(contains(outcome.out, odd)) << outcome.out;
+      EXPECT_FALSE(has(outcome.out, odd));
     }
   }
 }
@@ -146,8 +146,8 @@ TEST_F(Outputs, NamesOfAForgedStoreAreTextToGnuplot) {
   EXPECT_TRUE(fs::exists(path("out/tiny/S2a.svg")));
   expect(0, {"report", "--out", "r.html", "--drawings"});
   expect(0, {"export", id_, "--to", "ro-crate", "--out", "crate"});
-  EXPECT_FALSE(contains(run({"status"}).out, "\r"));
-  for (const std::string& file : listing()) EXPECT_FALSE(contains(file, "owned")) << file;
+  EXPECT_FALSE(has(run({"status"}).out, "\r"));
+  for (const std::string& file : listing()) EXPECT_FALSE(has(file, "owned"));
 }
 
 /// A limit on this process and those it starts, until it goes.
@@ -253,7 +253,7 @@ class FinalNames : public ProgramTest {
   static std::size_t expect_whole(NameWatch& watch) {
     std::size_t files = 0;
     for (const auto& [file, mask] : watch.events()) {
-      if (!fs::exists(file) || contains(file.filename(), ".sqlite")) {
+      if (!fs::exists(file) || has(file.filename().string(), ".sqlite")) {
         continue;  // a temporary name; a database
       }
       ++files;

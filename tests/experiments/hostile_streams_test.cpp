@@ -89,8 +89,8 @@ TEST_F(Streams, OutputThatIsLostIsAnError) {
     for (const char* streams : {" >/dev/full", " >&-", " >/dev/full 2>/dev/full"}) {
       const Outcome lost = shell(command + streams);
       EXPECT_EQ(lost.code, 1) << words << streams << lost.err << ", signal " << lost.signal;
-      const bool heard = !contains(streams, "2>");
-      EXPECT_EQ(contains(lost.err, "standard output"), heard) << words << ": " << lost.err;
+      const bool heard = !has(streams, "2>");
+      EXPECT_EQ(bool(has(lost.err, "standard output")), heard) << words << ": " << lost.err;
       for (const char* file : {"other.yaml", "v"}) fs::remove_all(path(file));
     }
   }
@@ -160,7 +160,7 @@ TEST_F(Signals, AreHeededWhileACellIsFilled) {
   std::signal(SIGHUP, SIG_DFL);  // programs inherit it if it is ignored here
   for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
     const Running program = start_beside({"run", "m.yaml"}, "run");
-    while (!contains(read_bytes(program.err), "started")) {
+    while (!has(read_bytes(program.err), "started")) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
@@ -187,7 +187,7 @@ TEST_F(Signals, EndALammpsThatHangs) {
     expect(0, {"run", "m.yaml", "--cycles", "0"});
     const Variable lammps("SHEARCELL_LAMMPS", path("lmp"));
     const Running program = start_beside({"run", "m.yaml", "--engine", "lammps"}, "run");
-    while (begins && !contains(read_bytes(program.err), ": started")) {
+    while (begins && !has(read_bytes(program.err), ": started")) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     std::this_thread::sleep_for(std::chrono::seconds(1));
@@ -282,7 +282,7 @@ TEST_F(Words, CharactersThatTurnATextAroundAreShownAsNumbers) {
             Arguments{"plan", "m.yaml", "--scale", turn}, Arguments{"show", turn},
             Arguments{"merge", file}}) {
         const Outcome outcome = run(words);
-        EXPECT_FALSE(contains(outcome.out + outcome.err, turn)) << words[0] << outcome.err;
+        EXPECT_FALSE(has(outcome.out + outcome.err, turn)) << words[0];
       }
     }
     expect(2, {"plan", "m.yaml"}, {"\\u"});

@@ -11,10 +11,8 @@
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class Interruption : public StoreTest {
  protected:
@@ -141,4 +139,4 @@ TEST_F(Interruption, KeepsTheCadenceOfItsCheckpoints) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

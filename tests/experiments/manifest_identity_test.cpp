@@ -10,7 +10,7 @@
 #include "experiments/manifest/identity.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 using nlohmann::json;
@@ -35,34 +35,34 @@ TEST(Identity, DamagedRecordsAreRefusedByName) {
   const StageSpec prepare = prepare_stage(oldest(), 1);
   const json good = last_stage(oldest(), 1, prepare).resolved;
   const auto message = [](const json& record) {
-    return test::message_of<std::runtime_error>([&] { read_stage(record); });
+    return message_of<std::runtime_error>([&] { read_stage(record); });
   };
   EXPECT_EQ(message(good), "");
   EXPECT_NE(message(json::array()), "");
   for (const auto& [key, value] : good.items()) {
     json record = good;
     record.erase(key);
-    EXPECT_TRUE(test::has(message(record), key));
+    EXPECT_TRUE(has(message(record), key));
     record[key] = nullptr;
     EXPECT_NE(message(record), "") << key;
   }
   for (const auto& [key, value] : good["parameters"].items()) {
     json record = good;
     record["parameters"].erase(key);
-    EXPECT_TRUE(test::has(message(record), key));
+    EXPECT_TRUE(has(message(record), key));
     for (const json& bad : {json(-1), json("nonsense"), json(), json(1e300), json::array()}) {
       record["parameters"][key] = bad;
-      EXPECT_TRUE(test::has(message(record), key)) << key << " = " << bad;
+      EXPECT_TRUE(has(message(record), key)) << key << " = " << bad;
     }
   }
   for (const char* key : {"stage", "parent", "extra"}) {
     json record = good;
     record[key] = "nonsense";
-    EXPECT_TRUE(test::has(message(record), key));
+    EXPECT_TRUE(has(message(record), key));
   }
   json record = good;
   record["parameters"]["cycles"] = 3;
-  EXPECT_TRUE(test::has(message(record), "cycles"));
+  EXPECT_TRUE(has(message(record), "cycles"));
 }
 
 // Pinned, so that no change of code renames the runs of existing stores unnoticed.
@@ -218,4 +218,4 @@ TEST(CanonicalJson, RefusesWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

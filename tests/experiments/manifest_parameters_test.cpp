@@ -15,7 +15,7 @@
 #include "tests/experiments/plan_of.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 using nlohmann::json;
@@ -173,7 +173,7 @@ TEST(TimeStep, OfTableI) {
 
 TEST(TimeStep, FollowsTheStiffnessWhereItIsAuto) {
   const auto runs_of = [](const std::string& base, const std::string& sweep = "") {
-    return test::plan_of("grains: 600, " + base, sweep).runs;
+    return plan_of("grains: 600, " + base, sweep).runs;
   };
   const std::string autos = "steps_per_cycle: auto, settle_time_step_s: auto";
   // Table I's own numbers, and so the ids of runs that state them.
@@ -187,7 +187,7 @@ TEST(TimeStep, FollowsTheStiffnessWhereItIsAuto) {
     EXPECT_EQ(p.steps_per_cycle, steps[i]);
     EXPECT_EQ(p.settle_time_step_s, 2.0 / static_cast<double>(steps[i / 2 * 2]));
     EXPECT_NEAR(shear_time_step(p).over_stability_limit, 0.3547, 1e-4);
-    EXPECT_EQ(swept[i].variant.find("steps_per_cycle"), std::string::npos) << swept[i].variant;
+    EXPECT_FALSE(has(swept[i].variant, "steps_per_cycle"));
   }
   // A swept key and a scale's number override it.
   EXPECT_EQ(runs_of(autos, "sweep: {grid: {steps_per_cycle: [91200, 45600]}}")
@@ -206,15 +206,15 @@ TEST(TimeStep, IsAdvisedAgainstWhereItIsTooSmallOrTooLarge) {
   const auto small = time_step_advice({1e-6, 0.003, 0.01}, "steps_per_cycle");
   const auto large = time_step_advice({1e-4, 0.3, 0.8}, "settle_time_step_s");
   ASSERT_TRUE(small && large);
-  EXPECT_TRUE(test::has(*small,
-                        "steps_per_cycle: the time step of 1e-06 s is 0.01 of the stability limit, "
-                        "below 0.15"));
-  EXPECT_TRUE(test::has(*large, "settle_time_step_s"));
-  EXPECT_TRUE(test::has(*large, "above 0.7"));
+  EXPECT_TRUE(has(*small,
+                  "steps_per_cycle: the time step of 1e-06 s is 0.01 of the stability limit, "
+                  "below 0.15"));
+  EXPECT_TRUE(has(*large, "settle_time_step_s"));
+  EXPECT_TRUE(has(*large, "above 0.7"));
 }
 
 TEST(TimeStep, WarnsInAPlanUnlessNoTimePasses) {
-  const auto warnings = [](const std::string& base) { return test::plan_of(base).warnings; };
+  const auto warnings = [](const std::string& base) { return plan_of(base).warnings; };
   EXPECT_TRUE(warnings("grains: 600").empty());
   EXPECT_EQ(warnings("grains: 600, steps_per_cycle: 1000000").size(), 1U);
   EXPECT_EQ(warnings("grains: 600, steps_per_cycle: 18000").size(), 1U);
@@ -244,4 +244,4 @@ TEST(Overlap, FollowsPressureStiffnessAndWeight) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -17,10 +17,8 @@
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class Measure : public DrawingTest {
  protected:
@@ -215,4 +213,4 @@ TEST_F(Measure, WorksWhereNothingCanBeKept) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -10,7 +10,7 @@
 #include "core/filling.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 // The walls bear the weight and nothing else, and the moving wall its load.
@@ -41,11 +41,11 @@ void expect_balance(Measures measures) {
 TEST(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
   const TemporaryFolder folder;
   Store store(folder.path() / "store", Access::create);
-  const CampaignResult result = test::compute(store,
-                                              "experiment: packing\n"
-                                              "base: {grains: 2000, cycles: 10}\n");
+  const CampaignResult result = compute(store,
+                                        "experiment: packing\n"
+                                        "base: {grains: 2000, cycles: 10}\n");
   ASSERT_EQ(result.completed, 2U);
-  const RunRecord packing = test::runs_of_kind(store, "prepare").at(0);
+  const RunRecord packing = runs_of_kind(store, "prepare").at(0);
   const CheckpointRecord settled = store.checkpoints(packing.id).back();
   const Measures at_rest = analyse(store.load_checkpoint(settled)).measures;
   const double imbalance = settled.observables.at("wall_force_imbalance");
@@ -63,7 +63,7 @@ TEST(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
   EXPECT_LT(at_rest.mean_overlap, 4.5e-3);
   expect_balance(at_rest);
 
-  const RunRecord run = test::sheared(store);
+  const RunRecord run = sheared(store);
   const auto checkpoints = store.checkpoints(run.id);
   ASSERT_EQ(checkpoints.size(), 11U);
   double late = 0;  // mean over the last three cycles
@@ -85,12 +85,12 @@ TEST(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
 TEST(PackingOf2000, HasTheOverlapThatThePressureDemands) {
   const TemporaryFolder folder;
   Store store(folder.path() / "store", Access::create);
-  ASSERT_EQ(test::compute(store,
-                          "experiment: packing\n"
-                          "base: {grains: 2000, gravity_m_per_s2: 0, cycles: 0}\n")
+  ASSERT_EQ(compute(store,
+                    "experiment: packing\n"
+                    "base: {grains: 2000, gravity_m_per_s2: 0, cycles: 0}\n")
                 .completed,
             2U);
-  const RunRecord packing = test::runs_of_kind(store, "prepare").at(0);
+  const RunRecord packing = runs_of_kind(store, "prepare").at(0);
   const Analysis found = analyse(store.load_checkpoint(store.checkpoints(packing.id).back()));
   const Mechanics& m = found.measures.mechanics;
   const Parameters table_1;
@@ -116,4 +116,4 @@ TEST(PackingOf2000, HasTheOverlapThatThePressureDemands) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

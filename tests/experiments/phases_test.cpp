@@ -17,10 +17,8 @@
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 const std::string kPhases = "checkpoints: {every_cycles: 2, phases: [0.25, 0.7]}\n";
 
@@ -241,4 +239,4 @@ TEST_F(Phases, DrawALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell::test {
 
@@ -27,10 +28,6 @@ struct Outcome {
   std::string out;
   std::string err;
 };
-
-inline bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 /// "run m.yaml -q" as three arguments.
 inline std::vector<std::string> split(const std::string& line) {

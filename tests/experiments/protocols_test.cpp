@@ -14,10 +14,8 @@
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class Protocols : public StoreTest {
  protected:
@@ -169,4 +167,4 @@ TEST_F(Protocols, AToleranceOutOfReachFailsTheRunAndSaysWhatToChange) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -10,10 +10,8 @@
 #include "provenance/derived.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 RunAsk ask(std::uint64_t cycles, std::optional<Until> until = std::nullopt) {
   return {cycles, until};
@@ -222,4 +220,4 @@ TEST_F(UntilTest, IsTheSameAfterInterruptionsWithinCycles) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -6,11 +6,11 @@
 
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 using List = std::vector<std::size_t>;
 
 TEST(Evenly, TakesTheFirstAndTheLast) {
@@ -42,7 +42,7 @@ TEST_F(PackingsOf, ShowTheLastRunOfEachVariant) {
   ASSERT_EQ(packings.runs.size(), 2U);
   EXPECT_EQ(packings.frames, 6U);
   for (const auto& run : packings.runs) {
-    EXPECT_NE(run.at("label").get<std::string>().find("seed 2"), std::string::npos) << run["label"];
+    EXPECT_TRUE(has(run.at("label").get<std::string>(), "seed 2"));
     EXPECT_EQ(run.at("frames").size(), 3U);
     EXPECT_EQ(run.at("grains"), kGrains);
   }
@@ -94,4 +94,4 @@ TEST_F(PackingsOf, LeaveOutWhatIsDamagedAndSaySo) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

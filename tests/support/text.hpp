@@ -13,7 +13,7 @@ namespace shearcell::test {
 inline ::testing::AssertionResult has(std::string_view text, std::string_view part) {
   const bool found = text.find(part) != std::string_view::npos;
   return (found ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
-         << "'" << part << (found ? "' is in:\n" : "' is not in:\n") << text;
+         << "'" << part << (found ? "' is in:\n" : "' is not in:\n") << text.substr(0, 5000);
 }
 
 /// The text in single quotes, as SQL has it.
