@@ -182,21 +182,5 @@ TEST(CommonNeighbours, APackingWithoutOrderHasHardlyAny) {
   EXPECT_GT(share(p, shearcell::Lattice::none), 0.97);
 }
 
-TEST(CommonNeighbours, AgreesWithQ6WhereThatIsUnambiguous) {
-  Packing p = lattice(Lattice::hcp, 6);
-  jitter(p, 0.01, 2);
-  const Analysis analysis = analyse(p.cell, p.pose, p.grains);
-  const auto found = common_neighbour_analysis(p.cell, p.pose, p.grains);
-  std::size_t compared = 0;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (analysis.grains.interior[i] == 0 || analysis.grains.structure[i] != Structure::hcp) {
-      continue;
-    }
-    ++compared;
-    EXPECT_EQ(found[i], shearcell::Lattice::hcp);
-  }
-  EXPECT_GT(compared, 20U);
-}
-
 }  // namespace
 }  // namespace shearcell::test

@@ -115,12 +115,6 @@ TEST(Voronoi, JammedPackingsAreSoundAndAgreeWithVoro) {
   }
 }
 
-TEST(Voronoi, AgreesWithVoroOnRandomPoints) {
-  Packing p = empty_cell(7, 11, 6);
-  fill(p, 500, 0, 7);
-  expect_agrees_with_voro(p);
-}
-
 TEST(Voronoi, LatticesWhereManySitesShareOneSphere) {
   for (const Lattice kind : {Lattice::simple_cubic, Lattice::bcc, Lattice::fcc, Lattice::hcp}) {
     for (const double amplitude : {0.0, 1e-15, 1e-12, 1e-9, 1e-4, 0.05}) {
@@ -178,15 +172,6 @@ TEST(Voronoi, AShallowCellSeesItsOwnImages) {
     fill(p, 30, 0, 23);
     EXPECT_NEAR(filled_share(p, all_cells(p)), 1.0, 1e-12);
   }
-}
-
-TEST(Voronoi, SameInputSameBits) {
-  const Packing p = jammed(300, true, 0.1, 31);
-  const VoronoiDiagram a = voronoi(p.cell, p.pose, p.grains);
-  const VoronoiDiagram b = voronoi(p.cell, p.pose, p.grains);
-  EXPECT_EQ(a.volume, b.volume);
-  EXPECT_EQ(a.surface, b.surface);
-  EXPECT_EQ(a.first, b.first);
 }
 
 std::string message_of(const Packing& p) {

@@ -17,9 +17,7 @@ namespace fs = std::filesystem;
 class Submit : public ProgramTest {
  protected:
   void program(const std::string& name, const std::string& body) const {
-    const fs::path file = programs_.path() / name;
-    std::ofstream(file) << "#!/bin/sh\n" << body;
-    fs::permissions(file, fs::perms::owner_all);
+    write_script(programs_.path() / name, "#!/bin/sh\n" + body);
   }
 
   /// Jobs get the numbers 100, 101, ...; the queue holds what is in `queue`.

@@ -85,9 +85,7 @@ class JobScript : public testing::Test {
   }
 
   void executable(const std::string& name, const std::string& body) {
-    const fs::path file = root_ / "bin" / name;
-    std::ofstream(file) << "#!/bin/bash\n" << body;
-    fs::permissions(file, fs::perms::owner_all);
+    write_script(root_ / "bin" / name, "#!/bin/bash\n" + body);
   }
 
   /// Runs an array task whose program does this; returns its exit code.

@@ -43,11 +43,11 @@ class EngineRun : public ProgramTest {
   /// A program that passes for LAMMPS and then does as it is told.
   std::string fake(const std::string& body) {
     std::string file = path("fake").string();
-    write("fake",
-          "#!/bin/sh\nif [ \"$1\" = -h ]; then echo >> '" + path("asked").string() +
-              "'; echo 'Massively Parallel Simulator - 1 Jan 2000'; echo gran/hooke; exit 0; fi\n" +
-              body + "\n");
-    fs::permissions(file, fs::perms::owner_all);
+    write_script(
+        file,
+        "#!/bin/sh\nif [ \"$1\" = -h ]; then echo >> '" + path("asked").string() +
+            "'; echo 'Massively Parallel Simulator - 1 Jan 2000'; echo gran/hooke; exit 0; fi\n" +
+            body + "\n");
     return file;
   }
 };

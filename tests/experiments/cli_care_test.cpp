@@ -131,9 +131,7 @@ TEST_F(Care, MergesAndRefusesConflicts) {
 TEST_F(Care, StatusListsASharedRunUnderEachExperiment) {
   const std::string text = tiny_manifest("", "sweep: {grid: {grains: [200, 300]}}\n");
   campaign(text, {"--cycles", "0"});
-  std::string twin = text;
-  twin.replace(twin.find("tiny"), 4, "twin");
-  write("twin.yaml", twin);
+  write("twin.yaml", renamed(text, "twin"));
   expect(0, {"run", "twin.yaml", "--cycles", "0", "-q"});
   const std::string status = expect(0, {"status"},
                                     {"tiny at scale base", "twin at scale base", "packing N=200 ",
@@ -184,8 +182,8 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
             "to extend");
 
   // Another experiment: one run is shared, one is new by its amplitude.
-  std::string twin = tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.0833, 0.1]}}\n");
-  twin.replace(twin.find("tiny"), 4, "twin");
+  std::string twin =
+      renamed(tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.0833, 0.1]}}\n"), "twin");
   write("twin.yaml", twin);
   const auto other = json({"plan", "twin.yaml", "--cycles", "1", "--json"});
   EXPECT_EQ(stage(other, "shear", 1).at("state"), "done");
@@ -270,10 +268,7 @@ TEST_F(Sharing, TheOtherTakesOverWhatAKilledOneHeld) {
   const Running first = start_beside({"run", text, "-q"}, "first");
   wait_for_objects(5);
   const Running second = start_beside({"run", text}, "second");
-  while (!has(read_bytes(second.err), "waiting")) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    if (has(read_bytes(second.err), "done")) break;
-  }
+  wait_for_words(second, "waiting");
   kill(first.pid, SIGKILL);
   EXPECT_EQ(wait_for(first).signal, SIGKILL);
   const Outcome rest = wait_for(second);
@@ -297,9 +292,6 @@ TEST_F(Care, HardCasesAreToldAndOneThatFailsEndsWithCode3) {
          {"0 of 1 cases ended as expected"});
   expect(2, {"bench", "stability", "--only", "vacanzy"}, {"did you mean 'vacancy'?"});
 }
-
-const std::string kDrag =
-    (fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments" / "drag.yaml").string();
 
 class CommandLineStore : public ProgramTest {};
 
@@ -354,19 +346,6 @@ TEST_P(Signals, LeaveNoTrace) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Signals, testing::Values(SIGINT, SIGTERM, SIGKILL));
-
-// One cycle of the smoke scale: what it takes on disk, against what the plan says.
-TEST_F(CommandLineStore, DragTakesTheDiskThatItsPlanSays) {
-  const nlohmann::json plan = json({"plan", kDrag, "--scale", "smoke", "--cycles", "1", "--json"});
-  expect(0, {"run", kDrag, "--scale", "smoke", "--cycles", "1", "-q"});
-  double bytes = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(path("shearcell-store/objects"))) {
-    if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
-  }
-  const double expected = plan.at("bytes_left");
-  std::printf("checkpoints: %.4g MB, expected %.4g MB\n", bytes * 1e-6, expected * 1e-6);
-  EXPECT_NEAR(expected / bytes, 1, 0.3);
-}
 
 }  // namespace
 }  // namespace shearcell::test

@@ -34,7 +34,7 @@ TEST_F(DrawFigure, RunsOfAnotherExperimentNeverEnter) {
   const std::string text = tiny_manifest("", kBothFluids);
   compute(store_, text);  // 2 cycles
   draw("before");
-  std::string longer = "experiment: other" + text.substr(text.find('\n'));
+  std::string longer = renamed(text, "other");
   longer.replace(longer.find("cycles: 2"), 9, "cycles: 4");
   compute(store_, longer + "seeds: 2\n");
   EXPECT_EQ(store_.runs().back().cycle, 4);

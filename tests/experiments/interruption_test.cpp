@@ -14,15 +14,11 @@
 namespace shearcell::test {
 namespace {
 
-class Interruption : public StoreTest {
- protected:
-  Store whole_{folder_.path() / "whole", Access::create};
-};
+using Interruption = StoreTest;
 
 // With the wish to stop pending from the start of each attempt, it ends after a single chunk of
 // steps.
 TEST_F(Interruption, AfterEveryChunkLeavesNoTrace) {
-  compute(whole_, tiny_manifest());
   for (const StageJob& job : declared(store_, tiny_manifest())) {
     const std::size_t interrupted = interrupt_to_the_end(
         store_, job.id, [&] { EXPECT_EQ(store_.run(job.id).state, RunState::interrupted); });
@@ -35,36 +31,8 @@ TEST_F(Interruption, AfterEveryChunkLeavesNoTrace) {
     EXPECT_EQ(count_events(store_, "RunInterrupted", "run/" + job.id), interrupted);
     EXPECT_EQ(count_events(store_, "RunResumed", "run/" + job.id), interrupted);
   }
-  EXPECT_EQ(final_hashes(store_), final_hashes(whole_));
+  EXPECT_EQ(final_hashes(store_), undisturbed(tiny_manifest()));
   EXPECT_TRUE(store_.verify().ok());
-}
-
-TEST_F(Interruption, FromAnotherThreadAtAnyMoment) {
-  const std::string text = tiny_manifest("", kBothFluids);
-  compute(whole_, text);
-  CampaignResult result;
-  std::size_t interrupted = 0;
-  auto delay = std::chrono::milliseconds(10);
-  for (std::size_t attempt = 0; attempt == 0 || result.interrupted + result.blocked > 0;
-       ++attempt, delay += std::chrono::milliseconds(23)) {
-    ASSERT_LT(attempt, 200U);
-    request_stop(false);
-    std::thread stopper([delay] {
-      std::this_thread::sleep_for(delay);
-      request_stop(true);
-    });
-    result = attempt == 0 ? compute(store_, text) : resume(store_);
-    stopper.join();
-    interrupted += result.interrupted;
-    EXPECT_EQ(result.failed + result.damaged, 0U);
-  }
-  std::printf("interrupted %zu times\n", interrupted);
-  EXPECT_GE(interrupted, 1U);
-  EXPECT_EQ(final_hashes(store_), final_hashes(whole_));
-  for (const RunRecord& run : store_.runs()) {
-    EXPECT_EQ(run.state, RunState::completed);
-    EXPECT_EQ(run.particle_steps, static_cast<double>(kGrains * run.step));
-  }
 }
 
 TEST_F(Interruption, BeforeTheFirstStageBeginsNothing) {

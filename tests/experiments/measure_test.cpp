@@ -121,8 +121,7 @@ TEST_F(Measure, OneAnalysisGivesAllThatFiguresMadeTogetherNeed) {
 
 // A run that two experiments have counts in each.
 TEST_F(Measure, AFigureOfEveryExperimentMeasuresNothing) {
-  const std::string text = tiny_manifest("", kBothFluids);
-  compute(store_, "experiment: other" + text.substr(text.find('\n')));
+  compute(store_, renamed(tiny_manifest("", kBothFluids), "other"));
   const FigureSummary table = draw("table", {*find_figure("table1"), ""});
   EXPECT_EQ(table.measured, 0U);
   EXPECT_EQ(table.runs, 2U * 2U);

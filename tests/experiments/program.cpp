@@ -54,6 +54,13 @@ Outcome ProgramTest::wait_for(const Running& program) {
   return outcome;
 }
 
+void ProgramTest::wait_for_words(const Running& program, const std::string& words) {
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(kLimitSeconds);
+  while (!has(read_bytes(program.err), words) && std::chrono::steady_clock::now() < limit) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
 Outcome ProgramTest::run(const Arguments& arguments) {
   return wait_for(start(arguments));
 }

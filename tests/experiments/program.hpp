@@ -64,6 +64,9 @@ class ProgramTest : public testing::Test {
   Running start_beside(const Arguments& arguments, const std::string& name);
   static Outcome wait_for(const Running& program);
 
+  /// Waits until it has said this on standard error, two minutes at most.
+  static void wait_for_words(const Running& program, const std::string& words);
+
   /// Copies to `place` what `make` leaves in an empty folder. It is made once per build and shared
   /// by all test processes.
   void shared(const std::string& identity, const std::string& place,

@@ -47,6 +47,11 @@ inline std::string tiny_manifest(const std::string& base = "", const std::string
   return text + base + rest;
 }
 
+/// The same runs in an experiment of another name.
+inline std::string renamed(std::string manifest, const std::string& experiment) {
+  return manifest.replace(manifest.find("tiny"), 4, experiment);
+}
+
 inline const std::string kBothFluids = "sweep: {grid: {fluid: [still, cell]}}\n";
 
 /// Declares what a manifest expands to; its stages.
@@ -75,6 +80,15 @@ inline std::map<std::string, std::string> final_hashes(const Store& store) {
   std::map<std::string, std::string> hashes;
   for (const RunRecord& run : store.runs()) hashes[run.id] = run.state_hash;
   return hashes;
+}
+
+/// Run id -> hash of its last state, of runs that nothing disturbs in a store of their own.
+inline std::map<std::string, std::string> undisturbed(const std::string& text,
+                                                      const ExpandOptions& options = {}) {
+  const TemporaryFolder folder;
+  Store store(folder.path() / "store", Access::create);
+  compute(store, text, options);
+  return final_hashes(store);
 }
 
 inline std::vector<RunRecord> runs_of_kind(const Store& store, const std::string& kind) {

@@ -22,7 +22,7 @@ TEST(Evenly, TakesTheFirstAndTheLast) {
   EXPECT_EQ(evenly(3, 0), List{});
 }
 
-class PackingsOf : public testing::Test {
+class PackingsOf : public StoreTest {
  protected:
   PackingsOf() {
     // Two variants of two seeds each, cycles 0 to 2.
@@ -32,9 +32,6 @@ class PackingsOf : public testing::Test {
   Packings collect(const PackingChoice& choice) {
     return collect_packings(store_, {"tiny"}, {}, choice, 2, {});
   }
-
-  TemporaryFolder folder_;
-  Store store_{folder_.path() / "store", Access::create};
 };
 
 TEST_F(PackingsOf, ShowTheLastRunOfEachVariant) {
@@ -87,7 +84,7 @@ TEST_F(PackingsOf, CanBeNamed) {
 
 TEST_F(PackingsOf, LeaveOutWhatIsDamagedAndSaySo) {
   const std::string run = runs_of_kind(store_, "shear").back().id;
-  truncate_file(folder_.path() / "store" / store_.checkpoints(run).back().file);
+  truncate_file(store_.folder() / store_.checkpoints(run).back().file);
   const Packings packings = collect({});
   ASSERT_EQ(packings.notes.size(), 1U);
   EXPECT_EQ(packings.frames, 5U);

@@ -32,7 +32,7 @@ nlohmann::json data_of(const std::string& html) {
   return nlohmann::json::parse(html.substr(from, html.find("</script>", from) - from));
 }
 
-class ReportOf : public testing::Test {
+class ReportOf : public StoreTest {
  protected:
   ReportData collect(const ReportOptions& options = {}) { return collect_report(store_, options); }
   std::string make(const ReportOptions& options = {}) { return report_page(collect(options)); }
@@ -42,9 +42,6 @@ class ReportOf : public testing::Test {
     options.interactive = false;
     return options;
   }
-
-  TemporaryFolder folder_;
-  Store store_{folder_.path() / "store", Access::create};
 };
 
 class ReportOfRuns : public ReportOf {
@@ -55,7 +52,7 @@ class ReportOfRuns : public ReportOf {
 TEST_F(ReportOfRuns, HasTheSameBytesAgainAndLeavesTheLogAlone) {
   const Head before = store_.head();
   const std::string first = make();
-  std::filesystem::remove(folder_.path() / "store" / "derived.sqlite");
+  std::filesystem::remove(store_.folder() / "derived.sqlite");
   ReportOptions options;
   options.workers = 3;
   EXPECT_EQ(make(options), first);
@@ -185,7 +182,7 @@ TEST_F(ReportOfRuns, AllowsOnlyItsOwnScriptAndHasNoneWithDrawings) {
 
 TEST_F(ReportOfRuns, NamesDamagedCheckpoints) {
   const std::string run = runs_of_kind(store_, "shear").front().id;
-  truncate_file(folder_.path() / "store" / store_.checkpoints(run).front().file);
+  truncate_file(store_.folder() / store_.checkpoints(run).front().file);
   const ReportData report = collect();
   ASSERT_EQ(report.damage.size(), 1U);
   EXPECT_TRUE(has(report_page(report), "Left out: "));
