@@ -33,9 +33,7 @@ echo $((99 + $(/usr/bin/wc -l < jobs)))
   /// Submits the manifest, and returns the folder of the submission.
   std::string submitted(const Arguments& options = {}) {
     slurm_that_works();
-    Arguments words = {"submit", manifest_, "--json"};
-    words.insert(words.end(), options.begin(), options.end());
-    return json(words).at("folder");
+    return json(joined({"submit", manifest_, "--json"}, options)).at("folder");
   }
   void queue(const std::string& lines) const { std::ofstream(programs_.path() / "queue") << lines; }
   std::string words() const { return read_bytes(programs_.path() / "words"); }
@@ -83,9 +81,7 @@ TEST_F(Submit, RefusesWhatSlurmWouldMisread) {
         Arguments{"--sbatch=qos"}, Arguments{"--sbatch=--wrap=a b"}, Arguments{"--engine", "slurm"},
         Arguments{"--scratch", "/a\nb"}, Arguments{"--array-size", "0"},
         Arguments{"--cpus-per-task", "-1"}}) {
-    Arguments all = {"submit", manifest_, "--dry-run"};
-    all.insert(all.end(), words.begin(), words.end());
-    expect(2, all);
+    expect(2, joined({"submit", manifest_, "--dry-run"}, words));
   }
   expect(2, {"submit", manifest_, "--dry-run", "--time", "2"}, {"120 s leave no time"});
 }

@@ -191,15 +191,12 @@ TEST_F(Comfort, ExportsTheCyclesThatAreAskedFor) {
   for (const Arguments& words :
        {Arguments{"--out", "run.xyz"}, Arguments{"--out", "other", "--cycles", "one"},
         Arguments{"--out", "other", "--cycles", "99"}}) {
-    Arguments all{"export", id, "--to", "extxyz"};
-    all.insert(all.end(), words.begin(), words.end());
-    expect_refused(all, {"export: "});
+    expect_refused(joined({"export", id, "--to", "extxyz"}, words), {"export: "});
   }
   for (const std::string line : {"ro-crate --cycles 0", "ro-crate --metres", "vtk --metres",
                                  "h5md --license https://x.org"}) {
-    Arguments all{"export", id, "--out", "other", "--to"};
-    for (const std::string& word : split(line)) all.push_back(word);
-    expect_refused(all, {"has no effect with --to " + line.substr(0, line.find(' '))});
+    expect_refused(joined({"export", id, "--out", "other", "--to"}, split(line)),
+                   {"has no effect with --to " + line.substr(0, line.find(' '))});
   }
 }
 

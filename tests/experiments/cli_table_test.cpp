@@ -15,9 +15,8 @@ class CommandLineTable : public ProgramTest {
  protected:
   void SetUp() override { campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"}); }
 
-  nlohmann::json table(Arguments options) {
-    options.insert(options.begin(), {"table", "--json"});
-    return json(options);
+  nlohmann::json table(const Arguments& options) {
+    return json(joined({"table", "--json"}, options));
   }
 };
 
@@ -198,13 +197,10 @@ TEST_F(CommandLineTable, SelectsRuns) {
   for (const Case& c : {Case{{"--variant", "fluid=cell"}, 1},
                         Case{{"--variant", "fluid=cell", "--variant", "fluid=still"}, 2},
                         Case{{"--experiment", "tiny", "--seed", "1"}, 2}}) {
-    Arguments options = {"--per", "run"};
-    options.insert(options.end(), c.filters.begin(), c.filters.end());
-    EXPECT_EQ(table(options).size(), c.runs);
-    Arguments status = {"status", "--json", "--state", "completed"};
-    status.insert(status.end(), c.filters.begin(), c.filters.end());
+    EXPECT_EQ(table(joined({"--per", "run"}, c.filters)).size(), c.runs);
     std::size_t sheared = 0;
-    const nlohmann::json listed = json(status);
+    const nlohmann::json listed =
+        json(joined({"status", "--json", "--state", "completed"}, c.filters));
     for (const auto& run : listed.at("runs")) sheared += run.at("kind") == "shear" ? 1 : 0;
     EXPECT_EQ(sheared, c.runs);
   }

@@ -174,14 +174,8 @@ TEST_F(DrawFigure, AGroupedFigureAveragesOverNoVersions) {
   }
   const WantedFigure onset{*find_figure("S5a"), "tiny"};
   EXPECT_NO_THROW(draw("newest", onset));
-  FigureOptions every;
-  every.runs.all_versions = true;
-  try {
-    draw("every", onset, every);
-    ADD_FAILURE() << "versions were averaged";
-  } catch (const UsageError& error) {
-    EXPECT_TRUE(has(error.what(), "leave out --all-versions"));
-  }
+  expect_refused<UsageError>([&] { draw("every", onset, RunSelection{.all_versions = true}); },
+                             {"leave out --all-versions"});
 }
 
 TEST_F(DrawFigure, TheNoteOnMissingCheckpointsSaysWhichRunsCannotMakeThem) {
@@ -329,24 +323,19 @@ TEST_F(DrawFigure, TakesTheScaleThatIsAskedFor) {
   compute(store_, text, {.scale = "smoke"});
   compute(store_, text);
   EXPECT_EQ(draw("last").scale, "desk");
-  FigureOptions options;
-  options.runs.scales = {"smoke"};
-  const FigureSummary smoke = draw("smoke", kS2, options);
+  const FigureSummary smoke = draw("smoke", kS2, RunSelection{.scales = {"smoke"}});
   EXPECT_EQ(smoke.scale, "smoke");
   EXPECT_EQ(smoke.checkpoints, 2U * 3U);
-  options.runs.scales = {"paper"};
-  EXPECT_THROW(draw("paper", kS2, options), NotFound);
+  EXPECT_THROW(draw("paper", kS2, RunSelection{.scales = {"paper"}}), NotFound);
 }
 
 TEST_F(DrawFigure, TakesTheRunsThatAreSelected) {
   compute(store_, tiny_manifest("", kBothFluids + "seeds: 3\n"));
-  FigureOptions options;
-  options.runs.variants = {"fluid=cell"};
-  options.runs.seeds = {1, 3};
-  EXPECT_EQ(draw("part", kS2, options).runs, 2U);
+  RunSelection runs{.variants = {"fluid=cell"}, .seeds = {1, 3}};
+  EXPECT_EQ(draw("part", kS2, runs).runs, 2U);
   EXPECT_TRUE(has(contents("part").at("S2.caption.txt"), "Runs: fluid=cell: 2."));
-  options.runs.variants = {"fluid=none"};
-  EXPECT_THROW(draw("none", kS2, options), NotFound);
+  runs.variants = {"fluid=none"};
+  EXPECT_THROW(draw("none", kS2, runs), NotFound);
 }
 
 TEST_F(DrawFigure, KnowsWhichFiguresTheStoreCanMake) {

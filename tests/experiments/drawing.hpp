@@ -18,6 +18,12 @@ class DrawingTest : public StoreTest {
     options.folder = folder_.path() / folder;
     return draw_figure(store_, wanted, options);
   }
+  FigureSummary draw(const std::string& folder, const WantedFigure& wanted,
+                     const RunSelection& runs) {
+    FigureOptions options;
+    options.runs = runs;
+    return draw(folder, wanted, options);
+  }
   FigureSummary draw(const std::string& folder, const std::string& name) {
     return draw(folder, wanted_figures(store_, {name}).figures.at(0));
   }

@@ -92,8 +92,7 @@ TEST(Conversion, GivesTheNumbersOfTableOne) {
 }
 
 TEST(Conversion, APauseHasWholeTimeSteps) {
-  Parameters parameters;
-  parameters.protocol = ProtocolKind::paused;
+  Parameters parameters{.protocol = ProtocolKind::paused};
   EXPECT_EQ(drive(parameters).pause_steps, 45600U) << "2 s, as long as a cycle";
   parameters.pause_s = 1.00003;  // 22800.7 steps
   EXPECT_EQ(drive(parameters).pause_steps, 22801U);
@@ -106,9 +105,7 @@ TEST(Conversion, APauseHasWholeTimeSteps) {
 }
 
 TEST(Conversion, SettlesInAFluidAtRestWithItsOwnTimeStep) {
-  Parameters parameters;
-  parameters.fluid = Fluid::cell;
-  parameters.steps_per_cycle = 100'000;
+  const Parameters parameters{.fluid = Fluid::cell, .steps_per_cycle = 100'000};
   EXPECT_EQ(shear_scene(parameters).fluid, Fluid::cell);
   const Scene settle = settle_scene(parameters);
   EXPECT_EQ(settle.fluid, Fluid::still);
@@ -117,10 +114,8 @@ TEST(Conversion, SettlesInAFluidAtRestWithItsOwnTimeStep) {
 }
 
 TEST(Conversion, CarriesTheGeometry) {
-  Parameters parameters;
-  parameters.walls = WallTexture::smooth;
-  parameters.moving_wall = MovingWall::top;
-  const Geometry shape = geometry(parameters);
+  const Geometry shape = geometry(
+      {.walls = WallTexture::smooth, .moving_wall = MovingWall::top, .wall_grain_draw = 1'000'000});
   EXPECT_EQ(shape.grains, 7900U);
   EXPECT_EQ(shape.height_over_width, 1.675);
   EXPECT_EQ(shape.nominal_packing_fraction, 0.64);
@@ -128,9 +123,8 @@ TEST(Conversion, CarriesTheGeometry) {
   EXPECT_EQ(shape.walls, WallTexture::smooth);
   EXPECT_EQ(shape.wall_grain_area_fraction, 0.52);
   EXPECT_EQ(shape.wall_grain_recess, 0.25);
-  EXPECT_EQ(shape.wall_grain_draw, 0U);
-  parameters.wall_grain_draw = 1'000'000;
-  EXPECT_EQ(geometry(parameters).wall_grain_draw, 1'000'000U);
+  EXPECT_EQ(shape.wall_grain_draw, 1'000'000U);
+  EXPECT_EQ(geometry({}).wall_grain_draw, 0U);
   EXPECT_EQ(shape.moving, MovingWall::top);
 }
 
@@ -225,18 +219,15 @@ TEST(TimeStep, WarnsInAPlanUnlessNoTimePasses) {
 }
 
 TEST(Overlap, FollowsPressureStiffnessAndWeight) {
-  Parameters p;
-  p.gravity_m_per_s2 = 0;
+  Parameters p{.gravity_m_per_s2 = 0};
   // 0.75 P d/k, with P d/k = 4.376e-3.
   EXPECT_NEAR(expected_overlap(p), 3.282e-3, 1e-6);
   p.pressure_Pa *= 2;
   p.stiffness_N_per_m *= 4;
   EXPECT_NEAR(expected_overlap(p), 1.641e-3, 1e-6);
-  Parameters bottom, lifting, top;
-  lifting.pressure_at = PressureAt::moving_wall;
-  top.moving_wall = MovingWall::top;
-  Parameters weightless;
-  weightless.gravity_m_per_s2 = 0;
+  const Parameters bottom, weightless{.gravity_m_per_s2 = 0};
+  const Parameters lifting{.pressure_at = PressureAt::moving_wall};
+  const Parameters top{.moving_wall = MovingWall::top};
   EXPECT_LT(expected_overlap(lifting), expected_overlap(weightless));
   EXPECT_EQ(expected_overlap(bottom), expected_overlap(top));
   EXPECT_NEAR(expected_overlap(lifting) + expected_overlap(top), 2 * expected_overlap(weightless),

@@ -37,6 +37,15 @@ class Measure : public DrawingTest {
   void sql(const std::string& statement) const {
     sqlite::Database(cache(), Access::write).execute(statement);
   }
+  /// Keeps another phi of a checkpoint, under a right digest.
+  void keep_phi(const CheckpointRecord& record, double phi) const {
+    DerivedCache kept(store_.folder());
+    const DerivedKey key{record.sha256, derived_measure("scalars").key(), analysis_version};
+    nlohmann::json scalars = decode_result(kept.get(std::span(&key, 1)).front().value());
+    scalars["phi"] = phi;
+    const DerivedObject object{key, encode_result(scalars)};
+    kept.put(std::span(&object, 1));
+  }
   std::vector<CheckpointRecord> records() const {
     std::vector<CheckpointRecord> all;
     for (const RunRecord& run : runs_of_kind(store_, "shear")) {
@@ -63,14 +72,9 @@ TEST_F(Measure, IsMeasuredOnceAndGivesTheSameBytesAgain) {
 TEST_F(Measure, AMergeSamplesWhatTheMakerOfASourceCannotForesee) {
   make("first");
   const std::vector<CheckpointRecord> known = sample(records(), 3, 1);
-  DerivedCache kept(store_.folder());
   for (const CheckpointRecord& record : records()) {
     if (std::ranges::count(known, record.sha256, &CheckpointRecord::sha256) > 0) continue;
-    const DerivedKey key{record.sha256, derived_measure("scalars").key(), analysis_version};
-    nlohmann::json forged = decode_result(kept.get(std::span(&key, 1)).front().value());
-    forged["phi"] = 0.9;
-    const DerivedObject object{key, encode_result(forged)};
-    kept.put(std::span(&object, 1));
+    keep_phi(record, 0.9);
   }
   // One merge of twenty takes these three.
   std::vector<Finding> refused;
@@ -144,12 +148,7 @@ TEST_F(Measure, AChangedValueIsFoundAndReplaced) {
 TEST_F(Measure, FreshNamesWhatWasKeptDifferently) {
   make("first");
   const CheckpointRecord victim = records().at(2);
-  DerivedCache kept(store_.folder());
-  const DerivedKey key{victim.sha256, derived_measure("scalars").key(), analysis_version};
-  nlohmann::json wrong = decode_result(kept.get(std::span(&key, 1)).at(0).value());
-  wrong["phi"] = 0.5;
-  const DerivedObject object{key, encode_result(wrong)};
-  kept.put(std::span(&object, 1));
+  keep_phi(victim, 0.5);
   make("wrong");
   EXPECT_NE(csv("wrong"), csv("first"));
   EXPECT_EQ(make("fresh", true).changed, std::vector{victim.sha256});

@@ -28,8 +28,7 @@ ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::s
   Arguments words = {"-u", "SHEARCELL_STORE"};
   if (!named_store_.empty()) words.push_back("SHEARCELL_STORE=" + named_store_);
   words.emplace_back(executable);
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  program.pid = spawn(std::move(words), folder_.path(), program.out, program.err);
+  program.pid = spawn(joined(words, arguments), folder_.path(), program.out, program.err);
   return program;
 }
 
@@ -133,9 +132,7 @@ void ProgramTest::campaign(const std::string& manifest, const Arguments& options
   std::string identity = manifest;
   for (const std::string& option : options) identity += " " + option;
   shared(identity, store, [&](const std::string& folder) {
-    Arguments words = {"run", file, "-q", "--store", folder};
-    words.insert(words.end(), options.begin(), options.end());
-    expect(0, words);
+    expect(0, joined({"run", file, "-q", "--store", folder}, options));
   });
 }
 

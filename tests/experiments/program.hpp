@@ -35,6 +35,13 @@ inline std::vector<std::string> split(const std::string& line) {
   return {std::istream_iterator<std::string>(words), {}};
 }
 
+/// The words of both.
+inline std::vector<std::string> joined(std::vector<std::string> words,
+                                       const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 class ProgramTest : public testing::Test {
  protected:
   using Arguments = std::vector<std::string>;

@@ -25,11 +25,9 @@ namespace fs = std::filesystem;
 /// A small packing at the end of a cycle, and the same grains in a cell that tilts and whose wall
 /// moves.
 std::vector<Checkpoint> checkpoints() {
-  Parameters parameters;
-  parameters.grains = 250;
   Checkpoint upright;
   upright.run = std::string(64, 'a');
-  const bench::Packing packing = bench::pressed_packing(parameters, 1);
+  const bench::Packing packing = bench::pressed_packing({.grains = 250}, 1);
   upright.cell = packing.cell;
   upright.state = packing.state;
   upright.state.position.row(2).array() += 2 * upright.cell.depth;  // z is unwrapped

@@ -14,7 +14,7 @@ namespace {
 class AccuracyCharts : public testing::Test {
  protected:
   void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_.path() / name, std::ios::binary) << text;
+    write_bytes(folder_.path() / name, text);
   }
   std::vector<ReportPanel> read() const { return read_accuracy_charts(folder_.path()); }
   std::string trouble() const {
