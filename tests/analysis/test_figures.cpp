@@ -184,14 +184,10 @@ class Plot : public ::testing::Test {
   }
   /// What it says when it cannot draw; the data must stay.
   std::string trouble_with(const FigureTable& table) const {
-    try {
-      draw(table);
-    } catch (const AnalysisError& error) {
-      EXPECT_TRUE(fs::exists(folder_.path() / (table.name + ".csv")));
-      EXPECT_FALSE(fs::exists(folder_.path() / (table.name + ".svg")));
-      return error.what();
-    }
-    return "";
+    const std::string message = message_of<AnalysisError>([&] { draw(table); });
+    EXPECT_TRUE(fs::exists(folder_.path() / (table.name + ".csv")));
+    EXPECT_FALSE(fs::exists(folder_.path() / (table.name + ".svg")));
+    return message;
   }
 
   const TemporaryFolder folder_{"shear cell's $HOME-"};

@@ -182,9 +182,10 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
             "to extend");
 
   // Another experiment: one run is shared, one is new by its amplitude.
-  std::string twin =
-      renamed(tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.0833, 0.1]}}\n"), "twin");
-  write("twin.yaml", twin);
+  const auto twin = [](const std::string& base) {
+    return renamed(tiny_manifest(base, "sweep: {grid: {amplitude_rad: [0.0833, 0.1]}}\n"), "twin");
+  };
+  write("twin.yaml", twin(""));
   const auto other = json({"plan", "twin.yaml", "--cycles", "1", "--json"});
   EXPECT_EQ(stage(other, "shear", 1).at("state"), "done");
   EXPECT_EQ(stage(other, "shear", 1).at("shared_with"), nlohmann::json::parse(R"(["tiny"])"));
@@ -195,8 +196,7 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
          {"also in tiny", "new: amplitude_rad 0.1 (store has 0.0833)"});
 
   // Both: the shared run counts once, as long as the one that asks for more of it.
-  twin.replace(twin.find("cycles: 2"), 9, "cycles: 4");
-  write("twin.yaml", twin);
+  write("twin.yaml", twin("  cycles: 4\n"));
   const auto both = json({"plan", "m.yaml", "twin.yaml", "--json"});
   EXPECT_EQ(both.at("experiment"), "tiny, twin");
   EXPECT_EQ(both.at("runs"), 3);

@@ -34,9 +34,7 @@ TEST_F(DrawFigure, RunsOfAnotherExperimentNeverEnter) {
   const std::string text = tiny_manifest("", kBothFluids);
   compute(store_, text);  // 2 cycles
   draw("before");
-  std::string longer = renamed(text, "other");
-  longer.replace(longer.find("cycles: 2"), 9, "cycles: 4");
-  compute(store_, longer + "seeds: 2\n");
+  compute(store_, renamed(tiny_manifest("  cycles: 4\n", kBothFluids + "seeds: 2\n"), "other"));
   EXPECT_EQ(store_.runs().back().cycle, 4);
   draw("after");
   EXPECT_EQ(contents("after"), contents("before"));

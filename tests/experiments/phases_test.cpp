@@ -78,7 +78,6 @@ TEST_F(Phases, AreCheckpointsOfTheSameRun) {
   EXPECT_TRUE(store_.verify().ok());
 
   // Whole cycles only, as a figure of the supplement takes them.
-  EXPECT_EQ(drawn(store_, "S2"), drawn(store_, "S2"));
   const CollectedRuns collected = collect_runs(store_, {*find_figure("S2"), "tiny"}, {});
   EXPECT_EQ(collected.runs.at(0).checkpoints.size(), 3U);
   EXPECT_TRUE(collected.notes.empty());
