@@ -244,11 +244,9 @@ TEST_F(BenchAccuracy, PlanPrintsTimeStepsAndWarns) {
   EXPECT_NEAR(stage.at("time_step").at("over_contact_time"), 0.1129, 1e-4);
   EXPECT_NEAR(stage.at("expected_overlap_d"), 3.797e-3, 1e-5);
   const std::string small = write("small.yaml", head + "steps_per_cycle: 200000}\n");
-  const std::string large = write("large.yaml", head + "steps_per_cycle: 20000}\n");
   const std::string stiffened =
       write("stiffen.yaml", "experiment: a\nbase: {grains: 600, protocol: stiffen}\n");
   expect(0, {"plan", small}, {"below 0.15"});
-  expect(0, {"plan", large}, {"above 0.7"});
   EXPECT_EQ(json({"plan", stiffened, "--json"}).at("stages").at(1).at("time_step"), nullptr);
 }
 

@@ -32,6 +32,9 @@ TEST_F(CommandLine, EverySubcommandHasHelpWithAnExample) {
 TEST_F(CommandLine, RefusesWhatItDoesNotKnow) {
   expect_refused({}, {"subcommand"});
   expect_refused({"shake"}, {"shake"});
+  expect_refused({"plam", kDrag}, {"not expected: plam ", "the nearest is plan"});
+  expect_refused({"plan", kDrag, "--scal"}, {"not expected: --scal", "the nearest is --scale"});
+  expect_refused({"run", kDrag, "--mpi", "2"}, {"--mpi", "has no effect"});
   expect_refused({"run"}, {"manifest"});
   expect_refused({"run", kDrag, "--colour"}, {"--colour"});
   for (const char* number : {"-1", "010", "0x10", "1e2", "ten", ""}) {
@@ -79,17 +82,6 @@ TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {
   expect_refused({"show", "0123456789abcdef"}, {"no run"});
   expect_refused({"log", "zzz"}, {"no run"});
   expect_refused({"resume", "zzz"}, {"no run"});
-}
-
-TEST_F(CommandLine, SuggestsTheWordThatWasMeant) {
-  const std::string manifest = write("m.yaml", tiny_manifest());
-  expect_refused({"plam", manifest}, {"not expected: plam m.yaml", "the nearest is plan"});
-  expect_refused({"plan", manifest, "--scal"}, {"not expected: --scal", "the nearest is --scale"});
-}
-
-TEST_F(CommandLine, RefusesProcessesOfLammpsWhereItComputesNothing) {
-  const std::string manifest = write("m.yaml", tiny_manifest());
-  expect_refused({"run", manifest, "--mpi", "2"}, {"--mpi", "has no effect"});
 }
 
 TEST_F(CommandLine, FindsARunByAUniqueBeginning) {
@@ -182,11 +174,7 @@ TEST_F(CommandLine, PlansTheDragExperimentAtEveryScale) {
            {std::to_string(expected.runs) + " runs", "on disk"});
   }
   EXPECT_TRUE(listing().empty()) << "a plan wrote something";
-}
-
-// As `run` would make its store there.
-TEST_F(CommandLine, PlansForAStoreThatIsStillAnEmptyFolder) {
-  fs::create_directory(path("shearcell-store"));
+  fs::create_directory(path("shearcell-store"));  // in which `run` would make its store
   EXPECT_EQ(json({"plan", kDrag, "--scale", "smoke", "--json"}).at("runs"), 4);
   EXPECT_TRUE(fs::is_empty(path("shearcell-store")));
 }

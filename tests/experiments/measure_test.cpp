@@ -64,7 +64,6 @@ TEST_F(Measure, IsMeasuredOnceAndGivesTheSameBytesAgain) {
   EXPECT_EQ(fresh.measured, 6U);
   EXPECT_TRUE(fresh.changed.empty());
   for (const char* other : {"second", "third", "fourth"}) EXPECT_EQ(csv(other), csv("first"));
-  EXPECT_TRUE(store_.verify().ok());
   EXPECT_TRUE(store_.verify().findings.empty()) << "what is kept is no orphan";
 }
 

@@ -83,7 +83,7 @@ TEST_F(Phases, AreCheckpointsOfTheSameRun) {
   EXPECT_TRUE(collected.notes.empty());
 
   store_.prune(store_.prunable({.runs = {}, .state = {}, .keep_every = 1}));
-  EXPECT_TRUE(files(store_, false).empty() || store_.checkpoints(sheared(store_).id).size() < 7U);
+  EXPECT_LT(store_.checkpoints(sheared(store_).id).size(), 7U);
   EXPECT_TRUE(missing_checkpoints(store_, sheared(store_)).empty()) << "pruned ones were made";
 }
 
