@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "analysis/error.hpp"
-#include "analysis/packing_fraction.hpp"
 #include "tests/analysis/random_points.hpp"
 
 namespace shearcell::test {

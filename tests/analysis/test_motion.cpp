@@ -6,7 +6,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <limits>
 
 #include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"

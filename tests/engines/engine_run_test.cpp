@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <set>
 
 #include "provenance/io/child_process.hpp"
 #include "tests/experiments/program.hpp"

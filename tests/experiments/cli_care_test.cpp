@@ -5,7 +5,6 @@
 
 #include <csignal>
 #include <cstdio>
-#include <thread>
 
 #include "tests/experiments/program.hpp"
 

@@ -136,12 +136,7 @@ TEST_F(CommandLine, PrintsFactsAsJson) {
   const nlohmann::json plan = json({"plan", manifest, "--cycles", "2", "--json"});
   EXPECT_EQ(plan.at("runs"), 2);
   EXPECT_EQ(plan.at("particle_steps_left"), 2 * 300 * 10000);
-  // The tables for people come out too.
-  for (const Arguments& words :
-       {Arguments{"status"}, Arguments{"log"}, Arguments{"verify"},
-        Arguments{"show", runs[0].at("id")}, Arguments{"plan", manifest}}) {
-    EXPECT_FALSE(expect(0, words).out.empty()) << words[0];
-  }
+  expect(0, {"log"}, {"CheckpointRecorded"});
 }
 
 TEST_F(CommandLine, MakesAllFigures) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures of a small experiment in a temporary store.
+// Draws figures of a small experiment in a temporary store.
 #pragma once
 
 #include <map>

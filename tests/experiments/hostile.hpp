@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cases of damaged and forged stores: each is one line of a table over copies of one small store.
+// Tables of damaged and forged stores: each case damages a copy of one small store.
 #pragma once
 
 #include <algorithm>

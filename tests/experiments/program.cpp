@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -24,7 +23,7 @@ ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::s
                                         const char* executable) {
   Running program{0, outputs_.path() / ("out" + name), outputs_.path() / ("err" + name)};
   for (const fs::path& file : {program.out, program.err}) fs::remove(file);
-  // A store that the caller's environment names must not be touched.
+  // The caller's environment may name a store.
   Arguments words = {"-u", "SHEARCELL_STORE"};
   if (!named_store_.empty()) words.push_back("SHEARCELL_STORE=" + named_store_);
   words.emplace_back(executable);
@@ -39,7 +38,7 @@ ProgramTest::Running ProgramTest::start_beside(const Arguments& arguments,
 
 Outcome ProgramTest::wait_for(const Running& program) {
   int status = 0;
-  // One that waits for ever ends the test, not the suite.
+  // A program that hangs must not hang the suite.
   const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(kLimitSeconds);
   while (waitpid(program.pid, &status, WNOHANG) == 0) {
     if (std::chrono::steady_clock::now() > limit) kill(program.pid, SIGKILL);
@@ -103,7 +102,7 @@ Outcome ProgramTest::run_until(const Arguments& arguments, std::size_t files, in
 
 void ProgramTest::shared(const std::string& identity, const std::string& place,
                          const std::function<void(const std::string& folder)>& make) {
-  // Beside the program, by its date: another build computes it again.
+  // In a folder named after the program's date: another build makes it again.
   const fs::path program = SHEARCELL_PROGRAM;
   const auto date = fs::last_write_time(program).time_since_epoch().count();
   const fs::path all = program.parent_path() / "test-campaigns" / std::to_string(date);

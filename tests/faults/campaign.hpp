@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A campaign of less than a second for the tests with faults and kills, and checks of the store
-// afterwards.
+// A campaign of less than a second for tests with faults and kills, and checks of its store.
 #pragma once
 
 #include <sys/types.h>
