@@ -115,9 +115,8 @@ TEST_F(Care, MergesAndRefusesConflicts) {
     const RunRecord sheared = runs_of_kind(store, "shear").at(0);
     Checkpoint wrong = other.load_checkpoint(other.checkpoints(sheared.id).at(2));
     wrong.state.position(0, 0) += 1e-9;
-    RunDeclaration longer{
-        sheared.id, sheared.parent,           sheared.kind, sheared.resolved, sheared.grains,
-        2,          sheared.memberships.at(0)};
+    RunDeclaration longer = declaration_of(sheared);
+    longer.target_cycles = 2;
     store.declare_run(longer);
     store.start_run(sheared.id, {}, store.checkpoints(sheared.id).back().sha256);
     store.record_checkpoint(sheared.id, wrong);
