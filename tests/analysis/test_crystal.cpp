@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "analysis/common_neighbours.hpp"
-#include "analysis/measures.hpp"
 #include "analysis/packing_fraction.hpp"
 #include "tests/analysis/packings.hpp"
 
