@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What must hold for any input: RapidCheck draws inputs, and shrinks one that fails to a small one.
+// Properties: RapidCheck draws inputs and shrinks one that fails to a small one.
 //
-// Every run draws the same inputs, so that a commit either passes or does not. Others, and more:
+// Every run draws the same inputs. For others, and ten times as many:
 //   RC_PARAMS="seed=7 max_success=1000" build/release/tests/core/test_core
-// draws from seed 7, and ten times as many, since RapidCheck's own 100 stands for what a property
-// asks for.
+// A max_success of 100, RapidCheck's default, is the number that the property states.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +15,7 @@
 
 namespace shearcell::test {
 
-/// Tests `property`, which draws its input and asserts by RC_ASSERT, over this many inputs.
+/// Tests `property`, which draws its input and uses RC_ASSERT, with this many inputs.
 inline void check_property(int cases, void (*property)()) {
   setenv("RC_PARAMS", "seed=2020", 0);  // NOLINT(concurrency-mt-unsafe): before any thread
   const ::testing::TestInfo& test = *::testing::UnitTest::GetInstance()->current_test_info();

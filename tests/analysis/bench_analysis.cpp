@@ -26,9 +26,9 @@ namespace {
 
 template <typename Work>
 double seconds(Work&& work) {
-  const double start = shearcell::testing::thread_seconds();
+  const double start = shearcell::test::thread_seconds();
   work();
-  return shearcell::testing::thread_seconds() - start;
+  return shearcell::test::thread_seconds() - start;
 }
 
 double peak_memory_mb() {
@@ -37,7 +37,7 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-void analyse_at_once(const shearcell::testing::Packing& p, int count) {
+void analyse_at_once(const shearcell::test::Packing& p, int count) {
   std::latch start(count);
   std::vector<std::jthread> threads;
   for (int k = 0; k < count; ++k) {
@@ -49,12 +49,12 @@ void analyse_at_once(const shearcell::testing::Packing& p, int count) {
 }
 
 /// Best of three for each result that can be kept, beyond the analysis that they share.
-void time_measures(const shearcell::testing::Packing& packing) {
+void time_measures(const shearcell::test::Packing& packing) {
   using namespace shearcell;
-  shearcell::testing::Packing before = packing;
-  shearcell::testing::jitter(before, 0.05, 2);
-  const Checkpoint earlier = shearcell::testing::checkpoint_of(before);
-  const Checkpoint checkpoint = shearcell::testing::checkpoint_of(packing);
+  shearcell::test::Packing before = packing;
+  shearcell::test::jitter(before, 0.05, 2);
+  const Checkpoint earlier = shearcell::test::checkpoint_of(before);
+  const Checkpoint checkpoint = shearcell::test::checkpoint_of(packing);
   const Analysis analysis = analyse(checkpoint);
   const MeasureInput input{analysis, &checkpoint, [&](std::uint64_t) { return &earlier; }};
   std::printf("%-18s %s\n", "measure", "beyond the analysis [s]");
@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: bench_analysis [grains [at once]]\n");
     return 2;
   }
-  const testing::Packing p = testing::jammed(grains, true, 0, 1);
+  const test::Packing p = test::jammed(grains, true, 0, 1);
   double own = 1e9;
   double whole = 1e9;
   double peer = 1e9;
@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
 
   double worst = 0;
   const VoronoiDiagram diagram = voronoi(p.cell, p.pose, p.grains);
-  const std::vector<testing::VoroCell> cells = testing::voro_cells(p);
+  const std::vector<test::VoroCell> cells = test::voro_cells(p);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     worst = std::max(worst, std::abs(cells[i].volume - diagram.volume[i]));
   }
@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
     own = std::min(own, seconds([&] { voronoi(p.cell, p.pose, p.grains); }));
     whole = std::min(whole, seconds([&] { analyse(p.cell, p.pose, p.grains); }));
     for (const double block : {4.0, 6.0, 8.0}) {
-      peer = std::min(peer, testing::time_voro(p, block));
+      peer = std::min(peer, test::time_voro(p, block));
     }
   }
   std::printf("grains %d, wall grains %zu, volumes agree within %.1e d^3\n", grains,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers and runs that nobody simulated, for figures and statistics with known answers.
+// Made-up numbers and runs, for figures and statistics with known results.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 #include "analysis/figure.hpp"
 #include "core/random.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 
 /// Normal, of mean 0 and variance 1, by Box and Muller; each `sample` is independent of the others.
 inline std::vector<double> normal_numbers(std::uint32_t sample, std::size_t count) {
@@ -107,4 +107,4 @@ inline CrystalliteMap map_of(const std::vector<std::vector<std::int32_t>>& cryst
   return map;
 }
 
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

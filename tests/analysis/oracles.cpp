@@ -12,7 +12,7 @@
 
 #include "analysis/voronoi.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 /// voro++'s container with everything in it. Grains have ids 0 .. n-1, wall grains the next.
@@ -118,4 +118,4 @@ double time_voro(const Packing& p, double sites_per_block) {
   return total > 0 ? thread_seconds() - start : -1;
 }
 
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

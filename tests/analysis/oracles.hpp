@@ -7,7 +7,7 @@
 
 #include "tests/analysis/packings.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 
 struct VoroCell {
   double volume;
@@ -27,4 +27,4 @@ double thread_seconds();
 /// with the given mean number of sites in each of its blocks.
 double time_voro(const Packing& packing, double sites_per_block);
 
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

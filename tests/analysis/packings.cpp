@@ -10,7 +10,7 @@
 #include "analysis/voronoi.hpp"
 #include "core/diagnostics.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 using Random = std::mt19937_64;
@@ -182,4 +182,4 @@ void jitter(Packing& p, double amplitude, std::uint64_t seed) {
   for (double& x : p.grains.reshaped()) x += uniform(random, -amplitude, amplitude);
 }
 
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -8,7 +8,7 @@
 #include "core/cell.hpp"
 #include "provenance/checkpoint.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 
 struct Packing {
   Cell cell;
@@ -42,4 +42,4 @@ Packing lattice(Lattice kind, int cells);
 /// Moves every grain by up to `amplitude` [d] in each direction.
 void jitter(Packing& packing, double amplitude, std::uint64_t seed);
 
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

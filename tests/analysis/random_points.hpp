@@ -10,7 +10,7 @@
 #include "tests/analysis/packings.hpp"
 #include "tests/property.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 
 /// Moves the grains to a lattice of a quarter d, where many sites share a sphere.
 inline void snap(Packing& p) {
@@ -50,4 +50,4 @@ inline Packing any_points() {
   return p;
 }
 
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

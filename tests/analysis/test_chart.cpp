@@ -10,8 +10,9 @@
 #include "analysis/figure.hpp"
 #include "analysis/plot.hpp"
 #include "tests/analysis/made_up_runs.hpp"
+#include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 FigureTable table_with(std::vector<TableRow> rows, Chart chart) {
@@ -84,7 +85,7 @@ TEST(GnuplotScript, StatesEverySeriesLineAndLabel) {
         "title '{/:Italic ϕ}_{u}'", "$series1 every 1 using 1:2 with points lc rgb '#654321'",
         "keyentry with points lc rgb '#000000' lw 1.2 pt 4", "first 0.1 to graph 1, first 0.1",
         "from 2, graph 0 to 2, graph 0.06"}) {
-    EXPECT_NE(script.find(part), std::string::npos) << part << "\nin\n" << script;
+    EXPECT_TRUE(has(script, part));
   }
 }
 
@@ -96,9 +97,9 @@ TEST(GnuplotScript, TicksHaveOneNumberOfDecimals) {
                            .rows = {},
                            .chart = {.series = {{.points = {{low, 1}, {high, 2}}}}}});
   };
-  EXPECT_NE(script_for(0.64, 0.71).find("set xtics 0.01\nset format x '%.2f'"), std::string::npos);
-  EXPECT_NE(script_for(0.6, 0.9).find("set xtics 0.05\nset format x '%.2f'"), std::string::npos);
-  EXPECT_NE(script_for(0, 20).find("set xtics 5\nset format x '%.0f'"), std::string::npos);
+  EXPECT_TRUE(has(script_for(0.64, 0.71), "set xtics 0.01\nset format x '%.2f'"));
+  EXPECT_TRUE(has(script_for(0.6, 0.9), "set xtics 0.05\nset format x '%.2f'"));
+  EXPECT_TRUE(has(script_for(0, 20), "set xtics 5\nset format x '%.0f'"));
 }
 
 // gnuplot alone would label none of these.
@@ -110,20 +111,17 @@ TEST(GnuplotScript, LogarithmicAxesWithFewPowersOfTenHaveTicks) {
          .rows = {},
          .chart = {.x = {.log = true}, .series = {{.points = {{0, 3}, {low, 1}, {high, 2}}}}}});
   };
-  const auto has = [](const std::string& script, const char* part) {
-    EXPECT_NE(script.find(part), std::string::npos) << part << "\nin\n" << script;
-  };
-  has(script_for(0.0032, 0.0041), "set xtics (0.0032,0.0034,0.0036,0.0038,0.004)\n");
-  has(script_for(3, 70), "set xtics (5,10,20,50)\n");
-  has(script_for(3, 700), "set format x '10^{%T}'");
-  has(script_for(0.3, 0.30000000000000004), "set xtics (0.3)\n");
-  has(script_for(3, 70), "EOD\n3,1,,\n70,2,,\nEOD\n");  // no point at zero
+  EXPECT_TRUE(has(script_for(0.0032, 0.0041), "set xtics (0.0032,0.0034,0.0036,0.0038,0.004)\n"));
+  EXPECT_TRUE(has(script_for(3, 70), "set xtics (5,10,20,50)\n"));
+  EXPECT_TRUE(has(script_for(3, 700), "set format x '10^{%T}'"));
+  EXPECT_TRUE(has(script_for(0.3, 0.30000000000000004), "set xtics (0.3)\n"));
+  EXPECT_TRUE(has(script_for(3, 70), "EOD\n3,1,,\n70,2,,\nEOD\n"));  // no point at zero
   const std::string none =
       gnuplot_script({.name = "t",
                       .columns = {},
                       .rows = {},
                       .chart = {.y = {.log = true}, .series = {{.points = {{1, 0}, {2, 0}}}}}});
-  has(none, "no data");
+  EXPECT_TRUE(has(none, "no data"));
 }
 
 TEST(Chart, TheCaptionNamesPanelsErrorsAndLines) {
@@ -141,7 +139,7 @@ TEST(Chart, TheCaptionNamesPanelsErrorsAndLines) {
 TEST(Chart, EveryPanelOfEveryFigureHasOne) {
   std::vector<FigureRun> runs;
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    runs.push_back(testing::rising_run("still", seed, 4, 0.03));
+    runs.push_back(rising_run("still", seed, 4, 0.03));
   }
   for (const Figure& figure : all_figures()) {
     if (figure.form == FigureForm::table) continue;  // a table, not a chart
@@ -157,4 +155,4 @@ TEST(Chart, EveryPanelOfEveryFigureHasOne) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

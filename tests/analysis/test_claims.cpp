@@ -8,8 +8,9 @@
 
 #include "analysis/figures/groups.hpp"
 #include "tests/analysis/made_up_runs.hpp"
+#include "tests/support/text.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 /// phi = start + 0.001 n + gain from cycle 1 on; the percentage rises by 1 per 0.001 of phi above
@@ -122,7 +123,7 @@ TEST(Compare, MissingCheckpointsShortRunsAndFewRunsAreThreeSentences) {
   for (FigureRun& run : a) run.checkpoints.resize(10);
   verdict = compare(equal, early_phi(), pointers(a), pointers(b));
   EXPECT_EQ(verdict.ruling, Ruling::undecided);
-  EXPECT_NE(verdict.note.find("more than a quarter of the runs are left out"), std::string::npos);
+  EXPECT_TRUE(has(verdict.note, "more than a quarter of the runs are left out"));
   verdict = compare(equal, early_phi(), pointers(group(2, 0)), pointers(b));
   EXPECT_EQ(verdict.note, "2 and 8 independent runs; too few runs: 2; at least 3 are needed");
   EXPECT_EQ(compare(equal, early_phi(), {}, pointers(b)).note,
@@ -156,4 +157,4 @@ TEST(CompareWaits, CountsRunsThatEndBefore) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

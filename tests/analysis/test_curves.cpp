@@ -12,14 +12,10 @@
 #include "analysis/own_figure.hpp"
 #include "provenance/errors.hpp"
 #include "tests/analysis/made_up_runs.hpp"
+#include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using testing::made_up_run;
-using testing::rising_run;
-using testing::s2;
-using testing::two_variants;
 
 /// Runs of a sweep of drag and fluid, named as the program names them.
 std::vector<FigureRun> two_parameters() {
@@ -112,7 +108,7 @@ TEST(Curves, EndTheirMeanWithTheFirstRunThatEnds) {
   EXPECT_TRUE(table.chart.series[1].thin);
   EXPECT_TRUE(table.chart.series[1].title.empty());
   const std::vector<FigureTable> tables = {table};
-  EXPECT_NE(caption_of("A title", tables).find(" Thin lines: single runs, "), std::string::npos);
+  EXPECT_TRUE(has(caption_of("A title", tables), " Thin lines: single runs, "));
 }
 
 TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
@@ -148,9 +144,8 @@ TEST(OwnPlot, AgainstAParameterComparesTheLastCycleThatAllRunsHave) {
   const FigureTable& table = result.tables.at(0);
   ASSERT_EQ(table.columns.back(), "cycle");
   for (const TableRow& row : table.rows) EXPECT_EQ(row.back(), TableValue(2.0));
-  EXPECT_NE(caption_of("A title", result.tables).find("At cycle 2, the last that all runs have."),
-            std::string::npos)
-      << caption_of("A title", result.tables);
+  EXPECT_TRUE(
+      has(caption_of("A title", result.tables), "At cycle 2, the last that all runs have."));
 }
 
 TEST(OwnPlot, AgainstOneOfSeveralKeysThatAdvanceTogetherIsOneCurve) {
@@ -187,7 +182,7 @@ TEST(OwnPlot, AndClaimOfTheOnsetOfEachRun) {
                   .starts_with("variant,drag_kg_per_s,onset_size_phi_mean,"
                                "onset_size_phi_standard_error,runs\nall,0.001,0.621,"))
       << to_csv(drawn.tables.at(0));
-  EXPECT_NE(caption_of("", drawn.tables).find("1 of 9 runs have no value"), std::string::npos);
+  EXPECT_TRUE(has(caption_of("", drawn.tables), "1 of 9 runs have no value"));
   ClaimSpec claim{.name = "own",
                   .compare = "onset_size_phi",
                   .between = {{{{"drag_kg_per_s", 0.002}}, {{"drag_kg_per_s", 0.001}}}},
@@ -197,7 +192,7 @@ TEST(OwnPlot, AndClaimOfTheOnsetOfEachRun) {
   EXPECT_EQ(phi.ruling, Ruling::differs);
   claim.compare = "onset_size_cycle";
   const Verdict cycle = claim_figure(claim).make(runs).verdicts.at(0);
-  EXPECT_NE(cycle.note.find("of 5 runs, 1 of which end before"), std::string::npos) << cycle.note;
+  EXPECT_TRUE(has(cycle.note, "of 5 runs, 1 of which end before"));
 }
 
 TEST(OwnPlot, NamesTheStepsOfAStiffening) {
@@ -244,4 +239,4 @@ TEST(OwnClaim, IsDecidedAsThoseOfTheSupplement) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -12,7 +12,7 @@
 #include "provenance/sha256.hpp"
 #include "tests/analysis/packings.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 // Of positions from integers alone, so that no other code has a part in them: a jittered lattice.
@@ -130,4 +130,4 @@ TEST(DerivedMeasures, OtherBytesAreRefused) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -15,17 +15,13 @@
 #include "provenance/io/child_process.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/text.hpp"
 #include "tests/support/variable.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-using testing::made_up_run;
-using testing::rising_run;
-using testing::s2;
-using testing::two_variants;
 
 TEST(FigureS2, ARowPerVariantAndCycle) {
   const std::vector<FigureTable> tables = s2(two_variants());
@@ -72,7 +68,7 @@ const FigureTable& panel(const FigureResult& result, const std::string& name) {
 /// A crystallite of 20 grains at x = 3, y = 5 [d] of a cell 10 wide whose planes are at 1 and 17.
 FigureRun nucleated(double stiffness) {
   FigureRun run = made_up_run("stiffness_N_per_m", stiffness, 1, 0, [](int, Measures&) {});
-  CrystalliteMap map = testing::map_of({std::vector<std::int32_t>(20, 0)});
+  CrystalliteMap map = map_of({std::vector<std::int32_t>(20, 0)});
   map.centre[0] = {3, 5, 0};
   map.width = 10;
   map.bottom = 1;
@@ -90,7 +86,7 @@ TEST(FigureS7, HasBothHeightsAndEachStiffness) {
         std::pair("S7_heights", "y/1.675L,0.2,0.25"),  // 4 / 16.75
         std::pair("S7_stiffness", "654,0.25,0.3"), std::pair("S7_stiffness", "6540,0.25,0.3")}) {
     const std::string csv = to_csv(panel(made, name));
-    EXPECT_NE(csv.find(std::string("\n") + row + ",20,,1,1\n"), std::string::npos) << row << csv;
+    EXPECT_TRUE(has(csv, std::string("\n") + row + ",20,,1,1\n"));
   }
 }
 
@@ -123,12 +119,12 @@ FigureRun biased_walks(std::uint32_t seed) {
     std::vector<std::vector<std::int32_t>> crystallites;
     for (std::uint32_t k = 0; k < walks.size(); ++k) {
       Walk& walk = walks[k];
-      crystallites.push_back(testing::grain_ids(walk.first_grain, walk.size));
+      crystallites.push_back(grain_ids(walk.first_grain, walk.size));
       const double grows = walk.size / (walk.size + 6.0);
       walk.size += uniform_pair({seed, n, k, 2}, 7)[0] < grows ? 1 : -1;
       if (walk.size == 0) walk = {walk.start, walk.first_grain + 10'000, walk.start};
     }
-    run.checkpoints[n].measures.crystallite_map = testing::map_of(crystallites);
+    run.checkpoints[n].measures.crystallite_map = map_of(crystallites);
   }
   return run;
 }
@@ -188,14 +184,10 @@ class Plot : public ::testing::Test {
   }
   /// What it says when it cannot draw; the data must stay.
   std::string trouble_with(const FigureTable& table) const {
-    try {
-      draw(table);
-    } catch (const AnalysisError& error) {
-      EXPECT_TRUE(fs::exists(folder_.path() / (table.name + ".csv")));
-      EXPECT_FALSE(fs::exists(folder_.path() / (table.name + ".svg")));
-      return error.what();
-    }
-    return "";
+    const std::string message = message_of<AnalysisError>([&] { draw(table); });
+    EXPECT_TRUE(fs::exists(folder_.path() / (table.name + ".csv")));
+    EXPECT_FALSE(fs::exists(folder_.path() / (table.name + ".svg")));
+    return message;
   }
 
   const TemporaryFolder folder_{"shear cell's $HOME-"};
@@ -204,20 +196,20 @@ class Plot : public ::testing::Test {
 TEST_F(Plot, SameTableSameSvgAndPdf) {
   const FigureTable table = s2(two_variants())[0];
   const fs::path svg = draw(table);
-  const std::string first = test::read_bytes(svg);
-  EXPECT_NE(first.find("</svg>"), std::string::npos);
-  EXPECT_NE(first.find("ϕ"), std::string::npos);
-  EXPECT_EQ(first.find(folder_.path().string()), std::string::npos);
-  EXPECT_EQ(first.find("<text>"), std::string::npos) << "librsvg would drop spaces";
+  const std::string first = read_bytes(svg);
+  EXPECT_TRUE(has(first, "</svg>"));
+  EXPECT_TRUE(has(first, "ϕ"));
+  EXPECT_FALSE(has(first, folder_.path().string()));
+  EXPECT_FALSE(has(first, "<text>")) << "librsvg would drop spaces";
   const auto pdf = convert_to_pdf(svg);
-  const std::string first_pdf = pdf ? test::read_bytes(*pdf) : "";
+  const std::string first_pdf = pdf ? read_bytes(*pdf) : "";
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // a date in them would differ
   draw(table);
-  EXPECT_EQ(test::read_bytes(svg), first);
+  EXPECT_EQ(read_bytes(svg), first);
   if (!pdf) GTEST_SKIP() << "rsvg-convert is not installed";
   EXPECT_EQ(first_pdf.substr(0, 5), "%PDF-");
   convert_to_pdf(svg);
-  EXPECT_EQ(test::read_bytes(*pdf), first_pdf);
+  EXPECT_EQ(read_bytes(*pdf), first_pdf);
 }
 
 // Names of variants may hold what is special in gnuplot, and a comma where two parameters vary.
@@ -240,15 +232,15 @@ TEST_F(Plot, EveryFigureIsDrawnWithFewRunsAndWithNone) {
 TEST_F(Plot, ABadScriptSaysWhatGnuplotSaid) {
   FigureTable table = s2(two_variants())[0];
   table.chart.series[0].colour = "'no such colour";
-  EXPECT_NE(trouble_with(table).find("could not draw S2a"), std::string::npos);
+  EXPECT_TRUE(has(trouble_with(table), "could not draw S2a"));
 }
 
 TEST_F(Plot, MissingGnuplotNamesThePackageAndKeepsTheDataAndNoOlderDrawing) {
   const fs::path svg = draw(s2(two_variants())[0]);
   convert_to_pdf(svg);
-  const test::Variable nowhere("PATH", "/nonexistent");
+  const Variable nowhere("PATH", "/nonexistent");
   const std::string message = trouble_with(s2(two_variants())[0]);
-  EXPECT_NE(message.find("gnuplot-nox"), std::string::npos) << message;
+  EXPECT_TRUE(has(message, "gnuplot-nox"));
   EXPECT_FALSE(fs::exists(fs::path(svg).replace_extension(".pdf")));
 }
 
@@ -261,4 +253,4 @@ TEST_F(Plot, NamesThatAreNoFileNamesAreRefused) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

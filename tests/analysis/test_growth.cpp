@@ -9,7 +9,7 @@
 
 #include "tests/analysis/made_up_runs.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 GrowthCount fate(const std::vector<std::int32_t>& crystallite, const CrystalliteMap& later) {
@@ -56,10 +56,8 @@ TEST(GrowthOf, PairsAreTheStatedCyclesApart) {
 }
 
 TEST(GrowthRates, HaveBinomialErrors) {
-  GrowthBySize a, b;
-  a[5] = {3, 1, 0};
-  b[5] = {0, 12, 0};
-  b[6] = {0, 0, 0};
+  GrowthBySize a = {{5, {3, 1, 0}}};
+  const GrowthBySize b = {{5, {0, 12, 0}}, {6, {0, 0, 0}}};
   const std::vector<GrowthRate> rates = growth_rates(std::vector{a, b});
   ASSERT_EQ(rates.size(), 1U) << "a size that only stays has no probability";
   EXPECT_DOUBLE_EQ(rates[0].size, 5);
@@ -85,9 +83,7 @@ GrowthBySize logistic_growth(double critical, double slope, double scale = 1e6) 
 }
 
 TEST(GrowthFit, TwoSizesAreFittedExactly) {
-  GrowthBySize counts;
-  counts[4] = {1, 3, 0};
-  counts[16] = {3, 1, 0};
+  const GrowthBySize counts = {{4, {1, 3, 0}}, {16, {3, 1, 0}}};
   const GrowthFit fit = fit_growth(std::vector{counts}).value();
   EXPECT_NEAR(fit.critical_size().value(), 8, 1e-9);
   EXPECT_NEAR(fit.slope, 2 * std::log(3.0) / std::log(4.0), 1e-9);
@@ -104,25 +100,18 @@ TEST(GrowthFit, FindsTheCurveThatMadeTheCounts) {
 }
 
 TEST(GrowthFit, NoneWithoutATurn) {
-  GrowthBySize counts;
-  counts[3] = {0, 9, 0};
-  EXPECT_FALSE(fit_growth(std::vector{counts}).has_value()) << "all shrink";
-  counts[3] = {4, 9, 0};
-  EXPECT_FALSE(fit_growth(std::vector{counts}).has_value()) << "one size";
-  counts[9] = {1, 9, 0};
-  EXPECT_FALSE(fit_growth(std::vector{counts})->critical_size().has_value()) << "falls with size";
+  const auto fit = [](const GrowthBySize& counts) { return fit_growth(std::vector{counts}); };
+  EXPECT_FALSE(fit({{3, {0, 9, 0}}}).has_value()) << "all shrink";
+  EXPECT_FALSE(fit({{3, {4, 9, 0}}}).has_value()) << "one size";
+  EXPECT_FALSE(fit({{3, {4, 9, 0}}, {9, {1, 9, 0}}})->critical_size()) << "falls with size";
   EXPECT_FALSE(fit_growth({}).has_value());
-  counts[3] = {0, 9, 0};
-  counts[9] = {9, 0, 0};
-  const double between = fit_growth(std::vector{counts})->critical_size().value();
+  const double between = fit({{3, {0, 9, 0}}, {9, {9, 0, 0}}})->critical_size().value();
   EXPECT_GT(between, 3) << "sizes that do not mix";
   EXPECT_LT(between, 9);
 }
 
 TEST(GrowthFit, VanishedOnesMayBeLeftOut) {
-  GrowthBySize counts;
-  counts[4] = {1, 6, 3};
-  counts[16] = {3, 1, 0};
+  const GrowthBySize counts = {{4, {1, 6, 3}}, {16, {3, 1, 0}}};
   EXPECT_NEAR(fit_growth(std::vector{counts}, Vanished::left_out)->critical_size().value(), 8,
               1e-9);
   EXPECT_GT(fit_growth(std::vector{counts})->critical_size().value(), 8);
@@ -160,11 +149,7 @@ TEST(MonotoneCriticalSize, IsWhereTheShareThatGrowsPassesAHalf) {
 }
 
 TEST(GrowthRates, OfBinsLeaveOutWhatIsRarelySeen) {
-  GrowthBySize counts;
-  counts[1] = {1, 9, 0};
-  counts[2] = {2, 4, 0};
-  counts[8] = {4, 2, 0};
-  counts[50] = {1, 0, 0};
+  const GrowthBySize counts = {{1, {1, 9, 0}}, {2, {2, 4, 0}}, {8, {4, 2, 0}}, {50, {1, 0, 0}}};
   const std::vector<GrowthRate> bins = growth_rates(std::vector{counts}, 10);
   ASSERT_EQ(bins.size(), 2U);
   EXPECT_DOUBLE_EQ(bins[0].delta, -0.8);
@@ -174,4 +159,4 @@ TEST(GrowthRates, OfBinsLeaveOutWhatIsRarelySeen) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -9,10 +9,9 @@
 #include <cmath>
 
 #include "analysis/error.hpp"
-#include "analysis/packing_fraction.hpp"
 #include "tests/analysis/random_points.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 TEST(Measures, PerfectCrystal) {
@@ -33,25 +32,6 @@ TEST(Measures, RefuseACellInWhichAGrainWouldTouchItsImage) {
   for (const double depth : {1e-6, 0.9, std::nan("")}) {
     p.cell.depth = depth;
     EXPECT_THROW(analyse(p.cell, p.pose, p.grains), AnalysisError) << depth;
-  }
-}
-
-TEST(Measures, JammedPackingInATiltedRoughCell) {
-  const Packing p = jammed(900, true, 0.08, 53);
-  const Analysis a = analyse(p.cell, p.pose, p.grains);
-  const Measures& m = a.measures;
-  EXPECT_GT(m.phi, 0.5);
-  EXPECT_LT(m.phi, 0.7405);
-  EXPECT_GT(m.phi_uncorrected, m.phi);
-  EXPECT_LT(m.crystalline_percent, 20);
-  EXPECT_GT(m.contacts_per_grain, 4);
-  EXPECT_LT(m.contacts_per_grain, 9);
-  for (std::size_t i = 0; i < a.grains.q6.size(); ++i) {
-    EXPECT_GE(a.grains.q6[i], 0);
-    EXPECT_LE(a.grains.q6[i], 1);
-    EXPECT_DOUBLE_EQ(a.grains.phi_local[i],
-                     local_packing_fraction(a.grains.largest_overlap[i], a.grains.cell_volume[i]));
-    EXPECT_TRUE(a.grains.crystallites.label[i] < 0 || a.grains.interior[i] == 1);
   }
 }
 
@@ -76,6 +56,9 @@ void move_along_z(Packing& p) {
 PROPERTY(Measures, DoNotSeeThePeriodicSeam, 250) {
   Packing p = any_points();
   const Analysis a = analyse(p.cell, p.pose, p.grains);
+  for (std::size_t i = 0; i < a.grains.interior.size(); ++i) {
+    RC_ASSERT(a.grains.crystallites.label[i] < 0 || a.grains.interior[i] == 1);
+  }
   move_along_z(p);
   const Analysis b = analyse(p.cell, p.pose, p.grains);
   RC_ASSERT(near(a.grains.cell_volume, b.grains.cell_volume, 1e-10));
@@ -119,4 +102,4 @@ PROPERTY(BondOrder, IsUnchangedByRotation, 1000) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -15,7 +15,7 @@
 #include "core/contact.hpp"
 #include "tests/analysis/packings.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 // n^3 grains of a simple cubic lattice, squeezed so that every contact overlaps by `overlap`.
@@ -253,4 +253,4 @@ TEST(Mechanics, ComesBackBitByBitAndInSIUnits) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -6,14 +6,13 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <limits>
 
 #include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"
 #include "core/contact.hpp"
 #include "tests/analysis/packings.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 TEST(Motion, ACellThatIsOnlyShearedMovesNoGrain) {
@@ -122,4 +121,4 @@ TEST(Motion, TheBoundaryOfACrystalHasOtherNeighbours) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

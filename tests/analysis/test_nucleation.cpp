@@ -12,8 +12,9 @@
 #include "analysis/figures/groups.hpp"
 #include "core/random.hpp"
 #include "tests/analysis/made_up_runs.hpp"
+#include "tests/support/text.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 /// In a cell 18 d wide and 20 d high.
@@ -235,7 +236,7 @@ TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
   const FigureResult result = find_figure("nucleation")->make(runs);
   ASSERT_EQ(result.tables.size(), 2U);
   EXPECT_EQ(result.tables[1].rows.size(), 2U);
-  EXPECT_NE(to_csv(result.tables[0]).find("A=0.0833 N=1000,"), std::string::npos);
+  EXPECT_TRUE(has(to_csv(result.tables[0]), "A=0.0833 N=1000,"));
   ASSERT_EQ(result.verdicts.size(), 1U);
   ASSERT_TRUE(result.verdicts[0].estimate);
   EXPECT_NEAR(*result.verdicts[0].estimate, 0, 0.15);
@@ -249,4 +250,4 @@ TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -9,7 +9,7 @@
 #include "analysis/figures/groups.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 /// phi rises by 0.0005 a cycle from 0.63; ln(largest) is a step of width 0.002 around `onset`, from
@@ -83,4 +83,4 @@ TEST(Onset, CountsCensoredRuns) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -9,7 +9,7 @@
 #include "analysis/packing_fraction.hpp"
 #include "tests/analysis/packings.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 TEST(PackingFraction, HandComputedExample) {
@@ -70,4 +70,4 @@ TEST(Interior, ByWallTextureAndTilt) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

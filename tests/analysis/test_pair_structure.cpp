@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -14,7 +13,7 @@
 #include "core/contact.hpp"
 #include "tests/analysis/packings.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -145,4 +144,4 @@ TEST(PairStructure, StructureFactorIsTheSumOverWaveVectors) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

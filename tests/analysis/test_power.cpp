@@ -16,7 +16,7 @@
 #include "analysis/verdict.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 /// A data set of `runs` runs, or pairs, or runs per group, in which the quantity is `truth`.
@@ -195,4 +195,4 @@ TEST(Power, OfEveryKindOfClaimAtItsNumberOfRuns) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -11,7 +11,7 @@
 #include "analysis/packing_fraction.hpp"
 #include "tests/analysis/packings.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 TEST(Profiles, LayersAddUpToTheWhole) {
@@ -80,4 +80,4 @@ TEST(Sensitivity, AtTheChosenCriteriaIsWhatIsMeasured) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -14,7 +14,7 @@
 #include "analysis/survival.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 TEST(OverRuns, MeanAndStandardError) {
@@ -202,4 +202,4 @@ TEST(WaitRatio, NeedsEvents) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -10,8 +10,9 @@
 
 #include "core/random.hpp"
 #include "tests/analysis/made_up_runs.hpp"
+#include "tests/support/text.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 Estimate between(double low, double high, std::size_t runs = 6, double spread = 1) {
@@ -235,7 +236,7 @@ FigureRun of_table_1(const char* experiment, const std::string& key, const nlohm
 
 void expect_rows(std::span<const FigureRun> runs, std::initializer_list<const char*> rows) {
   const std::string csv = to_csv(find_figure("table1")->make(runs).tables.at(0));
-  for (const char* row : rows) EXPECT_NE(csv.find(row), std::string::npos) << row << csv;
+  for (const char* row : rows) EXPECT_TRUE(has(csv, row));
 }
 
 TEST(FigureTable1, WhatIsSweptMayDifferAndNothingElse) {
@@ -367,4 +368,4 @@ TEST(FigureS5, OnsetAndInteriorGrainsAreThoseOfTheSupplement) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

@@ -16,7 +16,7 @@
 #include "tests/analysis/random_points.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell::testing {
+namespace shearcell::test {
 namespace {
 
 double sum(const std::vector<double>& values) {
@@ -115,12 +115,6 @@ TEST(Voronoi, JammedPackingsAreSoundAndAgreeWithVoro) {
   }
 }
 
-TEST(Voronoi, AgreesWithVoroOnRandomPoints) {
-  Packing p = empty_cell(7, 11, 6);
-  fill(p, 500, 0, 7);
-  expect_agrees_with_voro(p);
-}
-
 TEST(Voronoi, LatticesWhereManySitesShareOneSphere) {
   for (const Lattice kind : {Lattice::simple_cubic, Lattice::bcc, Lattice::fcc, Lattice::hcp}) {
     for (const double amplitude : {0.0, 1e-15, 1e-12, 1e-9, 1e-4, 0.05}) {
@@ -180,15 +174,6 @@ TEST(Voronoi, AShallowCellSeesItsOwnImages) {
   }
 }
 
-TEST(Voronoi, SameInputSameBits) {
-  const Packing p = jammed(300, true, 0.1, 31);
-  const VoronoiDiagram a = voronoi(p.cell, p.pose, p.grains);
-  const VoronoiDiagram b = voronoi(p.cell, p.pose, p.grains);
-  EXPECT_EQ(a.volume, b.volume);
-  EXPECT_EQ(a.surface, b.surface);
-  EXPECT_EQ(a.first, b.first);
-}
-
 std::string message_of(const Packing& p) {
   return test::message_of<AnalysisError>([&] { voronoi(p.cell, p.pose, p.grains); });
 }
@@ -226,4 +211,4 @@ TEST(Voronoi, NamesTheGrainOutside) {
 }
 
 }  // namespace
-}  // namespace shearcell::testing
+}  // namespace shearcell::test

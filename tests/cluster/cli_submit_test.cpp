@@ -17,9 +17,7 @@ namespace fs = std::filesystem;
 class Submit : public ProgramTest {
  protected:
   void program(const std::string& name, const std::string& body) const {
-    const fs::path file = programs_.path() / name;
-    std::ofstream(file) << "#!/bin/sh\n" << body;
-    fs::permissions(file, fs::perms::owner_all);
+    write_script(programs_.path() / name, "#!/bin/sh\n" + body);
   }
 
   /// Jobs get the numbers 100, 101, ...; the queue holds what is in `queue`.
@@ -35,9 +33,7 @@ echo $((99 + $(/usr/bin/wc -l < jobs)))
   /// Submits the manifest, and returns the folder of the submission.
   std::string submitted(const Arguments& options = {}) {
     slurm_that_works();
-    Arguments words = {"submit", manifest_, "--json"};
-    words.insert(words.end(), options.begin(), options.end());
-    return json(words).at("folder");
+    return json(joined({"submit", manifest_, "--json"}, options)).at("folder");
   }
   void queue(const std::string& lines) const { std::ofstream(programs_.path() / "queue") << lines; }
   std::string words() const { return read_bytes(programs_.path() / "words"); }
@@ -85,9 +81,7 @@ TEST_F(Submit, RefusesWhatSlurmWouldMisread) {
         Arguments{"--sbatch=qos"}, Arguments{"--sbatch=--wrap=a b"}, Arguments{"--engine", "slurm"},
         Arguments{"--scratch", "/a\nb"}, Arguments{"--array-size", "0"},
         Arguments{"--cpus-per-task", "-1"}}) {
-    Arguments all = {"submit", manifest_, "--dry-run"};
-    all.insert(all.end(), words.begin(), words.end());
-    expect(2, all);
+    expect(2, joined({"submit", manifest_, "--dry-run"}, words));
   }
   expect(2, {"submit", manifest_, "--dry-run", "--time", "2"}, {"120 s leave no time"});
 }
@@ -98,8 +92,8 @@ TEST_F(Submit, QueuesBothJobsOnceAndKnowsThemAfterwards) {
   const std::string id = said.at("submission");
   EXPECT_EQ(said.at("job"), "100");
   EXPECT_EQ(said.at("fold_job"), "101");
-  EXPECT_TRUE(contains(words(), "--job-name=shearcell-" + id + "\n"));
-  EXPECT_TRUE(contains(words(), "--dependency=afterany:100\n"));
+  EXPECT_TRUE(has(words(), "--job-name=shearcell-" + id + "\n"));
+  EXPECT_TRUE(has(words(), "--dependency=afterany:100\n"));
   queue("shearcell-" + id + "|100|1|RUNNING|None|n1\nshearcell-" + id +
         "|100|2|PENDING|Priority|\nshearcell-" + id + "-fold|101|N/A|PENDING|Dependency|\n");
   const auto status = json({"status", "--json"});

@@ -8,11 +8,11 @@
 #include "experiments/cluster/slurm.hpp"
 #include "provenance/io/child_process.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kHostileNames = {"plain",
@@ -85,9 +85,7 @@ class JobScript : public testing::Test {
   }
 
   void executable(const std::string& name, const std::string& body) {
-    const fs::path file = root_ / "bin" / name;
-    std::ofstream(file) << "#!/bin/bash\n" << body;
-    fs::permissions(file, fs::perms::owner_all);
+    write_script(root_ / "bin" / name, "#!/bin/bash\n" + body);
   }
 
   /// Runs an array task whose program does this; returns its exit code.
@@ -189,7 +187,7 @@ TEST_F(JobScript, WorksOnScratch) {
   options.scratch = (root_ / "scratch").string();
   executable("shearcell", "printf '%s\\n' \"$@\" >> \"$SAID\"\n");
   EXPECT_EQ(run_script(array_script(options, places(), 1)), 0);
-  EXPECT_NE(calls().find("--scratch\n" + options.scratch + "\n"), std::string::npos) << calls();
+  EXPECT_TRUE(has(calls(), "--scratch\n" + options.scratch + "\n"));
 }
 
 TEST_F(JobScript, FoldsEveryTaskEvenWhenOneCannotBe) {
@@ -214,10 +212,10 @@ TEST(Directives, SayWhatWasAskedFor) {
   for (const char* line :
        {"--partition=long", "--account=group", "--time=12:00:00", "--qos=low", "--array=1-9",
         "--cpus-per-task=4", "--signal=B:USR1@120", "--requeue", "--open-mode=append"}) {
-    EXPECT_NE(script.find(std::string("\n#SBATCH ") + line + "\n"), std::string::npos) << line;
+    EXPECT_TRUE(has(script, std::string("\n#SBATCH ") + line + "\n"));
   }
   EXPECT_EQ(script.find("#!/bin/bash\n"), 0U);
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -14,16 +14,13 @@
 #include "experiments/runner/run_end.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 namespace fs = std::filesystem;
 
-class Submitted : public testing::Test {
+class Submitted : public StoreTest {
  protected:
-  Submitted() : store_(folder_.path() / "store", Access::create) {}
-
   std::vector<Share> shares(std::uint64_t cycles = 2) {
     const Manifest manifest = parse_manifest(tiny_manifest("", kBothFluids), "tiny.yaml");
     const Plan plan = expand(manifest, {.cycles = cycles, .seeds = 2});
@@ -36,18 +33,13 @@ class Submitted : public testing::Test {
                               store_.events(kSubmissions).size());
   }
 
-  std::map<std::string, std::string> computed_here(std::uint64_t cycles) {
-    Store whole(folder_.path() / ("whole" + std::to_string(cycles)), Access::create);
-    compute(whole, tiny_manifest("", kBothFluids), {.cycles = cycles, .seeds = 2});
-    return final_hashes(whole);
+  static std::map<std::string, std::string> computed_here(std::uint64_t cycles) {
+    return undisturbed(tiny_manifest("", kBothFluids), {.cycles = cycles, .seeds = 2});
   }
 
   Store store_of(const Submission& made, std::size_t task) const {
     return {made.task_store(store_.folder(), task), Access::write};
   }
-
-  TemporaryFolder folder_;
-  Store store_;
 };
 
 TEST_F(Submitted, TasksComputeTheirSharesAndTheirStoresFoldIntoTheWhole) {
@@ -339,4 +331,4 @@ TEST(SharingOut, LeavesNoTaskEmptyWhenNothingCostsAnything) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

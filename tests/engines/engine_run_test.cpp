@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <set>
 
 #include "provenance/io/child_process.hpp"
 #include "tests/experiments/program.hpp"
@@ -43,11 +42,11 @@ class EngineRun : public ProgramTest {
   /// A program that passes for LAMMPS and then does as it is told.
   std::string fake(const std::string& body) {
     std::string file = path("fake").string();
-    write("fake",
-          "#!/bin/sh\nif [ \"$1\" = -h ]; then echo >> '" + path("asked").string() +
-              "'; echo 'Massively Parallel Simulator - 1 Jan 2000'; echo gran/hooke; exit 0; fi\n" +
-              body + "\n");
-    fs::permissions(file, fs::perms::owner_all);
+    write_script(
+        file,
+        "#!/bin/sh\nif [ \"$1\" = -h ]; then echo >> '" + path("asked").string() +
+            "'; echo 'Massively Parallel Simulator - 1 Jan 2000'; echo gran/hooke; exit 0; fi\n" +
+            body + "\n");
     return file;
   }
 };
@@ -56,10 +55,8 @@ TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   const std::string manifest =
       write("m.yaml", tiny_manifest("", "sweep: {grid: {engine: [shearcell, lammps]}}\n"));
-  const Outcome plan = run({"plan", manifest});
-  EXPECT_TRUE(has(plan.out, "the bits differ"));
-  const Outcome outcome = run({"run", manifest, "--mpi", "1"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect(0, {"plan", manifest}, {"the bits differ"});
+  expect(0, {"run", manifest, "--mpi", "1"});
   const auto ours = run_of("engine=shearcell"), theirs = run_of("engine=lammps");
   EXPECT_NE(ours["id"], theirs["id"]);
   EXPECT_NE(ours["state_hash"], theirs["state_hash"]);
@@ -73,11 +70,10 @@ TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
   EXPECT_EQ(b["engine"]["name"], "LAMMPS");
   EXPECT_EQ(b["engine"]["processes"], 1);
   EXPECT_TRUE(a["engine"].is_null());
-  EXPECT_TRUE(has(run({"show", theirs["id"]}).out, "engine   LAMMPS "));
+  expect(0, {"show", theirs["id"]}, {"engine   LAMMPS "});
 
-  ASSERT_EQ(run({"figures", "S2", "--out", "figures"}).code, 0);
-  const std::string csv = read_bytes(path("figures/tiny/S2a.csv"));
-  EXPECT_TRUE(has(csv, "engine=lammps"));
+  expect(0, {"figures", "S2", "--out", "figures"});
+  EXPECT_TRUE(has(read_bytes(path("figures/tiny/S2a.csv")), "engine=lammps"));
 
   // Ours alone are replayed, pruned and made again.
   const auto replayed = json({"verify", "--replay", "99", "--json"});
@@ -85,29 +81,26 @@ TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
   EXPECT_EQ(replayed["replay"]["left_out"], 3);
   const auto pruned = json({"prune", "--keep-every", "2", "--yes", "--json"});
   EXPECT_EQ(pruned["kept_of_other_engines"], 1);
-  const Outcome again = run({"regenerate", b["checkpoints"][1]["sha256"]});
-  EXPECT_EQ(again.code, 0) << "the file is intact";
+  expect(0, {"regenerate", b["checkpoints"][1]["sha256"]}, {"the file is intact"});
   fs::remove(path("shearcell-store") / b["checkpoints"][1]["file"].get<std::string>());
-  const Outcome refused = run({"regenerate", b["checkpoints"][1]["sha256"]});
-  EXPECT_EQ(refused.code, 1);
-  EXPECT_TRUE(has(refused.out, "LAMMPS made it"));
+  expect(1, {"regenerate", b["checkpoints"][1]["sha256"]}, {"LAMMPS made it"});
 }
 
 TEST_F(EngineRun, EndsWhereUntilSays) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   write("m.yaml", tiny_manifest("  cycles: 4\n", "until: {phi: 0.1, extra_cycles: 1}\n"));
-  ASSERT_EQ(run({"run", "m.yaml", "--engine", "lammps", "-q"}).code, 0);
+  expect(0, {"run", "m.yaml", "--engine", "lammps", "-q"});
   const auto done = run_of("engine=lammps");
   EXPECT_EQ(done["state"], "completed");
   EXPECT_EQ(cycles(done["id"]), (std::vector<double>{0, 1}));
   EXPECT_EQ(done["ended"]["by"], "until");
-  EXPECT_TRUE(has(run({"status"}).out, "ended at cycle 1: phi >= 0.1 at cycle 0"));
+  expect(0, {"status"}, {"ended at cycle 1: phi >= 0.1 at cycle 0"});
 }
 
 TEST_F(EngineRun, GoesOnWhereASignalStoppedIt) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   const std::string manifest = write("m.yaml", tiny_manifest("  cycles: 6\n"));
-  ASSERT_EQ(run({"run", manifest, "--cycles", "0", "-q"}).code, 0);
+  expect(0, {"run", manifest, "--cycles", "0", "-q"});
   const std::size_t packing = objects();
   const Outcome stopped =
       run_until({"run", manifest, "--engine", "lammps", "-q"}, packing + 2, SIGINT);
@@ -116,20 +109,20 @@ TEST_F(EngineRun, GoesOnWhereASignalStoppedIt) {
   const std::vector<double> before = cycles(id);
   ASSERT_FALSE(before.empty());
   EXPECT_LT(before.back(), 6);
-  ASSERT_EQ(run({"resume", "-q"}).code, 0);
+  expect(0, {"resume", "-q"});
   const std::vector<double> after = cycles(id);
   ASSERT_GT(after.size(), before.size());
   EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin()));
   for (double cycle = 0; cycle <= 6; ++cycle) {
     EXPECT_TRUE(std::count(after.begin(), after.end(), cycle) == 1) << cycle;
   }
-  EXPECT_EQ(run({"verify"}).code, 0);
+  expect(0, {"verify"});
 }
 
 TEST_F(EngineRun, GoesOnAfterAKill) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   const std::string manifest = write("m.yaml", tiny_manifest("  cycles: 4\n"));
-  ASSERT_EQ(run({"run", manifest, "--cycles", "0", "-q"}).code, 0);
+  expect(0, {"run", manifest, "--cycles", "0", "-q"});
   const std::size_t packing = objects();
   const TemporaryFolder scratch;
   const Variable tmpdir("TMPDIR", scratch.path());
@@ -141,18 +134,16 @@ TEST_F(EngineRun, GoesOnAfterAKill) {
     });
   };
   EXPECT_EQ(left(), 1) << "nothing could clear it away";
-  ASSERT_EQ(run({"resume", "-q"}).code, 0);
+  expect(0, {"resume", "-q"});
   EXPECT_EQ(left(), 0) << "the next start did";
   EXPECT_EQ(run_of("engine=lammps")["cycle"], 4);
-  EXPECT_EQ(run({"verify"}).code, 0);
+  expect(0, {"verify"});
 }
 
 TEST_F(EngineRun, SaysThatLammpsIsMissing) {
   const Variable nowhere("SHEARCELL_LAMMPS", "/no/such/lmp");
   const std::string manifest = write("m.yaml", tiny_manifest());
-  const Outcome outcome = run({"run", manifest, "--engine", "lammps"});
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_TRUE(has(outcome.err, "Debian package lammps"));
+  expect(1, {"run", manifest, "--engine", "lammps"}, {"Debian package lammps"});
   EXPECT_FALSE(fs::exists(path("shearcell-store"))) << "nothing was begun";
   EXPECT_TRUE(has(run({"plan", manifest, "--engine", "lammps"}).out, "Debian package lammps"));
 }
@@ -163,9 +154,7 @@ TEST_F(EngineRun, ThatIsResumedWithoutLammpsIsNotBegun) {
     Store store(path("shearcell-store"), Access::create);
     declared(store, tiny_manifest("  engine: lammps\n"));
   }
-  const Outcome outcome = run({"resume", "-q", "--mpi", "2"});
-  EXPECT_EQ(outcome.code, 1) << "no run failed";
-  EXPECT_TRUE(has(outcome.err, "Debian package lammps"));
+  expect(1, {"resume", "-q", "--mpi", "2"}, {"Debian package lammps"});  // no run failed
   const Store store(path("shearcell-store"), Access::read);
   EXPECT_EQ(sheared(store).state, RunState::declared);
 }
@@ -178,28 +167,24 @@ TEST_F(EngineRun, TellsWhatLammpsSaidWhenItFails) {
            {"exit 0", "code 0"},
            {"echo garbage > frame.10000; sleep 1", "frame.10000"}}) {
     const Variable program("SHEARCELL_LAMMPS", fake(body));
-    const Outcome outcome = run({"run", manifest, "--engine", "lammps", "-q"});
-    EXPECT_EQ(outcome.code, 3) << body;
-    EXPECT_TRUE(has(outcome.err, says)) << body;
+    SCOPED_TRACE(body);
+    expect(3, {"run", manifest, "--engine", "lammps", "-q"}, {says});
     EXPECT_EQ(fs::file_size(path("asked")), 2U) << "once before anything, once for the stage";
     fs::remove(path("asked"));
   }
-  EXPECT_EQ(run({"verify"}).code, 0);
+  expect(0, {"verify"});
 }
 
 TEST_F(EngineRun, RefusesWhatLammpsCannotDo) {
   const std::string stiffen = write("s.yaml", tiny_manifest("  protocol: stiffen\n"));
-  const Outcome option = run({"plan", stiffen, "--engine", "lammps"});
-  EXPECT_EQ(option.code, 2);
-  EXPECT_TRUE(has(option.err, "engine: LAMMPS cannot do the protocol stiffen"));
+  expect(2, {"plan", stiffen, "--engine", "lammps"},
+         {"engine: LAMMPS cannot do the protocol stiffen"});
   const std::string both =
       write("b.yaml", tiny_manifest("  protocol: stiffen\n  engine: lammps\n"));
-  const Outcome manifest = run({"plan", both});
-  EXPECT_EQ(manifest.code, 2);
-  EXPECT_TRUE(has(manifest.err, "b.yaml:11:11: engine: LAMMPS"));
+  expect(2, {"plan", both}, {"b.yaml:11:11: engine: LAMMPS"});
   const std::string swept =
       write("w.yaml", tiny_manifest("", "sweep: {grid: {engine: [shearcell, lammps]}}\n"));
-  EXPECT_EQ(run({"plan", swept, "--engine", "lammps"}).code, 2);
+  expect(2, {"plan", swept, "--engine", "lammps"});
 }
 
 }  // namespace

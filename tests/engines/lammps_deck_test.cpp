@@ -25,10 +25,7 @@ LammpsTask loose_task(const Parameters& p) {
 }
 
 Parameters small() {
-  Parameters p;
-  p.grains = 100;
-  p.pressure_at = PressureAt::moving_wall;
-  return p;
+  return {.grains = 100, .pressure_at = PressureAt::moving_wall};
 }
 
 // The number behind a piece of text.
@@ -50,9 +47,7 @@ TEST(LammpsDeck, RaisesMassesByTheDragAndKeepsWeight) {
   EXPECT_DOUBLE_EQ(number_after(deck, "fix weight grains gravity ") * mass, task.scene.gravity);
   EXPECT_DOUBLE_EQ(number_after(deck, "fix drag grains viscous "), b);
   EXPECT_DOUBLE_EQ(number_after(deck, "variable push equal "), task.scene.pressure * area);
-  Parameters p = small();
-  p.pressure_at = PressureAt::top;
-  EXPECT_DOUBLE_EQ(number_after(lammps_deck(loose_task(p)), "variable push equal "),
+  EXPECT_DOUBLE_EQ(number_after(lammps_deck(loose_task({.grains = 100})), "variable push equal "),
                    task.scene.pressure * area + 100 * task.scene.gravity);
 }
 

@@ -25,11 +25,7 @@ class LammpsSettling : public testing::Test {
     if (!find_program("lmp")) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   }
 
-  static Parameters small() {
-    Parameters p;
-    p.grains = 300;
-    return p;
-  }
+  static Parameters small() { return {.grains = 300}; }
 };
 
 TEST_F(LammpsSettling, TakesOurStepsAtFirst) {
@@ -111,10 +107,8 @@ class SettleCommand : public ProgramTest {};
 
 TEST_F(SettleCommand, ReportsBoth) {
   if (!find_program("lmp")) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
-  const Outcome outcome = run({"bench", "engines", "--size", "200", "--no-gravity", "--steps", "10",
-                               "--cycles", "0", "--settle", "--json"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const auto facts = nlohmann::json::parse(outcome.out);
+  const auto facts = json({"bench", "engines", "--size", "200", "--no-gravity", "--steps", "10",
+                           "--cycles", "0", "--settle", "--json"});
   ASSERT_EQ(facts["settlings"].size(), 2U);
   EXPECT_EQ(facts["settlings"][0]["engine"], "shearcell");
   EXPECT_EQ(facts["settlings"][1]["engine"], "LAMMPS");
@@ -129,10 +123,8 @@ TEST_F(SettleCommand, ReportsBoth) {
 
 TEST_F(SettleCommand, SaysWhenThereWasNoTimeToSettle) {
   if (!find_program("lmp")) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
-  const Outcome outcome =
-      run({"bench", "engines", "--size", "200", "--settle", "--settle-time-limit", "0.2"});
-  EXPECT_EQ(outcome.code, 3);
-  EXPECT_TRUE(has(outcome.err, "takes to settle"));
+  expect(3, {"bench", "engines", "--size", "200", "--settle", "--settle-time-limit", "0.2"},
+         {"takes to settle"});
 }
 
 }  // namespace

@@ -26,11 +26,8 @@ void PrintTo(const Case& scene, std::ostream* out) {
 
 // A pressed packing after some steps of the scene's own shear.
 LammpsTask task_of(const Case& scene) {
-  Parameters p;
-  p.grains = 300;
-  p.amplitude_rad = 0.1;
-  p.period_s = 0.5;  // walls that move fast
-  p.steps_per_cycle = 10000;
+  // Walls that move fast.
+  Parameters p{.grains = 300, .amplitude_rad = 0.1, .period_s = 0.5, .steps_per_cycle = 10000};
   scene.change(p);
   Parameters pressing = p;
   pressing.drag_kg_per_s = Parameters{}.drag_kg_per_s;

@@ -16,8 +16,9 @@
 #include "experiments/bench/speed.hpp"
 #include "experiments/bench/stability/stability.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 using namespace accuracy;  // NOLINT(google-build-using-namespace)
@@ -176,7 +177,7 @@ TEST(HardCases, AreReportedWhateverTheyEndIn) {
       {outcome_of([]() -> Answer { std::_Exit(0); }), "ended without an outcome"}};
   for (const auto& [outcome, found] : others) {
     EXPECT_FALSE(outcome.as_expected);
-    EXPECT_NE(outcome.text.find(found), std::string::npos) << outcome.text;
+    EXPECT_TRUE(has(outcome.text, found));
   }
 }
 
@@ -188,4 +189,4 @@ TEST(HardCases, RefuseAnUnknownName) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -5,7 +5,6 @@
 
 #include <csignal>
 #include <cstdio>
-#include <thread>
 
 #include "tests/experiments/program.hpp"
 
@@ -116,9 +115,8 @@ TEST_F(Care, MergesAndRefusesConflicts) {
     const RunRecord sheared = runs_of_kind(store, "shear").at(0);
     Checkpoint wrong = other.load_checkpoint(other.checkpoints(sheared.id).at(2));
     wrong.state.position(0, 0) += 1e-9;
-    RunDeclaration longer{
-        sheared.id, sheared.parent,           sheared.kind, sheared.resolved, sheared.grains,
-        2,          sheared.memberships.at(0)};
+    RunDeclaration longer = declaration_of(sheared);
+    longer.target_cycles = 2;
     store.declare_run(longer);
     store.start_run(sheared.id, {}, store.checkpoints(sheared.id).back().sha256);
     store.record_checkpoint(sheared.id, wrong);
@@ -131,9 +129,7 @@ TEST_F(Care, MergesAndRefusesConflicts) {
 TEST_F(Care, StatusListsASharedRunUnderEachExperiment) {
   const std::string text = tiny_manifest("", "sweep: {grid: {grains: [200, 300]}}\n");
   campaign(text, {"--cycles", "0"});
-  std::string twin = text;
-  twin.replace(twin.find("tiny"), 4, "twin");
-  write("twin.yaml", twin);
+  write("twin.yaml", renamed(text, "twin"));
   expect(0, {"run", "twin.yaml", "--cycles", "0", "-q"});
   const std::string status = expect(0, {"status"},
                                     {"tiny at scale base", "twin at scale base", "packing N=200 ",
@@ -184,9 +180,10 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
             "to extend");
 
   // Another experiment: one run is shared, one is new by its amplitude.
-  std::string twin = tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.0833, 0.1]}}\n");
-  twin.replace(twin.find("tiny"), 4, "twin");
-  write("twin.yaml", twin);
+  const auto twin = [](const std::string& base) {
+    return renamed(tiny_manifest(base, "sweep: {grid: {amplitude_rad: [0.0833, 0.1]}}\n"), "twin");
+  };
+  write("twin.yaml", twin(""));
   const auto other = json({"plan", "twin.yaml", "--cycles", "1", "--json"});
   EXPECT_EQ(stage(other, "shear", 1).at("state"), "done");
   EXPECT_EQ(stage(other, "shear", 1).at("shared_with"), nlohmann::json::parse(R"(["tiny"])"));
@@ -197,8 +194,7 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
          {"also in tiny", "new: amplitude_rad 0.1 (store has 0.0833)"});
 
   // Both: the shared run counts once, as long as the one that asks for more of it.
-  twin.replace(twin.find("cycles: 2"), 9, "cycles: 4");
-  write("twin.yaml", twin);
+  write("twin.yaml", twin("  cycles: 4\n"));
   const auto both = json({"plan", "m.yaml", "twin.yaml", "--json"});
   EXPECT_EQ(both.at("experiment"), "tiny, twin");
   EXPECT_EQ(both.at("runs"), 3);
@@ -270,15 +266,12 @@ TEST_F(Sharing, TheOtherTakesOverWhatAKilledOneHeld) {
   const Running first = start_beside({"run", text, "-q"}, "first");
   wait_for_objects(5);
   const Running second = start_beside({"run", text}, "second");
-  while (!contains(read_bytes(second.err), "waiting")) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    if (contains(read_bytes(second.err), "done")) break;
-  }
+  wait_for_words(second, "waiting");
   kill(first.pid, SIGKILL);
   EXPECT_EQ(wait_for(first).signal, SIGKILL);
   const Outcome rest = wait_for(second);
   EXPECT_EQ(rest.code, 0) << rest.err;
-  EXPECT_TRUE(contains(rest.err, "waiting for 1 stage")) << rest.err;
+  EXPECT_TRUE(has(rest.err, "waiting for 1 stage"));
   EXPECT_EQ(hashes(), hashes("whole"));
   expect(0, {"verify"});
 }
@@ -297,9 +290,6 @@ TEST_F(Care, HardCasesAreToldAndOneThatFailsEndsWithCode3) {
          {"0 of 1 cases ended as expected"});
   expect(2, {"bench", "stability", "--only", "vacanzy"}, {"did you mean 'vacancy'?"});
 }
-
-const std::string kDrag =
-    (fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments" / "drag.yaml").string();
 
 class CommandLineStore : public ProgramTest {};
 
@@ -342,7 +332,7 @@ TEST_P(Signals, LeaveNoTrace) {
     EXPECT_EQ(stopped.signal, SIGKILL);
   } else {
     EXPECT_EQ(stopped.code, 85) << stopped.err;
-    EXPECT_TRUE(contains(stopped.err, "shearcell resume --store")) << stopped.err;
+    EXPECT_TRUE(has(stopped.err, "shearcell resume --store"));
   }
   const nlohmann::json sheared = json({"status", "--json"}).at("runs").back();
   EXPECT_EQ(sheared.at("state"), killed ? "running" : "interrupted");
@@ -354,19 +344,6 @@ TEST_P(Signals, LeaveNoTrace) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Signals, testing::Values(SIGINT, SIGTERM, SIGKILL));
-
-// One cycle of the smoke scale: what it takes on disk, against what the plan says.
-TEST_F(CommandLineStore, DragTakesTheDiskThatItsPlanSays) {
-  const nlohmann::json plan = json({"plan", kDrag, "--scale", "smoke", "--cycles", "1", "--json"});
-  expect(0, {"run", kDrag, "--scale", "smoke", "--cycles", "1", "-q"});
-  double bytes = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(path("shearcell-store/objects"))) {
-    if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
-  }
-  const double expected = plan.at("bytes_left");
-  std::printf("checkpoints: %.4g MB, expected %.4g MB\n", bytes * 1e-6, expected * 1e-6);
-  EXPECT_NEAR(expected / bytes, 1, 0.3);
-}
 
 }  // namespace
 }  // namespace shearcell::test

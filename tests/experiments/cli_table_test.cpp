@@ -15,9 +15,8 @@ class CommandLineTable : public ProgramTest {
  protected:
   void SetUp() override { campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"}); }
 
-  nlohmann::json table(Arguments options) {
-    options.insert(options.begin(), {"table", "--json"});
-    return json(options);
+  nlohmann::json table(const Arguments& options) {
+    return json(joined({"table", "--json"}, options));
   }
 };
 
@@ -47,7 +46,7 @@ TEST_F(CommandLineTable, HasARowForEachCheckpointAndEachRun) {
   }
   const Outcome help = run({"table", "--help"});
   for (const auto& [key, value] : runs[0].items()) {
-    EXPECT_TRUE(key == "fluid" || contains(help.out, "  " + key + " ")) << key;
+    EXPECT_TRUE(key == "fluid" || has(help.out, "  " + key + " ")) << key;
   }
 }
 
@@ -136,9 +135,8 @@ TEST_F(CommandLineTable, SaysWhereAnEditedManifestHasFewerCyclesThanTheStore) {
   write("m.yaml", read_bytes(path("m.yaml")) + "# edited\n");
   expect(0, {"run", "m.yaml", "--cycles", "1", "-q"});
   const Outcome said = expect(0, {"table"});
-  EXPECT_TRUE(contains(said.err, "2 runs end at cycle 1, which its newest manifest asks for"))
-      << said.err;
-  EXPECT_TRUE(contains(said.err, "--cycles 2` adds the others")) << said.err;
+  EXPECT_TRUE(has(said.err, "2 runs end at cycle 1, which its newest manifest asks for"));
+  EXPECT_TRUE(has(said.err, "--cycles 2` adds the others"));
 }
 
 TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
@@ -149,9 +147,9 @@ TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_FALSE(rows[0].contains("manifest"));
   const Outcome said = expect(0, {"table", "--per", "run"});
-  EXPECT_TRUE(contains(said.err, "left out: 2 runs of another version")) << said.err;
+  EXPECT_TRUE(has(said.err, "left out: 2 runs of another version"));
   const Outcome report = expect(0, {"report", "--out", "report.html"}, {"tiny: left out: 2 runs"});
-  EXPECT_FALSE(contains(report.err, "left out: experiment")) << report.err;
+  EXPECT_FALSE(has(report.err, "left out: experiment"));
   const nlohmann::json all = table({"--per", "run", "--all-versions"});
   ASSERT_EQ(all.size(), 3U);
   EXPECT_NE(all[0].at("manifest"), all[2].at("manifest"));
@@ -173,7 +171,7 @@ TEST_F(CommandLineTable, ANumberOfGrainsIsAParameter) {
   expect(0, {"figures", "n", "--out", "figures"});
   const std::string csv = read_bytes(path("figures/sizes/n.csv"));
   for (const char* row : {"pressure_Pa=700,300,", "pressure_Pa=700,400,", "pressure_Pa=954,400,"}) {
-    EXPECT_TRUE(contains(csv, row)) << csv;
+    EXPECT_TRUE(has(csv, row));
   }
 }
 
@@ -199,13 +197,10 @@ TEST_F(CommandLineTable, SelectsRuns) {
   for (const Case& c : {Case{{"--variant", "fluid=cell"}, 1},
                         Case{{"--variant", "fluid=cell", "--variant", "fluid=still"}, 2},
                         Case{{"--experiment", "tiny", "--seed", "1"}, 2}}) {
-    Arguments options = {"--per", "run"};
-    options.insert(options.end(), c.filters.begin(), c.filters.end());
-    EXPECT_EQ(table(options).size(), c.runs);
-    Arguments status = {"status", "--json", "--state", "completed"};
-    status.insert(status.end(), c.filters.begin(), c.filters.end());
+    EXPECT_EQ(table(joined({"--per", "run"}, c.filters)).size(), c.runs);
     std::size_t sheared = 0;
-    const nlohmann::json listed = json(status);
+    const nlohmann::json listed =
+        json(joined({"status", "--json", "--state", "completed"}, c.filters));
     for (const auto& run : listed.at("runs")) sheared += run.at("kind") == "shear" ? 1 : 0;
     EXPECT_EQ(sheared, c.runs);
   }
@@ -238,8 +233,8 @@ TEST_F(CommandLineTable, ExportsSelectedRunsWholeOrNotAtAll) {
   ASSERT_EQ(done.size(), 2U);
   for (const auto& one : done) {
     const std::string text = read_bytes(one.at("out").get<std::string>());
-    EXPECT_TRUE(contains(text, "run=\"" + one.at("run").get<std::string>() + '"'));
-    EXPECT_TRUE(contains(text, "length_unit=d ") && contains(text, " amplitude_rad=0.0833 "));
+    EXPECT_TRUE(has(text, "run=\"" + one.at("run").get<std::string>() + '"'));
+    EXPECT_TRUE(has(text, "length_unit=d ") && has(text, " amplitude_rad=0.0833 "));
   }
   const std::string id = done[0].at("run");
   expect(0, {"export", id, id, "--to", "vtk", "--out", "frames/"});  // one run
@@ -257,7 +252,7 @@ TEST_F(CommandLineTable, ExportsSelectedRunsWholeOrNotAtAll) {
         EXPECT_NE(cut.signal, 0) << format;
       } else {
         EXPECT_EQ(cut.code, 1) << format;
-        EXPECT_TRUE(contains(cut.err, "cut")) << cut.err;
+        EXPECT_TRUE(has(cut.err, "cut"));
       }
     }
   }

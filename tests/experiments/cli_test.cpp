@@ -22,7 +22,7 @@ TEST_F(CommandLine, EverySubcommandHasHelpWithAnExample) {
   const Outcome all = expect(0, {"--help"}, {"Exit codes"});
   for (const char* command : {"plan", "run", "resume", "status", "log", "show", "verify", "rebuild",
                               "prune", "regenerate", "merge", "figures", "report"}) {
-    EXPECT_TRUE(contains(all.out, std::string("  ") + command)) << command;
+    EXPECT_TRUE(has(all.out, std::string("  ") + command));
     EXPECT_EQ(expect(0, {command, "--help"}, {"Example", "--store"}).err, "") << command;
   }
   EXPECT_TRUE(expect(0, {"--version"}).out.starts_with("shearcell "));
@@ -32,6 +32,9 @@ TEST_F(CommandLine, EverySubcommandHasHelpWithAnExample) {
 TEST_F(CommandLine, RefusesWhatItDoesNotKnow) {
   expect_refused({}, {"subcommand"});
   expect_refused({"shake"}, {"shake"});
+  expect_refused({"plam", kDrag}, {"not expected: plam ", "the nearest is plan"});
+  expect_refused({"plan", kDrag, "--scal"}, {"not expected: --scal", "the nearest is --scale"});
+  expect_refused({"run", kDrag, "--mpi", "2"}, {"--mpi", "has no effect"});
   expect_refused({"run"}, {"manifest"});
   expect_refused({"run", kDrag, "--colour"}, {"--colour"});
   for (const char* number : {"-1", "010", "0x10", "1e2", "ten", ""}) {
@@ -66,7 +69,7 @@ TEST_F(CommandLine, TakesTheStoreThatIsNamedElseThatOfTheEnvironment) {
   name_store("from-environment");
   expect_refused({"status"}, {"from-environment"});
   const Outcome named = expect(2, {"status", "--store", "named"}, {"named"});
-  EXPECT_FALSE(contains(named.err, "from-environment")) << named.err;
+  EXPECT_FALSE(has(named.err, "from-environment"));
 }
 
 TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {
@@ -79,17 +82,6 @@ TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {
   expect_refused({"show", "0123456789abcdef"}, {"no run"});
   expect_refused({"log", "zzz"}, {"no run"});
   expect_refused({"resume", "zzz"}, {"no run"});
-}
-
-TEST_F(CommandLine, SuggestsTheWordThatWasMeant) {
-  const std::string manifest = write("m.yaml", tiny_manifest());
-  expect_refused({"plam", manifest}, {"not expected: plam m.yaml", "the nearest is plan"});
-  expect_refused({"plan", manifest, "--scal"}, {"not expected: --scal", "the nearest is --scale"});
-}
-
-TEST_F(CommandLine, RefusesProcessesOfLammpsWhereItComputesNothing) {
-  const std::string manifest = write("m.yaml", tiny_manifest());
-  expect_refused({"run", manifest, "--mpi", "2"}, {"--mpi", "has no effect"});
 }
 
 TEST_F(CommandLine, FindsARunByAUniqueBeginning) {
@@ -144,12 +136,7 @@ TEST_F(CommandLine, PrintsFactsAsJson) {
   const nlohmann::json plan = json({"plan", manifest, "--cycles", "2", "--json"});
   EXPECT_EQ(plan.at("runs"), 2);
   EXPECT_EQ(plan.at("particle_steps_left"), 2 * 300 * 10000);
-  // The tables for people come out too.
-  for (const Arguments& words :
-       {Arguments{"status"}, Arguments{"log"}, Arguments{"verify"},
-        Arguments{"show", runs[0].at("id")}, Arguments{"plan", manifest}}) {
-    EXPECT_FALSE(expect(0, words).out.empty()) << words[0];
-  }
+  expect(0, {"log"}, {"CheckpointRecorded"});
 }
 
 TEST_F(CommandLine, MakesAllFigures) {
@@ -182,11 +169,7 @@ TEST_F(CommandLine, PlansTheDragExperimentAtEveryScale) {
            {std::to_string(expected.runs) + " runs", "on disk"});
   }
   EXPECT_TRUE(listing().empty()) << "a plan wrote something";
-}
-
-// As `run` would make its store there.
-TEST_F(CommandLine, PlansForAStoreThatIsStillAnEmptyFolder) {
-  fs::create_directory(path("shearcell-store"));
+  fs::create_directory(path("shearcell-store"));  // in which `run` would make its store
   EXPECT_EQ(json({"plan", kDrag, "--scale", "smoke", "--json"}).at("runs"), 4);
   EXPECT_TRUE(fs::is_empty(path("shearcell-store")));
 }

@@ -17,10 +17,8 @@
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 PlannedRun only_run(const std::string& text) {
   return expand(parse_manifest(text, "t")).runs.at(0);
@@ -146,18 +144,18 @@ TEST(Cost, ADurationIsAlwaysReadable) {
   EXPECT_EQ(format_duration(86400.0 * 365), "365 d 00 h");
 }
 
-TEST(Cost, OfDiskAndSettlingAreNearWhatTheyTurnOutToBe) {
-  const TemporaryFolder folder;
-  Store store(folder.path() / "store", Access::create);
+using CostOfARun = StoreTest;
+
+TEST_F(CostOfARun, IsNearWhatDiskAndSettlingTurnOutToBe) {
   for (const char* texture : {"rough", "smooth"}) {
     const std::string text =
         tiny_manifest("  grains: 600\n  walls: " + std::string(texture) + "\n");
-    compute(store, text);
+    compute(store_, text);
     const PlannedRun run = only_run(text);
     for (const StageSpec* stage : {&run.prepare, &run.last}) {
       const StageCost expected = stage_cost(run, *stage, 0);
-      const double bytes = bytes_of(store, stage->key);
-      const double steps = store.run(stage->key).particle_steps;
+      const double bytes = bytes_of(store_, stage->key);
+      const double steps = store_.run(stage->key).particle_steps;
       std::printf("%s %s: %.4g bytes, expected %.4g; %.4g particle-steps, expected %.4g\n", texture,
                   std::string(name_of(stage->stage)).c_str(), bytes, expected.bytes, steps,
                   expected.particle_steps);
@@ -202,4 +200,4 @@ TEST(Cost, AssumesRatesThatFallWithTheNumberOfGrains) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The log behind the back of this program's own limits and checks.
+/// The log without the program's limits and checks.
 class RawLog {
  public:
   explicit RawLog(const fs::path& store) {
@@ -94,7 +94,6 @@ void removed(const fs::path& path) {
   fs::remove_all(path);
 }
 
-/// Moves something out of the store and leaves a link to it.
 void link_instead(const fs::path& path) {
   const fs::path elsewhere = fs::path(path.parent_path()) / "moved-away";
   fs::rename(path, elsewhere);

@@ -18,10 +18,8 @@
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class DrawFigure : public DrawingTest {
  protected:
@@ -36,9 +34,7 @@ TEST_F(DrawFigure, RunsOfAnotherExperimentNeverEnter) {
   const std::string text = tiny_manifest("", kBothFluids);
   compute(store_, text);  // 2 cycles
   draw("before");
-  std::string longer = "experiment: other" + text.substr(text.find('\n'));
-  longer.replace(longer.find("cycles: 2"), 9, "cycles: 4");
-  compute(store_, longer + "seeds: 2\n");
+  compute(store_, renamed(tiny_manifest("  cycles: 4\n", kBothFluids + "seeds: 2\n"), "other"));
   EXPECT_EQ(store_.runs().back().cycle, 4);
   draw("after");
   EXPECT_EQ(contents("after"), contents("before"));
@@ -176,14 +172,8 @@ TEST_F(DrawFigure, AGroupedFigureAveragesOverNoVersions) {
   }
   const WantedFigure onset{*find_figure("S5a"), "tiny"};
   EXPECT_NO_THROW(draw("newest", onset));
-  FigureOptions every;
-  every.runs.all_versions = true;
-  try {
-    draw("every", onset, every);
-    ADD_FAILURE() << "versions were averaged";
-  } catch (const UsageError& error) {
-    EXPECT_TRUE(has(error.what(), "leave out --all-versions")) << error.what();
-  }
+  expect_refused<UsageError>([&] { draw("every", onset, RunSelection{.all_versions = true}); },
+                             {"leave out --all-versions"});
 }
 
 TEST_F(DrawFigure, TheNoteOnMissingCheckpointsSaysWhichRunsCannotMakeThem) {
@@ -331,24 +321,19 @@ TEST_F(DrawFigure, TakesTheScaleThatIsAskedFor) {
   compute(store_, text, {.scale = "smoke"});
   compute(store_, text);
   EXPECT_EQ(draw("last").scale, "desk");
-  FigureOptions options;
-  options.runs.scales = {"smoke"};
-  const FigureSummary smoke = draw("smoke", kS2, options);
+  const FigureSummary smoke = draw("smoke", kS2, RunSelection{.scales = {"smoke"}});
   EXPECT_EQ(smoke.scale, "smoke");
   EXPECT_EQ(smoke.checkpoints, 2U * 3U);
-  options.runs.scales = {"paper"};
-  EXPECT_THROW(draw("paper", kS2, options), NotFound);
+  EXPECT_THROW(draw("paper", kS2, RunSelection{.scales = {"paper"}}), NotFound);
 }
 
 TEST_F(DrawFigure, TakesTheRunsThatAreSelected) {
   compute(store_, tiny_manifest("", kBothFluids + "seeds: 3\n"));
-  FigureOptions options;
-  options.runs.variants = {"fluid=cell"};
-  options.runs.seeds = {1, 3};
-  EXPECT_EQ(draw("part", kS2, options).runs, 2U);
+  RunSelection runs{.variants = {"fluid=cell"}, .seeds = {1, 3}};
+  EXPECT_EQ(draw("part", kS2, runs).runs, 2U);
   EXPECT_TRUE(has(contents("part").at("S2.caption.txt"), "Runs: fluid=cell: 2."));
-  options.runs.variants = {"fluid=none"};
-  EXPECT_THROW(draw("none", kS2, options), NotFound);
+  runs.variants = {"fluid=none"};
+  EXPECT_THROW(draw("none", kS2, runs), NotFound);
 }
 
 TEST_F(DrawFigure, KnowsWhichFiguresTheStoreCanMake) {
@@ -380,4 +365,4 @@ TEST_F(DrawFigure, NamesTheNearestFigureOfAnUnknownOne) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

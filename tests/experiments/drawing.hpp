@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures of a small experiment in a temporary store.
+// Draws figures of a small experiment in a temporary store.
 #pragma once
 
 #include <map>
@@ -17,6 +17,12 @@ class DrawingTest : public StoreTest {
                      FigureOptions options = {}) {
     options.folder = folder_.path() / folder;
     return draw_figure(store_, wanted, options);
+  }
+  FigureSummary draw(const std::string& folder, const WantedFigure& wanted,
+                     const RunSelection& runs) {
+    FigureOptions options;
+    options.runs = runs;
+    return draw(folder, wanted, options);
   }
   FigureSummary draw(const std::string& folder, const std::string& name) {
     return draw(folder, wanted_figures(store_, {name}).figures.at(0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cases of damaged and forged stores: each is one line of a table over copies of one small store.
+// Tables of damaged and forged stores: each case damages a copy of one small store.
 #pragma once
 
 #include <algorithm>
@@ -54,7 +54,7 @@ class HostileStore : public ProgramTest, public testing::WithParamInterface<Case
                              .starts_with("Logs/");
     const std::string before = refused ? read_bytes(log) : "";
     const Outcome outcome = expect(damaged.code, command, damaged.says);
-    EXPECT_FALSE(contains(outcome.out + outcome.err, "\x1b"));
+    EXPECT_FALSE(has(outcome.out + outcome.err, "\x1b"));
     if (refused) {
       EXPECT_EQ(read_bytes(log), before) << "a log that is refused was changed";
     }

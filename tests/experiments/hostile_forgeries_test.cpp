@@ -239,7 +239,7 @@ TEST_F(Neighbours, AStoreThatIsMovedAwayIsLeftAlone) {
   expect(0, {"run", "m.yaml", "-q"});
   const Outcome stopped = wait_for(program);
   EXPECT_EQ(stopped.code, 1) << stopped.err;
-  EXPECT_TRUE(contains(stopped.err, "moved, replaced or deleted")) << stopped.err;
+  EXPECT_TRUE(has(stopped.err, "moved, replaced or deleted"));
   const nlohmann::json verified = json({"verify", "--json"});
   EXPECT_TRUE(verified.at("ok"));
   EXPECT_EQ(verified.at("orphans"), 0) << "the old process wrote into the new store";

@@ -11,20 +11,14 @@
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
-
-class Interruption : public StoreTest {
- protected:
-  Store whole_{folder_.path() / "whole", Access::create};
-};
+using Interruption = StoreTest;
 
 // With the wish to stop pending from the start of each attempt, it ends after a single chunk of
 // steps.
 TEST_F(Interruption, AfterEveryChunkLeavesNoTrace) {
-  compute(whole_, tiny_manifest());
   for (const StageJob& job : declared(store_, tiny_manifest())) {
     const std::size_t interrupted = interrupt_to_the_end(
         store_, job.id, [&] { EXPECT_EQ(store_.run(job.id).state, RunState::interrupted); });
@@ -37,56 +31,24 @@ TEST_F(Interruption, AfterEveryChunkLeavesNoTrace) {
     EXPECT_EQ(count_events(store_, "RunInterrupted", "run/" + job.id), interrupted);
     EXPECT_EQ(count_events(store_, "RunResumed", "run/" + job.id), interrupted);
   }
-  EXPECT_EQ(final_hashes(store_), final_hashes(whole_));
+  EXPECT_EQ(final_hashes(store_), undisturbed(tiny_manifest()));
   EXPECT_TRUE(store_.verify().ok());
 }
 
-TEST_F(Interruption, FromAnotherThreadAtAnyMoment) {
-  const std::string text = tiny_manifest("", kBothFluids);
-  compute(whole_, text);
-  CampaignResult result;
-  std::size_t interrupted = 0;
-  auto delay = std::chrono::milliseconds(10);
-  for (std::size_t attempt = 0; attempt == 0 || result.interrupted + result.blocked > 0;
-       ++attempt, delay += std::chrono::milliseconds(23)) {
-    ASSERT_LT(attempt, 200U);
-    request_stop(false);
-    std::thread stopper([delay] {
-      std::this_thread::sleep_for(delay);
-      request_stop(true);
-    });
-    result = attempt == 0 ? compute(store_, text) : resume(store_);
-    stopper.join();
-    interrupted += result.interrupted;
-    EXPECT_EQ(result.failed + result.damaged, 0U);
-  }
-  std::printf("interrupted %zu times\n", interrupted);
-  EXPECT_GE(interrupted, 1U);
-  EXPECT_EQ(final_hashes(store_), final_hashes(whole_));
-  for (const RunRecord& run : store_.runs()) {
-    EXPECT_EQ(run.state, RunState::completed);
-    EXPECT_EQ(run.particle_steps, static_cast<double>(kGrains * run.step));
-  }
-}
-
 TEST_F(Interruption, BeforeTheFirstStageBeginsNothing) {
+  const std::string text = tiny_manifest("", kBothFluids);
   request_stop(true);
-  const CampaignResult result = compute(store_, tiny_manifest("", kBothFluids));
+  const CampaignResult result = compute(store_, text);
   EXPECT_EQ(result.blocked, 3U);
   EXPECT_EQ(result.completed + result.interrupted, 0U);
   EXPECT_EQ(count_events(store_, "RunStarted"), 0U);
   request_stop(false);
   EXPECT_EQ(resume(store_).completed, 3U);
-}
 
-TEST_F(Interruption, LeavesNothingUnbegunThatWasDoneBefore) {
-  const std::string text = tiny_manifest("", kBothFluids);
-  compute(store_, text);
   request_stop(true);
-  const CampaignResult result = compute(store_, text);
-  request_stop(false);
-  EXPECT_EQ(result.already, 3U);
-  EXPECT_EQ(result.blocked, 0U);
+  const CampaignResult again = compute(store_, text);
+  EXPECT_EQ(again.already, 3U) << "they were done before";
+  EXPECT_EQ(again.blocked, 0U);
 }
 
 // Two seconds without a record, at a lease of a quarter of it.
@@ -141,4 +103,4 @@ TEST_F(Interruption, KeepsTheCadenceOfItsCheckpoints) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

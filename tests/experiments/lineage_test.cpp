@@ -11,10 +11,8 @@
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 const std::string kText = tiny_manifest("", kBothFluids + "seeds: [4, 9]\n");
 
@@ -169,4 +167,4 @@ TEST(ManifestLines, FollowTheScale) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -15,12 +15,12 @@
 #include "tests/support/files.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-const std::map<std::string, test::BadManifest> kBad = test::bad_manifests(SHEARCELL_TEST_DATA);
+const std::map<std::string, BadManifest> kBad = bad_manifests(SHEARCELL_TEST_DATA);
 
 std::vector<std::string> names_of_bad_manifests() {
   std::vector<std::string> names;
@@ -29,11 +29,11 @@ std::vector<std::string> names_of_bad_manifests() {
 }
 
 std::string message_for(const fs::path& path) {
-  return test::message_of<ManifestError>([&] { load_manifest(path); });
+  return message_of<ManifestError>([&] { load_manifest(path); });
 }
 
 std::string message_for_text(std::string_view text, const std::string& file = "text.yaml") {
-  return test::message_of<ManifestError>([&] { parse_manifest(text, file); });
+  return message_of<ManifestError>([&] { parse_manifest(text, file); });
 }
 
 class BadManifest : public testing::TestWithParam<std::string> {};
@@ -50,9 +50,9 @@ TEST(BadFile, IsRefused) {
   const TemporaryFolder temporary;
   const fs::path folder = temporary.path();
   const auto at = [&](const char* name) { return folder / name; };
-  test::write_bytes(at("file"), "experiment: a");
-  test::write_bytes(at("empty"), "");
-  test::write_bytes(at("large"), "#" + std::string(ManifestLimits::bytes, 'x'));
+  write_bytes(at("file"), "experiment: a");
+  write_bytes(at("empty"), "");
+  write_bytes(at("large"), "#" + std::string(ManifestLimits::bytes, 'x'));
   ASSERT_EQ(mkfifo(at("pipe").c_str(), 0600), 0);
   struct Case {
     fs::path path;
@@ -64,7 +64,7 @@ TEST(BadFile, IsRefused) {
         Case{at("pipe"), ": is not a regular file"}, Case{at("empty"), "the manifest is empty"},
         Case{at("large"), "is larger than 1048576 bytes"},
         Case{"/no\x1b[31m", "/no\\x1b[31m: there is no such file"}}) {
-    EXPECT_TRUE(test::has(message_for(path), says));
+    EXPECT_TRUE(has(message_for(path), says));
   }
   fs::permissions(at("file"), fs::perms::none);
   if (geteuid() != 0) {  // root reads everything
@@ -77,7 +77,7 @@ TEST(BadText, IsNotUtf8) {
             "text.yaml:2:11: is not valid UTF-8. Save the file as UTF-8 text.");
   for (const char* bytes : {"\xFF\xFE\x61", "\xC0\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80",
                             "\xE0\x80\x80", "\xF0\x80\x80\x80", "\x80", "\xE2\x82"}) {
-    EXPECT_TRUE(test::has(message_for_text(bytes), "text.yaml:1:1: is not valid UTF-8"));
+    EXPECT_TRUE(has(message_for_text(bytes), "text.yaml:1:1: is not valid UTF-8"));
   }
 }
 
@@ -91,11 +91,10 @@ TEST(BadText, HoldsControlCharacters) {
 TEST(BadText, HasTooManyValues) {
   std::string list = "experiment: a\nbase: {}\nseeds: [1";
   for (int i = 2; i <= 1001; ++i) list += ", " + std::to_string(i);
-  EXPECT_TRUE(
-      test::has(message_for_text(list + "]"), "has more than 1000 values (got 1001 values)"));
+  EXPECT_TRUE(has(message_for_text(list + "]"), "has more than 1000 values (got 1001 values)"));
   std::string nodes = "experiment: a\nbase: {}\nseeds: [1";
   for (int i = 0; i < 100'000; ++i) nodes += ",1";
-  EXPECT_TRUE(test::has(message_for_text(nodes + "]"), "holds more than 100000 values"));
+  EXPECT_TRUE(has(message_for_text(nodes + "]"), "holds more than 100000 values"));
 }
 
 TEST(BadText, ExpandsWithoutEnd) {
@@ -106,7 +105,7 @@ TEST(BadText, ExpandsWithoutEnd) {
     for (int i = 1; i < 1000; ++i) text += ", " + std::to_string(0.1 + 1e-4 * i);
     text += "]\n";
   }
-  EXPECT_TRUE(test::has(message_for_text(text), "expands to more than 10000 runs"));
+  EXPECT_TRUE(has(message_for_text(text), "expands to more than 10000 runs"));
 }
 
 TEST(BadText, ReportsTwentyProblemsAndCountsTheRest) {
@@ -124,8 +123,8 @@ TEST(BadText, NamesTheSmallestNumberOfStepsThatWorks) {
                             "}");
   };
   EXPECT_EQ(with_steps(16175), "");
-  EXPECT_TRUE(test::has(with_steps(16174), "Use at least 16175 steps per cycle, or `auto`."));
+  EXPECT_TRUE(has(with_steps(16174), "Use at least 16175 steps per cycle, or `auto`."));
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

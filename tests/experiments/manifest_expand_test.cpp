@@ -11,11 +11,10 @@
 #include "tests/experiments/plan_of.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::plan_of;
 using Strings = std::vector<std::string>;
 
 Manifest drag() {
@@ -37,7 +36,7 @@ Strings variants(const Plan& plan) {
 }
 
 std::string message(const Manifest& manifest, const ExpandOptions& options) {
-  return test::message_of<ManifestError>([&] { expand(manifest, options); });
+  return message_of<ManifestError>([&] { expand(manifest, options); });
 }
 
 TEST(Drag, ComparesTheFluidsOnTheSamePackings) {
@@ -185,7 +184,7 @@ TEST(Expand, WarnsOfACellThatThePressureCannotLift) {
   const std::string lifting = "pressure_at: moving_wall, grains: 30000";
   EXPECT_TRUE(warnings("pressure_at: moving_wall, grains: 18200").empty());
   ASSERT_EQ(warnings(lifting).size(), 1U);
-  EXPECT_TRUE(test::has(warnings(lifting)[0], "cannot lift"));
+  EXPECT_TRUE(has(warnings(lifting)[0], "cannot lift"));
   EXPECT_TRUE(warnings("grains: 30000").empty()) << "loaded with the weight as well";
   EXPECT_TRUE(warnings("grains: 30000, gravity_m_per_s2: 0").empty());
   EXPECT_TRUE(warnings("grains: 30000, moving_wall: top").empty());
@@ -218,18 +217,17 @@ TEST(Expand, WarnsOfPlotsAndClaimsThatCannotBeMade) {
   const std::string sides = "{fluid: still, walls: rough}, {fluid: cell, walls: rough}";
   EXPECT_TRUE(claim(sides, 3).empty());
   ASSERT_EQ(claim(sides, 4).size(), 1U);
-  EXPECT_TRUE(
-      test::has(claim(sides, 4)[0], "claim same: it asks for cycle 4, and the runs have 3"));
+  EXPECT_TRUE(has(claim(sides, 4)[0], "claim same: it asks for cycle 4, and the runs have 3"));
   ASSERT_EQ(claim("{fluid: still}, {fluid: cell, walls: rough}", 3).size(), 1U);
-  EXPECT_TRUE(test::has(claim("{fluid: still}, {fluid: cell, walls: rough}", 3)[0],
-                        "2 variants have fluid=still"));
+  EXPECT_TRUE(has(claim("{fluid: still}, {fluid: cell, walls: rough}", 3)[0],
+                  "2 variants have fluid=still"));
   for (const auto& [plot, problem] :
        {std::pair("y: phi, by: fluid", "average over the values of walls"),
         std::pair("y: phi, x: drag_kg_per_s, at_cycle: 50", "it asks for cycle 50"),
         std::pair("y: phi, at_cycle: 2", "at_cycle has no effect")}) {
     const auto found = warnings(fmt::format("plots: [{{name: own, {}}}]\n", plot));
     ASSERT_EQ(found.size(), 1U) << plot;
-    EXPECT_TRUE(test::has(found[0], problem)) << found[0];
+    EXPECT_TRUE(has(found[0], problem)) << found[0];
   }
   EXPECT_TRUE(warnings("plots: [{name: own, y: phi, at_cycle: 3, x: drag_kg_per_s}]\n").empty());
 }
@@ -301,4 +299,4 @@ TEST(Expand, NamesVariants) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

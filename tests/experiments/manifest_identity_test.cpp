@@ -10,16 +10,21 @@
 #include "experiments/manifest/identity.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 using nlohmann::json;
 
 // The parameters of the runs of the oldest stores, whose keys are pinned.
 Parameters oldest() {
-  Parameters parameters;
-  parameters.pressure_at = PressureAt::moving_wall;
-  return parameters;
+  return {.pressure_at = PressureAt::moving_wall};
+}
+
+void expect_refused_with(json record, const char* key, std::initializer_list<json> values) {
+  for (const json& value : values) {
+    record["parameters"][key] = value;
+    EXPECT_THROW(read_stage(record), std::runtime_error) << key << " = " << value;
+  }
 }
 
 TEST(Identity, DependsOnSeedAndParent) {
@@ -35,34 +40,34 @@ TEST(Identity, DamagedRecordsAreRefusedByName) {
   const StageSpec prepare = prepare_stage(oldest(), 1);
   const json good = last_stage(oldest(), 1, prepare).resolved;
   const auto message = [](const json& record) {
-    return test::message_of<std::runtime_error>([&] { read_stage(record); });
+    return message_of<std::runtime_error>([&] { read_stage(record); });
   };
   EXPECT_EQ(message(good), "");
   EXPECT_NE(message(json::array()), "");
   for (const auto& [key, value] : good.items()) {
     json record = good;
     record.erase(key);
-    EXPECT_TRUE(test::has(message(record), key));
+    EXPECT_TRUE(has(message(record), key));
     record[key] = nullptr;
     EXPECT_NE(message(record), "") << key;
   }
   for (const auto& [key, value] : good["parameters"].items()) {
     json record = good;
     record["parameters"].erase(key);
-    EXPECT_TRUE(test::has(message(record), key));
+    EXPECT_TRUE(has(message(record), key));
     for (const json& bad : {json(-1), json("nonsense"), json(), json(1e300), json::array()}) {
       record["parameters"][key] = bad;
-      EXPECT_TRUE(test::has(message(record), key)) << key << " = " << bad;
+      EXPECT_TRUE(has(message(record), key)) << key << " = " << bad;
     }
   }
   for (const char* key : {"stage", "parent", "extra"}) {
     json record = good;
     record[key] = "nonsense";
-    EXPECT_TRUE(test::has(message(record), key));
+    EXPECT_TRUE(has(message(record), key));
   }
   json record = good;
   record["parameters"]["cycles"] = 3;
-  EXPECT_TRUE(test::has(message(record), "cycles"));
+  EXPECT_TRUE(has(message(record), "cycles"));
 }
 
 // Pinned, so that no change of code renames the runs of existing stores unnoticed.
@@ -96,14 +101,11 @@ TEST(Identity, AStiffeningIsNamedByWhatItFeels) {
     EXPECT_FALSE(stiffen.resolved.at("parameters").contains(unfelt)) << unfelt;
   }
   // A shear that says it stiffens is no record of ours.
-  json forged = last_stage({}, 1, prepare).resolved;
-  forged["parameters"]["protocol"] = "stiffen";
-  EXPECT_THROW(read_stage(forged), std::runtime_error);
+  expect_refused_with(last_stage({}, 1, prepare).resolved, "protocol", {"stiffen"});
 }
 
 TEST(Identity, APauseEntersOnlyWhereTheProtocolIsPaused) {
-  Parameters longer = oldest();
-  longer.pause_s = 3;
+  Parameters longer{.pressure_at = PressureAt::moving_wall, .pause_s = 3};
   const StageSpec prepare = prepare_stage(oldest(), 1);
   EXPECT_EQ(prepare_stage(longer, 1).key, prepare.key);
   const StageSpec continuous = last_stage(longer, 1, prepare);
@@ -126,20 +128,15 @@ TEST(Identity, APauseEntersOnlyWhereTheProtocolIsPaused) {
   EXPECT_EQ(read_stage(last_stage(longer, 1, prepare).resolved).parameters, longer);
 
   // Neither kind of record reads as the other.
-  json swapped = shear.resolved;
-  swapped["parameters"]["protocol"] = "continuous";
-  EXPECT_THROW(read_stage(swapped), std::runtime_error);
-  swapped = continuous.resolved;
-  swapped["parameters"]["protocol"] = "paused";
-  EXPECT_THROW(read_stage(swapped), std::runtime_error);
+  expect_refused_with(shear.resolved, "protocol", {"continuous"});
+  expect_refused_with(continuous.resolved, "protocol", {"paused"});
 }
 
 // A parameter younger than the stores: runs that do not use it keep the keys that they have.
 TEST(Identity, ADrawOfWallGrainsEntersOnlyWhereItIsNotTheFirst) {
   const StageSpec first = prepare_stage({}, 1);
   EXPECT_FALSE(first.resolved.at("parameters").contains("wall_grain_draw"));
-  Parameters redrawn;
-  redrawn.wall_grain_draw = 2;
+  const Parameters redrawn{.wall_grain_draw = 2};
   const StageSpec other = prepare_stage(redrawn, 1);
   EXPECT_NE(other.key, first.key);
   EXPECT_EQ(read_stage(other.resolved).parameters, redrawn);
@@ -147,18 +144,12 @@ TEST(Identity, ADrawOfWallGrainsEntersOnlyWhereItIsNotTheFirst) {
   EXPECT_EQ(read_stage(first.resolved).parameters, Parameters{});
 
   // The first draw, written out, would be a second name for one computation.
-  for (const json& value : {json(0), json(-1), json("one"), json(), json(1e300)}) {
-    json record = other.resolved;
-    record["parameters"]["wall_grain_draw"] = value;
-    EXPECT_THROW(read_stage(record), std::runtime_error) << value;
-  }
+  expect_refused_with(other.resolved, "wall_grain_draw", {0, -1, "one", nullptr, 1e300});
 }
 
 // Part of the identity of older runs. Their records keep the value that they have.
 TEST(Identity, AnOverlapLimitIsRecordedAsItsFormerDefault) {
-  Parameters raised;
-  raised.max_overlap_diameters = 0.4;
-  json record = prepare_stage(raised, 1).resolved;
+  json record = prepare_stage({.max_overlap_diameters = 0.4}, 1).resolved;
   EXPECT_EQ(record, prepare_stage({}, 1).resolved);
   EXPECT_EQ(record["parameters"]["max_overlap_diameters"], 0.1);
   EXPECT_EQ(read_stage(record).parameters, Parameters{});
@@ -178,9 +169,7 @@ TEST(Identity, WhereThePressureActsEntersOnlyWhereItIsFelt) {
     change(unfelt);
     change(other);
     EXPECT_EQ(prepare_stage(unfelt, 1).key, prepare_stage(other, 1).key);
-    json record = prepare_stage(other, 1).resolved;
-    record["parameters"]["pressure_at"] = "top";
-    EXPECT_THROW(read_stage(record), std::runtime_error);
+    expect_refused_with(prepare_stage(other, 1).resolved, "pressure_at", {"top"});
   }
 }
 
@@ -188,19 +177,14 @@ TEST(Identity, AnEngineEntersOnlyTheShearAndOnlyWhereItIsAnother) {
   const StageSpec packing = prepare_stage({}, 1);
   const StageSpec ours = last_stage({}, 1, packing);
   EXPECT_FALSE(ours.resolved.at("parameters").contains("engine"));
-  Parameters other;
-  other.engine = EngineKind::lammps;
+  const Parameters other{.engine = EngineKind::lammps};
   EXPECT_EQ(prepare_stage(other, 1).key, packing.key);
   const StageSpec theirs = last_stage(other, 1, packing);
   EXPECT_NE(theirs.key, ours.key);
   EXPECT_EQ(read_stage(theirs.resolved).parameters.engine, EngineKind::lammps);
   EXPECT_EQ(engine_of(theirs.resolved), EngineKind::lammps);
   EXPECT_EQ(engine_of(ours.resolved), EngineKind::shearcell);
-  for (const json& value : {json("shearcell"), json("gromacs"), json(1)}) {
-    json record = theirs.resolved;
-    record["parameters"]["engine"] = value;
-    EXPECT_THROW(read_stage(record), std::runtime_error) << value;
-  }
+  expect_refused_with(theirs.resolved, "engine", {"shearcell", "gromacs", 1});
 }
 
 TEST(CanonicalJson, WritesOneTextForOneValue) {
@@ -218,4 +202,4 @@ TEST(CanonicalJson, RefusesWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

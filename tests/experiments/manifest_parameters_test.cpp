@@ -15,7 +15,7 @@
 #include "tests/experiments/plan_of.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 using nlohmann::json;
@@ -92,8 +92,7 @@ TEST(Conversion, GivesTheNumbersOfTableOne) {
 }
 
 TEST(Conversion, APauseHasWholeTimeSteps) {
-  Parameters parameters;
-  parameters.protocol = ProtocolKind::paused;
+  Parameters parameters{.protocol = ProtocolKind::paused};
   EXPECT_EQ(drive(parameters).pause_steps, 45600U) << "2 s, as long as a cycle";
   parameters.pause_s = 1.00003;  // 22800.7 steps
   EXPECT_EQ(drive(parameters).pause_steps, 22801U);
@@ -106,9 +105,7 @@ TEST(Conversion, APauseHasWholeTimeSteps) {
 }
 
 TEST(Conversion, SettlesInAFluidAtRestWithItsOwnTimeStep) {
-  Parameters parameters;
-  parameters.fluid = Fluid::cell;
-  parameters.steps_per_cycle = 100'000;
+  const Parameters parameters{.fluid = Fluid::cell, .steps_per_cycle = 100'000};
   EXPECT_EQ(shear_scene(parameters).fluid, Fluid::cell);
   const Scene settle = settle_scene(parameters);
   EXPECT_EQ(settle.fluid, Fluid::still);
@@ -117,10 +114,8 @@ TEST(Conversion, SettlesInAFluidAtRestWithItsOwnTimeStep) {
 }
 
 TEST(Conversion, CarriesTheGeometry) {
-  Parameters parameters;
-  parameters.walls = WallTexture::smooth;
-  parameters.moving_wall = MovingWall::top;
-  const Geometry shape = geometry(parameters);
+  const Geometry shape = geometry(
+      {.walls = WallTexture::smooth, .moving_wall = MovingWall::top, .wall_grain_draw = 1'000'000});
   EXPECT_EQ(shape.grains, 7900U);
   EXPECT_EQ(shape.height_over_width, 1.675);
   EXPECT_EQ(shape.nominal_packing_fraction, 0.64);
@@ -128,9 +123,8 @@ TEST(Conversion, CarriesTheGeometry) {
   EXPECT_EQ(shape.walls, WallTexture::smooth);
   EXPECT_EQ(shape.wall_grain_area_fraction, 0.52);
   EXPECT_EQ(shape.wall_grain_recess, 0.25);
-  EXPECT_EQ(shape.wall_grain_draw, 0U);
-  parameters.wall_grain_draw = 1'000'000;
-  EXPECT_EQ(geometry(parameters).wall_grain_draw, 1'000'000U);
+  EXPECT_EQ(shape.wall_grain_draw, 1'000'000U);
+  EXPECT_EQ(geometry({}).wall_grain_draw, 0U);
   EXPECT_EQ(shape.moving, MovingWall::top);
 }
 
@@ -173,7 +167,7 @@ TEST(TimeStep, OfTableI) {
 
 TEST(TimeStep, FollowsTheStiffnessWhereItIsAuto) {
   const auto runs_of = [](const std::string& base, const std::string& sweep = "") {
-    return test::plan_of("grains: 600, " + base, sweep).runs;
+    return plan_of("grains: 600, " + base, sweep).runs;
   };
   const std::string autos = "steps_per_cycle: auto, settle_time_step_s: auto";
   // Table I's own numbers, and so the ids of runs that state them.
@@ -187,7 +181,7 @@ TEST(TimeStep, FollowsTheStiffnessWhereItIsAuto) {
     EXPECT_EQ(p.steps_per_cycle, steps[i]);
     EXPECT_EQ(p.settle_time_step_s, 2.0 / static_cast<double>(steps[i / 2 * 2]));
     EXPECT_NEAR(shear_time_step(p).over_stability_limit, 0.3547, 1e-4);
-    EXPECT_EQ(swept[i].variant.find("steps_per_cycle"), std::string::npos) << swept[i].variant;
+    EXPECT_FALSE(has(swept[i].variant, "steps_per_cycle"));
   }
   // A swept key and a scale's number override it.
   EXPECT_EQ(runs_of(autos, "sweep: {grid: {steps_per_cycle: [91200, 45600]}}")
@@ -206,15 +200,15 @@ TEST(TimeStep, IsAdvisedAgainstWhereItIsTooSmallOrTooLarge) {
   const auto small = time_step_advice({1e-6, 0.003, 0.01}, "steps_per_cycle");
   const auto large = time_step_advice({1e-4, 0.3, 0.8}, "settle_time_step_s");
   ASSERT_TRUE(small && large);
-  EXPECT_TRUE(test::has(*small,
-                        "steps_per_cycle: the time step of 1e-06 s is 0.01 of the stability limit, "
-                        "below 0.15"));
-  EXPECT_TRUE(test::has(*large, "settle_time_step_s"));
-  EXPECT_TRUE(test::has(*large, "above 0.7"));
+  EXPECT_TRUE(has(*small,
+                  "steps_per_cycle: the time step of 1e-06 s is 0.01 of the stability limit, "
+                  "below 0.15"));
+  EXPECT_TRUE(has(*large, "settle_time_step_s"));
+  EXPECT_TRUE(has(*large, "above 0.7"));
 }
 
 TEST(TimeStep, WarnsInAPlanUnlessNoTimePasses) {
-  const auto warnings = [](const std::string& base) { return test::plan_of(base).warnings; };
+  const auto warnings = [](const std::string& base) { return plan_of(base).warnings; };
   EXPECT_TRUE(warnings("grains: 600").empty());
   EXPECT_EQ(warnings("grains: 600, steps_per_cycle: 1000000").size(), 1U);
   EXPECT_EQ(warnings("grains: 600, steps_per_cycle: 18000").size(), 1U);
@@ -225,18 +219,15 @@ TEST(TimeStep, WarnsInAPlanUnlessNoTimePasses) {
 }
 
 TEST(Overlap, FollowsPressureStiffnessAndWeight) {
-  Parameters p;
-  p.gravity_m_per_s2 = 0;
+  Parameters p{.gravity_m_per_s2 = 0};
   // 0.75 P d/k, with P d/k = 4.376e-3.
   EXPECT_NEAR(expected_overlap(p), 3.282e-3, 1e-6);
   p.pressure_Pa *= 2;
   p.stiffness_N_per_m *= 4;
   EXPECT_NEAR(expected_overlap(p), 1.641e-3, 1e-6);
-  Parameters bottom, lifting, top;
-  lifting.pressure_at = PressureAt::moving_wall;
-  top.moving_wall = MovingWall::top;
-  Parameters weightless;
-  weightless.gravity_m_per_s2 = 0;
+  const Parameters bottom, weightless{.gravity_m_per_s2 = 0};
+  const Parameters lifting{.pressure_at = PressureAt::moving_wall};
+  const Parameters top{.moving_wall = MovingWall::top};
   EXPECT_LT(expected_overlap(lifting), expected_overlap(weightless));
   EXPECT_EQ(expected_overlap(bottom), expected_overlap(top));
   EXPECT_NEAR(expected_overlap(lifting) + expected_overlap(top), 2 * expected_overlap(weightless),
@@ -244,4 +235,4 @@ TEST(Overlap, FollowsPressureStiffnessAndWeight) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

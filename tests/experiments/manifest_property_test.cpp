@@ -14,7 +14,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "tests/property.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 using nlohmann::json;
@@ -362,4 +362,4 @@ PROPERTY(CanonicalJson, ShortestDigitsReadBackToTheSameDouble, 2000) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

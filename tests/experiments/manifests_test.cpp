@@ -13,7 +13,7 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/expand.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -153,4 +153,4 @@ TEST(Manifests, PausedShearRestsAsLongAsACycle) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -10,8 +10,10 @@
 #include "core/filling.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
+
+using PackingOf2000 = StoreTest;
 
 // The walls bear the weight and nothing else, and the moving wall its load.
 void expect_balance(Measures measures) {
@@ -38,16 +40,14 @@ void expect_balance(Measures measures) {
   EXPECT_LT(in_si("contact_pressure_Pa"), 1.05 * load / (width * width));
 }
 
-TEST(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
-  const TemporaryFolder folder;
-  Store store(folder.path() / "store", Access::create);
-  const CampaignResult result = test::compute(store,
-                                              "experiment: packing\n"
-                                              "base: {grains: 2000, cycles: 10}\n");
+TEST_F(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
+  const CampaignResult result = compute(store_,
+                                        "experiment: packing\n"
+                                        "base: {grains: 2000, cycles: 10}\n");
   ASSERT_EQ(result.completed, 2U);
-  const RunRecord packing = test::runs_of_kind(store, "prepare").at(0);
-  const CheckpointRecord settled = store.checkpoints(packing.id).back();
-  const Measures at_rest = analyse(store.load_checkpoint(settled)).measures;
+  const RunRecord packing = runs_of_kind(store_, "prepare").at(0);
+  const CheckpointRecord settled = store_.checkpoints(packing.id).back();
+  const Measures at_rest = analyse(store_.load_checkpoint(settled)).measures;
   const double imbalance = settled.observables.at("wall_force_imbalance");
   std::printf(
       "settled in %.2f s: wall imbalance %.3g, phi %.4f (phi_u %.4f), N_inves %zu, "
@@ -63,35 +63,33 @@ TEST(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
   EXPECT_LT(at_rest.mean_overlap, 4.5e-3);
   expect_balance(at_rest);
 
-  const RunRecord run = test::sheared(store);
-  const auto checkpoints = store.checkpoints(run.id);
+  const RunRecord run = sheared(store_);
+  const auto checkpoints = store_.checkpoints(run.id);
   ASSERT_EQ(checkpoints.size(), 11U);
   double late = 0;  // mean over the last three cycles
   for (const CheckpointRecord& record : checkpoints) {
-    const Measures measures = analyse(store.load_checkpoint(record)).measures;
+    const Measures measures = analyse(store_.load_checkpoint(record)).measures;
     std::printf("cycle %2g: phi %.4f, crystalline %.2f %%\n", record.cycle, measures.phi,
                 measures.crystalline_percent);
     if (record.cycle > 7) late += measures.phi / 3;
   }
   EXPECT_GT(late, 0.638);
   EXPECT_GT(late, at_rest.phi);
-  EXPECT_EQ(analyse(store.load_checkpoint(checkpoints.front())).measures.phi, at_rest.phi);
+  EXPECT_EQ(analyse(store_.load_checkpoint(checkpoints.front())).measures.phi, at_rest.phi);
 }
 
 // The virial gives the pressure within the packing from its overlaps,
 //     P = sum over contacts of k delta (d - delta) / (3 V),
 // so Table I's P and k leave no choice of the mean overlap. With n interior grains a volume and z
 // contacts a grain, P = n z <delta (d - delta)> k / 6.
-TEST(PackingOf2000, HasTheOverlapThatThePressureDemands) {
-  const TemporaryFolder folder;
-  Store store(folder.path() / "store", Access::create);
-  ASSERT_EQ(test::compute(store,
-                          "experiment: packing\n"
-                          "base: {grains: 2000, gravity_m_per_s2: 0, cycles: 0}\n")
+TEST_F(PackingOf2000, HasTheOverlapThatThePressureDemands) {
+  ASSERT_EQ(compute(store_,
+                    "experiment: packing\n"
+                    "base: {grains: 2000, gravity_m_per_s2: 0, cycles: 0}\n")
                 .completed,
             2U);
-  const RunRecord packing = test::runs_of_kind(store, "prepare").at(0);
-  const Analysis found = analyse(store.load_checkpoint(store.checkpoints(packing.id).back()));
+  const RunRecord packing = runs_of_kind(store_, "prepare").at(0);
+  const Analysis found = analyse(store_.load_checkpoint(store_.checkpoints(packing.id).back()));
   const Mechanics& m = found.measures.mechanics;
   const Parameters table_1;
   const double unit = table_1.stiffness_N_per_m / table_1.diameter_m;  // k/d [Pa]
@@ -116,4 +114,4 @@ TEST(PackingOf2000, HasTheOverlapThatThePressureDemands) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

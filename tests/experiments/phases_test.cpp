@@ -17,10 +17,8 @@
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 const std::string kPhases = "checkpoints: {every_cycles: 2, phases: [0.25, 0.7]}\n";
 
@@ -80,13 +78,12 @@ TEST_F(Phases, AreCheckpointsOfTheSameRun) {
   EXPECT_TRUE(store_.verify().ok());
 
   // Whole cycles only, as a figure of the supplement takes them.
-  EXPECT_EQ(drawn(store_, "S2"), drawn(store_, "S2"));
   const CollectedRuns collected = collect_runs(store_, {*find_figure("S2"), "tiny"}, {});
   EXPECT_EQ(collected.runs.at(0).checkpoints.size(), 3U);
   EXPECT_TRUE(collected.notes.empty());
 
   store_.prune(store_.prunable({.runs = {}, .state = {}, .keep_every = 1}));
-  EXPECT_TRUE(files(store_, false).empty() || store_.checkpoints(sheared(store_).id).size() < 7U);
+  EXPECT_LT(store_.checkpoints(sheared(store_).id).size(), 7U);
   EXPECT_TRUE(missing_checkpoints(store_, sheared(store_)).empty()) << "pruned ones were made";
 }
 
@@ -241,4 +238,4 @@ TEST_F(Phases, DrawALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

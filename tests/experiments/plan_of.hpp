@@ -8,7 +8,7 @@
 
 namespace shearcell::test {
 
-/// Of a manifest with this `base` on line 2 and `rest` below.
+/// The plan of a manifest with this `base` on line 2 and `rest` below.
 inline Plan plan_of(const std::string& base, const std::string& rest = "",
                     const ExpandOptions& options = {}) {
   return expand(parse_manifest("experiment: a\nbase: {" + base + "}\n" + rest, "test.yaml"),

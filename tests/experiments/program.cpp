@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -24,12 +23,11 @@ ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::s
                                         const char* executable) {
   Running program{0, outputs_.path() / ("out" + name), outputs_.path() / ("err" + name)};
   for (const fs::path& file : {program.out, program.err}) fs::remove(file);
-  // A store that the caller's environment names must not be touched.
+  // The caller's environment may name a store.
   Arguments words = {"-u", "SHEARCELL_STORE"};
   if (!named_store_.empty()) words.push_back("SHEARCELL_STORE=" + named_store_);
   words.emplace_back(executable);
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  program.pid = spawn(std::move(words), folder_.path(), program.out, program.err);
+  program.pid = spawn(joined(words, arguments), folder_.path(), program.out, program.err);
   return program;
 }
 
@@ -40,7 +38,7 @@ ProgramTest::Running ProgramTest::start_beside(const Arguments& arguments,
 
 Outcome ProgramTest::wait_for(const Running& program) {
   int status = 0;
-  // One that waits for ever ends the test, not the suite.
+  // A program that hangs must not hang the suite.
   const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(kLimitSeconds);
   while (waitpid(program.pid, &status, WNOHANG) == 0) {
     if (std::chrono::steady_clock::now() > limit) kill(program.pid, SIGKILL);
@@ -52,6 +50,13 @@ Outcome ProgramTest::wait_for(const Running& program) {
   outcome.out = read_bytes(program.out);
   outcome.err = read_bytes(program.err);
   return outcome;
+}
+
+void ProgramTest::wait_for_words(const Running& program, const std::string& words) {
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(kLimitSeconds);
+  while (!has(read_bytes(program.err), words) && std::chrono::steady_clock::now() < limit) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
 }
 
 Outcome ProgramTest::run(const Arguments& arguments) {
@@ -67,9 +72,7 @@ Outcome ProgramTest::expect(int code, const Arguments& arguments,
   Outcome outcome = run(arguments);
   const std::string said = outcome.out + outcome.err;
   EXPECT_EQ(outcome.code, code) << "signal " << outcome.signal << "\n" << said.substr(0, 2000);
-  for (const std::string& part : says) {
-    EXPECT_TRUE(contains(said, part)) << "not: " << part << "\nbut: " << said.substr(0, 2000);
-  }
+  for (const std::string& part : says) EXPECT_TRUE(has(said, part));
   return outcome;
 }
 
@@ -99,7 +102,7 @@ Outcome ProgramTest::run_until(const Arguments& arguments, std::size_t files, in
 
 void ProgramTest::shared(const std::string& identity, const std::string& place,
                          const std::function<void(const std::string& folder)>& make) {
-  // Beside the program, by its date: another build computes it again.
+  // In a folder named after the program's date: another build makes it again.
   const fs::path program = SHEARCELL_PROGRAM;
   const auto date = fs::last_write_time(program).time_since_epoch().count();
   const fs::path all = program.parent_path() / "test-campaigns" / std::to_string(date);
@@ -128,9 +131,7 @@ void ProgramTest::campaign(const std::string& manifest, const Arguments& options
   std::string identity = manifest;
   for (const std::string& option : options) identity += " " + option;
   shared(identity, store, [&](const std::string& folder) {
-    Arguments words = {"run", file, "-q", "--store", folder};
-    words.insert(words.end(), options.begin(), options.end());
-    expect(0, words);
+    expect(0, joined({"run", file, "-q", "--store", folder}, options));
   });
 }
 

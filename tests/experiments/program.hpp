@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs the built program as a person would, in a folder of its own, and says what came of it.
+// Runs the built program in a folder of its own and checks its exit code, output and files.
 #pragma once
 
 #include <sys/types.h>
@@ -18,24 +18,28 @@
 #include <vector>
 
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell::test {
 
 struct Outcome {
-  int code = -1;   ///< exit code, or -1 when a signal ended it
-  int signal = 0;  ///< that ended it, or 0
+  int code = -1;   ///< exit code; -1 if a signal ended it
+  int signal = 0;  ///< that ended it; 0 if none
   std::string out;
   std::string err;
 };
-
-inline bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 /// "run m.yaml -q" as three arguments.
 inline std::vector<std::string> split(const std::string& line) {
   std::istringstream words(line);
   return {std::istream_iterator<std::string>(words), {}};
+}
+
+/// The words of both.
+inline std::vector<std::string> joined(std::vector<std::string> words,
+                                       const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
 }
 
 class ProgramTest : public testing::Test {
@@ -45,11 +49,11 @@ class ProgramTest : public testing::Test {
   /// Runs it to its end.
   Outcome run(const Arguments& arguments);
 
-  /// Runs a command that must end with this code and say each of `says`, on either stream.
+  /// Runs a command that must end with this code and print each of `says`, on either stream.
   Outcome expect(int code, const Arguments& arguments, const std::vector<std::string>& says = {},
                  const std::source_location& where = std::source_location::current());
 
-  /// The same of a bad command line, which must print nothing but messages, and write nothing.
+  /// A bad command line must end with code 2, print to standard error only, and write no file.
   void expect_refused(const Arguments& arguments, const std::vector<std::string>& says,
                       const std::source_location& where = std::source_location::current());
 
@@ -59,7 +63,7 @@ class ProgramTest : public testing::Test {
   /// Sends `signal` as soon as the store has at least `files` checkpoint files.
   Outcome run_until(const Arguments& arguments, std::size_t files, int signal);
 
-  /// One that runs beside the test; its output goes to files of its own.
+  /// A program that runs while the test continues; its output goes to files of its own.
   struct Running {
     pid_t pid = 0;
     std::filesystem::path out, err;
@@ -67,16 +71,19 @@ class ProgramTest : public testing::Test {
   Running start_beside(const Arguments& arguments, const std::string& name);
   static Outcome wait_for(const Running& program);
 
-  /// Copies to `place` what `make` leaves in an empty folder. It is made once per build and shared
-  /// by all test processes.
+  /// Waits until this is on its standard error, two minutes at most.
+  static void wait_for_words(const Running& program, const std::string& words);
+
+  /// Copies to `place` what `make` writes to an empty folder. `make` runs once per build; all test
+  /// processes share the result.
   void shared(const std::string& identity, const std::string& place,
               const std::function<void(const std::string& folder)>& make);
 
-  /// Leaves m.yaml and the store as `run m.yaml OPTIONS -q` does in an empty folder; shared.
+  /// Writes m.yaml and the store that `run m.yaml OPTIONS -q` makes in an empty folder; shared.
   void campaign(const std::string& manifest, const Arguments& options = {},
                 const std::string& store = "shearcell-store");
 
-  /// Output of a command that must succeed, read as JSON.
+  /// Runs a command that must succeed and parses its output as JSON.
   nlohmann::json json(const Arguments& arguments);
 
   /// Writes a file in the folder and returns its name.
@@ -85,12 +92,12 @@ class ProgramTest : public testing::Test {
     return name;
   }
 
-  /// The store that the program's environment names from here on; "" for none.
+  /// Sets SHEARCELL_STORE for the programs started from here on; "" unsets it.
   void name_store(const std::string& store) { named_store_ = store; }
 
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
 
-  /// Everything below the folder, and so whether something was written.
+  /// All paths below the folder, relative to it.
   std::set<std::string> listing() const;
 
   /// Checkpoint files of a store.
@@ -121,7 +128,7 @@ class ProgramTest : public testing::Test {
 
   TemporaryFolder folder_;
   std::string named_store_;
-  TemporaryFolder outputs_;  // apart, so that they do not show in the listing
+  TemporaryFolder outputs_;  // not in folder_, which listing() shows
 };
 
 }  // namespace shearcell::test

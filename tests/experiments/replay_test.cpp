@@ -13,10 +13,8 @@
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class ReplayTest : public DrawingTest {
  protected:
@@ -176,4 +174,4 @@ TEST_F(ReplayTest, FiguresNameWhatWasPruned) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

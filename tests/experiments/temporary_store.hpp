@@ -30,9 +30,9 @@ inline void truncate_file(const std::filesystem::path& file) {
 inline constexpr std::size_t kGrains = 300;
 inline constexpr std::size_t kStepsPerCycle = 10000;
 
-/// Table I with the largest round time step that is stable: a cycle takes some 60 ms and is more
-/// than one of the runner's chunks, so that an interruption falls within a cycle.
-/// Lines of `base` replace or join the base values; `rest` is added to the manifest.
+/// Table I with the largest round time step that is stable. A cycle takes about 60 ms and more than
+/// one of the runner's chunks, so that an interruption falls within a cycle.
+/// Lines of `base` replace base values or are added to them; `rest` is added to the manifest.
 inline std::string tiny_manifest(const std::string& base = "", const std::string& rest = "") {
   std::string text =
       "experiment: tiny\n"
@@ -47,16 +47,21 @@ inline std::string tiny_manifest(const std::string& base = "", const std::string
   return text + base + rest;
 }
 
+/// The same runs in an experiment of another name.
+inline std::string renamed(std::string manifest, const std::string& experiment) {
+  return manifest.replace(manifest.find("tiny"), 4, experiment);
+}
+
 inline const std::string kBothFluids = "sweep: {grid: {fluid: [still, cell]}}\n";
 
-/// Declares what a manifest expands to; its stages.
+/// Declares the runs of a manifest; returns its stages.
 inline std::vector<StageJob> declared(Store& store, const std::string& text,
                                       const ExpandOptions& options = {}) {
   const Manifest manifest = parse_manifest(text, "tiny.yaml");
   return declare(store, manifest, expand(manifest, options));
 }
 
-/// Declares what a manifest expands to and brings it to its target.
+/// Declares the runs of a manifest and computes them.
 inline CampaignResult compute(Store& store, const std::string& text,
                               const ExpandOptions& options = {}, std::size_t workers = 2) {
   const std::vector<StageJob> jobs = declared(store, text, options);
@@ -75,6 +80,15 @@ inline std::map<std::string, std::string> final_hashes(const Store& store) {
   std::map<std::string, std::string> hashes;
   for (const RunRecord& run : store.runs()) hashes[run.id] = run.state_hash;
   return hashes;
+}
+
+/// Run id -> hash of its last state, of runs that nothing disturbs in a store of their own.
+inline std::map<std::string, std::string> undisturbed(const std::string& text,
+                                                      const ExpandOptions& options = {}) {
+  const TemporaryFolder folder;
+  Store store(folder.path() / "store", Access::create);
+  compute(store, text, options);
+  return final_hashes(store);
 }
 
 inline std::vector<RunRecord> runs_of_kind(const Store& store, const std::string& kind) {
@@ -114,7 +128,7 @@ inline std::vector<double> cycles_of(const Store& store, const std::string& run)
   return cycles;
 }
 
-/// Takes back any wish to stop when a test ends, however it ends.
+/// Clears a request to stop at the beginning and at the end of a test.
 struct StopWish {
   StopWish() { request_stop(false); }
   ~StopWish() { request_stop(false); }
@@ -122,7 +136,7 @@ struct StopWish {
   StopWish& operator=(const StopWish&) = delete;
 };
 
-/// Has a stage interrupted after the first chunk of steps of its attempt.
+/// Runs a stage for one chunk of steps and interrupts it.
 inline StageOutcome run_one_chunk(Store& store, const std::string& id) {
   const StopWish wish;
   StageOptions options;
@@ -139,11 +153,11 @@ inline std::size_t interrupt_to_the_end(Store& store, const std::string& id,
     ++interrupted;
     if (between) between();
   }
-  EXPECT_LT(interrupted, most) << "the stage does not come forward";
+  EXPECT_LT(interrupted, most) << "the stage makes no progress";
   return interrupted;
 }
 
-/// An empty store; a wish to stop ends with the test.
+/// An empty store; a request to stop ends with the test.
 class StoreTest : public testing::Test {
  protected:
   TemporaryFolder folder_;

@@ -10,10 +10,8 @@
 #include "provenance/derived.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 RunAsk ask(std::uint64_t cycles, std::optional<Until> until = std::nullopt) {
   return {cycles, until};
@@ -165,19 +163,14 @@ TEST_F(UntilTest, IsExtendedWithoutOneOrWithALaterOne) {
 }
 
 TEST_F(UntilTest, OfTwoExperimentsTheLongestCounts) {
-  std::string twin = tiny_manifest("  cycles: 5\n");
-  twin.replace(twin.find("tiny"), 4, "twin");
-  for (const std::string& text : {manifest(until(0)), twin}) {
-    declared(store_, text);
-  }
+  declared(store_, manifest(until(0)));
+  declared(store_, renamed(tiny_manifest("  cycles: 5\n"), "twin"));
   EXPECT_EQ(resume(store_).completed, 2U);
   expect_end(store_, 5);
 }
 
 TEST_F(UntilTest, OfTwoExperimentsTheReasonIsThatOfTheLongest) {
-  std::string twin = tiny_manifest("  cycles: 5\n");
-  twin.replace(twin.find("tiny"), 4, "twin");
-  compute(store_, twin);
+  compute(store_, renamed(tiny_manifest("  cycles: 5\n"), "twin"));
   EXPECT_EQ(compute(store_, manifest(until(0))).already, 2U) << "nothing is stepped";
   const RunRecord run = sheared(store_);
   EXPECT_EQ(run.cycle, 5);
@@ -198,9 +191,7 @@ TEST_F(UntilTest, AnExperimentEndsItsRunsInItsFiguresToo) {
   compute(store_, manifest(until()));
   const nlohmann::json alone = compute_figure(store_, s2, {}).lineage;
   const std::string table = rows();
-  std::string twin = tiny_manifest("  cycles: 6\n");
-  twin.replace(twin.find("tiny"), 4, "twin");
-  EXPECT_EQ(compute(store_, twin).completed, 1U);
+  EXPECT_EQ(compute(store_, renamed(manifest(""), "twin")).completed, 1U);
   expect_end(store_, 6);
   EXPECT_EQ(compute_figure(store_, s2, {}).lineage, alone);
   EXPECT_EQ(rows(), table);
@@ -222,4 +213,4 @@ TEST_F(UntilTest, IsTheSameAfterInterruptionsWithinCycles) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

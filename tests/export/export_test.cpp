@@ -15,21 +15,19 @@
 #include "experiments/export/formats.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::read_bytes;
 
 /// A small packing at the end of a cycle, and the same grains in a cell that tilts and whose wall
 /// moves.
 std::vector<Checkpoint> checkpoints() {
-  Parameters parameters;
-  parameters.grains = 250;
   Checkpoint upright;
   upright.run = std::string(64, 'a');
-  const bench::Packing packing = bench::pressed_packing(parameters, 1);
+  const bench::Packing packing = bench::pressed_packing({.grains = 250}, 1);
   upright.cell = packing.cell;
   upright.state = packing.state;
   upright.state.position.row(2).array() += 2 * upright.cell.depth;  // z is unwrapped
@@ -301,8 +299,8 @@ TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
   extxyz_writer(folder.path() / "run.xyz",
                 Lengths::diameters)(frame_of(checkpoints().back(), {}, run));
   const std::string text = read_bytes(folder.path() / "run.xyz");
-  EXPECT_EQ(text.find("scale="), std::string::npos);
-  EXPECT_NE(text.find(" experiment=\"drag\" variant="), std::string::npos);
+  EXPECT_FALSE(has(text, "scale="));
+  EXPECT_TRUE(has(text, " experiment=\"drag\" variant="));
 }
 
 TEST(Export, SaysWhatItCannotWrite) {
@@ -318,4 +316,4 @@ TEST(Export, SaysWhatItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

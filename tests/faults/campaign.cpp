@@ -23,7 +23,7 @@ bool is_write(const std::string& operation) {
 
 }  // namespace
 
-std::string small_manifest(const std::string& more) {
+std::string small_manifest(const std::string& more, std::size_t cycles) {
   return "experiment: small\n"
          "question: Does the store survive?\n"
          "figures: [S2]\n"
@@ -34,7 +34,9 @@ std::string small_manifest(const std::string& more) {
          "  steps_per_cycle: 500\n"
          "  amplitude_rad: 0.01\n"
          "  settle_time_step_s: 1.0e-4\n"
-         "  cycles: 2\n"
+         "  cycles: " +
+         std::to_string(cycles) +
+         "\n"
          "sweep: {grid: {fluid: [still, cell]}}\n" +
          more;
 }
@@ -107,16 +109,6 @@ std::vector<std::string> check_left_behind(const fs::path& folder) {
     if (!missing && size > 0) wrong.emplace_back(error.what());
   }
   return wrong;
-}
-
-std::map<std::string, std::string> run_on(const fs::path& folder) {
-  Store store(folder / "store", Access::create);
-  compute(store, read_bytes(folder / "small.yaml"), {}, 1);
-  std::map<std::string, std::string> hashes;
-  for (const RunRecord& run : store.runs()) {
-    hashes[run.id] = run.state == RunState::completed ? run.state_hash : "";
-  }
-  return hashes;
 }
 
 }  // namespace shearcell::test

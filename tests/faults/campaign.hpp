@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A campaign of less than a second for the tests with faults and kills, and checks of the store
-// afterwards.
+// A campaign of less than a second for tests with faults and kills, and checks of its store.
 #pragma once
 
 #include <sys/types.h>
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
 namespace shearcell::test {
 
 /// 60 grains between smooth walls: a packing and two sheared runs of it, some 20 events.
-std::string small_manifest(const std::string& more = "");
+std::string small_manifest(const std::string& more = "", std::size_t cycles = 2);
 
 struct Fault {
   long at = 0;  ///< number of the file operation, from 1; 0 for none
@@ -40,9 +38,5 @@ std::vector<Fault> fault_points(const std::vector<std::string>& operations);
 /// Checks a store after a fault: it opens, `verify` finds no error, and every recorded checkpoint
 /// can be loaded. Returns the violations.
 std::vector<std::string> check_left_behind(const std::filesystem::path& folder);
-
-/// Completes the campaign without faults; the final state hash of each run, "" for runs that do not
-/// complete.
-std::map<std::string, std::string> run_on(const std::filesystem::path& folder);
 
 }  // namespace shearcell::test

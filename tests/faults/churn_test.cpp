@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -48,11 +47,10 @@ class Churn : public testing::Test {
     const std::size_t seed = 1 + below(seeds_), cycles = 2 + below(16), every = 1 + below(3);
     const fs::path file = at("s" + std::to_string(seed) + "c" + std::to_string(cycles) + "e" +
                              std::to_string(every) + ".yaml");
-    std::string text =
-        small_manifest("seeds: [" + std::to_string(seed) +
-                       "]\ncheckpoints: {every_cycles: " + std::to_string(every) + "}\n");
-    text.replace(text.find("cycles: 2"), 9, "cycles: " + std::to_string(cycles));
-    std::ofstream(file) << text;
+    write_bytes(
+        file, small_manifest("seeds: [" + std::to_string(seed) +
+                                 "]\ncheckpoints: {every_cycles: " + std::to_string(every) + "}\n",
+                             cycles));
     manifests_.insert(file);
     return {"run", {"run", file, "-q", "-j", std::to_string(1 + below(2))}, folder};
   }

@@ -17,20 +17,13 @@ namespace {
 
 class Kills : public testing::Test {
  protected:
-  // Runs long enough that a kill finds work in progress, and seeds enough that there is always
-  // more.
-  static std::string manifest(std::size_t kills) {
-    std::string text = small_manifest("seeds: " + std::to_string(2 + kills) + "\n");
-    const auto cycles = text.find("cycles: 2");
-    return text.replace(cycles, 9, "cycles: 40");
-  }
-
   void kill_and_go_on(std::size_t kills) {
-    TemporaryFolder whole, shared;
-    for (const auto* folder : {&whole, &shared}) {
-      std::ofstream(folder->path() / "small.yaml") << manifest(kills);
-    }
-    const auto golden = run_on(whole.path());
+    // Runs long enough that a kill finds work in progress, and seeds enough that there is always
+    // more.
+    const std::string text = small_manifest("seeds: " + std::to_string(2 + kills) + "\n", 40);
+    const auto golden = undisturbed(text);
+    const TemporaryFolder shared;
+    write_bytes(shared.path() / "small.yaml", text);
     std::mt19937 random(4);
     pid_t programs[2] = {start_campaign(shared.path(), {}), start_campaign(shared.path(), {})};
     std::size_t found_at_work = 0;

@@ -40,9 +40,11 @@ class Faults : public testing::Test {
   Faults() {
     for (const char* name : {"new", "campaign", "other"}) {
       fs::create_directory(at(name));
-      std::ofstream(at(name) / "small.yaml")
-          << small_manifest(std::string(name) == "other" ? "seeds: [2]\n" : "");
-      if (std::string(name) != "new") run_on(at(name));
+      const std::string text = small_manifest(std::string(name) == "other" ? "seeds: [2]\n" : "");
+      write_bytes(at(name) / "small.yaml", text);
+      if (std::string(name) == "new") continue;
+      Store store(at(name) / "store", Access::create);
+      compute(store, text, {}, 1);
     }
     fs::copy(at("campaign"), at("pruned"), fs::copy_options::recursive);
     Store store(at("pruned") / "store", Access::write);

@@ -8,15 +8,13 @@
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class AccuracyCharts : public testing::Test {
  protected:
   void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_.path() / name, std::ios::binary) << text;
+    write_bytes(folder_.path() / name, text);
   }
   std::vector<ReportPanel> read() const { return read_accuracy_charts(folder_.path()); }
   std::string trouble() const {
@@ -71,19 +69,18 @@ TEST_F(AccuracyCharts, RefuseAMalformedChart) {
     nlohmann::json bad = chart();
     bad[nlohmann::json::json_pointer(place)] = value;
     write("a.chart.json", bad.dump());
-    EXPECT_NE(trouble().find("a.chart.json: not a chart"), std::string::npos) << place;
+    EXPECT_TRUE(has(trouble(), "a.chart.json: not a chart")) << place;
   }
   write("a.chart.json", std::string(100'000, '['));
-  EXPECT_NE(trouble().find("not a chart"), std::string::npos);
+  EXPECT_TRUE(has(trouble(), "not a chart"));
 }
 
 TEST_F(AccuracyCharts, NameTheFileOrFolderThatIsWrong) {
-  EXPECT_NE(trouble().find("0 CSV files"), std::string::npos) << trouble();
+  EXPECT_TRUE(has(trouble(), "0 CSV files"));
   write("a.csv", std::string(3'000'000, '1'));
-  EXPECT_NE(trouble().find("a.csv: not a readable file of at most 2 MB"), std::string::npos)
-      << trouble();
+  EXPECT_TRUE(has(trouble(), "a.csv: not a readable file of at most 2 MB"));
   EXPECT_THROW(read_accuracy_charts(folder_.path() / "none"), UsageError);
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

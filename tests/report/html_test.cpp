@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Texts stay texts in a page.
 #include "experiments/report/html.hpp"
+#include "tests/support/text.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
 TEST(Html, EscapesWhatMeansSomethingToAParserOrNoPageMayHold) {
@@ -19,10 +20,8 @@ TEST(Html, EscapesWhatMeansSomethingToAParserOrNoPageMayHold) {
 
 TEST(Html, CellsOfATableNameTheirColumns) {
   const std::string html = html_table({"run", "#<i>N</i>", ""}, {{"a", "600", "x"}});
-  EXPECT_NE(html.find("<th class=\"number\"><i>N</i></th>"), std::string::npos) << html;
-  EXPECT_NE(html.find("<td class=\"number\">" + card_label("<i>N</i>") + "600</td><td>x</td>"),
-            std::string::npos)
-      << html;
+  EXPECT_TRUE(has(html, "<th class=\"number\"><i>N</i></th>"));
+  EXPECT_TRUE(has(html, "<td class=\"number\">" + card_label("<i>N</i>") + "600</td><td>x</td>"));
 }
 
 TEST(Html, JsonCannotEndItsScriptElement) {
@@ -45,4 +44,4 @@ TEST(Html, Base64IsThatOfRfc4648) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

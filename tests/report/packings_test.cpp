@@ -6,11 +6,11 @@
 
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
 
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 using List = std::vector<std::size_t>;
 
 TEST(Evenly, TakesTheFirstAndTheLast) {
@@ -22,7 +22,7 @@ TEST(Evenly, TakesTheFirstAndTheLast) {
   EXPECT_EQ(evenly(3, 0), List{});
 }
 
-class PackingsOf : public testing::Test {
+class PackingsOf : public StoreTest {
  protected:
   PackingsOf() {
     // Two variants of two seeds each, cycles 0 to 2.
@@ -32,9 +32,6 @@ class PackingsOf : public testing::Test {
   Packings collect(const PackingChoice& choice) {
     return collect_packings(store_, {"tiny"}, {}, choice, 2, {});
   }
-
-  TemporaryFolder folder_;
-  Store store_{folder_.path() / "store", Access::create};
 };
 
 TEST_F(PackingsOf, ShowTheLastRunOfEachVariant) {
@@ -42,7 +39,7 @@ TEST_F(PackingsOf, ShowTheLastRunOfEachVariant) {
   ASSERT_EQ(packings.runs.size(), 2U);
   EXPECT_EQ(packings.frames, 6U);
   for (const auto& run : packings.runs) {
-    EXPECT_NE(run.at("label").get<std::string>().find("seed 2"), std::string::npos) << run["label"];
+    EXPECT_TRUE(has(run.at("label").get<std::string>(), "seed 2"));
     EXPECT_EQ(run.at("frames").size(), 3U);
     EXPECT_EQ(run.at("grains"), kGrains);
   }
@@ -87,11 +84,11 @@ TEST_F(PackingsOf, CanBeNamed) {
 
 TEST_F(PackingsOf, LeaveOutWhatIsDamagedAndSaySo) {
   const std::string run = runs_of_kind(store_, "shear").back().id;
-  truncate_file(folder_.path() / "store" / store_.checkpoints(run).back().file);
+  truncate_file(store_.folder() / store_.checkpoints(run).back().file);
   const Packings packings = collect({});
   ASSERT_EQ(packings.notes.size(), 1U);
   EXPECT_EQ(packings.frames, 5U);
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -10,11 +10,10 @@
 #include "experiments/figures/run_table.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
-namespace shearcell {
+namespace shearcell::test {
 namespace {
-
-using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 std::size_t count(const std::string& text, const std::string& part) {
   std::size_t found = 0;
@@ -33,7 +32,7 @@ nlohmann::json data_of(const std::string& html) {
   return nlohmann::json::parse(html.substr(from, html.find("</script>", from) - from));
 }
 
-class ReportOf : public testing::Test {
+class ReportOf : public StoreTest {
  protected:
   ReportData collect(const ReportOptions& options = {}) { return collect_report(store_, options); }
   std::string make(const ReportOptions& options = {}) { return report_page(collect(options)); }
@@ -43,9 +42,6 @@ class ReportOf : public testing::Test {
     options.interactive = false;
     return options;
   }
-
-  TemporaryFolder folder_;
-  Store store_{folder_.path() / "store", Access::create};
 };
 
 class ReportOfRuns : public ReportOf {
@@ -56,7 +52,7 @@ class ReportOfRuns : public ReportOf {
 TEST_F(ReportOfRuns, HasTheSameBytesAgainAndLeavesTheLogAlone) {
   const Head before = store_.head();
   const std::string first = make();
-  std::filesystem::remove(folder_.path() / "store" / "derived.sqlite");
+  std::filesystem::remove(store_.folder() / "derived.sqlite");
   ReportOptions options;
   options.workers = 3;
   EXPECT_EQ(make(options), first);
@@ -85,7 +81,7 @@ TEST_F(ReportOfRuns, HoldsQuestionVerdictRunsLineageAndNumbers) {
         std::string("fluid=still"), std::string("variant,cycle,phi_mean"), head.hash,
         runs_of_kind(store_, "shear").front().id,
         store_.checkpoints(runs_of_kind(store_, "shear").front().id).back().sha256}) {
-    EXPECT_NE(html.find(part), std::string::npos) << part;
+    EXPECT_TRUE(has(html, part));
   }
 }
 
@@ -171,8 +167,7 @@ TEST_F(ReportOf, CallsVariantsByTheirLabels) {
 
 TEST_F(ReportOfRuns, AllowsOnlyItsOwnScriptAndHasNoneWithDrawings) {
   const std::string html = make();
-  EXPECT_NE(html.find("Content-Security-Policy\" content=\"default-src 'none';"),
-            std::string::npos);
+  EXPECT_TRUE(has(html, "Content-Security-Policy\" content=\"default-src 'none';"));
   EXPECT_EQ(count(html, "script-src 'sha256-"), has_front_end() ? 1U : 0U);
   for (const char* link : {"src=\"http", "href=\"http", "url(http", "@import"}) {
     EXPECT_EQ(count(html, link), 0U) << link;
@@ -187,10 +182,10 @@ TEST_F(ReportOfRuns, AllowsOnlyItsOwnScriptAndHasNoneWithDrawings) {
 
 TEST_F(ReportOfRuns, NamesDamagedCheckpoints) {
   const std::string run = runs_of_kind(store_, "shear").front().id;
-  truncate_file(folder_.path() / "store" / store_.checkpoints(run).front().file);
+  truncate_file(store_.folder() / store_.checkpoints(run).front().file);
   const ReportData report = collect();
   ASSERT_EQ(report.damage.size(), 1U);
-  EXPECT_NE(report_page(report).find("Left out: "), std::string::npos);
+  EXPECT_TRUE(has(report_page(report), "Left out: "));
 }
 
 TEST_F(ReportOf, NeedsAnExperiment) {
@@ -230,4 +225,4 @@ TEST_F(ReportOf, ShowsMarkupAsText) {
 }
 
 }  // namespace
-}  // namespace shearcell
+}  // namespace shearcell::test

@@ -20,4 +20,10 @@ inline void write_bytes(const std::filesystem::path& file, const std::string& by
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
+/// A program of the test's own.
+inline void write_script(const std::filesystem::path& file, const std::string& text) {
+  write_bytes(file, text);
+  std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+}
+
 }  // namespace shearcell::test

@@ -14,8 +14,8 @@ namespace shearcell::test {
 
 constexpr std::size_t kFrame = 512;  ///< bytes before a checkpoint's HDF5
 
-/// The bytes with the frame of a checkpoint and a right SHA-256 before them; a frame that they have
-/// is put right.
+/// Puts the frame of a checkpoint, with the right SHA-256, before the bytes. Replaces a frame that
+/// they have.
 inline std::vector<std::byte> sealed(std::span<const std::byte> bytes) {
   const std::string title = "shearcell checkpoint 1\n";
   const std::size_t frame = std::min(bytes.size(), kFrame);

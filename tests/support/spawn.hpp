@@ -13,8 +13,8 @@
 
 namespace shearcell::test {
 
-/// Starts `env WORDS` in the folder, with an empty standard input. What it writes is added to the
-/// two files, which may be one.
+/// Starts `env WORDS` in the folder, with an empty standard input. Output is appended to the two
+/// files, which may be the same.
 inline pid_t spawn(std::vector<std::string> words, const std::filesystem::path& folder,
                    const std::filesystem::path& out, const std::filesystem::path& err) {
   posix_spawn_file_actions_t actions;

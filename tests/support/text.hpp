@@ -13,17 +13,17 @@ namespace shearcell::test {
 inline ::testing::AssertionResult has(std::string_view text, std::string_view part) {
   const bool found = text.find(part) != std::string_view::npos;
   return (found ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
-         << "'" << part << (found ? "' is in:\n" : "' is not in:\n") << text;
+         << "'" << part << (found ? "' is in:\n" : "' is not in:\n") << text.substr(0, 5000);
 }
 
-/// The text in single quotes, as SQL has it.
+/// The text as an SQL string literal.
 inline std::string sql_text(std::string_view text) {
   std::string quoted = "'";
   for (const char c : text) quoted.append(c == '\'' ? 2 : 1, c);
   return quoted + "'";
 }
 
-/// The message of the exception that the statement throws; "" when it throws none.
+/// The message of the exception that the statement throws; "" if it throws none.
 template <typename Exception, typename Statement>
 std::string message_of(Statement&& statement) {
   try {

@@ -7,7 +7,7 @@
 
 namespace shearcell::test {
 
-/// Sets a variable of the environment while it lives, and restores it.
+/// Sets an environment variable; the destructor restores it.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {
