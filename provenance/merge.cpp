@@ -13,7 +13,6 @@
 #include <optional>
 #include <utility>
 
-#include "provenance/derive.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/events.hpp"
 #include "provenance/json_text.hpp"
@@ -135,7 +134,7 @@ bool declares_news(const Database& into, const Event& event) {
   Statement same(into,
                  "SELECT target_cycles FROM memberships WHERE run = ? AND experiment = ? AND "
                  "scale = ? AND variant = ? AND seed = ? AND manifest = ?",
-                 event.stream.substr(4), m.experiment, m.scale, m.variant, m.seed, m.manifest);
+                 run_of(event).value(), m.experiment, m.scale, m.variant, m.seed, m.manifest);
   return !same.step() || same.u64(0) < declared.target_cycles;
 }
 
@@ -257,8 +256,8 @@ Source read_source(const std::filesystem::path& folder, const std::set<std::stri
   }
   if (!runs.empty()) {
     std::erase_if(source.events, [&runs](const Event& event) {
-      return !event.stream.starts_with("manifest/") &&
-             !(event.stream.starts_with("run/") && runs.contains(event.stream.substr(4)));
+      const auto run = run_of(event);
+      return !event.stream.starts_with("manifest/") && !(run && runs.contains(*run));
     });
   }
   for (const Event& event : source.events) {
@@ -314,7 +313,7 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   };
   for (const Event& event : source.events) {
     if (known.contains(content_key(event)) || !streams.contains(event.stream)) continue;
-    if (event.stream.starts_with("run/")) {
+    if (run_of(event)) {
       const auto run = runs.find(event.stream);
       if (run == runs.end() || !run->second.wants(into, event)) continue;
     }
