@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Minima of the enthalpy: known ones, that of a packing, and the same bits however it is computed.
+// Minima of the enthalpy: known ones, and that of a packing. Its bits: reproducible_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -123,18 +123,6 @@ TEST(Minimizer, APackingEndsAtALocalMinimumOfTheEnthalpy) {
     changed.stiffness *= factor;
     const State other = minimized(cell, changed, start, 1e-4);
     EXPECT_LT(enthalpy(cell, changed, other), enthalpy(cell, changed, start)) << factor;
-  }
-}
-
-// On every kernel: Reproducible.TheBitsOfTheReferenceBuildOnEveryKernel.
-TEST(Minimizer, GivesTheSameBitsWithAnyThreadsAndLists) {
-  const State expected = test::minimized({});
-  EngineSettings settings;
-  settings.lists.rebuild_every_step = true;
-  EXPECT_TRUE(same_bits(test::minimized(settings), expected)) << "every step";
-  settings.lists.rebuild_every_step = false;
-  for (settings.threads = 2; settings.threads <= 3; ++settings.threads) {
-    EXPECT_TRUE(same_bits(test::minimized(settings), expected)) << settings.threads << " threads";
   }
 }
 

@@ -83,6 +83,17 @@ inline State advanced(const Sheared& start, std::uint64_t steps,
   return simulation.state();
 }
 
+/// The failure in which the work ends.
+template <class Work>
+NumericalFailure failure_of(Work&& work) {
+  try {
+    work();
+  } catch (const NumericalFailure& failure) {
+    return failure;
+  }
+  throw std::runtime_error("nothing failed");
+}
+
 /// Equal to the last bit (so +0 and -0 differ).
 bool same_bits(const State& a, const State& b);
 

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <thread>
-
+#include "core/threads.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {
@@ -129,15 +128,11 @@ TEST_F(DerivedCacheTest, TouchesNoForeignFile) {
 }
 
 TEST_F(DerivedCacheTest, SeveralMayKeepAtOnce) {
-  std::vector<std::thread> threads;
-  for (int t = 0; t < 4; ++t) {
-    threads.emplace_back([this, t] {
-      DerivedCache cache(folder_.path());  // a connection of its own, as another process has
-      for (int i = 0; i < 50; ++i) put(cache, key(i), "content " + std::to_string(i));
-      EXPECT_EQ(cache.trouble(), "") << t;
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
+  start_threads(5, [this](std::size_t thread) {
+    DerivedCache cache(folder_.path());  // a connection of its own, as another process has
+    for (int i = 0; i < 50; ++i) put(cache, key(i), "content " + std::to_string(i));
+    EXPECT_EQ(cache.trouble(), "") << thread;
+  });
   for (int i = 0; i < 50; ++i) EXPECT_EQ(get(key(i)), bytes_of("content " + std::to_string(i)));
 }
 

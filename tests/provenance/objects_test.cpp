@@ -8,8 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <thread>
-
+#include "core/threads.hpp"
 #include "provenance/errors.hpp"
 #include "tests/provenance/samples.hpp"
 #include "tests/support/variable.hpp"
@@ -99,9 +98,7 @@ TEST_F(ObjectStoreTest, NamesStrangers) {
 
 TEST_F(ObjectStoreTest, TakesTheSameObjectFromSeveralThreads) {
   const std::vector<std::byte> large(1 << 20, std::byte{7});
-  std::vector<std::thread> threads;
-  for (int t = 0; t < 4; ++t) threads.emplace_back([&] { objects_.put(large); });
-  for (std::thread& thread : threads) thread.join();
+  start_threads(5, [&](std::size_t) { objects_.put(large); });
   const std::string sha256 = sha256_hex(large);
   EXPECT_EQ(objects_.get(sha256, large.size()), large);
   EXPECT_TRUE(objects_.strangers({sha256}).empty());

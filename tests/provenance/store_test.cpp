@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include <optional>
-#include <thread>
 
+#include "core/threads.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {
@@ -137,18 +137,6 @@ TEST_F(StoreTest, TellsWhyARunStopped) {
   EXPECT_EQ(store_.run(id_).error, "an overlap of 0.3 d");
 }
 
-TEST_F(StoreTest, TwoWritersOfOneRunConflict) {
-  Store first(path_, Access::create, {.lease_seconds = 0});  // others may take its runs at once
-  first.start_run(id_, {});
-  EXPECT_THROW(first.start_run(id_, {}), ConcurrencyConflict);
-  store_.start_run(id_, {});
-  EXPECT_THROW(first.record_checkpoint(id_, sample_checkpoint(id_)), ConcurrencyConflict);
-  EXPECT_THROW(first.interrupt_run(id_, "late"), ConcurrencyConflict);
-  store_.record_checkpoint(id_, sample_checkpoint(id_));
-  store_.complete_run(id_);
-  EXPECT_EQ(first.run(id_).state, RunState::completed);
-}
-
 TEST_F(StoreTest, ANewMembershipDisturbsNoRunner) {
   store_.start_run(id_, {});
   RunDeclaration shared = sample_run(1);
@@ -235,22 +223,19 @@ TEST_F(StoreTest, KeepsTheNewestRecordOfEachFigure) {
 
 TEST_F(StoreTest, TakesRecordsFromManyThreadsAndProcesses) {
   constexpr int kRuns = 8;
-  std::vector<std::thread> threads;
-  for (int i = 2; i < 2 + kRuns; ++i) {
-    threads.emplace_back([this, i] {
-      std::optional<Store> own;  // a connection of its own, as another process has
-      if (i % 2 == 0) own.emplace(path_, Access::write);
-      Store& store = own ? *own : store_;
-      store.declare_run(sample_run(i));
-      store.start_run(run_id(i), {});
-      for (std::uint64_t step = 0; step < 5; ++step) {
-        store.record_checkpoint(run_id(i), sample_checkpoint(run_id(i), step));
-        store.runs();
-      }
-      store.complete_run(run_id(i));
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
+  start_threads(1 + kRuns, [this](std::size_t thread) {
+    const int i = 1 + static_cast<int>(thread);
+    std::optional<Store> own;  // a connection of its own, as another process has
+    if (i % 2 == 0) own.emplace(path_, Access::write);
+    Store& store = own ? *own : store_;
+    store.declare_run(sample_run(i));
+    store.start_run(run_id(i), {});
+    for (std::uint64_t step = 0; step < 5; ++step) {
+      store.record_checkpoint(run_id(i), sample_checkpoint(run_id(i), step));
+      store.runs();
+    }
+    store.complete_run(run_id(i));
+  });
   for (int i = 2; i < 2 + kRuns; ++i) {
     EXPECT_EQ(store_.run(run_id(i)).state, RunState::completed);
   }
