@@ -11,7 +11,6 @@
 #include <iterator>
 #include <random>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
 namespace shearcell {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <string>
 
 #include "core/diagnostics.hpp"
 #include "core/random.hpp"

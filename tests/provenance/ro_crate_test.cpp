@@ -151,7 +151,7 @@ TEST_F(Crate, APrunedCheckpointIsToldOfAndNotCopied) {
   write_ro_crate(store_, history_.sheared, pruned);
   EXPECT_FALSE(fs::exists(pruned / crate_path_of_checkpoint(record.sha256)));
   const std::string metadata = test::read_bytes(pruned / "ro-crate-metadata.json");
-  EXPECT_NE(metadata.find("#checkpoint-" + record.sha256), std::string::npos);
+  EXPECT_TRUE(test::has(metadata, "#checkpoint-" + record.sha256));
   test::write_bytes(crate_ / "checkpoints" / "notes", "of the user");
   EXPECT_TRUE(fs::exists(crate_ / crate_path_of_checkpoint(record.sha256)));
   write_ro_crate(store_, history_.sheared, crate_);

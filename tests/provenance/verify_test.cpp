@@ -108,11 +108,9 @@ TEST_F(VerifyTest, RebuildRepairsTheTables) {
   execute("UPDATE runs SET state = 'completed' WHERE state = 'failed'");
   const Finding finding = only(verify());
   EXPECT_EQ(finding.subject, "table runs");
-  EXPECT_NE(finding.message.find("rebuild"), std::string::npos);
-  EXPECT_NE(
-      finding.message.find(run_id(1) + "') should have state = 'failed', but has 'completed'"),
-      std::string::npos)
-      << finding.message;
+  EXPECT_TRUE(test::has(finding.message, "rebuild"));
+  EXPECT_TRUE(test::has(finding.message,
+                        run_id(1) + "') should have state = 'failed', but has 'completed'"));
   EXPECT_LT(finding.message.size(), 300u);
   execute("DELETE FROM memberships WHERE run = '" + run_id(1) + "'");
   EXPECT_TRUE(names(verify(), "table memberships", "') is missing;"));
@@ -280,7 +278,7 @@ TEST_F(VerifyTest, NotesAStepThatWasReproducedDifferently) {
   store.record_checkpoint(run_id(1), other);
   const VerifyReport report = store.verify();
   EXPECT_TRUE(report.ok());
-  EXPECT_NE(only(report).message.find("different states at step 1"), std::string::npos);
+  EXPECT_TRUE(test::has(only(report).message, "different states at step 1"));
 }
 
 }  // namespace
