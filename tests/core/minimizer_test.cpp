@@ -13,9 +13,7 @@
 namespace shearcell {
 namespace {
 
-using test::at_rest;
-using test::same_bits;
-using test::table_1;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 constexpr double kTolerance = 1e-8;
 
@@ -101,7 +99,7 @@ State shaken(State state, double size, std::uint32_t trial) {
 }
 
 TEST(Minimizer, APackingEndsAtALocalMinimumOfTheEnthalpy) {
-  const auto& [cell, start] = test::small_packing();
+  const auto& [cell, start] = small_packing();
   const Scene scene = table_1();
   const State end = minimized(cell, scene, start);
   const double residual = force_residual(cell, scene, end);
@@ -126,18 +124,18 @@ TEST(Minimizer, APackingEndsAtALocalMinimumOfTheEnthalpy) {
 }
 
 TEST(Minimizer, FailsWhenTheToleranceIsOutOfReach) {
-  const auto& [cell, start] = test::small_packing();
+  const auto& [cell, start] = small_packing();
   const Scene scene = table_1();
   Simulation simulation(cell, scene, start);
   MinimizeSettings settings;
   settings.force_tolerance = 1e-30;
   settings.most_evaluations = 500;
-  test::expect_refused<NumericalFailure>([&] { minimize_enthalpy(simulation, settings); },
-                                         {"minimize_force_tolerance"});
+  expect_refused<NumericalFailure>([&] { minimize_enthalpy(simulation, settings); },
+                                   {"minimize_force_tolerance"});
 }
 
 TEST(Simulation, GoesOnFromAStateThatWasSet) {
-  const auto& [cell, start] = test::small_packing();
+  const auto& [cell, start] = small_packing();
   const Scene scene = table_1();
   Simulation straight(cell, scene, start);
   straight.advance({}, 500);
@@ -155,7 +153,7 @@ TEST(Simulation, GoesOnFromAStateThatWasSet) {
 
 // With a drag of 2/dt a step keeps nothing of the velocity: v' = dt F / 2.
 TEST(Simulation, ForcesAreThoseThatAStepFeels) {
-  const auto& [cell, rest] = test::small_packing();
+  const auto& [cell, rest] = small_packing();
   const Scene scene = table_1();
   const State start = shaken(rest, 1e-2, 0);
   Scene thick = scene;

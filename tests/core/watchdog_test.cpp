@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run that goes wrong stops, and says where and why.
+// A run that fails stops and reports where and why.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +12,7 @@
 namespace shearcell {
 namespace {
 
-using test::open_cell;
-using test::table_1;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 NumericalFailure failure_of(const Cell& cell, const Scene& scene, const State& state,
                             std::uint64_t steps = 1, const EngineSettings& settings = {}) {
@@ -22,32 +21,32 @@ NumericalFailure failure_of(const Cell& cell, const Scene& scene, const State& s
 }
 
 TEST(Watchdog, StopsNotANumber) {
-  State state = test::at_rest({{20, 20, 20}, {10, 10, 10}}, open_cell());
+  State state = at_rest({{20, 20, 20}, {10, 10, 10}}, open_cell());
   state.velocity(1, 1) = std::nan("");
   EXPECT_EQ(failure_of(open_cell(), table_1(), state).grain, 1);
 }
 
-// A wall at no height touches nothing, and so hides that anything is wrong.
+// A wall whose height is NaN touches nothing, so no other check fails.
 TEST(Watchdog, StopsAWallThatIsNowhere) {
   for (const bool height : {true, false}) {
-    State state = test::at_rest({{20, 20, 20}}, open_cell());
+    State state = at_rest({{20, 20, 20}}, open_cell());
     (height ? state.wall_height : state.wall_velocity) = std::nan("");
     const NumericalFailure failure = failure_of(open_cell(), table_1(), state, 1024);
-    EXPECT_TRUE(test::has(failure.quantity, "moving wall"));
+    EXPECT_TRUE(has(failure.quantity, "moving wall"));
   }
 }
 
 TEST(Watchdog, StopsAGrainThatLeaves) {
-  Scene scene = test::only_contacts();
+  Scene scene = only_contacts();
   scene.stiffness = 1e-3;
   scene.gravity = 3270;
   scene.time_step = 1e-5;
-  State state = test::at_rest({{20, 1, 20}}, open_cell());
+  State state = at_rest({{20, 1, 20}}, open_cell());
   state.velocity(1, 0) = -1e-3;  // slow enough for so weak a wall, but nothing stops it
   EngineSettings settings;
   settings.limits.overlap = 1e4;  // only the escape counts here
   const NumericalFailure failure = failure_of(open_cell(), scene, state, 20000, settings);
-  EXPECT_TRUE(test::has(failure.quantity, "behind a wall"));
+  EXPECT_TRUE(has(failure.quantity, "behind a wall"));
 }
 
 TEST(Watchdog, StopsGrainsPressedIntoAWallPlane) {
@@ -55,8 +54,8 @@ TEST(Watchdog, StopsGrainsPressedIntoAWallPlane) {
        {Eigen::Vector3d(20, 0.39, 20), Eigen::Vector3d(0.39, 20, 20),
         Eigen::Vector3d(39.61, 20, 20), Eigen::Vector3d(20, 39.61, 1)}) {
     const NumericalFailure failure =
-        failure_of(open_cell(), table_1(), test::at_rest({place}, open_cell()));
-    EXPECT_TRUE(test::has(failure.quantity, "a wall plane"));
+        failure_of(open_cell(), table_1(), at_rest({place}, open_cell()));
+    EXPECT_TRUE(has(failure.quantity, "a wall plane"));
     EXPECT_NEAR(failure.value, 0.11, 1e-12);
   }
 }
@@ -65,7 +64,7 @@ TEST(Watchdog, StopsGrainsPressedIntoAWallPlane) {
 // a new state is checked before its first step.
 TEST(Watchdog, StopsOverlapsOverTheLimitBeforeTheFirstStep) {
   const auto pair = [](double apart) {
-    return test::at_rest({{20, 20, 20}, {20 + apart, 20, 20}}, open_cell());
+    return at_rest({{20, 20, 20}, {20 + apart, 20, 20}}, open_cell());
   };
   for (const double apart : {0.0, 1e-300, 1e-9, 0.5, 0.89}) {
     const NumericalFailure failure = failure_of(open_cell(), table_1(), pair(apart));
@@ -85,7 +84,7 @@ TEST(Watchdog, StopsOverlapsOverTheLimitBeforeTheFirstStep) {
 // Drag hides the instability: at 1.3 times 2/sqrt(8 k/m) the grains shake for ever, with overlaps
 // and speeds that look sound.
 TEST(Watchdog, StopsATimeStepThatDragKeepsFromBlowingUp) {
-  const auto& [cell, start] = test::pressed(300, 9000);
+  const auto& [cell, start] = pressed(300, 9000);
   Scene scene = table_1();
   scene.time_step = 1.3 * 2 / std::sqrt(8 * scene.stiffness);
   const auto energy_at_end = [&](const EngineSettings& settings) {
@@ -102,7 +101,7 @@ TEST(Watchdog, StopsATimeStepThatDragKeepsFromBlowingUp) {
   std::printf("kinetic energy per grain %.3g; %s\n", kinetic, failure.what());
   EXPECT_EQ(failure.quantity, "the time step [s]");
   EXPECT_GE(failure.grain, 0);
-  EXPECT_TRUE(test::has(failure.what(), "smaller time step"));
+  EXPECT_TRUE(has(failure.what(), "smaller time step"));
   EXPECT_LT(failure.limit, 1.2 / 1.3 * scene.time_step);
   // At the limit that it names the same packing comes to rest.
   scene.time_step = 0.99 * failure.limit;
@@ -112,12 +111,12 @@ TEST(Watchdog, StopsATimeStepThatDragKeepsFromBlowingUp) {
   light.wall_mass = 1e-3;
   const NumericalFailure of_wall = failure_of(cell, light, start);
   EXPECT_EQ(of_wall.grain, -1);
-  EXPECT_TRUE(test::has(of_wall.what(), "heavier wall"));
+  EXPECT_TRUE(has(of_wall.what(), "heavier wall"));
 }
 
 TEST(Watchdog, BoundsAPairByItsOwnFrequency) {
-  const State state = test::at_rest({{20, 20, 20}, {20.3, 20.6, 20.7}}, open_cell());
-  Scene scene = test::only_contacts();
+  const State state = at_rest({{20, 20, 20}, {20.3, 20.6, 20.7}}, open_cell());
+  Scene scene = only_contacts();
   const double limit = 2 / std::sqrt(2 * scene.stiffness);
   scene.time_step = 0.999 * limit;
   Simulation(open_cell(), scene, state).advance(Drive{}, 1);
@@ -126,8 +125,8 @@ TEST(Watchdog, BoundsAPairByItsOwnFrequency) {
 }
 
 TEST(Simulation, StopsGrainsSlowerThanAnyPositionCanTell) {
-  Scene scene = test::only_contacts();
-  State state = test::at_rest({{10, 20, 20}, {20, 20, 20}, {30, 20, 20}}, open_cell());
+  Scene scene = only_contacts();
+  State state = at_rest({{10, 20, 20}, {20, 20, 20}, {30, 20, 20}}, open_cell());
   state.velocity.col(0) << 1e-310, -1e-320, 0;
   state.velocity.col(1) << 1e-305, -0x1p-1000, 1;
   state.velocity.col(2) << 0x1p-1001, -1, 1e-290;
@@ -142,12 +141,12 @@ TEST(Simulation, StopsGrainsSlowerThanAnyPositionCanTell) {
 }
 
 TEST(Simulation, RefusesStatesThatMakeNoSense) {
-  State state = test::at_rest({{20, 20, 20}}, open_cell());
+  State state = at_rest({{20, 20, 20}}, open_cell());
   state.velocity.resize(3, 2);
   EXPECT_THROW(Simulation(open_cell(), table_1(), state), std::invalid_argument);
   EXPECT_THROW(Simulation(open_cell(), table_1(), State{}), std::invalid_argument);
   const Cell shallow = open_cell(2.5);
-  EXPECT_THROW(Simulation(shallow, table_1(), test::at_rest({{1, 1, 1}}, shallow)),
+  EXPECT_THROW(Simulation(shallow, table_1(), at_rest({{1, 1, 1}}, shallow)),
                std::invalid_argument);
 }
 

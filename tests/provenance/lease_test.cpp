@@ -19,10 +19,7 @@ namespace shearcell {
 namespace {
 
 using namespace std::chrono_literals;
-using test::expect_refused;
-using test::run_id;
-using test::sample_checkpoint;
-using test::sample_run;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class LeaseTest : public ::testing::Test {
  protected:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The store remembers what happened to each run, for every thread, process and later day.
+// The store records what happened to each run, for all threads and processes, now and later.
 #include "provenance/store.hpp"
 
 #include <gtest/gtest.h>
@@ -14,10 +14,7 @@ namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
-using test::expect_refused;
-using test::run_id;
-using test::sample_checkpoint;
-using test::sample_run;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class StoreTest : public ::testing::Test {
  protected:
@@ -245,20 +242,20 @@ TEST_F(StoreTest, TakesRecordsFromManyThreadsAndProcesses) {
 }
 
 TEST_F(StoreTest, AReaderChangesNothing) {
-  const std::string before = test::read_bytes(path_ / "store.sqlite");
+  const std::string before = read_bytes(path_ / "store.sqlite");
   Store reader = open(Access::read);
   EXPECT_THROW(reader.declare_run(sample_run(2)), std::logic_error);
   EXPECT_THROW(reader.start_run(id_, {}), std::logic_error);
   EXPECT_THROW(reader.rebuild(), std::logic_error);
   EXPECT_EQ(reader.runs().size(), 1u);
   EXPECT_TRUE(reader.verify().ok());
-  EXPECT_EQ(test::read_bytes(path_ / "store.sqlite"), before);
+  EXPECT_EQ(read_bytes(path_ / "store.sqlite"), before);
 }
 
 TEST_F(StoreTest, StartsOverWhereItsCreationWasCutShort) {
   const fs::path other = folder_.path() / "other";
   fs::create_directories(other);
-  test::write_bytes(other / "store.sqlite", "");
+  write_bytes(other / "store.sqlite", "");
   Store store(other, Access::create);
   store.declare_run(sample_run(1));
   EXPECT_TRUE(store.verify().ok());
