@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/diagnostics.hpp"
 
@@ -17,24 +18,12 @@ std::uint64_t steps_in(double seconds, const Scene& scene) {
   return static_cast<std::uint64_t>(std::min(seconds / scene.time_step, kMostSteps));
 }
 
-std::uint64_t look_steps(const Scene& scene) {
-  return std::max<std::uint64_t>(1, steps_in(kLookInterval, scene));
-}
-
-// Check intervals that the wall needs to reach a dense packing.
-double press_looks(const Cell& cell, const Scene& scene, std::size_t grains) {
-  const double per_area = static_cast<double>(grains) / (cell.width * cell.depth);
-  const double way = std::max(0.0, cell.top - cell.bottom - per_area / kDenseGrains);
-  const double speed = scene.pressure / (scene.wall_drag + scene.drag_rate * per_area);
-  return std::ceil((way / speed + 0.5) / kLookInterval);
-}
-
 }  // namespace
 
 Settle::Settle(const SettleParameters& parameters, const Scene& scene)
     : parameters_(parameters),
       scene_(scene),
-      look_steps_(look_steps(scene)),
+      look_steps_(std::max<std::uint64_t>(1, steps_in(kLookInterval, scene))),
       limit_steps_(steps_in(parameters.time_limit, scene)) {}
 
 std::uint64_t Settle::press_steps(const Cell& cell, std::size_t grains) const {
@@ -47,17 +36,20 @@ std::uint64_t Settle::next_look(std::uint64_t step) const {
 
 std::uint64_t Settle::way_steps(const Cell& cell, std::size_t grains) const {
   if (scene_.pressure == 0) return 0;
-  const double looks =
-      std::min(press_looks(cell, scene_, grains), parameters_.time_limit / kLookInterval);
-  return look_steps_ * static_cast<std::uint64_t>(looks);
+  const double per_area = static_cast<double>(grains) / (cell.width * cell.depth);
+  const double way = std::max(0.0, cell.top - cell.bottom - per_area / kDenseGrains);
+  const double speed = scene_.pressure / (scene_.wall_drag + scene_.drag_rate * per_area);
+  const double looks = std::ceil((way / speed + 0.5) / kLookInterval);
+  return look_steps_ *
+         static_cast<std::uint64_t>(std::min(looks, parameters_.time_limit / kLookInterval));
 }
 
 State pressed(const Cell& cell, const State& loose, Scene scene) {
   scene.gravity = 0;
   Simulation simulation(cell, scene, loose);
   simulation.set_overlap_limit(std::max(WatchdogLimits{}.overlap, kPressingOverlap));
-  const double looks = press_looks(cell, scene, simulation.grains());
-  simulation.advance(Drive{}, look_steps(scene) * static_cast<std::uint64_t>(looks));
+  const Settle unlimited({.time_limit = std::numeric_limits<double>::infinity()}, scene);
+  simulation.advance(Drive{}, unlimited.way_steps(cell, simulation.grains()));
   State state = simulation.state();
   state.step = 0;
   return state;

@@ -39,16 +39,18 @@ class Settle final : public Protocol {
   StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const override;
   std::uint64_t last_step() const override { return 0; }
 
-  /// Steps, a multiple of the check interval, during which the wall presses without gravity: the
+  /// Steps, a multiple of the check interval, that the wall needs to press the grains together: the
   /// time from the fill height to a dense packing at the speed at which the drags of the wall and
-  /// of all grains balance the pressure, and half a second more. 0 without gravity or pressure.
+  /// of all grains balance the pressure, and half a second more. 0 without pressure.
+  std::uint64_t way_steps(const Cell& cell, std::size_t grains) const;
+
+  /// The part of them without gravity: all, but 0 if the scene has no gravity.
   std::uint64_t press_steps(const Cell& cell, std::size_t grains) const;
 
   /// The first step after this one at which the tolerances are checked.
   std::uint64_t next_look(std::uint64_t step) const;
 
  private:
-  std::uint64_t way_steps(const Cell& cell, std::size_t grains) const;
   bool settled(const Simulation& simulation) const;
 
   SettleParameters parameters_;

@@ -182,6 +182,15 @@ std::string event_hash(const Event& event) {
       .hex();
 }
 
+std::string run_stream(std::string_view run) {
+  return fmt::format("run/{}", run);
+}
+
+std::optional<std::string> run_of(const Event& event) {
+  if (!event.stream.starts_with("run/")) return std::nullopt;
+  return event.stream.substr(4);
+}
+
 EventLog::EventLog(sqlite::Database& database) : database_(database) {}
 
 Event EventLog::append(const sqlite::WriteTransaction& lock, std::string_view stream,
@@ -232,9 +241,7 @@ std::vector<Event> EventLog::events(std::string_view stream, std::string_view ty
                           fmt::format("{} WHERE {} AND (?2 = '' OR type = ?2) ORDER BY {}", kSelect,
                                       of_stream, stream.empty() ? "seq" : "version"),
                           stream, type);
-  std::vector<Event> found;
-  while (query.step()) found.push_back(read_event(query));
-  return found;
+  return query.all(read_event);
 }
 
 void EventLog::for_each(const std::function<void(const Event&)>& visit) const {

@@ -43,6 +43,10 @@ struct Event {
   nlohmann::json body() const;
 };
 
+std::string run_stream(std::string_view run);  ///< "run/<id>"
+/// The run that the event is about; nothing for other streams.
+std::optional<std::string> run_of(const Event& event);
+
 struct NewEvent {
   std::string type;
   nlohmann::json payload;  ///< in the newest layout of its type

@@ -81,22 +81,18 @@ json written(const T& value) {
 /// Fills `result` when the event is of type E.
 template <class E>
 bool decode_as(const Event& event, json& body, Any& result) {
-  if constexpr (std::is_same_v<E, Other>) {
-    return false;
+  if (event.type != E::kType) return false;
+  E& decoded = result.emplace<E>();
+  if constexpr (has_fields<E>) {
+    read_fields(body, decoded);
   } else {
-    if (event.type != E::kType) return false;
-    E& decoded = result.emplace<E>();
-    if constexpr (has_fields<E>) {
-      read_fields(body, decoded);
-    } else {
-      decoded.facts = std::move(body);
-    }
-    return true;
+    decoded.facts = std::move(body);
   }
+  return true;
 }
 
 template <class... E>
-Any decode_any(const Event& event, json& body, const std::variant<E...>*) {
+Any decode_any(const Event& event, json& body, const std::variant<Other, E...>*) {
   Any result;
   (decode_as<E>(event, body, result) || ...);
   return result;

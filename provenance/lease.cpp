@@ -11,7 +11,6 @@
 #include <iterator>
 #include <random>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
 namespace shearcell {
@@ -126,11 +125,8 @@ std::optional<Lease> query_lease(const Database& database, std::string_view run)
 }
 
 std::vector<Lease> query_leases(const Database& database) {
-  std::vector<Lease> found;
-  if (!has_table(database)) return found;
-  Statement query(database, std::string(kSelectLeases) + "ORDER BY run");
-  while (query.step()) found.push_back(read_lease(query));
-  return found;
+  if (!has_table(database)) return {};
+  return Statement(database, std::string(kSelectLeases) + "ORDER BY run").all(read_lease);
 }
 
 void put_lease(Database& database, const Lease& lease) {

@@ -130,7 +130,7 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
   std::vector<RunLineage> stages;
   std::vector<Event> before;
   for (const RunRecord& run : chain) {
-    std::vector<Event> events = store.events("run/" + run.id);
+    std::vector<Event> events = store.events(run_stream(run.id));
     RunLineage stage = build_lineage(run, events);
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;

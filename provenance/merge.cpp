@@ -13,7 +13,6 @@
 #include <optional>
 #include <utility>
 
-#include "provenance/derive.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/events.hpp"
 #include "provenance/json_text.hpp"
@@ -47,12 +46,6 @@ std::string content_key(const Event& event) {
       .hex();
 }
 
-std::set<std::string> content_keys(const EventLog& log) {
-  std::set<std::string> keys;
-  log.for_each([&keys](const Event& event) { keys.insert(content_key(event)); });
-  return keys;
-}
-
 using Step = std::pair<std::string, std::uint64_t>;  // run and step
 
 std::map<Step, std::set<std::string>> states_of(const Database& tables) {
@@ -64,16 +57,16 @@ std::map<Step, std::set<std::string>> states_of(const Database& tables) {
   return states;
 }
 
-bool share(const std::set<std::string>& a, const std::set<std::string>& b) {
-  return std::any_of(a.begin(), a.end(), [&b](const std::string& x) { return b.contains(x); });
-}
-
 void require_equal_states(const Database& a, const std::string& a_name, const Database& b,
                           const std::string& b_name) {
   const auto known = states_of(a);
   for (const auto& [step, states] : states_of(b)) {
     const auto same_step = known.find(step);
-    if (same_step == known.end() || share(same_step->second, states)) continue;
+    if (same_step == known.end()) continue;
+    const auto is_known = [&](const std::string& state) {
+      return same_step->second.contains(state);
+    };
+    if (std::ranges::any_of(states, is_known)) continue;
     throw StoreDamaged(fmt::format(
         "run {} at step {}: {} has state {:.12} and {} has state {:.12}; one of them is wrong: "
         "run `shearcell verify --replay` in each. Nothing was merged",
@@ -135,7 +128,7 @@ bool declares_news(const Database& into, const Event& event) {
   Statement same(into,
                  "SELECT target_cycles FROM memberships WHERE run = ? AND experiment = ? AND "
                  "scale = ? AND variant = ? AND seed = ? AND manifest = ?",
-                 event.stream.substr(4), m.experiment, m.scale, m.variant, m.seed, m.manifest);
+                 run_of(event).value(), m.experiment, m.scale, m.variant, m.seed, m.manifest);
   return !same.step() || same.u64(0) < declared.target_cycles;
 }
 
@@ -257,8 +250,8 @@ Source read_source(const std::filesystem::path& folder, const std::set<std::stri
   }
   if (!runs.empty()) {
     std::erase_if(source.events, [&runs](const Event& event) {
-      return !event.stream.starts_with("manifest/") &&
-             !(event.stream.starts_with("run/") && runs.contains(event.stream.substr(4)));
+      const auto run = run_of(event);
+      return !event.stream.starts_with("manifest/") && !(run && runs.contains(*run));
     });
   }
   for (const Event& event : source.events) {
@@ -296,7 +289,8 @@ void require_idle(const Database& into, const std::string& name) {
 /// Appends the events that the store lacks, then StoreMerged, and applies them.
 void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction& lock,
                   const Source& source, MergeReport& report) {
-  const std::set<std::string> known = content_keys(log);
+  std::set<std::string> known;
+  log.for_each([&known](const Event& event) { known.insert(content_key(event)); });
   const std::vector<FigureRecord> figures = query_figures(into);
   std::map<std::string, Stream> streams;
   for (const Event& event : source.events) streams[event.stream].push_back(&event);
@@ -314,7 +308,7 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   };
   for (const Event& event : source.events) {
     if (known.contains(content_key(event)) || !streams.contains(event.stream)) continue;
-    if (event.stream.starts_with("run/")) {
+    if (run_of(event)) {
       const auto run = runs.find(event.stream);
       if (run == runs.end() || !run->second.wants(into, event)) continue;
     }

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <ranges>
 #include <string_view>
 
 #include "provenance/events.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
+#include "provenance/sha256.hpp"
 
 namespace shearcell {
 
@@ -83,8 +85,8 @@ void require_cycles(std::uint64_t target_cycles, std::uint64_t checkpoint_every)
   const auto require = [](const char* name, std::uint64_t value, std::uint64_t low) {
     if (value >= low && value <= StoreLimits::cycles) return;
     throw StoreDamaged(
-        fmt::format("the record of a run has {} = {}, outside {} to {}; run "
-                    "`verify`, and restore the store from a backup",
+        fmt::format("the record of a run has {} = {}, outside {} to {}; run `verify`, and restore "
+                    "the store from a backup",
                     name, value, low, StoreLimits::cycles));
   };
   require("target_cycles", target_cycles, 0);
@@ -172,10 +174,6 @@ class Projector {
 
   void operator()(const auto&) const {}  // changes no table
 
-  void touch() const {
-    run("UPDATE runs SET updated_at = ?2 WHERE id = ?1", id_, event_.recorded_at);
-  }
-
  private:
   template <class... Values>
   void run(std::string_view sql, const Values&... values) const {
@@ -208,34 +206,33 @@ class Projector {
   std::string id_;
 };
 
+StoreDamaged damaged_table(const Database& database, const std::string& why) {
+  return StoreDamaged(fmt::format("{}: a derived table {}; run `rebuild`", database.name(), why));
+}
+
 json parse(const Database& database, const std::string& text) {
   json value = parse_json(text);
-  if (value.is_discarded()) {
-    throw StoreDamaged(
-        fmt::format("{}: a derived table holds broken JSON; run `rebuild`", database.name()));
-  }
+  if (value.is_discarded()) throw damaged_table(database, "holds broken JSON");
   return value;
 }
 
 template <class State>
 State state_of(const Database& database, const std::string& name) {
   if (const auto state = value_of<State>(name)) return *state;
-  throw StoreDamaged(fmt::format("{}: a derived table has the unknown state '{}'; run `rebuild`",
-                                 database.name(), name));
+  throw damaged_table(database, "has the unknown state '" + name + "'");
 }
 
 std::vector<Membership> query_memberships(const Database& database, const std::string& id) {
   Statement query(database, "SELECT * FROM memberships WHERE run = ? ORDER BY ordinal", id);
-  std::vector<Membership> found;
-  while (query.step()) {
-    Membership& m = found.emplace_back();
+  return query.all([&](const Statement& row) {
+    Membership m;
     std::string run, labels;
-    query.get(run, m.experiment, m.scale, m.variant, m.seed, m.manifest, labels, m.target_cycles,
-              m.checkpoint_every);
+    row.get(run, m.experiment, m.scale, m.variant, m.seed, m.manifest, labels, m.target_cycles,
+            m.checkpoint_every);
     m.labels = parse(database, labels);
     require_cycles(m.target_cycles, m.checkpoint_every);
-  }
-  return found;
+    return m;
+  });
 }
 
 /// `rest` follows FROM.
@@ -243,42 +240,45 @@ template <class... Values>
 std::vector<RunRecord> select_runs(const Database& database, const std::string& rest,
                                    const Values&... values) {
   Statement query(database, "SELECT * FROM runs " + rest, values...);
-  std::vector<RunRecord> found;
-  while (query.step()) {
-    RunRecord& run = found.emplace_back();
+  return query.all([&](const Statement& row) {
+    RunRecord run;
     std::uint64_t ordinal = 0;
     std::string resolved, state;
-    query.get(run.id, ordinal, run.parent, run.kind, resolved, state, run.grains, run.target_cycles,
-              run.attempts, run.cycle, run.step, run.state_hash, run.wall_seconds,
-              run.particle_steps, run.error, run.updated_at);
+    row.get(run.id, ordinal, run.parent, run.kind, resolved, state, run.grains, run.target_cycles,
+            run.attempts, run.cycle, run.step, run.state_hash, run.wall_seconds, run.particle_steps,
+            run.error, run.updated_at);
     run.resolved = parse(database, resolved);
     require_cycles(run.target_cycles, 1);
     run.state = state_of<RunState>(database, state);
     run.memberships = query_memberships(database, run.id);
-  }
-  return found;
+    return run;
+  });
 }
 
 template <class... Values>
 std::vector<CheckpointRecord> select_checkpoints(const Database& database, const std::string& rest,
                                                  const Values&... values) {
   Statement query(database, "SELECT * FROM checkpoints " + rest, values...);
-  std::vector<CheckpointRecord> found;
-  while (query.step()) {
-    CheckpointRecord& c = found.emplace_back();
+  return query.all([&](const Statement& row) {
+    CheckpointRecord c;
     std::string observables, state;
-    query.get(c.run, c.sha256, c.step, c.cycle, c.time_s, c.file, c.size, c.state_hash, observables,
-              state, c.seq);
+    row.get(c.run, c.sha256, c.step, c.cycle, c.time_s, c.file, c.size, c.state_hash, observables,
+            state, c.seq);
     c.state = state_of<CheckpointState>(database, state);
     const json values_by_name = parse(database, observables);
     for (const auto& [name, value] : values_by_name.items()) {
       if (value.is_number()) c.observables[name] = value.template get<double>();
     }
-  }
-  return found;
+    return c;
+  });
 }
 
-constexpr const char* kByStep = "ORDER BY step, seq";
+/// The record of a query that finds one at most.
+template <class Record>
+std::optional<Record> only(std::vector<Record> found) {
+  if (found.empty()) return std::nullopt;
+  return std::move(found.front());
+}
 
 }  // namespace
 
@@ -286,20 +286,42 @@ void create_projections(Database& database) {
   database.execute(kTables);
 }
 
+Database empty_projections(const std::string& name) {
+  Database tables = Database::in_memory(name);
+  tables.execute("PRAGMA foreign_keys=ON");
+  create_projections(tables);
+  return tables;
+}
+
 void apply(Database& database, const Event& event) {
-  const bool of_run = event.stream.starts_with("run/");
+  const auto of_run = run_of(event);
   if (!of_run && !event.stream.starts_with("figure/")) return;
   const events::Any decoded = events::decode(event);
   const bool of_figure = std::holds_alternative<events::FigureGenerated>(decoded);
-  const Projector projector(database, event);
-  if (of_run != of_figure) std::visit(projector, decoded);
-  if (of_run) projector.touch();
+  if (of_run.has_value() != of_figure) std::visit(Projector(database, event), decoded);
+  if (!of_run) return;
+  Statement(database, "UPDATE runs SET updated_at = ? WHERE id = ?", event.recorded_at, *of_run)
+      .run();
+}
+
+std::string try_apply(Database& database, const Event& event) {
+  try {
+    apply(database, event);
+    const events::Any decoded = events::decode(event);
+    const auto* manifest = std::get_if<events::ManifestRegistered>(&decoded);
+    if (manifest == nullptr || event.stream == "manifest/" + sha256_hex(manifest->text)) return "";
+    return "the manifest's text has another SHA-256";
+  } catch (const StoreDamaged& damage) {
+    return damage.what();
+  } catch (const json::exception& problem) {
+    return problem.what();
+  }
 }
 
 void rebuild_projections(Database& database, const EventLog& log) {
   sqlite::WriteTransaction lock(database);
-  for (auto table = kTableNames.rbegin(); table != kTableNames.rend(); ++table) {
-    database.execute(fmt::format("DROP TABLE IF EXISTS {}", *table));
+  for (const std::string_view table : kTableNames | std::views::reverse) {
+    database.execute(fmt::format("DROP TABLE IF EXISTS {}", table));
   }
   create_projections(database);
   log.for_each([&database](const Event& event) { apply(database, event); });
@@ -325,18 +347,12 @@ NotFound unknown_checkpoint(std::string_view run, std::string_view sha256) {
   return NotFound(fmt::format("run {}: it has no checkpoint {}", run, sha256));
 }
 
-std::string run_stream(std::string_view id) {
-  return fmt::format("run/{}", id);
-}
-
 std::vector<RunRecord> query_runs(const Database& database) {
   return select_runs(database, "ORDER BY ordinal");
 }
 
 std::optional<RunRecord> query_run(const Database& database, std::string_view id) {
-  auto found = select_runs(database, "WHERE id = ?", id);
-  if (found.empty()) return std::nullopt;
-  return std::move(found.front());
+  return only(select_runs(database, "WHERE id = ?", id));
 }
 
 bool has_run(const Database& database, std::string_view id) {
@@ -348,41 +364,36 @@ std::vector<std::string> query_run_ids(const Database& database, std::string_vie
   Statement query(database,
                   "SELECT id FROM runs WHERE substr(id, 1, length(?1)) = ?1 ORDER BY id LIMIT ?2",
                   prefix, std::uint64_t{limit});
-  std::vector<std::string> found;
-  while (query.step()) found.push_back(query.text(0));
-  return found;
+  return query.all([](const Statement& row) { return row.text(0); });
 }
 
 std::vector<CheckpointRecord> query_checkpoints(const Database& database, std::string_view run) {
-  if (run.empty()) return select_checkpoints(database, kByStep);
-  return select_checkpoints(database, std::string("WHERE run = ? ") + kByStep, run);
+  if (run.empty()) return select_checkpoints(database, "ORDER BY step, seq");
+  return select_checkpoints(database, "WHERE run = ? ORDER BY step, seq", run);
 }
 
 std::optional<CheckpointRecord> query_checkpoint(const Database& database, std::string_view run,
                                                  std::string_view sha256) {
-  auto found = select_checkpoints(database, "WHERE run = ? AND sha256 = ?", run, sha256);
-  if (found.empty()) return std::nullopt;
-  return std::move(found.front());
+  return only(select_checkpoints(database, "WHERE run = ? AND sha256 = ?", run, sha256));
 }
 
 std::vector<CheckpointRecord> query_checkpoints_by_prefix(const Database& database,
                                                           std::string_view prefix,
                                                           std::size_t limit) {
-  return select_checkpoints(
-      database, std::string("WHERE substr(sha256, 1, length(?1)) = ?1 ") + kByStep + " LIMIT ?2",
-      prefix, std::uint64_t{limit});
+  return select_checkpoints(database,
+                            "WHERE substr(sha256, 1, length(?1)) = ?1 ORDER BY step, seq LIMIT ?2",
+                            prefix, std::uint64_t{limit});
 }
 
 std::vector<FigureRecord> query_figures(const Database& database) {
   Statement query(database, "SELECT name, seq, recorded_at, provenance FROM figures ORDER BY name");
-  std::vector<FigureRecord> found;
-  while (query.step()) {
-    FigureRecord& figure = found.emplace_back();
+  return query.all([&](const Statement& row) {
+    FigureRecord figure;
     std::string provenance;
-    query.get(figure.name, figure.seq, figure.recorded_at, provenance);
+    row.get(figure.name, figure.seq, figure.recorded_at, provenance);
     figure.provenance = parse(database, provenance);
-  }
-  return found;
+    return figure;
+  });
 }
 
 }  // namespace shearcell

@@ -17,10 +17,15 @@ namespace shearcell {
 
 /// Creates the empty tables runs, memberships, checkpoints and figures.
 void create_projections(sqlite::Database& database);
+/// The same in memory, for the events of a log that may be damaged or forged; errors name it
+/// `name`.
+sqlite::Database empty_projections(const std::string& name);
 
 /// Applies one event to the tables; no other code writes to them. Events of unknown type change
 /// nothing. Throws StoreDamaged when the payload lacks what its type requires.
 void apply(sqlite::Database& database, const Event& event);
+/// The same, and checks the digest of a manifest. Returns why the event cannot be applied, or "".
+std::string try_apply(sqlite::Database& database, const Event& event);
 
 /// Drops the tables and derives them from the whole log in one transaction.
 void rebuild_projections(sqlite::Database& database, const EventLog& log);
@@ -35,7 +40,6 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 
 NotFound unknown_run(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
-std::string run_stream(std::string_view id);  ///< "run/<id>"
 
 /// In the order of their declaration.
 std::vector<RunRecord> query_runs(const sqlite::Database& database);

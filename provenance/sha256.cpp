@@ -35,14 +35,6 @@ void Sha256::add_field(std::string_view text) {
   add(std::to_string(text.size()) + ":").add(text).add(",");
 }
 
-Sha256& Sha256::add_u64(std::uint64_t value) {
-  return add(std::as_bytes(std::span(&value, 1)));
-}
-
-Sha256& Sha256::add_f64(double value) {
-  return add(std::as_bytes(std::span(&value, 1)));
-}
-
 std::string Sha256::hex() {
   std::array<unsigned char, 32> digest;
   require_done(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr));

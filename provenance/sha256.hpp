@@ -2,6 +2,7 @@
 // SHA-256, the only hash of the store. Digests are written as 64 lower-case hex digits.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -27,10 +28,9 @@ class Sha256 {
     (add_field(fields), ...);
     return *this;
   }
-  /// Eight bytes, least significant first.
-  Sha256& add_u64(std::uint64_t value);
-  /// The bits of the number: -0.0 and 0.0 differ.
-  Sha256& add_f64(double value);
+  /// Eight bytes, least significant first; the bits of a double, so -0.0 and 0.0 differ.
+  Sha256& add_u64(std::uint64_t value) { return add(std::as_bytes(std::span(&value, 1))); }
+  Sha256& add_f64(double value) { return add_u64(std::bit_cast<std::uint64_t>(value)); }
   /// The digest of everything added. The object cannot be used afterwards.
   std::string hex();
 

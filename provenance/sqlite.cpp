@@ -167,28 +167,24 @@ void Statement::check(int code) const {
   if (code != SQLITE_OK) database_->fail(code, "read or write");
 }
 
-Statement& Statement::bind(int parameter, std::string_view text) {
+void Statement::bind(int parameter, std::string_view text) {
   check(sqlite3_bind_text64(handle_.get(), parameter, text.data() ? text.data() : "", text.size(),
                             SQLITE_TRANSIENT, SQLITE_UTF8));
-  return *this;
 }
 
-Statement& Statement::bind(int parameter, std::uint64_t value) {
+void Statement::bind(int parameter, std::uint64_t value) {
   check(sqlite3_bind_int64(handle_.get(), parameter, static_cast<std::int64_t>(value)));
-  return *this;
 }
 
-Statement& Statement::bind(int parameter, double value) {
+void Statement::bind(int parameter, double value) {
   check(sqlite3_bind_double(handle_.get(), parameter, value));
-  return *this;
 }
 
-Statement& Statement::bind(int parameter, std::span<const std::byte> blob) {
+void Statement::bind(int parameter, std::span<const std::byte> blob) {
   // A null pointer would bind NULL.
   check(sqlite3_bind_blob64(handle_.get(), parameter,
                             blob.empty() ? static_cast<const void*>("") : blob.data(), blob.size(),
                             SQLITE_TRANSIENT));
-  return *this;
 }
 
 bool Statement::step() {

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <unordered_map>
 #include <vector>
 
@@ -87,16 +88,10 @@ class Statement {
   Statement& operator=(const Statement&) = delete;
 
   template <class... Values>
-  Statement& bind_all(const Values&... values) {
+  void bind_all(const Values&... values) {
     int parameter = 0;
     (bind(++parameter, values), ...);
-    return *this;
   }
-  Statement& bind(int parameter, std::string_view text);
-  Statement& bind(int parameter, std::uint64_t value);
-  Statement& bind(int parameter, double value);
-  Statement& bind(int parameter, std::span<const std::byte> blob);
-
   /// Moves to the next row; false when there is none.
   bool step();
   /// Runs a statement that gives no rows and makes it ready to run again.
@@ -115,12 +110,23 @@ class Statement {
     int column = 0;
     (get_one(column++, values), ...);
   }
+  /// What read(row) returns for each row that is left.
+  template <class Read>
+  auto all(const Read& read) {
+    std::vector<std::invoke_result_t<Read, const Statement&>> found;
+    while (step()) found.push_back(read(*this));
+    return found;
+  }
   /// The whole row as SQL literals with all digits, to compare rows.
   std::vector<std::string> cells() const;
 
  private:
   Database::Prepared prepared() const;
   void check(int code) const;
+  void bind(int parameter, std::string_view text);
+  void bind(int parameter, std::uint64_t value);
+  void bind(int parameter, double value);
+  void bind(int parameter, std::span<const std::byte> blob);
   void get_one(int column, std::string& value) const { value = text(column); }
   void get_one(int column, std::uint64_t& value) const { value = u64(column); }
   void get_one(int column, double& value) const { value = f64(column); }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <set>
 
 #include "provenance/events.hpp"
@@ -51,9 +52,8 @@ bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) 
 std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string& id,
                                                                std::vector<std::string>* damage,
                                                                std::uint64_t before_step) {
-  std::vector<CheckpointRecord> records = checkpoints(id);
-  std::reverse(records.begin(), records.end());
-  for (const CheckpointRecord& record : records) {
+  const std::vector<CheckpointRecord> records = checkpoints(id);
+  for (const CheckpointRecord& record : records | std::views::reverse) {
     if (record.step >= before_step) continue;
     try {
       return LoadedCheckpoint{record, load_checkpoint(record)};

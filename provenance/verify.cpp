@@ -8,7 +8,6 @@
 #include <map>
 #include <set>
 
-#include "provenance/derive.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/store.hpp"
@@ -100,9 +99,8 @@ sqlite::Database derive(const EventLog& log, const std::string& name, VerifyRepo
   log.for_each([&](const Event& event) {
     const std::string why = try_apply(fresh, event);
     if (why.empty()) return;
-    const bool of_run = event.stream.starts_with("run/");
     add_error(report, event_name(event.seq), "it cannot be applied: " + why,
-              of_run ? event.stream.substr(4) : "");
+              run_of(event).value_or(""));
   });
   return fresh;
 }

@@ -11,8 +11,7 @@
 namespace shearcell {
 namespace {
 
-using test::same_bits;
-using test::Sheared;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 struct Sum {
   double x = 0, y = 0, z = 0;
@@ -120,14 +119,14 @@ void brute_step(const Cell& cell, const Scene& scene, const Drive& drive, State&
 }
 
 PROPERTY(Reproducible, EqualsBruteForceOverAllPairs, 60) {
-  const Sheared start = test::any_packing(200);
-  const Scene scene = test::any_scene();
-  const Drive drive = test::any_drive();
+  const Sheared start = any_packing(200);
+  const Scene scene = any_scene();
+  const Drive drive = any_drive();
   const auto steps = *rc::gen::inRange<std::uint64_t>(1, 120).as("steps");
-  const EngineSettings engine = test::any_engine();
+  const EngineSettings engine = any_engine();
   State brute = start.state;
   for (std::uint64_t n = 0; n < steps; ++n) brute_step(start.cell, scene, drive, brute);
-  RC_ASSERT(same_bits(brute, test::advanced(start, steps, engine, scene, drive)));
+  RC_ASSERT(same_bits(brute, advanced(start, steps, engine, scene, drive)));
 }
 
 }  // namespace

@@ -19,6 +19,8 @@
 namespace shearcell {
 namespace {
 
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
 // Random points of a tilted cell, some a little outside of it, unwrapped in z by several periods,
 // some fast.
 struct Points {
@@ -49,10 +51,10 @@ Points random_points(std::size_t grains, const Cell& cell, const WallPose& pose,
 // Of any shape, with wall grains on all walls in mixed order.
 Cell any_cell() {
   Cell cell;
-  cell.width = test::any_number("width", 1.5, 9);
-  cell.depth = test::any_number("depth", 3, 7);
-  cell.top = test::any_number("height", 2, 12);
-  cell.moving = test::any_bool("top moves") ? MovingWall::top : MovingWall::bottom;
+  cell.width = any_number("width", 1.5, 9);
+  cell.depth = any_number("depth", 3, 7);
+  cell.top = any_number("height", 2, 12);
+  cell.moving = any_bool("top moves") ? MovingWall::top : MovingWall::bottom;
   const auto wall_grains = *rc::gen::inRange<std::uint32_t>(0, 100).as("wall grains");
   for (std::uint32_t i = 0; i < wall_grains; ++i) {
     const auto u = uniform_pair({i, 2, 0, 0}, 5);
@@ -74,7 +76,7 @@ Snapshot snapshot_of(Points& points, const WallPose& pose) {
   return now;
 }
 
-// Offsets of the sites that ought to be in the inner list of grain g, by brute force.
+// Offsets of the sites that should be in the inner list of grain g, by brute force.
 std::vector<std::int32_t> expected_row(const Points& points, const Walls& walls, double depth,
                                        std::size_t g) {
   const std::size_t grains = points.id.size();
@@ -116,11 +118,11 @@ std::vector<std::int32_t> found_row(const NeighbourLists& lists, const Walls& wa
 
 PROPERTY(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId, 300) {
   const Cell cell = any_cell();
-  const ListSettings settings = test::any_engine().lists;
+  const ListSettings settings = any_engine().lists;
   Walls walls(cell);
-  const double moved = test::any_number("wall moved", 0, 0.3) * cell.top;
+  const double moved = any_number("wall moved", 0, 0.3) * cell.top;
   const WallPose pose =
-      wall_pose(cell, test::any_number("theta", -0.4, 0.4),
+      wall_pose(cell, any_number("theta", -0.4, 0.4),
                 cell.moving == MovingWall::bottom ? cell.bottom + moved : cell.top - moved);
   const auto grains = *rc::gen::inRange<std::size_t>(1, 400).as("grains");
   Points points =

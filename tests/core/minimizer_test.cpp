@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Minima of the enthalpy: known ones, that of a packing, and the same bits however it is computed.
+// Minima of the enthalpy: known ones, and that of a packing. Its bits: reproducible_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <string>
 
 #include "core/diagnostics.hpp"
 #include "core/random.hpp"
@@ -14,9 +13,7 @@
 namespace shearcell {
 namespace {
 
-using test::at_rest;
-using test::same_bits;
-using test::table_1;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 constexpr double kTolerance = 1e-8;
 
@@ -102,7 +99,7 @@ State shaken(State state, double size, std::uint32_t trial) {
 }
 
 TEST(Minimizer, APackingEndsAtALocalMinimumOfTheEnthalpy) {
-  const auto& [cell, start] = test::small_packing();
+  const auto& [cell, start] = small_packing();
   const Scene scene = table_1();
   const State end = minimized(cell, scene, start);
   const double residual = force_residual(cell, scene, end);
@@ -126,31 +123,19 @@ TEST(Minimizer, APackingEndsAtALocalMinimumOfTheEnthalpy) {
   }
 }
 
-// On every kernel: Reproducible.TheBitsOfTheReferenceBuildOnEveryKernel.
-TEST(Minimizer, GivesTheSameBitsWithAnyThreadsAndLists) {
-  const State expected = test::minimized({});
-  EngineSettings settings;
-  settings.lists.rebuild_every_step = true;
-  EXPECT_TRUE(same_bits(test::minimized(settings), expected)) << "every step";
-  settings.lists.rebuild_every_step = false;
-  for (settings.threads = 2; settings.threads <= 3; ++settings.threads) {
-    EXPECT_TRUE(same_bits(test::minimized(settings), expected)) << settings.threads << " threads";
-  }
-}
-
 TEST(Minimizer, FailsWhenTheToleranceIsOutOfReach) {
-  const auto& [cell, start] = test::small_packing();
+  const auto& [cell, start] = small_packing();
   const Scene scene = table_1();
   Simulation simulation(cell, scene, start);
   MinimizeSettings settings;
   settings.force_tolerance = 1e-30;
   settings.most_evaluations = 500;
-  test::expect_refused<NumericalFailure>([&] { minimize_enthalpy(simulation, settings); },
-                                         {"minimize_force_tolerance"});
+  expect_refused<NumericalFailure>([&] { minimize_enthalpy(simulation, settings); },
+                                   {"minimize_force_tolerance"});
 }
 
 TEST(Simulation, GoesOnFromAStateThatWasSet) {
-  const auto& [cell, start] = test::small_packing();
+  const auto& [cell, start] = small_packing();
   const Scene scene = table_1();
   Simulation straight(cell, scene, start);
   straight.advance({}, 500);
@@ -168,7 +153,7 @@ TEST(Simulation, GoesOnFromAStateThatWasSet) {
 
 // With a drag of 2/dt a step keeps nothing of the velocity: v' = dt F / 2.
 TEST(Simulation, ForcesAreThoseThatAStepFeels) {
-  const auto& [cell, rest] = test::small_packing();
+  const auto& [cell, rest] = small_packing();
   const Scene scene = table_1();
   const State start = shaken(rest, 1e-2, 0);
   Scene thick = scene;

@@ -2,7 +2,11 @@
 // Small cells and states that several tests start from.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstdint>
+#include <cstring>
+#include <stdexcept>
 #include <vector>
 
 #include "core/filling.hpp"
@@ -83,10 +87,45 @@ inline State advanced(const Sheared& start, std::uint64_t steps,
   return simulation.state();
 }
 
+/// The failure in which the work ends.
+template <class Work>
+NumericalFailure failure_of(Work&& work) {
+  try {
+    work();
+  } catch (const NumericalFailure& failure) {
+    return failure;
+  }
+  throw std::runtime_error("nothing failed");
+}
+
 /// Equal to the last bit (so +0 and -0 differ).
-bool same_bits(const State& a, const State& b);
+inline bool same_bits(const State& a, const State& b) {
+  const auto equal = [](const auto& x, const auto& y) {
+    return x.size() == y.size() &&
+           std::memcmp(x.data(), y.data(), sizeof(double) * static_cast<std::size_t>(x.size())) ==
+               0;
+  };
+  const auto wall = [](const State& state) {
+    return std::array{state.wall_height, state.wall_velocity};
+  };
+  return a.step == b.step && equal(a.position, b.position) && equal(a.velocity, b.velocity) &&
+         equal(wall(a), wall(b));
+}
 
 /// FNV-1a of the bits of everything in a state.
-std::uint64_t fingerprint(const State& state);
+inline std::uint64_t fingerprint(const State& state) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  const auto add = [&hash](double value) {
+    for (int byte = 0; byte < 8; ++byte) {
+      hash = (hash ^ (std::bit_cast<std::uint64_t>(value) >> 8 * byte & 0xFF)) * 0x100000001b3U;
+    }
+  };
+  for (const double value : state.position.reshaped()) add(value);
+  for (const double value : state.velocity.reshaped()) add(value);
+  add(state.wall_height);
+  add(state.wall_velocity);
+  add(static_cast<double>(state.step));
+  return hash;
+}
 
 }  // namespace shearcell::test

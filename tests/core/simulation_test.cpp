@@ -13,10 +13,7 @@
 namespace shearcell {
 namespace {
 
-using test::at_rest;
-using test::only_contacts;
-using test::open_cell;
-using test::table_1;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 TEST(FreeFall, ReachesTheTerminalVelocityOfStokesDrag) {
   Scene scene = table_1();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cyclic shear stops where it promises to, and neither chunks, restarts nor the servo's own
-// constants show in what it does to a packing.
+// Cyclic shear stops at the stated steps, and its result does not depend on chunks, restarts or the
+// constants of the servo.
 #include "protocols/cyclic_shear.hpp"
 
 #include <gtest/gtest.h>
@@ -15,15 +15,12 @@
 namespace shearcell {
 namespace {
 
-using test::Packing;
-using test::same_bits;
-using test::Sheared;
-using test::table_1;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 const Drive kDrive{.amplitude = 0.02, .steps_per_cycle = 3000, .pause_steps = 0};
 
 const Sheared& dense() {
-  static const Sheared scene = test::pressed(300, 20000);
+  static const Sheared scene = pressed(300, 20000);
   return scene;
 }
 
@@ -34,7 +31,7 @@ struct Stop {
 
 // Advances to the end; every return of the protocol.
 std::vector<Stop> shear(Simulation& simulation, const CyclicShear& protocol,
-                        std::uint64_t most_steps = test::kAtOnce) {
+                        std::uint64_t most_steps = kAtOnce) {
   std::vector<Stop> stops;
   do {
     const StageProgress progress = protocol.advance(simulation, most_steps);
@@ -43,7 +40,7 @@ std::vector<Stop> shear(Simulation& simulation, const CyclicShear& protocol,
   return stops;
 }
 
-State after(const CyclicShear& protocol, std::uint64_t most_steps = test::kAtOnce) {
+State after(const CyclicShear& protocol, std::uint64_t most_steps = kAtOnce) {
   Simulation simulation(dense().cell, table_1(), dense().state);
   shear(simulation, protocol, most_steps);
   return simulation.state();
@@ -169,8 +166,8 @@ Balance balance_over_a_cycle(double wall_factor) {
   Scene scene = table_1();
   scene.wall_mass *= wall_factor;
   scene.wall_drag *= wall_factor;
-  Packing packing = test::loose(test::rough_geometry(300), scene);
-  test::settle(packing);
+  Packing packing = loose(rough_geometry(300), scene);
+  settle(packing);
   packing.state.step = 0;
   const Drive drive{.amplitude = 0.0833, .steps_per_cycle = 45600};
   Simulation simulation(packing.cell, scene, packing.state);

@@ -14,8 +14,7 @@
 namespace shearcell {
 namespace {
 
-using test::Sheared;
-using test::table_1;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 struct Case {
   const char* name;
@@ -38,7 +37,7 @@ TEST(Ledger, OfADrivenCellIsBalanced) {
         Case{"top", MovingWall::top, PressureAt::moving_wall, Fluid::still},
         Case{"top, smooth", MovingWall::top, PressureAt::moving_wall, Fluid::still,
              WallTexture::smooth}}) {
-    const Sheared start = test::pressed(80, 15000, c.walls, c.moving);
+    const Sheared start = pressed(80, 15000, c.walls, c.moving);
     double error[2];
     for (int n = 0; n < 2; ++n) {
       const int finer = n == 0 ? 1 : 4;
@@ -66,7 +65,7 @@ TEST(Ledger, OfADrivenCellIsBalanced) {
 // loop errs little, but contacts that open and close between two phases count. Stated before it was
 // compared: within 5 % of the work in every step.
 TEST(Ledger, SampledRarelyIsTheAreaOfTheStressStrainLoop) {
-  const Sheared start = test::pressed(80, 30000);
+  const Sheared start = pressed(80, 30000);
   Scene scene = table_1();
   const Drive drive = drive_of(0.25, 0.0833, scene);
   Simulation simulation(start.cell, scene, start.state);

@@ -52,7 +52,7 @@ inline WallPose upright(const Packing& packing) {
 }
 
 /// Forces [m d/s^2] of all contacts of a packing at rest between upright walls.
-struct Forces {
+struct ContactForces {
   Eigen::Matrix3Xd on_grain;                    ///< of contacts alone, without gravity
   std::vector<int> contacts;                    ///< of each grain
   std::map<WallSide, Eigen::Vector3d> of_wall;  ///< on the grains
@@ -61,9 +61,9 @@ struct Forces {
   double touches_per_grain = 0;                 ///< with grains and wall grains
 };
 
-inline Forces forces(const Packing& packing) {
+inline ContactForces forces(const Packing& packing) {
   const Eigen::Index grains = packing.state.position.cols();
-  Forces f{
+  ContactForces f{
       Eigen::Matrix3Xd::Zero(3, grains), std::vector<int>(static_cast<std::size_t>(grains)), {}};
   for (const WallSide side : {WallSide::left, WallSide::right, WallSide::bottom, WallSide::top}) {
     f.of_wall[side].setZero();

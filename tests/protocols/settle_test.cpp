@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A settled packing is in mechanical equilibrium, and how it was reached in pieces leaves no trace.
+// A settled packing is in mechanical equilibrium, and interruptions do not change its bits.
 #include "protocols/settle.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
-#include <string>
 
 #include "tests/protocols/packings.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell {
 namespace {
 
-using test::forces;
-using test::Forces;
-using test::load;
-using test::loose;
-using test::Packing;
-using test::rough_geometry;
-using test::same_bits;
-using test::settle;
-using test::table_1;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 constexpr std::uint64_t kLookSteps = 2280;  // 0.1 s at Table I's time step
 
@@ -40,7 +32,7 @@ TEST(SettledPacking, IsAtRestGrainByGrain) {
   const Packing& packing = settled_packing();
   const double gravity = packing.scene.gravity, pressure = packing.scene.pressure;
   const double kinetic = 0.5 * packing.state.velocity.squaredNorm() / 600;
-  const Forces f = forces(packing);
+  const ContactForces f = forces(packing);
   double worst = 0;
   int held = 0;
   for (Eigen::Index i = 0; i < 600; ++i) {
@@ -54,15 +46,14 @@ TEST(SettledPacking, IsAtRestGrainByGrain) {
   EXPECT_LT(worst, 0.01 * f.mean);
   EXPECT_LT(worst, 0.2 * gravity);
   EXPECT_LT(kinetic, 1e-8 * pressure);
-  // The wall's own drag counts too, so that a creeping wall is not taken for one at rest.
+  // The wall's own drag counts too, so that a creeping wall does not count as one at rest.
   EXPECT_LT(std::fabs(packing.state.wall_velocity) * packing.scene.wall_drag, 1e-3 * pressure);
 }
 
 TEST(SettledPacking, IsAsDenseAndAsSoftAsSphereGlass) {
   const Packing& packing = settled_packing();
-  const Forces f = forces(packing);
-  const Diagnostics facts =
-      diagnose(packing.cell, packing.scene, packing.state, test::upright(packing));
+  const ContactForces f = forces(packing);
+  const Diagnostics facts = diagnose(packing.cell, packing.scene, packing.state, upright(packing));
   std::printf("contacts per grain %.3f, mean overlap %.3e d, largest %.3e d\n", f.touches_per_grain,
               f.mean_overlap, facts.largest_overlap);
   EXPECT_GT(f.touches_per_grain, 5.5);
@@ -96,7 +87,7 @@ TEST(Settle, BalancesTheLoadOfTheMovingWallAndTheWeightWithTheOtherWalls) {
     Packing packing = loose(rough_geometry(600, c.moving), scene);
     settle(packing);
     EXPECT_EQ(packing.pressed == 0, c.gravity == 0);
-    const Forces f = forces(packing);
+    const ContactForces f = forces(packing);
     const bool bottom = c.moving == MovingWall::bottom;
     const double weight = 600 * scene.gravity / load(packing);
     const double carried = c.at == PressureAt::top ? 1 + weight : 1;
@@ -111,7 +102,7 @@ TEST(Settle, BalancesTheLoadOfTheMovingWallAndTheWeightWithTheOtherWalls) {
     EXPECT_NEAR(all.y(), weight, 2e-3);
     EXPECT_NEAR(all.x(), 0, 2e-3);
     EXPECT_GT(f.touches_per_grain, 5.5);
-    const Diagnostics facts = diagnose(packing.cell, scene, packing.state, test::upright(packing));
+    const Diagnostics facts = diagnose(packing.cell, scene, packing.state, upright(packing));
     EXPECT_LT(std::fabs(facts.wall_imbalance), 1e-3);
     EXPECT_GT(std::fabs(packing.state.wall_height - (bottom ? 0 : packing.cell.top)),
               0.4 * packing.cell.top);
@@ -147,7 +138,7 @@ TEST(Settle, TakesAFinishedStateAsFinished) {
   const Packing& packing = settled_packing();
   const Settle protocol({}, packing.scene);
   Simulation simulation(packing.cell, packing.scene, packing.state);
-  const StageProgress progress = protocol.advance(simulation, test::kAtOnce);
+  const StageProgress progress = protocol.advance(simulation, kAtOnce);
   EXPECT_TRUE(progress.finished);
   EXPECT_TRUE(progress.checkpoint_due);
   EXPECT_EQ(progress.cycle, 0);
@@ -158,17 +149,12 @@ TEST(Settle, SaysWhichLimitItRanInto) {
   Packing packing = loose(rough_geometry(300), table_1());
   SettleParameters parameters;
   parameters.time_limit = 0.25;
-  try {
-    settle(packing, parameters);
-    FAIL() << "a quarter of a second was enough";
-  } catch (const NumericalFailure& failure) {
-    std::printf("%s\n", failure.what());
-    EXPECT_NE(std::string(failure.what()).find("settle_time_limit_s"), std::string::npos);
-    EXPECT_EQ(failure.limit, 0.25);
-    EXPECT_GE(failure.value, 0.25);
-    EXPECT_LE(failure.value, 0.35 + 1e-9);  // it looks every 0.1 s
-    EXPECT_EQ(failure.grain, -1);
-  }
+  const NumericalFailure failure = test::failure_of([&] { settle(packing, parameters); });
+  EXPECT_TRUE(has(failure.what(), "settle_time_limit_s"));
+  EXPECT_EQ(failure.limit, 0.25);
+  EXPECT_GE(failure.value, 0.25);
+  EXPECT_LE(failure.value, 0.35 + 1e-9);  // it checks every 0.1 s
+  EXPECT_EQ(failure.grain, -1);
 }
 
 // The moving wall pushes out what it has caught between the wall grains; see settle.hpp.
@@ -181,13 +167,9 @@ TEST(Settle, TakesLargeOverlapsUntilTheWallHasDoneItsWay) {
 
   packing.state.step = protocol.press_steps(packing.cell, 300);
   Simulation late(packing.cell, table_1(), packing.state);
-  try {
-    protocol.advance(late, 1);
-    FAIL() << "an overlap of 0.25 d in a dense packing was not seen";
-  } catch (const NumericalFailure& failure) {
-    EXPECT_EQ(failure.limit, 0.1);
-    EXPECT_NEAR(failure.value, 0.25, 1e-9);
-  }
+  const NumericalFailure failure = test::failure_of([&] { protocol.advance(late, 1); });
+  EXPECT_EQ(failure.limit, 0.1);
+  EXPECT_NEAR(failure.value, 0.25, 1e-9);
 }
 
 TEST(Settle, PressesUntilTheWallHasDoneItsWay) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stiffening goes through the stated spring constants, ends each at rest, and starts again
-// anywhere.
+// Stiffening uses the stated spring constants, ends each at rest, and continues from any of its
+// states.
 #include "protocols/stiffen.hpp"
 
 #include <gtest/gtest.h>
@@ -14,15 +14,14 @@
 namespace shearcell {
 namespace {
 
-using test::Packing;
-using test::same_bits;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 const StiffenParameters kNine{};
 
 const Packing& settled() {
   static const Packing packing = [] {
-    Packing p = test::loose(test::rough_geometry(203), test::table_1());
-    test::settle(p);
+    Packing p = loose(rough_geometry(203), table_1());
+    settle(p);
     p.state.step = 0;
     return p;
   }();
@@ -35,7 +34,7 @@ struct Reached {
   StageProgress progress;
 };
 
-std::vector<Reached> stiffen(const State& from, std::uint64_t most_steps = test::kAtOnce) {
+std::vector<Reached> stiffen(const State& from, std::uint64_t most_steps = kAtOnce) {
   const Stiffen protocol(kNine, settled().scene);
   Simulation simulation(settled().cell, settled().scene, from);
   std::vector<Reached> stops;

@@ -111,18 +111,5 @@ TEST(Checkpoint, RefusesToWriteWhatItCouldNotRead) {
   });
 }
 
-TEST(Checkpoint, IsWrittenAndReadByManyThreads) {
-  std::vector<std::thread> threads;
-  for (std::uint64_t t = 0; t < 4; ++t) {
-    threads.emplace_back([t] {
-      for (std::uint64_t i = 0; i < 10; ++i) {
-        const Checkpoint c = sample_checkpoint("a", 100 * t + i);
-        EXPECT_EQ(state_hash(decode_checkpoint(encode_checkpoint(c))), state_hash(c));
-      }
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-}
-
 }  // namespace
 }  // namespace shearcell

@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept of derived objects comes back exactly or not at all, whatever happens to the file.
+// A derived object is returned exactly as stored or not at all, even if the file is damaged.
 #include "provenance/derived.hpp"
 
 #include <gtest/gtest.h>
 
-#include <thread>
-
+#include "core/threads.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
-using test::bytes_of;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class DerivedCacheTest : public testing::Test {
  protected:
   static DerivedKey key(int checkpoint, const std::string& measure = "scalars {}",
                         std::uint64_t version = 1) {
-    return {test::run_id(checkpoint), measure, version};
+    return {run_id(checkpoint), measure, version};
   }
   std::optional<std::vector<std::byte>> get(const DerivedKey& wanted) {
     DerivedCache cache(folder_.path());
@@ -61,12 +60,11 @@ TEST_F(DerivedCacheTest, EveryPartOfTheKeyCounts) {
 TEST_F(DerivedCacheTest, ADamagedOrMisplacedObjectIsNotGiven) {
   put(key(1), "content");
   put(key(2), "content");
-  sql("UPDATE derived SET content = x'00' WHERE checkpoint = '" + test::run_id(1) + "'");
+  sql("UPDATE derived SET content = x'00' WHERE checkpoint = '" + run_id(1) + "'");
   EXPECT_EQ(get(key(1)), std::nullopt);
   EXPECT_EQ(get(key(2)), bytes_of("content"));
   // A sound object under the key of another.
-  sql("UPDATE derived SET checkpoint = '" + test::run_id(3) + "' WHERE checkpoint = '" +
-      test::run_id(2) + "'");
+  sql("UPDATE derived SET checkpoint = '" + run_id(3) + "' WHERE checkpoint = '" + run_id(2) + "'");
   EXPECT_EQ(get(key(3)), std::nullopt);
   put(key(1), "content");
   EXPECT_EQ(get(key(1)), bytes_of("content"));
@@ -74,11 +72,11 @@ TEST_F(DerivedCacheTest, ADamagedOrMisplacedObjectIsNotGiven) {
 
 TEST_F(DerivedCacheTest, BeginsAnewWhereTheFileIsNoDatabase) {
   put(key(1), "content");
-  const std::string sound = test::read_bytes(file());
+  const std::string sound = read_bytes(file());
   for (const std::string& damaged : {std::string("no database at all, and long enough to be read"),
                                      sound.substr(0, sound.size() / 2), std::string(8192, '\0'),
                                      sound.substr(0, 100) + std::string(sound.size() - 100, 'x')}) {
-    test::write_bytes(file(), damaged);
+    write_bytes(file(), damaged);
     EXPECT_EQ(get(key(1)), std::nullopt) << damaged.size() << " bytes";
     put(key(1), "content");
     EXPECT_EQ(get(key(1)), bytes_of("content")) << damaged.size() << " bytes";
@@ -87,12 +85,12 @@ TEST_F(DerivedCacheTest, BeginsAnewWhereTheFileIsNoDatabase) {
 
 TEST_F(DerivedCacheTest, NoFlippedByteGivesAnotherContent) {
   put(key(1), "content");
-  const std::string sound = test::read_bytes(file());
+  const std::string sound = read_bytes(file());
   int given = 0, lost = 0;
   for (std::size_t at = 0; at < sound.size(); at += 37) {
     std::string flipped = sound;
     flipped[at] = static_cast<char>(flipped[at] ^ 0x10);
-    test::write_bytes(file(), flipped);
+    write_bytes(file(), flipped);
     const auto content = get(key(1));
     EXPECT_EQ(content.value_or(bytes_of("content")), bytes_of("content")) << "byte " << at;
     ++(content ? given : lost);
@@ -112,32 +110,28 @@ TEST_F(DerivedCacheTest, MayBeDeletedWhileItIsUsed) {
 
 TEST_F(DerivedCacheTest, TouchesNoForeignFile) {
   const std::string elsewhere = (folder_.path() / "elsewhere").string();
-  test::write_bytes(elsewhere, "mine");
+  write_bytes(elsewhere, "mine");
   fs::create_symlink(elsewhere, file());
   {
     DerivedCache cache(folder_.path());
-    EXPECT_NE(cache.trouble().find("link"), std::string::npos) << cache.trouble();
+    EXPECT_TRUE(has(cache.trouble(), "link"));
     put(cache, key(1), "content");
   }
-  EXPECT_EQ(test::read_bytes(elsewhere), "mine");
+  EXPECT_EQ(read_bytes(elsewhere), "mine");
   fs::remove(file());
   sqlite::Database(file(), Access::create)
       .execute("PRAGMA application_id=7; CREATE TABLE mine(x); INSERT INTO mine VALUES(1);");
   DerivedCache cache(folder_.path());
-  EXPECT_NE(cache.trouble().find("another program"), std::string::npos) << cache.trouble();
+  EXPECT_TRUE(has(cache.trouble(), "another program"));
   EXPECT_EQ(sqlite::Database(file(), Access::write).integer("SELECT x FROM mine"), 1);
 }
 
 TEST_F(DerivedCacheTest, SeveralMayKeepAtOnce) {
-  std::vector<std::thread> threads;
-  for (int t = 0; t < 4; ++t) {
-    threads.emplace_back([this, t] {
-      DerivedCache cache(folder_.path());  // a connection of its own, as another process has
-      for (int i = 0; i < 50; ++i) put(cache, key(i), "content " + std::to_string(i));
-      EXPECT_EQ(cache.trouble(), "") << t;
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
+  start_threads(5, [this](std::size_t thread) {
+    DerivedCache cache(folder_.path());  // a connection of its own, as another process has
+    for (int i = 0; i < 50; ++i) put(cache, key(i), "content " + std::to_string(i));
+    EXPECT_EQ(cache.trouble(), "") << thread;
+  });
   for (int i = 0; i < 50; ++i) EXPECT_EQ(get(key(i)), bytes_of("content " + std::to_string(i)));
 }
 

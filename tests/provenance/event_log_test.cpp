@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The log only grows, orders all writers, and shows any change behind its back.
+// The log only grows, orders all writers, and reveals any change made without it.
 #include "provenance/event_log.hpp"
 
 #include <gtest/gtest.h>

@@ -18,8 +18,7 @@ namespace shearcell {
 namespace {
 
 using hdf5::Handle;
-using test::kFrame;
-using test::sealed;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 /// A file image opened by the HDF5 library.
 Handle open_image(std::vector<std::byte> image, unsigned flags = H5F_ACC_RDONLY) {
@@ -55,7 +54,7 @@ std::vector<double> columns(const Eigen::Matrix3Xd& m) {
 TEST(Hdf5Read, AgreesWithTheLibrary) {
   for (const int observables : {0, 1, 8, 9, 40, 1000}) {
     for (const Eigen::Index grains : {0, 1, 700}) {
-      Checkpoint written = test::sample_checkpoint("a", 7, grains);
+      Checkpoint written = sample_checkpoint("a", 7, grains);
       written.observables.clear();
       for (int k = 0; k < observables; ++k) {
         written.observables["quantity " + std::to_string(k)] = 0.5 * k;
@@ -84,7 +83,7 @@ TEST(Hdf5Read, AgreesWithTheLibrary) {
 using Change = std::function<void(hid_t file)>;
 
 std::vector<std::byte> forge(const Change& change) {
-  std::vector<std::byte> image = encode_checkpoint(test::sample_checkpoint("a", 1, 5));
+  std::vector<std::byte> image = encode_checkpoint(sample_checkpoint("a", 1, 5));
   const Handle file = open_image(image, H5F_ACC_RDWR);
   change(file.get());
   H5Fflush(file.get(), H5F_SCOPE_GLOBAL);
@@ -213,18 +212,18 @@ std::vector<Forgery> forgeries() {
 
 TEST(HostileCheckpoint, AForgedObjectIsRefusedByName) {
   const Checkpoint unchanged = decode_checkpoint(forge([](hid_t) {}));
-  EXPECT_EQ(state_hash(unchanged), state_hash(test::sample_checkpoint("a", 1, 5)));
+  EXPECT_EQ(state_hash(unchanged), state_hash(sample_checkpoint("a", 1, 5)));
   for (const Forgery& forgery : forgeries()) {
     SCOPED_TRACE(forgery.what);
     const std::vector<std::byte> image = forge(forgery.change);
-    test::expect_refused<StoreDamaged>([&image] { decode_checkpoint(image); }, {forgery.named});
+    expect_refused<StoreDamaged>([&image] { decode_checkpoint(image); }, {forgery.named});
   }
 }
 
 // ---- Every byte and every length.
 
 TEST(HostileCheckpoint, EveryTruncationIsRefused) {
-  const std::vector<std::byte> whole = encode_checkpoint(test::sample_checkpoint("a", 1, 5));
+  const std::vector<std::byte> whole = encode_checkpoint(sample_checkpoint("a", 1, 5));
   for (std::size_t size = 0; size < whole.size(); size += (size < 1100 ? 1 : 37)) {
     std::vector<std::byte> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     EXPECT_THROW(decode_checkpoint(cut), StoreDamaged) << size;
@@ -234,7 +233,7 @@ TEST(HostileCheckpoint, EveryTruncationIsRefused) {
 }
 
 TEST(HostileCheckpoint, EveryChangedByteIsRefusedOrReadWithoutHarm) {
-  const std::vector<std::byte> whole = encode_checkpoint(test::sample_checkpoint("a", 1, 2));
+  const std::vector<std::byte> whole = encode_checkpoint(sample_checkpoint("a", 1, 2));
   std::size_t refused = 0, taken = 0;
   for (std::size_t at = 0; at < whole.size(); ++at) {
     for (const unsigned flip : {0x01U, 0x80U, 0xffU}) {

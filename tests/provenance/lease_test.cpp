@@ -12,16 +12,14 @@
 #include <cstdio>
 #include <thread>
 
+#include "core/threads.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {
 namespace {
 
 using namespace std::chrono_literals;
-using test::expect_refused;
-using test::run_id;
-using test::sample_checkpoint;
-using test::sample_run;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class LeaseTest : public ::testing::Test {
  protected:
@@ -43,6 +41,7 @@ TEST_F(LeaseTest, KeepsOthersFromARunThatIsHeld) {
   Store first = open();
   Store second = open();
   first.start_run(id_, {});
+  EXPECT_THROW(first.start_run(id_, {}), ConcurrencyConflict) << "it holds the run already";
   expect_refused<RunHeld>([&] { second.start_run(id_, {}); },
                           {"process " + std::to_string(getpid())});
   const std::vector<Lease> leases = second.leases();
@@ -93,6 +92,7 @@ TEST_F(LeaseTest, IsNotMissedByWhoWasOvertaken) {
   expect_refused<ConcurrencyConflict>([&] { late.record_checkpoint(id_, sample_checkpoint(id_)); },
                                       {"another process continued"});
   EXPECT_FALSE(late.holds(id_));
+  EXPECT_THROW(late.interrupt_run(id_, "late"), ConcurrencyConflict);
   EXPECT_TRUE(other.checkpoints(id_).empty());
 }
 
@@ -136,21 +136,16 @@ TEST_F(LeaseTest, OfAnotherMachineIsWaitedFor) {
 
 TEST_F(LeaseTest, GoesToOneOfManyWhoAsk) {
   std::atomic<int> won = 0, refused = 0;
-  std::vector<std::thread> threads;
-  std::atomic<bool> done = false;
-  for (int i = 0; i < 8; ++i) {
-    threads.emplace_back([&] {
-      Store store = open();
-      try {
-        store.start_run(id_, {});
-        ++won;
-      } catch (const RunHeld&) {
-        ++refused;
-      }
-      while (!done && won + refused < 8) std::this_thread::sleep_for(1ms);
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
+  start_threads(9, [&](std::size_t) {
+    Store store = open();
+    try {
+      store.start_run(id_, {});
+      ++won;
+    } catch (const RunHeld&) {
+      ++refused;
+    }
+    while (won + refused < 8) std::this_thread::sleep_for(1ms);
+  });
   EXPECT_EQ(won, 1);
   EXPECT_EQ(refused, 7);
 }

@@ -9,11 +9,13 @@
 namespace shearcell {
 namespace {
 
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
 class Lineage : public testing::Test {
  protected:
   TemporaryFolder folder_;
   Store store_{folder_.path() / "store", Access::create};
-  test::SampleHistory history_{store_};
+  SampleHistory history_{store_};
 };
 
 TEST_F(Lineage, AttemptsAreToldFromTheirStartToTheirEnd) {
@@ -56,13 +58,13 @@ TEST_F(Lineage, ARejectedCheckpointIsKnownAsSuchUntilItIsMadeAgain) {
     return run.find(history_.rejected)->record.state == CheckpointState::rejected;
   };
   EXPECT_TRUE(rejected());
-  RunDeclaration longer = test::sample_run(2, 9);
+  RunDeclaration longer = sample_run(2, 9);
   const RunRecord known = store_.run(history_.sheared);
   longer.parent = known.parent;
   longer.resolved = known.resolved;
   store_.declare_run(longer);
   store_.start_run(history_.sheared, {}, store_.checkpoints(history_.sheared).back().sha256);
-  EXPECT_EQ(test::SampleHistory::record(store_, history_.sheared, 45600), history_.rejected);
+  EXPECT_EQ(SampleHistory::record(store_, history_.sheared, 45600), history_.rejected);
   EXPECT_FALSE(rejected());
   const RunLineage run = run_lineage(store_, history_.sheared).back();
   EXPECT_EQ(run.find(history_.rejected)->attempt, 4U);
@@ -72,21 +74,20 @@ TEST_F(Lineage, ARejectedCheckpointIsKnownAsSuchUntilItIsMadeAgain) {
 
 TEST_F(Lineage, ARejectedCheckpointThatIsRegeneratedIsSoundAgain) {
   store_.restore_checkpoint(store_.find_checkpoint(history_.rejected).value(),
-                            test::sample_checkpoint(history_.sheared, 45600));
+                            sample_checkpoint(history_.sheared, 45600));
   EXPECT_TRUE(run_lineage(store_, history_.sheared).back().find(history_.rejected)->kept());
 }
 
 TEST_F(Lineage, AStartMayNameTheStateItBeganWith) {
   const std::string packing = store_.checkpoints(history_.packing).at(0).sha256;
-  test::append_to_run(store_, history_.sheared,
-                      events::encode(events::RunStarted{5, {}, {}, packing}));
+  append_to_run(store_, history_.sheared, events::encode(events::RunStarted{5, {}, {}, packing}));
   const Attempt named = run_lineage(store_, history_.sheared).back().attempts.back();
   EXPECT_EQ(named.from_run, history_.packing);
   EXPECT_EQ(named.from_checkpoint, packing);
   // A payload that is not what it must be is damage and names its event.
-  test::append_to_run(store_, history_.sheared, {"CheckpointRecorded", {{"sha256", "../../x"}}});
-  test::expect_refused<StoreDamaged>([this] { run_lineage(store_, history_.sheared); },
-                                     {"event " + std::to_string(store_.head().seq)});
+  append_to_run(store_, history_.sheared, {"CheckpointRecorded", {{"sha256", "../../x"}}});
+  expect_refused<StoreDamaged>([this] { run_lineage(store_, history_.sheared); },
+                               {"event " + std::to_string(store_.head().seq)});
 }
 
 TEST_F(Lineage, TheManifestIsFoundByItsHash) {
@@ -94,7 +95,7 @@ TEST_F(Lineage, TheManifestIsFoundByItsHash) {
   ASSERT_TRUE(manifest.has_value());
   EXPECT_EQ(manifest->text, "manifest");
   EXPECT_FALSE(find_manifest(store_, sha256_hex("another")).has_value());
-  EXPECT_THROW(run_lineage(store_, test::run_id(99)), NotFound);
+  EXPECT_THROW(run_lineage(store_, run_id(99)), NotFound);
 }
 
 }  // namespace

@@ -13,11 +13,7 @@ namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
-using test::expect_refused;
-using test::kCycle;
-using test::run_id;
-using test::sample_checkpoint;
-using test::sample_run;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class MergeTest : public ::testing::Test {
  protected:
@@ -142,7 +138,7 @@ TEST_F(MergeTest, ThreeThatOverlapEqualOneThatDidItAll) {
     }
     EXPECT_EQ(merged.head().hash, head.hash) << "merging again recorded something";
   } while (std::next_permutation(order.begin(), order.end()));
-  // And by way of another merge.
+  // Also through another merge.
   Store some = open("some");
   some.merge({path("c"), path("a")});
   Store rest = open("rest");
@@ -242,14 +238,14 @@ TEST_F(MergeTest, NamesTheSourceWhoseEventsDoNotFit) {
   computed("b", {{0, 2, 2}});
   const Event recorded = open("b").events("run/" + run_id(0), "CheckpointRecorded").at(0);
   copy("b", "orphan");
-  test::append_to_run(open("orphan"), run_id(3), {recorded.type, recorded.body()});
+  append_to_run(open("orphan"), run_id(3), {recorded.type, recorded.body()});
   Store a = open("a");
   expect_refused<StoreDamaged>([&] { a.merge({path("orphan")}); }, {"orphan: event 7 (Checkpoint"});
   EXPECT_EQ(a.head().seq, 0u);
   EXPECT_EQ(a.verify().orphans, 0u);
   // An event of a later version, whose members may mean something else.
   copy("b", "later");
-  test::append_to_run(open("later"), run_id(0), {"CheckpointMoved", {{"sha256", 3}}});
+  append_to_run(open("later"), run_id(0), {"CheckpointMoved", {{"sha256", 3}}});
   EXPECT_EQ(a.merge({path("later")}).at(0).events, 7u);
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Told by the program that made it; see tests/data/store_v1/README.md.
+// Printed by the program that wrote it; see tests/data/store_v1/README.md.
 constexpr const char* kHead = "65f80af869fde3002a7de4d3cf7376c4fdb49de6523dfc78cdf827a1924e3e66";
 constexpr const char* kSheared = "a61190aacbadf7a5f4f7ca8babc7607320644ed281a483fd2c845db08c2563b0";
 constexpr const char* kLastState =

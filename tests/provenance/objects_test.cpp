@@ -8,8 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <thread>
-
+#include "core/threads.hpp"
 #include "provenance/errors.hpp"
 #include "tests/provenance/samples.hpp"
 #include "tests/support/variable.hpp"
@@ -18,13 +17,13 @@ namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
-using test::expect_refused;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class ObjectStoreTest : public ::testing::Test {
  protected:
   TemporaryFolder folder_;
   ObjectStore objects_{folder_.path()};
-  const std::vector<std::byte> bytes_ = test::bytes_of("abc");
+  const std::vector<std::byte> bytes_ = bytes_of("abc");
 };
 
 TEST_F(ObjectStoreTest, GivesBackWhatWasPut) {
@@ -53,7 +52,7 @@ TEST_F(ObjectStoreTest, ObeysTheUmask) {
 TEST_F(ObjectStoreTest, NamesADamagedFileAndMendsItWithTheNextPut) {
   const std::string sha256 = objects_.put(bytes_);
   for (const std::string wrong : {"", "ab", "abd", "abcd"}) {
-    test::write_bytes(folder_.path() / ObjectStore::file_of(sha256), wrong);
+    write_bytes(folder_.path() / ObjectStore::file_of(sha256), wrong);
     expect_refused<StoreDamaged>([&] { objects_.get(sha256, 3); }, {ObjectStore::file_of(sha256)});
   }
   objects_.put(bytes_);
@@ -76,7 +75,7 @@ TEST_F(ObjectStoreTest, FollowsNoLink) {
   objects_.put(bytes_);  // replaces the link and leaves what it named
   EXPECT_FALSE(fs::is_symlink(folder_.path() / ObjectStore::file_of(sha256)));
   EXPECT_EQ(objects_.get(sha256, 3), bytes_);
-  EXPECT_EQ(test::read_bytes(outside), "abc");
+  EXPECT_EQ(read_bytes(outside), "abc");
 }
 
 TEST_F(ObjectStoreTest, FollowsNoLinkToAFolder) {
@@ -90,8 +89,8 @@ TEST_F(ObjectStoreTest, FollowsNoLinkToAFolder) {
 
 TEST_F(ObjectStoreTest, NamesStrangers) {
   const std::string sha256 = objects_.put(bytes_);
-  test::write_bytes(folder_.path() / "objects/ba/.tmp-1-0", "half");
-  test::write_bytes(folder_.path() / "objects/note.txt", "");
+  write_bytes(folder_.path() / "objects/ba/.tmp-1-0", "half");
+  write_bytes(folder_.path() / "objects/note.txt", "");
   EXPECT_EQ(objects_.strangers({sha256}),
             (std::vector<std::string>{"objects/ba/.tmp-1-0", "objects/note.txt"}));
   EXPECT_EQ(objects_.strangers({}).size(), 3u);
@@ -99,9 +98,7 @@ TEST_F(ObjectStoreTest, NamesStrangers) {
 
 TEST_F(ObjectStoreTest, TakesTheSameObjectFromSeveralThreads) {
   const std::vector<std::byte> large(1 << 20, std::byte{7});
-  std::vector<std::thread> threads;
-  for (int t = 0; t < 4; ++t) threads.emplace_back([&] { objects_.put(large); });
-  for (std::thread& thread : threads) thread.join();
+  start_threads(5, [&](std::size_t) { objects_.put(large); });
   const std::string sha256 = sha256_hex(large);
   EXPECT_EQ(objects_.get(sha256, large.size()), large);
   EXPECT_TRUE(objects_.strangers({sha256}).empty());
@@ -110,8 +107,8 @@ TEST_F(ObjectStoreTest, TakesTheSameObjectFromSeveralThreads) {
 TEST(TemporaryFolder, NamesTheFolderThatIsMissing) {
   const TemporaryFolder place;
   const std::string gone = place.path() / "gone";
-  const test::Variable tmpdir("TMPDIR", gone);
-  test::expect_refused<std::system_error>([] { TemporaryFolder(); }, {gone, "TMPDIR"});
+  const Variable tmpdir("TMPDIR", gone);
+  expect_refused<std::system_error>([] { TemporaryFolder(); }, {gone, "TMPDIR"});
   const TemporaryFolder beside((place.path() / ".x.tmp-").string());  // which does not need it
   EXPECT_EQ(beside.path().parent_path(), place.path());
 }
@@ -121,8 +118,8 @@ TEST(Output, ToAFolderThatThisUserMayNotReadIsRefusedForThat) {
   const TemporaryFolder folder;
   fs::permissions(folder.path(), fs::perms::none);
   const auto ours = [](std::string_view) { return true; };
-  test::expect_refused<std::system_error>([&] { require_ours(folder.path() / "x.csv", ours); },
-                                          {"x.csv: cannot write", "ermission denied"});
+  expect_refused<std::system_error>([&] { require_ours(folder.path() / "x.csv", ours); },
+                                    {"x.csv: cannot write", "ermission denied"});
   fs::permissions(folder.path(), fs::perms::owner_all);
 }
 
@@ -132,7 +129,7 @@ TEST(NewFile, LeavesNothingOfWhatCouldNotBeWritten) {
   NewFile file(path);
   file.add("abc");
   EXPECT_THROW(NewFile{path}, std::system_error) << "it exists";
-  EXPECT_EQ(test::read_bytes(path), "abc");
+  EXPECT_EQ(read_bytes(path), "abc");
   rlimit old{};
   getrlimit(RLIMIT_FSIZE, &old);
   const rlimit full{5, old.rlim_max};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pruning frees files, never records, and never what somebody will need.
+// Pruning deletes files but no records, and nothing that is still needed.
 #include <gtest/gtest.h>
 
 #include "tests/provenance/samples.hpp"
@@ -8,11 +8,7 @@ namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
-using test::expect_refused;
-using test::kCycle;
-using test::run_id;
-using test::sample_checkpoint;
-using test::sample_run;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class PruneTest : public ::testing::Test {
  protected:
@@ -91,15 +87,15 @@ TEST_F(PruneTest, KeepsTheNewestThatCanBeRead) {
   fs::resize_file(path_ / records_[6].file, 100);
   fs::remove(path_ / records_[5].file);
   EXPECT_EQ(cycles(store_.prunable({{run_id(0)}, {}, 0})), (std::vector<double>{0, 1, 2}));
-  // Whatever it is told, the newest stays.
+  // The newest is kept even when it is named.
   EXPECT_EQ(store_.prune({records_[6]}), 0u);
   EXPECT_TRUE(there(records_[6]));
 }
 
 TEST_F(PruneTest, FinishesWhatACrashLeft) {
-  const std::string file = test::read_bytes(path_ / records_[1].file);
+  const std::string file = read_bytes(path_ / records_[1].file);
   store_.prune({records_[1]});
-  test::write_bytes(path_ / records_[1].file, file);  // as if it had died before the removal
+  write_bytes(path_ / records_[1].file, file);  // as if it had died before the removal
   const VerifyReport report = store_.verify();
   EXPECT_TRUE(report.ok());
   ASSERT_EQ(report.findings.size(), 1u);
@@ -114,7 +110,7 @@ TEST_F(PruneTest, FinishesWhatACrashLeft) {
 }
 
 TEST_F(PruneTest, RestoresTheSameBytesOnly) {
-  const std::string before = test::read_bytes(path_ / records_[1].file);
+  const std::string before = read_bytes(path_ / records_[1].file);
   store_.prune({records_[1]});
   Checkpoint other = sample_checkpoint(run_id(0), kCycle);
   other.state.velocity(1, 1) += 1e-9;
@@ -124,7 +120,7 @@ TEST_F(PruneTest, RestoresTheSameBytesOnly) {
   EXPECT_THROW(store_.restore_checkpoint(records_[1], same_state), StoreDamaged);
   EXPECT_FALSE(there(records_[1]));
   store_.restore_checkpoint(records_[1], sample_checkpoint(run_id(0), kCycle));
-  EXPECT_EQ(test::read_bytes(path_ / records_[1].file), before);
+  EXPECT_EQ(read_bytes(path_ / records_[1].file), before);
   EXPECT_EQ(store_.events("run/" + run_id(0)).back().type, "CheckpointRegenerated");
   EXPECT_EQ(store_.checkpoints(run_id(0)).size(), 7u);
   EXPECT_TRUE(store_.verify().ok());

@@ -9,6 +9,8 @@
 namespace shearcell {
 namespace {
 
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
 Checkpoint advanced(Checkpoint at, const Scene& scene, const Drive& drive, std::uint64_t until,
                     const EngineSettings& engine) {
   Simulation simulation(at.cell, scene, at.state, engine);
@@ -21,13 +23,13 @@ Checkpoint advanced(Checkpoint at, const Scene& scene, const Drive& drive, std::
 }
 
 PROPERTY(Restart, AtAnyStepFromACheckpointLeavesNoTrace, 80) {
-  test::Sheared packing = test::any_packing(300);
+  Sheared packing = any_packing(300);
   Checkpoint start;
   start.run = "any";
   start.cell = std::move(packing.cell);
   start.state = std::move(packing.state);
-  const Scene scene = test::any_scene();
-  const Drive drive = test::any_drive();
+  const Scene scene = any_scene();
+  const Drive drive = any_drive();
   const auto last = *rc::gen::inRange<std::uint64_t>(1, 1500).as("last step");
   auto cuts =
       *rc::gen::container<std::vector<std::uint64_t>>(rc::gen::inRange<std::uint64_t>(0, last + 1))
@@ -36,12 +38,11 @@ PROPERTY(Restart, AtAnyStepFromACheckpointLeavesNoTrace, 80) {
   std::sort(cuts.begin(), cuts.end());
   Checkpoint cut = start;
   for (const std::uint64_t step : cuts) {
-    cut =
-        decode_checkpoint(encode_checkpoint(advanced(cut, scene, drive, step, test::any_engine())));
+    cut = decode_checkpoint(encode_checkpoint(advanced(cut, scene, drive, step, any_engine())));
   }
-  cut = advanced(cut, scene, drive, last, test::any_engine());
-  const Checkpoint whole = advanced(start, scene, drive, last, test::any_engine());
-  RC_ASSERT(test::same_bits(cut.state, whole.state));
+  cut = advanced(cut, scene, drive, last, any_engine());
+  const Checkpoint whole = advanced(start, scene, drive, last, any_engine());
+  RC_ASSERT(same_bits(cut.state, whole.state));
   RC_ASSERT(state_hash(cut) == state_hash(whole));
   RC_ASSERT(encode_checkpoint(cut) == encode_checkpoint(whole));
 }

@@ -14,6 +14,8 @@
 namespace shearcell {
 namespace {
 
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
 namespace fs = std::filesystem;
 using nlohmann::json;
 
@@ -21,7 +23,7 @@ class Crate : public testing::Test {
  protected:
   void SetUp() override {
     files_ = write_ro_crate(store_, history_.sheared, crate_);
-    metadata_ = json::parse(test::read_bytes(crate_ / "ro-crate-metadata.json"));
+    metadata_ = json::parse(read_bytes(crate_ / "ro-crate-metadata.json"));
     for (const json& entity : metadata_.at("@graph")) {
       EXPECT_TRUE(entities_.emplace(entity.at("@id"), entity).second) << entity.at("@id");
     }
@@ -37,7 +39,7 @@ class Crate : public testing::Test {
 
   TemporaryFolder folder_;
   Store store_{folder_.path() / "store", Access::create};
-  test::SampleHistory history_{store_};
+  SampleHistory history_{store_};
   fs::path crate_ = folder_.path() / "crate";
   std::vector<std::string> files_;
   json metadata_;
@@ -52,9 +54,8 @@ TEST_F(Crate, MeetsItsSpecificationsAndHoldsTheFilesThatItDescribes) {
   EXPECT_EQ(std::system(command.c_str()), 0);
   EXPECT_EQ(files_.size(), of_type("File").size() + 1);
   EXPECT_EQ(entities_.at("./").at("datePublished"), store_.run(history_.sheared).updated_at);
-  // One packing and three states; the rejected one is told of and not copied.
-  EXPECT_EQ(test::read_bytes(crate_ / "manifests" / (sha256_hex("manifest") + ".yaml")),
-            "manifest");
+  // One packing and three states; the rejected one is described but not copied.
+  EXPECT_EQ(read_bytes(crate_ / "manifests" / (sha256_hex("manifest") + ".yaml")), "manifest");
   EXPECT_FALSE(entities_.contains("checkpoints/" + history_.rejected + ".h5"));
   EXPECT_EQ(entities_.at("#checkpoint-" + history_.rejected).at("sha256"), history_.rejected);
 }
@@ -93,7 +94,7 @@ TEST_F(Crate, AnActionIsGivenManifestPackingSeedAndParameters) {
 }
 
 TEST_F(Crate, ProvJsonTellsOfEachCheckpointOnce) {
-  const json prov = json::parse(test::read_bytes(crate_ / "prov.json"));
+  const json prov = json::parse(read_bytes(crate_ / "prov.json"));
   EXPECT_EQ(prov.at("activity").size(), 5U);
   EXPECT_EQ(prov.at("agent").size(), 2U);
   EXPECT_EQ(prov.at("wasGeneratedBy").size(), 5U);
@@ -104,22 +105,22 @@ TEST_F(Crate, EqualStoresGiveEqualBytes) {
   const Store copy(folder_.path() / "copy", Access::read);
   for (const std::string& file :
        write_ro_crate(copy, history_.sheared, folder_.path() / "other/")) {
-    EXPECT_EQ(test::read_bytes(crate_ / file), test::read_bytes(folder_.path() / "other" / file));
+    EXPECT_EQ(read_bytes(crate_ / file), read_bytes(folder_.path() / "other" / file));
   }
 }
 
 TEST_F(Crate, AnEarlierExportIsBroughtUpToDateAndNothingElseIsTouched) {
   const fs::path damaged = crate_ / files_.front();
-  test::write_bytes(damaged, "spoilt");
-  test::write_bytes(crate_ / "notes.txt", "mine");
+  write_bytes(damaged, "spoilt");
+  write_bytes(crate_ / "notes.txt", "mine");
   EXPECT_EQ(write_ro_crate(store_, history_.sheared, crate_), files_);
-  EXPECT_NE(test::read_bytes(damaged), "spoilt");
-  EXPECT_EQ(test::read_bytes(crate_ / "notes.txt"), "mine");
+  EXPECT_NE(read_bytes(damaged), "spoilt");
+  EXPECT_EQ(read_bytes(crate_ / "notes.txt"), "mine");
   EXPECT_THROW(write_ro_crate(store_, history_.packing, crate_), std::invalid_argument);
 
   const fs::path foreign = folder_.path() / "foreign";
   fs::create_directory(foreign);
-  test::write_bytes(foreign / "ro-crate-metadata.json", "{\"@graph\":[{\"@id\":\"./\"}, 3]}");
+  write_bytes(foreign / "ro-crate-metadata.json", "{\"@graph\":[{\"@id\":\"./\"}, 3]}");
   EXPECT_THROW(write_ro_crate(store_, history_.sheared, foreign), std::invalid_argument);
   EXPECT_THROW(write_ro_crate(store_, history_.sheared, crate_ / "notes.txt"),
                std::invalid_argument);
@@ -135,10 +136,10 @@ TEST_F(Crate, FollowsNoLinkOutOfItsFolder) {
   EXPECT_TRUE(fs::is_empty(outside));
   fs::remove(crate_ / "checkpoints");
   fs::remove(crate_ / "prov.json");
-  test::write_bytes(outside / "precious", "precious");
+  write_bytes(outside / "precious", "precious");
   fs::create_symlink(outside / "precious", crate_ / "prov.json");
   write_ro_crate(store_, history_.sheared, crate_);
-  EXPECT_EQ(test::read_bytes(outside / "precious"), "precious");
+  EXPECT_EQ(read_bytes(outside / "precious"), "precious");
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(crate_ / "prov.json")));
 }
 
@@ -147,18 +148,17 @@ TEST_F(Crate, APrunedCheckpointIsToldOfAndNotCopied) {
   fs::remove(store_.folder() / record.file);
   const fs::path pruned = folder_.path() / "pruned";
   EXPECT_THROW(write_ro_crate(store_, history_.sheared, pruned), StoreDamaged);
-  test::append_to_run(store_, history_.sheared, events::encode(events::CheckpointPruned{{record}}));
+  append_to_run(store_, history_.sheared, events::encode(events::CheckpointPruned{{record}}));
   write_ro_crate(store_, history_.sheared, pruned);
   EXPECT_FALSE(fs::exists(pruned / crate_path_of_checkpoint(record.sha256)));
-  const std::string metadata = test::read_bytes(pruned / "ro-crate-metadata.json");
-  EXPECT_NE(metadata.find("#checkpoint-" + record.sha256), std::string::npos);
-  test::write_bytes(crate_ / "checkpoints" / "notes", "of the user");
+  const std::string metadata = read_bytes(pruned / "ro-crate-metadata.json");
+  EXPECT_TRUE(has(metadata, "#checkpoint-" + record.sha256));
+  write_bytes(crate_ / "checkpoints" / "notes", "of the user");
   EXPECT_TRUE(fs::exists(crate_ / crate_path_of_checkpoint(record.sha256)));
   write_ro_crate(store_, history_.sheared, crate_);
   EXPECT_FALSE(fs::exists(crate_ / crate_path_of_checkpoint(record.sha256))) << "of an earlier one";
   EXPECT_TRUE(fs::exists(crate_ / "checkpoints" / "notes"));
-  test::append_to_run(store_, history_.sheared,
-                      events::encode(events::CheckpointRegenerated{{record}}));
+  append_to_run(store_, history_.sheared, events::encode(events::CheckpointRegenerated{{record}}));
   EXPECT_TRUE(run_lineage(store_, history_.sheared).back().find(record.sha256)->kept());
 }
 
@@ -166,8 +166,8 @@ TEST_F(Crate, ADamagedCheckpointLeavesNoCrate) {
   const CheckpointRecord record = store_.checkpoints(history_.sheared).back();
   fs::resize_file(store_.folder() / record.file, 100);
   const fs::path fresh = folder_.path() / "fresh";
-  test::expect_refused<StoreDamaged>([&] { write_ro_crate(store_, history_.sheared, fresh); },
-                                     {record.file});
+  expect_refused<StoreDamaged>([&] { write_ro_crate(store_, history_.sheared, fresh); },
+                               {record.file});
   std::size_t left = 0;
   for (const auto& entry : fs::directory_iterator(folder_.path())) {
     left += entry.path().filename().string().find("fresh") != std::string::npos ? 1 : 0;

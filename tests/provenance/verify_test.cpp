@@ -14,9 +14,7 @@ namespace shearcell {
 namespace {
 
 namespace fs = std::filesystem;
-using test::run_id;
-using test::sample_checkpoint;
-using test::sample_run;
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 class VerifyTest : public ::testing::Test {
  protected:
@@ -108,11 +106,9 @@ TEST_F(VerifyTest, RebuildRepairsTheTables) {
   execute("UPDATE runs SET state = 'completed' WHERE state = 'failed'");
   const Finding finding = only(verify());
   EXPECT_EQ(finding.subject, "table runs");
-  EXPECT_NE(finding.message.find("rebuild"), std::string::npos);
-  EXPECT_NE(
-      finding.message.find(run_id(1) + "') should have state = 'failed', but has 'completed'"),
-      std::string::npos)
-      << finding.message;
+  EXPECT_TRUE(has(finding.message, "rebuild"));
+  EXPECT_TRUE(
+      has(finding.message, run_id(1) + "') should have state = 'failed', but has 'completed'"));
   EXPECT_LT(finding.message.size(), 300u);
   execute("DELETE FROM memberships WHERE run = '" + run_id(1) + "'");
   EXPECT_TRUE(names(verify(), "table memberships", "') is missing;"));
@@ -175,9 +171,9 @@ TEST_F(VerifyTest, FindsAChangedByteOfAnyFieldOfAnyEvent) {
            {std::size_t{0}, text.size() - 1, random() % text.size(), random() % text.size()}) {
         std::string changed = text;
         changed[at] = changed[at] == '0' ? '1' : '0';
-        if (changed != text) expect_found(field, test::sql_text(changed), test::sql_text(text));
+        if (changed != text) expect_found(field, sql_text(changed), sql_text(text));
       }
-      expect_found(field, test::sql_text(text + " "), test::sql_text(text));
+      expect_found(field, sql_text(text + " "), sql_text(text));
     }
     expect_found("version", std::to_string(e.version + 100), std::to_string(e.version));
     expect_found("schema", std::to_string(e.schema + 1), std::to_string(e.schema));
@@ -225,8 +221,8 @@ TEST_F(VerifyTest, FindsARewrittenPastAgainstAKeptHead) {
     if (i == 4) forged.recorded_at = "2001-01-01T00:00:00.000Z";
     forged.prev_hash = prev;
     prev = forged.hash = event_hash(forged);
-    execute("UPDATE events SET recorded_at = " + test::sql_text(forged.recorded_at) +
-            ", prev_hash = '" + forged.prev_hash + "', hash = '" + forged.hash +
+    execute("UPDATE events SET recorded_at = " + sql_text(forged.recorded_at) + ", prev_hash = '" +
+            forged.prev_hash + "', hash = '" + forged.hash +
             "' WHERE seq = " + std::to_string(forged.seq));
     if (i == 4) {
       EXPECT_TRUE(names(verify(), event(6), "does not follow"));
@@ -240,20 +236,20 @@ TEST_F(VerifyTest, FindsARewrittenPastAgainstAKeptHead) {
 
 TEST_F(VerifyTest, FindsAChangedByteOfACheckpoint) {
   const CheckpointRecord& record = records_[4];
-  const std::string bytes = test::read_bytes(path_ / record.file);
+  const std::string bytes = read_bytes(path_ / record.file);
   std::mt19937_64 random(2);
   std::vector<std::size_t> places = {0, 511, 512, bytes.size() - 1};
   while (places.size() < 64) places.push_back(random() % bytes.size());
   for (const std::size_t at : places) {
     std::string changed = bytes;
     changed[at] = static_cast<char>(changed[at] ^ (1 << (at % 8)));
-    test::write_bytes(path_ / record.file, changed);
+    write_bytes(path_ / record.file, changed);
     EXPECT_TRUE(names(verify(), record.file)) << "byte " << at;
   }
   EXPECT_EQ(only(verify()).run, run_id(1));
-  test::write_bytes(path_ / record.file, bytes + "x");
+  write_bytes(path_ / record.file, bytes + "x");
   EXPECT_TRUE(names(verify(), record.file));
-  test::write_bytes(path_ / record.file, test::read_bytes(path_ / records_[3].file));
+  write_bytes(path_ / record.file, read_bytes(path_ / records_[3].file));
   EXPECT_TRUE(names(verify(), record.file)) << "another checkpoint in its place";
   fs::remove(path_ / record.file);
   EXPECT_TRUE(names(verify(), record.file));
@@ -265,7 +261,7 @@ TEST_F(VerifyTest, NotesTheLossOfARejectedObject) {
 }
 
 TEST_F(VerifyTest, NamesOrphans) {
-  const std::string orphan = ObjectStore(path_).put(test::bytes_of("written before a crash"));
+  const std::string orphan = ObjectStore(path_).put(bytes_of("written before a crash"));
   const VerifyReport report = verify();
   EXPECT_TRUE(report.ok());
   EXPECT_EQ(report.orphans, 1u);
@@ -280,7 +276,7 @@ TEST_F(VerifyTest, NotesAStepThatWasReproducedDifferently) {
   store.record_checkpoint(run_id(1), other);
   const VerifyReport report = store.verify();
   EXPECT_TRUE(report.ok());
-  EXPECT_NE(only(report).message.find("different states at step 1"), std::string::npos);
+  EXPECT_TRUE(has(only(report).message, "different states at step 1"));
 }
 
 }  // namespace

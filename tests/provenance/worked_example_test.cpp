@@ -12,12 +12,14 @@
 namespace shearcell {
 namespace {
 
+using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
+
 namespace fs = std::filesystem;
 
 /// The indented blocks of the section.
 std::string commands_of_the_readme() {
   std::istringstream readme(
-      test::read_bytes(fs::path(SHEARCELL_TEST_DATA) / "../../provenance/README.md"));
+      read_bytes(fs::path(SHEARCELL_TEST_DATA) / "../../provenance/README.md"));
   std::string commands;
   bool inside = false;
   for (std::string line; std::getline(readme, line);) {
@@ -27,7 +29,7 @@ std::string commands_of_the_readme() {
   return commands;
 }
 
-/// Debian's python3, which has h5py, may stand behind another one.
+/// Debian's python3, which has h5py, may come after another one on PATH.
 ProgramOutcome run_script(const std::string& script) {
   return run_program({"sh", "-euc", "PATH=/usr/bin:$PATH\n" + script}, "/").value();
 }
@@ -39,7 +41,7 @@ TEST(WorkedExample, CommandsOfTheReadmeDoWhatItSays) {
   }
   const TemporaryFolder folder;
   Store store(folder.path() / "store", Access::create);
-  const test::SampleHistory history(store);
+  const SampleHistory history(store);
   const auto [code, output, messages] =
       run_script("cd '" + store.folder().string() + "'\n" + commands_of_the_readme());
   std::printf("%.*s\n", 1500, output.c_str());
@@ -53,7 +55,7 @@ TEST(WorkedExample, CommandsOfTheReadmeDoWhatItSays) {
   EXPECT_EQ(computed.substr(0, 64), recorded) << "the hash of event 4";
   for (const std::string& run : {history.packing, history.sheared}) {
     for (const CheckpointRecord& record : store.checkpoints(run, Listed::all)) {
-      EXPECT_NE(output.find(record.file + ": OK"), std::string::npos) << record.file;
+      EXPECT_TRUE(has(output, record.file + ": OK")) << record.file;
     }
   }
   const std::string frame = "sha256 of all bytes after the first 512: ";
@@ -61,9 +63,9 @@ TEST(WorkedExample, CommandsOfTheReadmeDoWhatItSays) {
   ASSERT_NE(at, std::string::npos);
   const std::string promised = output.substr(at + frame.size(), 64);
   EXPECT_TRUE(is_sha256_hex(promised)) << promised;
-  EXPECT_NE(output.find(promised + "  -"), std::string::npos) << "the frame and sha256sum differ";
-  EXPECT_NE(output.find("ATTRIBUTE \"step\""), std::string::npos) << "h5dump";
-  EXPECT_NE(output.find("DATASET \"/particles/all/position/value\""), std::string::npos);
+  EXPECT_TRUE(has(output, promised + "  -")) << "the frame and sha256sum differ";
+  EXPECT_TRUE(has(output, "ATTRIBUTE \"step\"")) << "h5dump";
+  EXPECT_TRUE(has(output, "DATASET \"/particles/all/position/value\""));
 }
 
 }  // namespace
