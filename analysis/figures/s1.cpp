@@ -83,12 +83,10 @@ std::vector<Series> series_under(const Load& load) {
 }
 
 FigureTable table_of(std::span<const FigureRun> runs) {
-  FigureTable table;
-  table.name = "S1";
-  table.columns = {
-      "pressure_at", "log10_k_over_k0",      "overlap_mean_d", "overlap_standard_error_d",
-      "phi_u_mean",  "phi_u_standard_error", "phi_mean",       "phi_standard_error",
-      "runs"};
+  FigureTable table{
+      .name = "S1",
+      .columns = {"pressure_at", "log10_k_over_k0", "overlap_mean_d", "overlap_standard_error_d",
+                  "phi_u_mean", "phi_u_standard_error", "phi_mean", "phi_standard_error", "runs"}};
   Axis overlap = overlap_axis();
   overlap.log = true;
   table.chart = {.x = std::move(overlap), .y = phi_axis()};
