@@ -7,8 +7,7 @@
 
 namespace shearcell {
 
-std::vector<PhiBin> binned_by_phi(std::span<const FigureRun* const> runs, const Quantity& quantity,
-                                  double width) {
+std::vector<PhiBin> binned_by_phi(RunGroup runs, const Quantity& quantity) {
   struct OverRuns {
     std::vector<double> phi;
     std::vector<double> value;
@@ -19,7 +18,7 @@ std::vector<PhiBin> binned_by_phi(std::span<const FigureRun* const> runs, const 
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
       const double phi = checkpoint.measures.phi;
       if (!std::isfinite(phi)) continue;
-      OverRuns& bin = own[static_cast<std::int64_t>(std::floor(phi / width))];
+      OverRuns& bin = own[static_cast<std::int64_t>(std::floor(phi / phi_bin))];
       bin.phi.push_back(phi);
       bin.value.push_back(quantity(checkpoint.measures));
     }
@@ -34,7 +33,7 @@ std::vector<PhiBin> binned_by_phi(std::span<const FigureRun* const> runs, const 
   for (const auto& [bin, found] : bins) {
     const auto low = static_cast<double>(bin);
     result.push_back(
-        {low * width, (low + 1) * width, over_runs(found.phi), over_runs(found.value)});
+        {low * phi_bin, (low + 1) * phi_bin, over_runs(found.phi), over_runs(found.value)});
   }
   return result;
 }

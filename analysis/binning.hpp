@@ -3,17 +3,12 @@
 // where they have the same phi.
 #pragma once
 
-#include <functional>
-#include <span>
 #include <vector>
 
 #include "analysis/figure.hpp"
 #include "analysis/statistics.hpp"
 
 namespace shearcell {
-
-/// A scalar of one checkpoint: a member of Measures, or computed from several.
-using Quantity = std::function<double(const Measures&)>;
 
 /// Width of the bins in phi. [choice]
 inline constexpr double phi_bin = 0.002;
@@ -27,9 +22,8 @@ struct PhiBin {
   RunStatistics value;
 };
 
-/// Bins at whole multiples of `width`, ascending, those that some run visits. Checkpoints without a
+/// Bins at whole multiples of phi_bin, ascending, those that some run visits. Checkpoints without a
 /// finite phi are left out.
-std::vector<PhiBin> binned_by_phi(std::span<const FigureRun* const> runs, const Quantity& quantity,
-                                  double width = phi_bin);
+std::vector<PhiBin> binned_by_phi(RunGroup runs, const Quantity& quantity);
 
 }  // namespace shearcell

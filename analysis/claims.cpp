@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/binning.hpp"
 #include "analysis/published.hpp"
 
 namespace shearcell {
@@ -103,12 +104,6 @@ RunValue measured(double value) {
   return {value, std::isfinite(value) ? Missing::nothing : Missing::undefined};
 }
 
-Scalar at_cycle(const std::string& name, Quantity quantity, std::int64_t cycle) {
-  Scalar scalar = over_cycles(name, std::move(quantity), cycle, cycle);
-  scalar.name = fmt::format("{} at cycle {}", name, cycle);
-  return scalar;
-}
-
 Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t first,
                    std::int64_t last) {
   const auto of = [quantity = std::move(quantity), first, last](const FigureRun& run) -> RunValue {
@@ -129,10 +124,11 @@ Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t firs
     if (count != last - first + 1) return {0, Missing::checkpoint};
     return measured(sum / static_cast<double>(count));
   };
-  return {
-      fmt::format("{}, mean over cycles {} to {}", name, first, last),
-      first == last ? fmt::format("cycle {}", last) : fmt::format("cycles {} to {}", first, last),
-      of};
+  if (first == last) {
+    return {fmt::format("{} at cycle {}", name, last), fmt::format("cycle {}", last), of};
+  }
+  return {fmt::format("{}, mean over cycles {} to {}", name, first, last),
+          fmt::format("cycles {} to {}", first, last), of};
 }
 
 Scalar early_phi() {

@@ -9,10 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/binning.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/onset.hpp"
-#include "analysis/survival.hpp"
+#include "analysis/statistics.hpp"
 #include "analysis/verdict.hpp"
 
 namespace shearcell {
@@ -37,8 +36,6 @@ struct Scalar {
   bool relative = false;  ///< differences are relative: 0.03 is 3 %
 };
 
-Scalar at_cycle(const std::string& name, Quantity quantity, std::int64_t cycle);
-
 /// Mean over the checkpoints of cycles first .. last, all of which the run must have.
 Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t first,
                    std::int64_t last);
@@ -47,7 +44,7 @@ Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t firs
 Scalar early_phi();
 
 /// Percentage of crystalline grains, mean over phi from 0.646 to 0.67: the polygon through the
-/// means of the run's bins of phi (analysis/binning.hpp), integrated over that window.
+/// means of the run's bins of phi (binning.hpp), integrated over that window.
 Scalar percentage_over_phi();
 
 /// phi at the onset, with the supplement's critical size for the run's amplitude.
@@ -58,8 +55,6 @@ Estimate mapped(Estimate estimate, const std::function<double(double)>& increasi
 
 /// Whether one stage prepared the packing that both runs begin with.
 bool share_packing(const FigureRun& a, const FigureRun& b);
-
-using RunGroup = std::span<const FigureRun* const>;
 
 /// a less b. Paired, by Student's t, if some runs share packings: those that do not are then left
 /// out. Else Welch's interval. A verdict needs least_runs runs or pairs and, so that runs that end
@@ -75,7 +70,7 @@ std::vector<Waiting> waits_for(RunGroup runs, const Quantity& quantity, double l
 /// The same for the onset of crystallization by method 1.
 std::vector<Waiting> waits_for_onset(RunGroup runs);
 
-/// log2 of how many times later the event is in `a`, by the log-rank test (analysis/survival.hpp).
+/// log2 of how many times later the event is in `a`, by the log-rank test (statistics.hpp).
 /// Runs that end before it are censored.
 Verdict compare_waits(const Claim& claim, const std::string& event, std::span<const Waiting> a,
                       std::span<const Waiting> b);

@@ -194,45 +194,40 @@ json interior() {
   return {{"interior_distance_d", interior_distance}, {"rough_wall_surface_d", rough_wall_surface}};
 }
 
-json criteria() {
-  return {{"connecting_face", connecting_face},
-          {"crystalline_phi_local", crystalline_phi_local},
-          {"interior_distance_d", interior_distance},
-          {"q6_fcc", q6_fcc},
-          {"q6_hcp", q6_hcp},
-          {"q6_tolerance", q6_tolerance},
-          {"rough_wall_surface_d", rough_wall_surface}};
-}
-
 json with(json parameters, const json& more) {
   parameters.update(more);
   return parameters;
 }
 
-std::vector<DerivedMeasure> make_all() {
-  return {{"scalars", criteria(), scalars_of<Scalars::own>, checked<read_scalars<Scalars::own>>},
-          {"mechanics", interior(), scalars_of<Scalars::mechanics>,
-           checked<read_scalars<Scalars::mechanics>>},
-          {"crystallites", criteria(), crystallites_of, read_crystallites},
-          {"lattices", interior(), lattices_of, checked<read_numbers>},
-          {"motion",
-           with(criteria(), {{"neighbour_d", motion_neighbour_d}, {"reversible_d", reversible_d}}),
-           motion_of,
-           checked<read_numbers>,
-           {1, 10, 100}},
-          {"pair_correlation", with(interior(), {{"bin_d", pair_bin_d}, {"reach_d", pair_reach_d}}),
-           pair_correlation_of, checked<read_curves>},
-          {"structure_factor",
-           with(interior(), {{"bin_per_d", wave_bin_per_d}, {"largest_per_d", largest_wave_per_d}}),
-           structure_factor_of, checked<read_curves>},
-          {"profiles", criteria(), profiles_of, checked<read_curves>},
-          {"sensitivity", criteria(), sensitivity_of, checked<read_curves>}};
+json criteria() {
+  return with(interior(), {{"connecting_face", connecting_face},
+                           {"crystalline_phi_local", crystalline_phi_local},
+                           {"q6_fcc", q6_fcc},
+                           {"q6_hcp", q6_hcp},
+                           {"q6_tolerance", q6_tolerance}});
 }
 
 }  // namespace
 
 std::span<const DerivedMeasure> all_derived_measures() {
-  static const std::vector<DerivedMeasure> all = make_all();
+  static const std::vector<DerivedMeasure> all = {
+      {"scalars", criteria(), scalars_of<Scalars::own>, checked<read_scalars<Scalars::own>>},
+      {"mechanics", interior(), scalars_of<Scalars::mechanics>,
+       checked<read_scalars<Scalars::mechanics>>},
+      {"crystallites", criteria(), crystallites_of, read_crystallites},
+      {"lattices", interior(), lattices_of, checked<read_numbers>},
+      {"motion",
+       with(criteria(), {{"neighbour_d", motion_neighbour_d}, {"reversible_d", reversible_d}}),
+       motion_of,
+       checked<read_numbers>,
+       {1, 10, 100}},
+      {"pair_correlation", with(interior(), {{"bin_d", pair_bin_d}, {"reach_d", pair_reach_d}}),
+       pair_correlation_of, checked<read_curves>},
+      {"structure_factor",
+       with(interior(), {{"bin_per_d", wave_bin_per_d}, {"largest_per_d", largest_wave_per_d}}),
+       structure_factor_of, checked<read_curves>},
+      {"profiles", criteria(), profiles_of, checked<read_curves>},
+      {"sensitivity", criteria(), sensitivity_of, checked<read_curves>}};
   return all;
 }
 

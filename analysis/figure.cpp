@@ -25,38 +25,6 @@ Figure of_groups(const char* name, const char* title, Make make, Keys keys,
   return {name, title, make, FigureForm::groups, std::move(keys), std::move(needs)};
 }
 
-std::vector<Figure> make_figures() {
-  return {
-      {"table1", "Table I beside the parameters of every experiment", figure_table1,
-       FigureForm::table},
-      of_groups("S1", "Volume fraction in the limit of hard grains", figure_s1, {"pressure_at"}),
-      of_curves("S2", "Still fluid and fluid that moves with the cell", figure_s2, {"fluid"}),
-      of_curves("S3", "Time steps", figure_s3, {"steps_per_cycle"}),
-      of_curves("S4", "Moving bottom wall and moving top wall", figure_s4,
-                {"moving_wall", "pressure_at"}),
-      of_groups("S5a", "Onset of crystallization against amplitude", figure_s5a, {"amplitude_rad"}),
-      of_groups("S5b", "Onset of crystallization against system size", figure_s5b, {"grains"}),
-      of_curves("S6", "Shear with and without gravity", figure_s6,
-                {"amplitude_rad", "gravity_m_per_s2"}),
-      of_groups("S7", "Where crystallites nucleate", figure_s7,
-                {"amplitude_rad", "stiffness_N_per_m"}, {"crystallites"}),
-      of_groups("C", "Growth of crystallites by size", figure_c, {"amplitude_rad"},
-                {"crystallites"}),
-      of_groups("nucleation", "Runs without an onset, and the rate of nucleation",
-                figure_nucleation, {"amplitude_rad", "grains"}),
-      of_curves("B5", "Continuous and periodically paused shear", figure_b5, {"protocol"},
-                {"at_rest"}),
-      of_curves("walls", "Rough and smooth walls", figure_walls, {"walls"}),
-      of_curves("choices", "Mass and drag of the moving wall, and other wall grains",
-                figure_choices,
-                {"wall_mass_grains_per_d2", "wall_drag_grains_per_d2_s", "wall_grain_draw"})};
-}
-
-const std::vector<Figure>& figures() {
-  static const std::vector<Figure> all = make_figures();
-  return all;
-}
-
 }  // namespace
 
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
@@ -110,12 +78,37 @@ std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::strin
 }
 
 std::span<const Figure> all_figures() {
-  return figures();
+  static const std::vector<Figure> all = {
+      {"table1", "Table I beside the parameters of every experiment", figure_table1,
+       FigureForm::table},
+      of_groups("S1", "Volume fraction in the limit of hard grains", figure_s1, {"pressure_at"}),
+      of_curves("S2", "Still fluid and fluid that moves with the cell", figure_s2, {"fluid"}),
+      of_curves("S3", "Time steps", figure_s3, {"steps_per_cycle"}),
+      of_curves("S4", "Moving bottom wall and moving top wall", figure_s4,
+                {"moving_wall", "pressure_at"}),
+      of_groups("S5a", "Onset of crystallization against amplitude", figure_s5a, {"amplitude_rad"}),
+      of_groups("S5b", "Onset of crystallization against system size", figure_s5b, {"grains"}),
+      of_curves("S6", "Shear with and without gravity", figure_s6,
+                {"amplitude_rad", "gravity_m_per_s2"}),
+      of_groups("S7", "Where crystallites nucleate", figure_s7,
+                {"amplitude_rad", "stiffness_N_per_m"}, {"crystallites"}),
+      of_groups("C", "Growth of crystallites by size", figure_c, {"amplitude_rad"},
+                {"crystallites"}),
+      of_groups("nucleation", "Runs without an onset, and the rate of nucleation",
+                figure_nucleation, {"amplitude_rad", "grains"}),
+      of_curves("B5", "Continuous and periodically paused shear", figure_b5, {"protocol"},
+                {"at_rest"}),
+      of_curves("walls", "Rough and smooth walls", figure_walls, {"walls"}),
+      of_curves("choices", "Mass and drag of the moving wall, and other wall grains",
+                figure_choices,
+                {"wall_mass_grains_per_d2", "wall_drag_grains_per_d2_s", "wall_grain_draw"})};
+  return all;
 }
 
 const Figure* find_figure(std::string_view name) {
-  const auto found = std::ranges::find(figures(), name, &Figure::name);
-  return found == figures().end() ? nullptr : &*found;
+  const auto all = all_figures();
+  const auto found = std::ranges::find(all, name, &Figure::name);
+  return found == all.end() ? nullptr : &*found;
 }
 
 }  // namespace shearcell

@@ -41,6 +41,11 @@ struct FigureRun {
   std::vector<CheckpointMeasures> checkpoints;  ///< by cycle
 };
 
+using RunGroup = std::span<const FigureRun* const>;
+
+/// A scalar of one checkpoint: a member of Measures, or computed from several.
+using Quantity = std::function<double(const Measures&)>;
+
 /// The panels of a figure in order, and the verdicts on the supplement's claims.
 struct FigureResult {
   std::vector<FigureTable> tables;

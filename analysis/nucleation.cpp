@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "analysis/binning.hpp"
 #include "analysis/published.hpp"
 
 namespace shearcell {
@@ -232,12 +233,7 @@ std::optional<Estimate> size_exponent(RunGroup runs) {
   const Interval interval = {
       bisected(-widest, value, [&](double exponent) { return !unlikely(exponent); }),
       bisected(value, widest, unlikely)};
-  const double error =
-      (interval.high - interval.low) / (2 * normal_quantile((1 + confidence_level) / 2));
-  return Estimate{.value = value,
-                  .interval = interval,
-                  .runs = counted,
-                  .spread = error * std::sqrt(static_cast<double>(counted))};
+  return estimate_with(value, interval, normal_quantile((1 + confidence_level) / 2), counted);
 }
 
 }  // namespace shearcell

@@ -116,7 +116,7 @@ const RunMeasure* find_run_measure(std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-Onset onset(std::span<const FigureRun* const> runs, OnsetMethod method, double critical_size) {
+Onset onset(RunGroup runs, OnsetMethod method, double critical_size) {
   Onset result;
   std::vector<double> phi;
   std::vector<double> cycle;

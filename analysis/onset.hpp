@@ -67,6 +67,6 @@ struct Onset {
   std::size_t before_start = 0;     ///< runs that begin after
   std::size_t unclear = 0;          ///< runs in which the method finds none
 };
-Onset onset(std::span<const FigureRun* const> runs, OnsetMethod method, double critical_size);
+Onset onset(RunGroup runs, OnsetMethod method, double critical_size);
 
 }  // namespace shearcell

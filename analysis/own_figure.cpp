@@ -176,19 +176,17 @@ struct Panel {
 };
 
 Panel panel_of(const PlotSpec& plot, std::span<const FigureRun> runs) {
-  if (const RunMeasure* of_run = find_run_measure(plot.y)) {
-    const auto number = [of_run](const FigureRun& run) { return of_run->of(run); };
-    return {plot.x, column_of(of_run->name, "1"),
-            [&plot, number](const Curve& curve) { return along_parameter(plot, curve, number); }};
-  }
-  const double cycle = cycle_of(plot, runs);
+  const RunMeasure* of_run = find_run_measure(plot.y);
+  std::optional<double> cycle;
+  if (of_run == nullptr) cycle = cycle_of(plot, runs);
   if (const CurveMeasure* measured = find_curve_measure(plot.y)) {
     return {std::string(measured->x), column_of(measured->name, measured->unit),
-            [=](const Curve& curve) { return along_curve(curve, *measured, cycle); }, cycle};
+            [=](const Curve& curve) { return along_curve(curve, *measured, *cycle); }, cycle};
   }
-  MeasureColumn y = scalar_column(plot.y);
-  const auto number = [quantity = y.quantity, cycle](const FigureRun& run) {
-    const Measures* measures = measures_at(run, cycle);
+  MeasureColumn y = of_run != nullptr ? column_of(of_run->name, "1") : scalar_column(plot.y);
+  const auto number = [of_run, cycle, quantity = y.quantity](const FigureRun& run) {
+    if (of_run != nullptr) return of_run->of(run);
+    const Measures* measures = measures_at(run, *cycle);
     return measures == nullptr ? std::nan("") : quantity(*measures);
   };
   return {plot.x, std::move(y),
@@ -282,14 +280,12 @@ std::vector<const FigureRun*> variant_with(const ClaimSpec& claim, const nlohman
                                            std::span<const FigureRun> runs) {
   std::vector<const FigureRun*> found;
   for (const FigureRun& run : runs) {
-    bool fits = true;
-    for (const auto& [key, value] : where.items()) {
-      const bool own_engine = key == "engine" && value == "shearcell" && !sweeps_engine(run);
-      fits = fits && (own_engine || parameter_of(run, key) == value);
-    }
+    const bool fits = std::ranges::all_of(where.items(), [&](const auto& stated) {
+      return parameter_of(run, stated.key()) == stated.value();
+    });
     if (fits) found.push_back(&run);
   }
-  const auto variants = [](std::span<const FigureRun* const> some) {
+  const auto variants = [](RunGroup some) {
     std::set<std::string> distinct;
     for (const FigureRun* run : some) distinct.insert(run->variant);
     return distinct.size();
@@ -311,10 +307,8 @@ Scalar scalar_of(const ClaimSpec& claim) {
     return scalar;
   }
   const Quantity quantity = scalar_column(claim.compare).quantity;
-  const auto first = static_cast<std::int64_t>(claim.first);
-  const auto last = static_cast<std::int64_t>(claim.last);
-  return first == last ? at_cycle(claim.compare, quantity, first)
-                       : over_cycles(claim.compare, quantity, first, last);
+  return over_cycles(claim.compare, quantity, static_cast<std::int64_t>(claim.first),
+                     static_cast<std::int64_t>(claim.last));
 }
 
 FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> runs) {

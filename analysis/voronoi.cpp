@@ -16,7 +16,7 @@ namespace shearcell {
 namespace {
 
 constexpr double smallest_face = 1e-13;  // [d^2]
-// Beyond this no image bears on a cell of a dense packing; a second pass serves all others.
+// In a dense packing no image farther away touches a cell; other packings need a second pass.
 constexpr double first_margin_spacings = 2.1;
 
 constexpr std::array<const char*, 4> side_names = {"left", "right", "bottom", "top"};
@@ -153,7 +153,7 @@ class Dual {
   /// Cuts the box by the bisectors to the neighbours and leaves the cell in polyhedron_ and areas_.
   /// Returns its volume [d^3].
   double clip(std::int32_t site) {
-    // Near ones first, so that few cuts are made in vain; and an order that leaves no choice.
+    // Near ones first, so that few cuts have no effect; the order is unique.
     std::vector<std::pair<double, SiteImage>> ranks;
     for (const SiteImage& other : delaunay_.neighbours(site)) {
       ranks.emplace_back(delaunay_.offset(site, other).squaredNorm(), other);

@@ -14,7 +14,7 @@
 #include "analysis/figures/groups.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/published.hpp"
-#include "analysis/survival.hpp"
+#include "analysis/statistics.hpp"
 
 namespace shearcell {
 namespace {
@@ -23,7 +23,7 @@ namespace {
 constexpr std::array<std::int64_t, 5> cycles_to_follow = {1, 2, 5, 10, 20};
 
 /// The counts of those runs in which some crystallite could be followed over so many cycles.
-std::vector<GrowthBySize> followed(std::span<const FigureRun* const> runs, std::int64_t cycles) {
+std::vector<GrowthBySize> followed(RunGroup runs, std::int64_t cycles) {
   std::vector<GrowthBySize> all;
   for (const FigureRun* run : runs) {
     GrowthBySize counts = growth_of(*run, cycles);
@@ -47,14 +47,17 @@ struct AmplitudeGrowth {
 std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs) {
   std::vector<AmplitudeGrowth> all;
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
-    AmplitudeGrowth one{amplitude, &published_nearest(amplitude), members, {}, {}, {}, {}, {}, {}};
-    one.runs = followed(members, one.published->n_bin);
-    one.onset_cycle = median_wait(waits_for_onset(members));
-    one.fit = fit_growth(one.runs);
-    one.critical = critical_size(one.runs);
-    one.without_vanished = critical_size(one.runs, Vanished::left_out);
-    one.monotone = monotone_critical_size(one.runs);
-    all.push_back(std::move(one));
+    const PublishedAmplitude& published = published_nearest(amplitude);
+    const std::vector<GrowthBySize> counts = followed(members, published.n_bin);
+    all.push_back({.amplitude = amplitude,
+                   .published = &published,
+                   .all_runs = members,
+                   .runs = counts,
+                   .onset_cycle = median_wait(waits_for_onset(members)),
+                   .fit = fit_growth(counts),
+                   .critical = critical_size(counts),
+                   .without_vanished = critical_size(counts, Vanished::left_out),
+                   .monotone = monotone_critical_size(counts)});
   }
   return all;
 }
@@ -119,11 +122,10 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
 }
 
 FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
-  FigureTable table;
-  table.name = std::string("C");  // not assigned: GCC 12 warns of an overlap that does not exist
-  table.columns = {"amplitude_rad",      "size_grains",    "grow_probability",
-                   "shrink_probability", "binomial_error", "delta_rho",
-                   "delta_rho_error",    "crystallites",   "runs"};
+  FigureTable table{
+      .name = "C",
+      .columns = {"amplitude_rad", "size_grains", "grow_probability", "shrink_probability",
+                  "binomial_error", "delta_rho", "delta_rho_error", "crystallites", "runs"}};
   for (const AmplitudeGrowth& one : all) {
     for (const GrowthRate& rate : growth_rates(one.runs)) {
       table.rows.push_back({one.amplitude, rate.size, rate.grow, rate.shrink, rate.grow_error,
@@ -134,40 +136,34 @@ FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
   return table;
 }
 
-/// Value, interval and standard error; nothing without an estimate.
-TableRow cells_of(const std::optional<Estimate>& size) {
-  if (!size) return TableRow(4);
-  return {size->value, size->interval.low, size->interval.high,
-          size->spread / std::sqrt(static_cast<double>(size->runs))};
+/// Columns of a size, its interval and its standard error.
+void add_size_columns(const std::string& name, std::vector<std::string>& columns) {
+  for (const char* ending : {"", "_low", "_high", "_standard_error"}) {
+    columns.push_back(name + ending + "_grains");
+  }
+}
+
+/// Their values; empty without an estimate.
+void add_size(const std::optional<Estimate>& size, TableRow& row) {
+  if (!size) {
+    row.resize(row.size() + 4);
+    return;
+  }
+  row.insert(row.end(), {size->value, size->interval.low, size->interval.high,
+                         size->spread / std::sqrt(static_cast<double>(size->runs))});
 }
 
 FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
-  FigureTable table;
-  table.name = "C_critical_size";
-  table.columns = {"amplitude_rad",
-                   "cycles_followed",
-                   "onset_median_cycle",
-                   "critical_size_grains",
-                   "critical_size_low_grains",
-                   "critical_size_high_grains",
-                   "critical_size_standard_error_grains",
-                   "without_vanished_grains",
-                   "without_vanished_low_grains",
-                   "without_vanished_high_grains",
-                   "without_vanished_standard_error_grains",
-                   "monotone_grains",
-                   "monotone_low_grains",
-                   "monotone_high_grains",
-                   "monotone_standard_error_grains",
-                   "logistic_slope",
-                   "supplement_grains",
-                   "runs"};
+  FigureTable table{.name = "C_critical_size",
+                    .columns = {"amplitude_rad", "cycles_followed", "onset_median_cycle"}};
+  for (const char* name : {"critical_size", "without_vanished", "monotone"}) {
+    add_size_columns(name, table.columns);
+  }
+  table.columns.insert(table.columns.end(), {"logistic_slope", "supplement_grains", "runs"});
   for (const AmplitudeGrowth& one : all) {
     TableRow& row =
         table.rows.emplace_back(TableRow{one.amplitude, one.published->n_bin, one.onset_cycle});
-    for (const auto& size : {one.critical, one.without_vanished, one.monotone}) {
-      std::ranges::move(cells_of(size), std::back_inserter(row));
-    }
+    for (const auto& size : {one.critical, one.without_vanished, one.monotone}) add_size(size, row);
     row.insert(row.end(), {one.fit ? TableValue(one.fit->slope) : TableValue(),
                            one.published->critical_size, one.runs.size()});
   }
@@ -189,15 +185,9 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
 
 /// Grains that have longer to grow appear to be past the critical size when they are smaller.
 FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
-  FigureTable table;
-  table.name = "C_followed";
-  table.columns = {"amplitude_rad",
-                   "cycles_followed",
-                   "critical_size_grains",
-                   "critical_size_low_grains",
-                   "critical_size_high_grains",
-                   "critical_size_standard_error_grains",
-                   "runs"};
+  FigureTable table{.name = "C_followed", .columns = {"amplitude_rad", "cycles_followed"}};
+  add_size_columns("critical_size", table.columns);
+  table.columns.emplace_back("runs");
   table.chart = {.x = {.name = "cycles that crystallites are followed", .log = true},
                  .y = {.name = "critical size", .unit = "grains", .log = true}};
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -208,7 +198,7 @@ FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
       TableRow& row = table.rows.emplace_back(TableRow{all[k].amplitude, cycles});
       std::optional<Estimate> size = critical_size(runs);
       if (size && !std::isfinite(size->interval.high - size->interval.low)) size.reset();
-      std::ranges::move(cells_of(size), std::back_inserter(row));
+      add_size(size, row);
       row.emplace_back(runs.size());
     }
     table.chart.series.push_back({.title = title_of(all[k].amplitude),

@@ -30,71 +30,67 @@ FigureResult drawn(Curves curves, std::initializer_list<Panel> panels,
   return result;
 }
 
-RunGroup runs_of(const Curve* curve) {
-  return curve == nullptr ? RunGroup() : RunGroup(curve->runs);
-}
-
 /// Compares what is meant to be measured before the grains crystallize, and says where they did.
-Verdict compare_early(const Claim& claim, const Scalar& scalar, const Curve* a, const Curve* b) {
-  Verdict verdict = compare(claim, scalar, runs_of(a), runs_of(b));
+Verdict compare_early(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {
+  Verdict verdict = compare(claim, scalar, a, b);
   std::size_t early = 0;
-  for (const RunGroup group : {runs_of(a), runs_of(b)}) {
+  for (const RunGroup group : {a, b}) {
     for (const Waiting& wait : waits_for_onset(group)) {
       early += wait.observed && wait.cycle < static_cast<double>(early_cycles) ? 1 : 0;
     }
   }
   if (early > 0) {
     verdict.note += fmt::format("; {} of all {} runs have their onset before cycle {}", early,
-                                runs_of(a).size() + runs_of(b).size(), early_cycles);
+                                a.size() + b.size(), early_cycles);
   }
   return verdict;
 }
 
-Verdict same_early_phi(const std::string& section, const std::string& what, const Curve* a,
-                       const Curve* b) {
+Verdict same_early_phi(const std::string& section, const std::string& what, RunGroup a,
+                       RunGroup b) {
   return compare_early(
       {fmt::format("{}: phi is the same at cycles 1 to {} for {}", section, early_cycles, what),
        margin_early_phi},
       early_phi(), a, b);
 }
 
-Verdict same_percentage(const std::string& section, const std::string& what, const Curve* a,
-                        const Curve* b) {
+Verdict same_percentage(const std::string& section, const std::string& what, RunGroup a,
+                        RunGroup b) {
   return compare(
       {fmt::format("{}: percentage crystalline against phi is the same for {}", section, what),
        margin_percentage},
-      percentage_over_phi(), runs_of(a), runs_of(b));
+      percentage_over_phi(), a, b);
 }
 
 /// What S2, S3 and S4 claim of two variants. Single runs crystallize at random cycles, so phi at
 /// later cycles is compared by the cycle of the onset.
-std::vector<Verdict> similar(const std::string& section, const std::string& what, const Curve* a,
-                             const Curve* b) {
+std::vector<Verdict> similar(const std::string& section, const std::string& what, RunGroup a,
+                             RunGroup b) {
   return {
       same_early_phi(section, what, a, b),
       compare_waits({fmt::format("{}: crystallization begins at the same cycle, within a factor "
                                  "of 2, for {}",
                                  section, what),
                      margin_onset_cycle},
-                    "the onset", waits_for_onset(runs_of(a)), waits_for_onset(runs_of(b))),
+                    "the onset", waits_for_onset(a), waits_for_onset(b)),
       same_percentage(section, what, a, b)};
 }
 
 /// Overlap or contacts; an overlap is proportional to the pressure.
 Verdict same_contacts(const std::string& section, const std::string& what, const char* name,
-                      Quantity quantity, const Curve* a, const Curve* b) {
+                      Quantity quantity, RunGroup a, RunGroup b) {
   Scalar scalar = over_cycles(name, std::move(quantity), 1, early_cycles);
   scalar.relative = true;
   return compare({fmt::format("{}: {} is the same for {}", section, name, what), margin_contacts},
-                 scalar, runs_of(a), runs_of(b));
+                 scalar, a, b);
 }
 
 /// What must be the same for a time step larger than those of Fig. S3 to replace Table I's.
-std::vector<Verdict> equal_physics(const std::string& what, const Curve* a, const Curve* b) {
+std::vector<Verdict> equal_physics(const std::string& what, RunGroup a, RunGroup b) {
   const char* section = "time step";
   return {
       compare({fmt::format("{}: the onset is the same for {}", section, what), margin_onset_phi},
-              onset_phi(onset_by_size), runs_of(a), runs_of(b)),
+              onset_phi(onset_by_size), a, b),
       same_percentage(section, what, a, b),
       same_contacts(section, what, "mean overlap", &Measures::mean_overlap, a, b)};
 }
@@ -143,9 +139,8 @@ FigureResult figure_s2(Runs runs) {
       {"still", fluid_is("0"), "#d55e00", 9},
       {"cell", fluid_is(italic("v") + subscript("cell")), "#000000", 5}};
   const auto curves = curves_of(runs, "fluid", styles);
-  return drawn(
-      curves, {{"S2a", phi_against_cycle}, {"S2b", crystallinity_against_phi}},
-      similar("B.3", "both drags", curve_with(curves, "cell"), curve_with(curves, "still")));
+  return drawn(curves, {{"S2a", phi_against_cycle}, {"S2b", crystallinity_against_phi}},
+               similar("B.3", "both drags", runs_with(curves, "cell"), runs_with(curves, "still")));
 }
 
 FigureResult figure_s3(Runs runs) {
@@ -156,7 +151,7 @@ FigureResult figure_s3(Runs runs) {
       {45600, seconds("4.4"), "#0072b2", 9},   {28571, seconds("7.0"), "#009e73", 11},
       {20000, seconds("10.0"), "#cc79a7", 13}, {18000, seconds("11.1"), "#e69f00", 4}};
   const auto curves = curves_of(runs, "steps_per_cycle", styles);
-  const Curve* main_text = curve_with(curves, 45600);
+  const RunGroup main_text = runs_with(curves, 45600);
   std::vector<Verdict> verdicts;
   const auto add = [&](std::vector<Verdict> more) {
     std::ranges::move(more, std::back_inserter(verdicts));
@@ -166,17 +161,16 @@ FigureResult figure_s3(Runs runs) {
   };
   for (const auto& [steps, step] :
        {std::pair(76923, "2.6e-5"), std::pair(57143, "3.5e-5"), std::pair(28571, "7.0e-5")}) {
-    if (const Curve* curve = curve_with(curves, steps)) {
-      add(similar("B.4", steps_of(step), curve, main_text));
+    if (const RunGroup other = runs_with(curves, steps); !other.empty()) {
+      add(similar("B.4", steps_of(step), other, main_text));
     }
   }
   verdicts.push_back(compare_with(
       {"B.4: at 4.4e-5 s the average overlap is less than 1e-3", published_overlap, Claimed::below},
-      over_cycles("mean overlap [d]", &Measures::mean_overlap, 1, early_cycles), runs_of(main_text),
-      0));
+      over_cycles("mean overlap [d]", &Measures::mean_overlap, 1, early_cycles), main_text, 0));
   for (const auto& [steps, step] : {std::pair(20000, "1.0e-4"), std::pair(18000, "1.11e-4")}) {
-    if (const Curve* curve = curve_with(curves, steps)) {
-      add(equal_physics(steps_of(step), curve, main_text));
+    if (const RunGroup other = runs_with(curves, steps); !other.empty()) {
+      add(equal_physics(steps_of(step), other, main_text));
     }
   }
   return drawn(curves, {{"S3a", phi_against_cycle}, {"S3b", crystallinity_against_phi}},
@@ -196,8 +190,8 @@ FigureResult figure_s4(Runs runs) {
       {"top", "top moves vertically", "#000000", 5},
       {lifting, Text("top fixed, ") + italic("P") + " on the bottom wall", "#0072b2", 11}};
   const auto curves = curves_by(runs, find_figure("S4")->keys, load_of, styles);
-  const Curve* top = curve_with(curves, "top");
-  const Curve* bottom = curve_with(curves, "bottom");
+  const RunGroup top = runs_with(curves, "top");
+  const RunGroup bottom = runs_with(curves, "bottom");
   std::vector<Verdict> verdicts = similar("B.6", "both moving walls", top, bottom);
   verdicts.push_back(same_contacts("B.6", "both moving walls", "mean overlap",
                                    &Measures::mean_overlap, top, bottom));
@@ -211,8 +205,8 @@ FigureResult figure_b5(Runs runs) {
   const std::vector<CurveStyle> styles = {{"continuous", "continuous shear", "#000000", 5},
                                           {"paused", "periodically paused shear", "#d55e00", 7}};
   const auto curves = curves_of(runs, "protocol", styles);
-  const Curve* paused = curve_with(curves, "paused");
-  const Curve* continuous = curve_with(curves, "continuous");
+  const RunGroup paused = runs_with(curves, "paused");
+  const RunGroup continuous = runs_with(curves, "continuous");
   return drawn(
       curves,
       {{"B5a", phi_against_cycle},
@@ -231,22 +225,20 @@ FigureResult figure_walls(Runs runs) {
   const std::vector<CurveStyle> styles = {{"rough", "rough walls", "#000000", 5},
                                           {"smooth", "smooth walls", "#d55e00", 7}};
   const auto curves = curves_of(runs, "walls", styles);
-  const Curve* rough = curve_with(curves, "rough");
-  const Curve* smooth = curve_with(curves, "smooth");
-  const auto fifth = [](const Curve* curve) {
-    return waits_for(runs_of(curve), &Measures::crystalline_percent, 20);
+  const RunGroup rough = runs_with(curves, "rough");
+  const RunGroup smooth = runs_with(curves, "smooth");
+  const auto fifth = [](RunGroup group) {
+    return waits_for(group, &Measures::crystalline_percent, 20);
   };
   std::vector<Verdict> verdicts = {
       compare_waits({"walls: rough ones delay crystallization (20 % of the grains) by more than a "
                      "factor of 2",
                      margin_wall_delay, Claimed::above},
                     "20 % crystalline grains", fifth(rough), fifth(smooth)),
-      onset_is_published(runs_of(rough), "walls: between rough ones the onset is phi = 0.646")};
-  if (rough != nullptr) {
-    const double grains = number_of(*rough->runs.front(), "grains");
-    if (published_interior(grains)) {
-      verdicts.push_back(interior_is_published(grains, rough->runs));
-    }
+      onset_is_published(rough, "walls: between rough ones the onset is phi = 0.646")};
+  if (!rough.empty()) {
+    const double grains = number_of(*rough.front(), "grains");
+    if (published_interior(grains)) verdicts.push_back(interior_is_published(grains, rough));
   }
   return drawn(curves,
                {{"walls_a", phi_against_cycle},
@@ -264,11 +256,11 @@ FigureResult figure_choices(Runs runs) {
                                           {"other wall grains", "other wall grains", "#009e73", 7}};
   const auto curves = curves_by(runs, find_figure("choices")->keys, choice_of, styles);
   std::vector<Verdict> verdicts;
-  const Curve* reference = curve_with(curves, unchanged);
+  const RunGroup reference = runs_with(curves, unchanged);
   for (std::size_t k = 1; k < styles.size(); ++k) {
     verdicts.push_back(same_early_phi("choice",
                                       "the default and " + styles[k].value.get<std::string>(),
-                                      curve_with(curves, styles[k].value), reference));
+                                      runs_with(curves, styles[k].value), reference));
   }
   return drawn(curves, {{"choices", phi_against_cycle}}, std::move(verdicts));
 }

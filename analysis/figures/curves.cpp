@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "analysis/binning.hpp"
 #include "analysis/error.hpp"
 #include "analysis/published.hpp"
 
@@ -82,7 +83,7 @@ class StylesOfOthers {
   std::set<nlohmann::json> rests_;
 };
 
-std::vector<CurvePoint> points_of(std::span<const FigureRun* const> runs) {
+std::vector<CurvePoint> points_of(RunGroup runs) {
   std::map<std::int64_t, std::vector<const Measures*>> found;
   for (const FigureRun* run : runs) {
     std::set<std::int64_t> seen;
@@ -206,7 +207,7 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs, std::span<const st
   return curves;
 }
 
-const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& value) {
+RunGroup runs_with(std::span<const Curve> curves, const nlohmann::json& value) {
   std::vector<const Curve*> found;
   for (const Curve& curve : curves) {
     if (matches(curve.value, value)) found.push_back(&curve);
@@ -214,7 +215,7 @@ const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& val
   if (found.size() > 1) {
     std::erase_if(found, [](const Curve* curve) { return sweeps_engine(*curve->runs.front()); });
   }
-  return found.size() == 1 ? found.front() : nullptr;
+  return found.size() == 1 ? RunGroup(found.front()->runs) : RunGroup();
 }
 
 Axis cycle_axis() {

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "analysis/binning.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/statistics.hpp"
 
@@ -54,9 +53,9 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs, std::span<const st
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
                              std::span<const CurveStyle> styles);
 
-/// The one curve in which the parameter has that value, one of another engine only if it is the
-/// only one; null if there is none, or several.
-const Curve* curve_with(std::span<const Curve> curves, const nlohmann::json& value);
+/// Runs of the one curve in which the parameter has that value, of another engine only if it is the
+/// only one; none if there is no such curve, or several.
+RunGroup runs_with(std::span<const Curve> curves, const nlohmann::json& value);
 
 // The axes that several figures share.
 Axis cycle_axis();

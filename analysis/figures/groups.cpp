@@ -46,8 +46,8 @@ std::optional<double> published_interior(double grains) {
 
 Verdict interior_is_published(double grains, RunGroup runs) {
   const double published = published_interior(grains).value();
-  Scalar interior = at_cycle(
-      "N_inves", [](const Measures& m) { return static_cast<double>(m.interior_grains); }, 0);
+  Scalar interior = over_cycles(
+      "N_inves", [](const Measures& m) { return static_cast<double>(m.interior_grains); }, 0, 0);
   interior.relative = true;
   return compare_with(
       {fmt::format("C: N = {} has {} grains at least 1.5 d from the walls", grains, published),

@@ -13,7 +13,7 @@
 #include "analysis/figures/groups.hpp"
 #include "analysis/nucleation.hpp"
 #include "analysis/published.hpp"
-#include "analysis/survival.hpp"
+#include "analysis/statistics.hpp"
 
 namespace shearcell {
 namespace {
@@ -52,9 +52,9 @@ std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns
 }
 
 FigureTable survival_table(const Groups& groups) {
-  FigureTable table;
-  table.name = "nucleation_a";
-  table.columns = {"group", "amplitude_rad", "grains", "cycle", "share_without_onset", "runs"};
+  FigureTable table{
+      .name = "nucleation_a",
+      .columns = {"group", "amplitude_rad", "grains", "cycle", "share_without_onset", "runs"}};
   for (const auto& [group, runs] : groups) {
     const std::vector<Waiting> waits = waits_for_onset(runs);
     double before = 1;
@@ -85,19 +85,10 @@ TableValue error_of(const NucleationRate& bin) {
 }
 
 FigureTable rate_table(const Groups& groups) {
-  FigureTable table;
-  table.name = "nucleation_b";
-  table.columns = {"group",
-                   "amplitude_rad",
-                   "grains",
-                   "phi_low",
-                   "phi_high",
-                   "onsets",
-                   "grain_cycles",
-                   "rate_per_grain_cycle",
-                   "rate_standard_error",
-                   "rate_low",
-                   "rate_high"};
+  FigureTable table{.name = "nucleation_b",
+                    .columns = {"group", "amplitude_rad", "grains", "phi_low", "phi_high", "onsets",
+                                "grain_cycles", "rate_per_grain_cycle", "rate_standard_error",
+                                "rate_low", "rate_high"}};
   for (const auto& [group, runs] : groups) {
     for (const NucleationRate& bin : nucleation_rates(runs)) {
       table.rows.push_back({name_of(group), group.first, group.second, bin.phi_low, bin.phi_high,

@@ -38,9 +38,8 @@ std::optional<double> experiment_error(std::span<const AmplitudeOnset> onsets) {
 }
 
 FigureTable amplitude_table(std::span<const AmplitudeOnset> onsets) {
-  FigureTable table;
-  table.name = "S5a";
-  table.columns = onset_columns({"method", "amplitude_rad", "critical_size_grains"});
+  FigureTable table{.name = "S5a",
+                    .columns = onset_columns({"method", "amplitude_rad", "critical_size_grains"})};
   for (const int method : {1, 2}) {
     for (const AmplitudeOnset& o : onsets) {
       table.rows.push_back(
@@ -138,9 +137,9 @@ Series onset_series(std::span<const CurveOnset> onsets) {
 }
 
 FigureTable onset_table(std::span<const CurveOnset> onsets) {
-  FigureTable table;
-  table.name = "S6_onset";
-  table.columns = onset_columns({"variant", "amplitude_rad", "gravity", "onset_cycle_mean"});
+  FigureTable table{
+      .name = "S6_onset",
+      .columns = onset_columns({"variant", "amplitude_rad", "gravity", "onset_cycle_mean"})};
   for (const CurveOnset& o : onsets) {
     table.rows.push_back(onset_row(
         {o.curve->variant, o.amplitude, o.gravity ? "on" : "off", o.onset.cycle.mean}, o.onset));
@@ -171,20 +170,18 @@ std::vector<FigureTable> structure_panels(std::span<const Curve> curves) {
   return panels;
 }
 
-/// What holds at each amplitude; `with` may be null.
-std::vector<Verdict> same_without_gravity(double amplitude, const Curve& without,
-                                          const Curve* with) {
-  const RunGroup others = with == nullptr ? RunGroup() : RunGroup(with->runs);
+/// What holds at each amplitude.
+std::vector<Verdict> same_without_gravity(double amplitude, RunGroup without, RunGroup with) {
   return {
       compare({fmt::format("D: the onset at A = {} rad is the same with and without gravity",
                            amplitude),
                margin_onset_phi},
-              onset_phi(onset_by_size), without.runs, others),
+              onset_phi(onset_by_size), without, with),
       compare({fmt::format("D: percentage crystalline against phi at A = {} rad is the same with "
                            "and without gravity",
                            amplitude),
                margin_percentage},
-              percentage_over_phi(), without.runs, others)};
+              percentage_over_phi(), without, with)};
 }
 
 }  // namespace
@@ -208,9 +205,9 @@ FigureResult figure_s5a(std::span<const FigureRun> runs) {
 }
 
 FigureResult figure_s5b(std::span<const FigureRun> runs) {
-  FigureTable table;
-  table.name = "S5b";
-  table.columns = onset_columns({"grains", "interior_grains", "supplement_interior_grains"});
+  FigureTable table{
+      .name = "S5b",
+      .columns = onset_columns({"grains", "interior_grains", "supplement_interior_grains"})};
   FigureResult result;
   bool converged = false;
   const auto groups = runs_by(runs, "grains");
@@ -274,8 +271,8 @@ FigureResult figure_s6(std::span<const FigureRun> runs) {
           o.curve->runs,
           fmt::format("D: without gravity the onset at A = {} rad is phi = 0.646", o.amplitude)));
     }
-    const Curve* with = curve_with(curves, amplitude_and_gravity(o.amplitude, true));
-    std::ranges::move(same_without_gravity(o.amplitude, *o.curve, with),
+    const RunGroup with = runs_with(curves, amplitude_and_gravity(o.amplitude, true));
+    std::ranges::move(same_without_gravity(o.amplitude, o.curve->runs, with),
                       std::back_inserter(result.verdicts));
   }
   if (!small) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Figure S1: phi_u falls as the springs of a packing are made stiffer, phi does not. Supplement
 // B.2.
-#include <array>
 #include <cmath>
 #include <map>
+#include <vector>
 
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
@@ -49,22 +49,21 @@ struct Load {
   Text note;           ///< behind the titles of its curves
   std::string claims;  ///< behind its claims
   std::string colour;
+  std::vector<const FigureRun*> runs = {};
 };
 
-/// The default first.
-const std::array<Load, 2>& loads() {
-  static const std::array<Load, 2> both = {
-      {{"top", "", "", "#000000"},
-       {"moving_wall", ", P on the moving wall", " (P on the moving wall)", "#d55e00"}}};
-  return both;
-}
-
-std::vector<const FigureRun*> runs_under(const Load& load, std::span<const FigureRun> runs) {
-  std::vector<const FigureRun*> found;
+/// Those that some run has, the default first.
+std::vector<Load> loads_of(std::span<const FigureRun> runs) {
+  std::vector<Load> loads = {
+      {"top", "", "", "#000000"},
+      {"moving_wall", ", P on the moving wall", " (P on the moving wall)", "#d55e00"}};
   for (const FigureRun& run : runs) {
-    if (parameter_of(run, "pressure_at") == load.moves) found.push_back(&run);
+    for (Load& load : loads) {
+      if (parameter_of(run, "pressure_at") == load.moves) load.runs.push_back(&run);
+    }
   }
-  return found;
+  std::erase_if(loads, [](const Load& load) { return load.runs.empty(); });
+  return loads;
 }
 
 std::vector<Series> series_under(const Load& load) {
@@ -82,20 +81,16 @@ std::vector<Series> series_under(const Load& load) {
           phi_series(italic("ϕ"), 7, "phi")};
 }
 
-FigureTable table_of(std::span<const FigureRun> runs) {
-  FigureTable table;
-  table.name = "S1";
-  table.columns = {
-      "pressure_at", "log10_k_over_k0",      "overlap_mean_d", "overlap_standard_error_d",
-      "phi_u_mean",  "phi_u_standard_error", "phi_mean",       "phi_standard_error",
-      "runs"};
+FigureTable table_of(std::span<const Load> loads) {
+  FigureTable table{
+      .name = "S1",
+      .columns = {"pressure_at", "log10_k_over_k0", "overlap_mean_d", "overlap_standard_error_d",
+                  "phi_u_mean", "phi_u_standard_error", "phi_mean", "phi_standard_error", "runs"}};
   Axis overlap = overlap_axis();
   overlap.log = true;
   table.chart = {.x = std::move(overlap), .y = phi_axis()};
-  for (const Load& load : loads()) {
-    const std::vector<const FigureRun*> under = runs_under(load, runs);
-    if (under.empty()) continue;
-    for (const auto& [hundredths, at] : by_stiffness(under)) {
+  for (const Load& load : loads) {
+    for (const auto& [hundredths, at] : by_stiffness(load.runs)) {
       TableRow& row = table.rows.emplace_back(TableRow{load.moves, hundredths / 100.0});
       for (const auto& values : {at.overlap, at.phi_u, at.phi}) add_values(over_runs(values), row);
       row.emplace_back(over_runs(at.phi).runs);
@@ -130,16 +125,15 @@ FigureResult figure_s1(std::span<const FigureRun> runs) {
       over_the_hundredfold("change of phi", [](const Stiffness& soft, const Stiffness& hard) {
         return hard.phi.front() - soft.phi.front();
       });
-  FigureResult result{{table_of(runs)}, {}};
-  for (const Load& load : loads()) {
-    const std::vector<const FigureRun*> under = runs_under(load, runs);
-    if (under.empty()) continue;
+  const std::vector<Load> loads = loads_of(runs);
+  FigureResult result{{table_of(loads)}, {}};
+  for (const Load& load : loads) {
     result.verdicts.push_back(compare_with(
         {"B.2: phi_u falls by about 2 % over a hundredfold k" + load.claims, margin_fall_of_phi_u},
-        fall, under, published_fall_of_phi_u));
+        fall, load.runs, published_fall_of_phi_u));
     result.verdicts.push_back(compare_with(
         {"B.2: phi (Eq. S4) stays the same over a hundredfold k" + load.claims, margin_hard_phi},
-        change, under, 0));
+        change, load.runs, 0));
   }
   return result;
 }

@@ -181,11 +181,10 @@ nlohmann::json check_json(const std::filesystem::path& file, const PublishedFile
   const auto fault_facts = [](const InputFault& fault) -> nlohmann::json {
     return {{"run", fault.run}, {"checkpoint", fault.checkpoint}, {"what", fault.what}};
   };
-  const bool matches = found.verdict == PublishedFile::Verdict::matches;
   return {{"file", file.string()},
           {"sha256", found.sha256},
           {"recorded_sha256", found.recorded},
-          {"verdict", matches ? "matches" : "changed"},
+          {"verdict", found.matches() ? "matches" : "changed"},
           {"inputs", inputs},
           {"input_faults", json_list(faults, fault_facts)}};
 }
@@ -193,7 +192,7 @@ nlohmann::json check_json(const std::filesystem::path& file, const PublishedFile
 void print_check(const std::filesystem::path& file, const PublishedFile& found,
                  const std::vector<InputFault>& faults, std::size_t inputs) {
   tell("file      {}\n", cut(file.string(), 10));
-  if (found.verdict == PublishedFile::Verdict::matches) {
+  if (found.matches()) {
     tell("verdict   matches what event {} recorded\n", found.record.seq);
   } else {
     tell("verdict   WAS CHANGED since event {}, or another store made it\n", found.record.seq);
@@ -229,9 +228,7 @@ void show_published(const Store& store, const std::filesystem::path& file, Conte
   // A checkpoint that was pruned on purpose is not damage.
   const bool damaged =
       std::ranges::any_of(faults, [](const InputFault& f) { return f.what != "pruned"; });
-  if (damaged || found->verdict == PublishedFile::Verdict::changed) {
-    fail(context, kStoreDamaged);
-  }
+  if (damaged || !found->matches()) fail(context, kStoreDamaged);
   std::size_t inputs = 0;
   for (const FigureInput& input : lineage.inputs) inputs += input.checkpoints.size();
   if (context.json) {

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <iterator>
 #include <map>
 #include <ranges>
 #include <set>
@@ -57,25 +55,23 @@ std::size_t missing_of(const Store& store, const Figure& figure, const Collected
   return asked.size();
 }
 
-/// What was asked for up to the end of the runs, and is not there: a manifest may state a denser
-/// cadence than the runs were made with.
-std::vector<std::string> never_made(const Store& store, const Figure& figure,
-                                    const std::vector<CollectedRun>& runs) {
+/// Names the checkpoints that are asked for up to the end of the runs and are missing: a manifest
+/// may state a denser cadence than the runs were made with.
+void note_never_made(const Store& store, const Figure& figure, CollectedRuns& collected) {
   struct Lack {
     std::size_t checkpoints = 0;
     std::set<std::string> runs;
   };
   std::map<bool, Lack> lacks;  // by whether the run is of LAMMPS
-  for (const CollectedRun& run : runs) {
+  for (const CollectedRun& run : collected.runs) {
     const std::size_t missing = missing_of(store, figure, run);
     if (missing == 0) continue;
     Lack& lack = lacks[engine_of(run.run.resolved) == EngineKind::lammps];
     lack.checkpoints += missing;
     lack.runs.insert(run.run.id.substr(0, 8));
   }
-  std::vector<std::string> notes;
   for (const auto& [of_lammps, lack] : lacks) {
-    notes.push_back(fmt::format(
+    collected.notes.push_back(fmt::format(
         "never made: {} that the manifest asks for (runs {}); {}",
         counted(lack.checkpoints, "checkpoint"), some_of(lack.runs),
         of_lammps
@@ -83,13 +79,12 @@ std::vector<std::string> never_made(const Store& store, const Figure& figure,
               "them out, and the checkpoints cannot be made later"
             : "`shearcell run` with the manifest, or `shearcell resume RUN`, computes them"));
   }
-  return notes;
 }
 
 /// Leaves out the runs that have no checkpoint yet, and names them and those that are not finished.
-std::vector<std::string> unfinished(std::vector<CollectedRun>& runs) {
+void leave_out_not_begun(CollectedRuns& collected) {
   std::set<std::string> not_begun, going_on;
-  for (const CollectedRun& run : runs) {
+  for (const CollectedRun& run : collected.runs) {
     const std::string name = fmt::format("{} seed {}", run.name, run.membership.seed);
     if (run.checkpoints.empty()) {
       not_begun.insert(name);
@@ -97,17 +92,16 @@ std::vector<std::string> unfinished(std::vector<CollectedRun>& runs) {
       going_on.insert(name);
     }
   }
-  std::erase_if(runs, [](const CollectedRun& run) { return run.checkpoints.empty(); });
-  std::vector<std::string> notes;
+  std::erase_if(collected.runs, [](const CollectedRun& run) { return run.checkpoints.empty(); });
   if (!not_begun.empty()) {
-    notes.push_back(fmt::format("left out: {} without a checkpoint yet: {}",
-                                counted(not_begun.size(), "run"), some_of(not_begun)));
+    collected.notes.push_back(fmt::format("left out: {} without a checkpoint yet: {}",
+                                          counted(not_begun.size(), "run"), some_of(not_begun)));
   }
   if (!going_on.empty()) {
-    notes.push_back(fmt::format("not finished, and taken as if ended where they are: {}: {}",
-                                counted(going_on.size(), "run"), some_of(going_on)));
+    collected.notes.push_back(
+        fmt::format("not finished, and taken as if ended where they are: {}: {}",
+                    counted(going_on.size(), "run"), some_of(going_on)));
   }
-  return notes;
 }
 
 std::string unknown_name(const char* what, const std::string& name,
@@ -263,9 +257,8 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }
   if (measured) {
-    std::ranges::move(unfinished(collected.runs), std::back_inserter(collected.notes));
-    std::ranges::move(never_made(store, wanted.figure, collected.runs),
-                      std::back_inserter(collected.notes));
+    leave_out_not_begun(collected);
+    note_never_made(store, wanted.figure, collected);
   }
   return collected;
 }

@@ -22,23 +22,6 @@
 namespace shearcell {
 namespace {
 
-/// Measures of the checkpoints of all runs, one after the other.
-std::vector<std::optional<Measures>> measures_of_all(const Store& store, const Figure& figure,
-                                                     const std::vector<CollectedRun>& inputs,
-                                                     const MeasureOptions& options,
-                                                     MeasureOutcome& outcome) {
-  std::vector<CheckpointRecord> records;
-  for (const CollectedRun& input : inputs) {
-    records.insert(records.end(), input.checkpoints.begin(), input.checkpoints.end());
-  }
-  if (figure.form == FigureForm::table) return {records.size(), Measures()};
-  std::vector<std::string> names = figure.needs;
-  names.insert(names.begin(), "scalars");
-  MeasuredPackings found = measures_of(store, records, names, options);
-  outcome = std::move(found);
-  return std::move(found.measures);
-}
-
 /// The parameters of the run's record, and those that it leaves out at the value of all older runs.
 nlohmann::json parameters_of(const RunRecord& run) {
   nlohmann::json values = run.resolved.value("parameters", nlohmann::json::object());
@@ -56,10 +39,25 @@ nlohmann::json parameters_of(const RunRecord& run) {
   return values;
 }
 
-std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
-                                   std::vector<std::optional<Measures>> measured) {
+/// The runs with the measures of their checkpoints.
+std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
+                                   const std::vector<CollectedRun>& inputs,
+                                   const MeasureOptions& options, MeasureOutcome& outcome) {
+  std::vector<CheckpointRecord> records;  // of one run after the other
+  for (const CollectedRun& input : inputs) {
+    records.insert(records.end(), input.checkpoints.begin(), input.checkpoints.end());
+  }
+  MeasuredPackings found;
+  if (figure.form == FigureForm::table) {
+    found.measures.resize(records.size(), Measures());
+  } else {
+    std::vector<std::string> names = figure.needs;
+    names.insert(names.begin(), "scalars");
+    found = measures_of(store, records, names, options);
+  }
+  outcome = std::move(found);
   std::vector<FigureRun> runs;
-  std::size_t next = 0;
+  auto measured = found.measures.begin();
   for (const CollectedRun& input : inputs) {
     FigureRun run{input.run.id,
                   input.run.parent,
@@ -72,7 +70,7 @@ std::vector<FigureRun> figure_runs(const std::vector<CollectedRun>& inputs,
                   input.membership.seed,
                   {}};
     for (const CheckpointRecord& record : input.checkpoints) {
-      std::optional<Measures>& one = measured[next++];
+      std::optional<Measures>& one = *measured++;
       if (!one) continue;
       CheckpointMeasures& checkpoint = run.checkpoints.emplace_back();
       checkpoint.measures = std::move(*one);
@@ -219,8 +217,7 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   summary.experiment = wanted.experiment;
   summary.notes = std::move(collected.notes);
   summary.scale = collected.scale;
-  const std::vector<FigureRun> runs =
-      figure_runs(collected.runs, measures_of_all(store, figure, collected.runs, options, summary));
+  const std::vector<FigureRun> runs = figure_runs(store, figure, collected.runs, options, summary);
   require_told_apart(wanted, runs);
   summary.title = title_of(figure, runs);
   summary.runs = runs.size();
@@ -246,16 +243,14 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
   std::filesystem::create_directories(folder);
   for (const FigureTable& table : made.tables) require_own_files(table, folder);
   const std::string base = folder / result.name;
-  require_ours(base + ".verdict.json", [](std::string_view beginning) {
-    return beginning.starts_with("{\n \"claims\": [");
-  });
-  require_ours(base + ".caption.txt", [&](std::string_view beginning) {
-    return beginning.starts_with("Figure " + result.name + ". ");
-  });
-  require_ours(base + ".lineage.json", [&](std::string_view beginning) {
-    return beginning.starts_with("{\n \"analysis_version\": ") &&
-           beginning.find("\n \"figure\": \"" + result.name + "\"") != beginning.npos;
-  });
+  const auto require = [&](const char* ending, const std::string& start, const std::string& part) {
+    require_ours(base + ending, [&](std::string_view beginning) {
+      return beginning.starts_with(start) && beginning.find(part) != beginning.npos;
+    });
+  };
+  require(".verdict.json", "{\n \"claims\": [", "");
+  require(".caption.txt", "Figure " + result.name + ". ", "");
+  require(".lineage.json", "{\n \"analysis_version\": ", "\n \"figure\": \"" + result.name + "\"");
   const auto write = [&](const char* ending, const std::string& text) {
     if (text.empty()) {  // nor may that of an older figure stay
       std::filesystem::remove(base + ending);

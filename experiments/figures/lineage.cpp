@@ -223,8 +223,7 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
   std::reverse(records.begin(), records.end());  // the newest that fits
   for (const FigureRecord& record : records) {
     for (const auto& [output, hash] : files_of(record)) {
-      if (hash == sha256)
-        return PublishedFile{PublishedFile::Verdict::matches, sha256, hash, record};
+      if (hash == sha256) return PublishedFile{sha256, hash, record};
     }
   }
   std::optional<PublishedFile> by_name;
@@ -232,7 +231,7 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
     const auto outputs = files_of(record);
     const auto output = outputs.find(name);
     if (output == outputs.end()) continue;
-    const PublishedFile found{PublishedFile::Verdict::changed, sha256, output->second, record};
+    const PublishedFile found{sha256, output->second, record};
     if (hash_in_lineage_beside(file, figure_name(record)) == output->second) return found;
     if (!by_name) by_name = found;
   }

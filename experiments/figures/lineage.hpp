@@ -56,11 +56,11 @@ nlohmann::json to_json(const FigureLineage& lineage);
 
 /// Whether a file on disk is one that a figure's record names.
 struct PublishedFile {
-  enum class Verdict { matches, changed };
-  Verdict verdict = Verdict::matches;
   std::string sha256;    ///< of its bytes
   std::string recorded;  ///< what it should be
   FigureRecord record;
+
+  bool matches() const { return sha256 == recorded; }
 };
 
 /// Finds the record by the SHA-256 of the file's bytes, else by the lineage file beside it, else by
@@ -72,7 +72,7 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
 struct InputFault {
   std::string run;
   std::string checkpoint;
-  std::string what;  ///< "missing ...", "pruned", "unknown to the log"
+  std::string what;  ///< "missing ...", "pruned", "the log does not have it"
 };
 
 /// Reads and hashes every input checkpoint.

@@ -47,15 +47,22 @@ Shear shear_of(const Store& store, const std::string& run) {
   return shear;
 }
 
-/// The result of one measure for some of the checkpoints.
-std::vector<nlohmann::json> results_of(const DerivedMeasure& measure, const Store& store,
-                                       std::span<const CheckpointRecord> records,
-                                       const MeasureOptions& options) {
-  std::vector<nlohmann::json> results;
-  for (auto& found : measure_checkpoints(store, records, {&measure, 1}, options).results) {
-    results.push_back(std::move(found.front()));
+/// Checkpoints to simulate from, and which measures each result is added to.
+struct Origins {
+  std::vector<CheckpointRecord> from = {};
+  std::vector<std::optional<Measures>*> to = {};
+};
+
+/// Computes the measure by options.instead, and calls read(record, result, measures) for each
+/// checkpoint that could be read.
+template <class Read>
+void add_simulated(const Store& store, const DerivedMeasure& measure, const Origins& origins,
+                   const MeasureOptions& options, const Read& read) {
+  const auto found = measure_checkpoints(store, origins.from, {&measure, 1}, options).results;
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    const nlohmann::json& result = found[n].front();
+    if (!result.is_null() && *origins.to[n]) read(origins.from[n], result, **origins.to[n]);
   }
-  return results;
 }
 
 /// The derived measures among the names, each once.
@@ -80,6 +87,80 @@ Measures read_kept(std::span<const DerivedMeasure> measures,
   }
 }
 
+/// Adds the energy of all grains and the moving wall in the cycle that ends at each checkpoint:
+/// simulated again from the checkpoint one cycle earlier, which takes three to four times as long
+/// as the cycle did (protocols/ledger.hpp), and kept like other measures. None within a cycle, and
+/// where that earlier checkpoint was never made or cannot be read.
+void add_cycle_energies(const Store& store, std::span<const CheckpointRecord> records,
+                        const MeasureOptions& options, MeasuredPackings& made) {
+  std::map<std::string, Shear> shears;  // by run; threads must not read the log
+  Origins origins;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const CheckpointRecord& record = records[i];
+    auto shear = shears.find(record.run);
+    if (shear == shears.end()) {
+      shear = shears.emplace(record.run, shear_of(store, record.run)).first;
+    }
+    const std::uint64_t whole = cycle_steps(shear->second.drive);
+    if (record.step < whole) continue;
+    const auto begin = shear->second.begins.find(record.step - whole);
+    if (begin == shear->second.begins.end()) continue;
+    origins.from.push_back(begin->second);
+    origins.to.push_back(&made.measures[i]);
+  }
+  MeasureOptions simulating = options;
+  simulating.instead = [&](const CheckpointRecord& record, const Checkpoint& checkpoint) {
+    const Shear& shear = shears.at(record.run);
+    const Ledger sum = ledger(checkpoint.cell, shear.scene, shear.drive, checkpoint.state,
+                              cycle_steps(shear.drive), kLedgerStride);
+    return nlohmann::json{{"work_of_walls", sum.work_of_walls},
+                          {"dissipation", sum.dissipation()},
+                          {"stored", sum.stored()}};
+  };
+  const DerivedMeasure measure{
+      "ledger_of_next_cycle", {{"stride", kLedgerStride}}, nullptr, nullptr};
+  add_simulated(
+      store, measure, origins, simulating,
+      [&](const CheckpointRecord& begin, const nlohmann::json& result, Measures& measures) {
+        const double unit_J = shears.at(begin.run).unit_J;
+        for (const auto& [name, kept] : {std::pair("work_of_walls_per_cycle_J", "work_of_walls"),
+                                         {"dissipation_per_cycle_J", "dissipation"},
+                                         {"energy_stored_per_cycle_J", "stored"}}) {
+          measures.numbers[name] = result.at(kept).get<double>() * unit_J;
+        }
+      });
+}
+
+/// Adds phi (Eq. S4) after 0.1 s between held walls (protocols/rest.hpp), for protocols whose
+/// checkpoints are recorded at different shear rates; only in cycles 1 to early_cycles. Kept like
+/// other measures.
+void add_phi_at_rest(const Store& store, std::span<const CheckpointRecord> records,
+                     const MeasureOptions& options, MeasuredPackings& made) {
+  Origins origins;
+  std::map<std::string, Scene> scenes;  // by run; threads must not read the log
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (records[i].cycle < 1 || records[i].cycle > early_cycles) continue;
+    origins.from.push_back(records[i]);
+    origins.to.push_back(&made.measures[i]);
+    const std::string& run = records[i].run;
+    if (scenes.contains(run)) continue;
+    scenes[run] = shear_scene(read_stage(store.run(run).resolved).parameters);
+  }
+  DerivedMeasure measure = derived_measure("scalars");
+  MeasureOptions resting = options;
+  resting.instead = [&](const CheckpointRecord& record, Checkpoint checkpoint) {
+    checkpoint.state =
+        rested(checkpoint.cell, scenes.at(record.run), std::move(checkpoint.state), kRest);
+    return measure.from({analyse_stored(record, checkpoint)});
+  };
+  measure.name = "scalars_at_rest";
+  measure.parameters["rest_s"] = kRest;
+  add_simulated(store, measure, origins, resting,
+                [&](const CheckpointRecord&, const nlohmann::json& result, Measures& measures) {
+                  measures.phi_at_rest = read_kept({&measure, 1}, {&result, 1}).phi;
+                });
+}
+
 }  // namespace
 
 MeasuredPackings measures_of(const Store& store, std::span<const CheckpointRecord> records,
@@ -102,18 +183,8 @@ MeasuredPackings measures_of(const Store& store, std::span<const CheckpointRecor
   const auto asks_for = [&](const char* name) {
     return std::ranges::find(names, name) != names.end();
   };
-  if (asks_for("at_rest")) {
-    const std::vector<double> phi = phi_at_rest(store, records, options);
-    for (std::size_t i = 0; i < phi.size(); ++i) {
-      if (made.measures[i]) made.measures[i]->phi_at_rest = phi[i];
-    }
-  }
-  if (asks_for("ledger")) {
-    auto energies = cycle_energies(store, records, options);
-    for (std::size_t i = 0; i < energies.size(); ++i) {
-      if (made.measures[i]) made.measures[i]->numbers.merge(energies[i]);
-    }
-  }
+  if (asks_for("at_rest")) add_phi_at_rest(store, records, options, made);
+  if (asks_for("ledger")) add_cycle_energies(store, records, options, made);
   return made;
 }
 
@@ -131,79 +202,6 @@ void add_drive(const RunRecord& run, const CheckpointRecord& checkpoint, Measure
   } catch (const std::runtime_error&) {
     // Not a run of this program.
   }
-}
-
-std::vector<decltype(Measures::numbers)> cycle_energies(const Store& store,
-                                                        std::span<const CheckpointRecord> records,
-                                                        const MeasureOptions& options) {
-  std::map<std::string, Shear> shears;  // by run; threads must not read the log
-  std::vector<CheckpointRecord> begins;
-  std::vector<std::size_t> place;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const CheckpointRecord& record = records[i];
-    auto shear = shears.find(record.run);
-    if (shear == shears.end()) {
-      shear = shears.emplace(record.run, shear_of(store, record.run)).first;
-    }
-    const std::uint64_t whole = cycle_steps(shear->second.drive);
-    if (record.step < whole) continue;
-    const auto begin = shear->second.begins.find(record.step - whole);
-    if (begin == shear->second.begins.end()) continue;
-    begins.push_back(begin->second);
-    place.push_back(i);
-  }
-  MeasureOptions simulating = options;
-  simulating.instead = [&](const CheckpointRecord& record, const Checkpoint& checkpoint) {
-    const Shear& shear = shears.at(record.run);
-    const Ledger sum = ledger(checkpoint.cell, shear.scene, shear.drive, checkpoint.state,
-                              cycle_steps(shear.drive), kLedgerStride);
-    return nlohmann::json{{"work_of_walls", sum.work_of_walls},
-                          {"dissipation", sum.dissipation()},
-                          {"stored", sum.stored()}};
-  };
-  const DerivedMeasure measure{
-      "ledger_of_next_cycle", {{"stride", kLedgerStride}}, nullptr, nullptr};
-  const auto found = results_of(measure, store, begins, simulating);
-  std::vector<decltype(Measures::numbers)> energies(records.size());
-  for (std::size_t n = 0; n < begins.size(); ++n) {
-    if (found[n].is_null()) continue;
-    const double unit_J = shears.at(begins[n].run).unit_J;
-    const auto energy = [&](const char* name) { return found[n].at(name).get<double>() * unit_J; };
-    energies[place[n]] = {{"work_of_walls_per_cycle_J", energy("work_of_walls")},
-                          {"dissipation_per_cycle_J", energy("dissipation")},
-                          {"energy_stored_per_cycle_J", energy("stored")}};
-  }
-  return energies;
-}
-
-std::vector<double> phi_at_rest(const Store& store, std::span<const CheckpointRecord> records,
-                                const MeasureOptions& options) {
-  std::vector<CheckpointRecord> early;
-  std::vector<std::size_t> place;
-  std::map<std::string, Scene> scenes;  // by run; threads must not read the log
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    if (records[i].cycle < 1 || records[i].cycle > early_cycles) continue;
-    early.push_back(records[i]);
-    place.push_back(i);
-    const std::string& run = records[i].run;
-    if (scenes.contains(run)) continue;
-    scenes[run] = shear_scene(read_stage(store.run(run).resolved).parameters);
-  }
-  DerivedMeasure measure = derived_measure("scalars");
-  MeasureOptions resting = options;
-  resting.instead = [&](const CheckpointRecord& record, Checkpoint checkpoint) {
-    checkpoint.state =
-        rested(checkpoint.cell, scenes.at(record.run), std::move(checkpoint.state), kRest);
-    return measure.from({analyse_stored(record, checkpoint)});
-  };
-  measure.name = "scalars_at_rest";
-  measure.parameters["rest_s"] = kRest;
-  const auto found = results_of(measure, store, early, resting);
-  std::vector<double> phi(records.size(), std::nan(""));
-  for (std::size_t n = 0; n < early.size(); ++n) {
-    if (!found[n].is_null()) phi[place[n]] = read_kept({&measure, 1}, {&found[n], 1}).phi;
-  }
-  return phi;
 }
 
 }  // namespace shearcell

@@ -28,6 +28,12 @@ struct Row {
   const FigureRun* history = nullptr;  // for the onset; none of a run that is not a shear
 };
 
+/// A run with its checkpoints and the measures of each.
+struct MeasuredRun : SelectedRun {
+  std::vector<CheckpointRecord> records = {};
+  std::vector<std::optional<Measures>> measures = {};
+};
+
 struct Column : TableColumn {
   std::function<json(const Row&)> cell;
 };
@@ -163,10 +169,10 @@ json swept_value(const Field& field, const SelectedRun& selected) {
 }
 
 /// The columns that tell runs apart.
-std::vector<Column> columns_of_runs(const std::vector<SelectedRun>& runs,
+std::vector<Column> columns_of_runs(const std::vector<MeasuredRun>& runs,
                                     const VariantNames& variants, bool all_versions) {
   std::set<std::string> swept = {"grains"};  // of every table
-  for (const SelectedRun& run : runs) {
+  for (const MeasuredRun& run : runs) {
     for (const auto& [key, value] : run.membership.labels.items()) swept.insert(key);
   }
   std::vector<Column> columns = names(variants);
@@ -182,7 +188,7 @@ std::vector<Column> columns_of_runs(const std::vector<SelectedRun>& runs,
   return columns;
 }
 
-std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per,
+std::vector<Column> columns_for(const std::vector<MeasuredRun>& runs, RowPer per,
                                 const VariantNames& variants, bool ledger, bool all_versions) {
   std::vector<Column> columns = columns_of_runs(runs, variants, all_versions);
   std::ranges::move(measures(ledger), std::back_inserter(columns));
@@ -190,56 +196,39 @@ std::vector<Column> columns_for(const std::vector<SelectedRun>& runs, RowPer per
   return columns;
 }
 
-/// Runs with their checkpoints, one after the other, and the measures of each.
-struct Selected {
-  std::vector<SelectedRun> runs;
-  std::vector<CheckpointRecord> records;
-  std::vector<std::size_t> ends;  // of each run in the records
-  std::vector<std::optional<Measures>> measures;
-};
-
-Selected select(const Store& store, const RunSelection& selection, const MeasureOptions& options,
-                RunTable& table) {
-  Selected all;
+std::vector<MeasuredRun> select(const Store& store, const RunSelection& selection,
+                                const MeasureOptions& options, RunTable& table) {
   NewestRuns newest = newest_runs(store, select_runs(store, selection), selection.all_versions);
-  all.runs = std::move(newest.runs);
   table.notes = std::move(newest.notes);
-  for (const SelectedRun& run : all.runs) {
+  std::vector<MeasuredRun> runs;
+  for (SelectedRun& selected : newest.runs) {
+    MeasuredRun& run = runs.emplace_back(MeasuredRun{std::move(selected)});
     const double end = own_end(store, run.run, run.membership, options);
     const RunAsk ask = ask_of(store, run.run.id, run.membership);
-    std::ranges::move(own_checkpoints(store, run.run, {&ask, 1}, 0, end),
-                      std::back_inserter(all.records));
-    all.ends.push_back(all.records.size());
+    run.records = own_checkpoints(store, run.run, {&ask, 1}, 0, end);
+    run.measures.resize(run.records.size());
   }
-  all.measures.resize(all.records.size());
-  return all;
+  return runs;
 }
 
-/// Places among the records of those that have a row: all, or the last one of each run; or of those
-/// that have none.
-std::vector<std::size_t> places(const Selected& all, RowPer per, bool with_row = true) {
-  std::vector<std::size_t> found;
-  std::size_t next = 0;
-  for (const std::size_t end : all.ends) {
-    for (; next < end; ++next) {
-      const bool has_row = per == RowPer::checkpoint || next + 1 == end;
-      if (has_row == with_row) found.push_back(next);
+/// Measures the checkpoints of all runs for which `wanted(run, place)` holds, and adds what could
+/// not be measured to the table's list.
+template <class Wanted>
+void measure_where(const Store& store, std::span<const std::string> names,
+                   const MeasureOptions& options, std::vector<MeasuredRun>& runs,
+                   const Wanted& wanted, RunTable& table) {
+  std::vector<CheckpointRecord> records;
+  std::vector<std::optional<Measures>*> measures;
+  for (MeasuredRun& run : runs) {
+    for (std::size_t k = 0; k < run.records.size(); ++k) {
+      if (!wanted(run, k)) continue;
+      records.push_back(run.records[k]);
+      measures.push_back(&run.measures[k]);
     }
   }
-  return found;
-}
-
-/// Measures the records at these places, and adds what could not be measured to the table's list.
-void measure_at(const Store& store, std::span<const std::size_t> places,
-                std::span<const std::string> names, const MeasureOptions& options, Selected& all,
-                RunTable& table) {
-  if (places.empty()) return;
-  std::vector<CheckpointRecord> records;
-  for (const std::size_t place : places) records.push_back(all.records[place]);
+  if (records.empty()) return;
   MeasuredPackings found = measures_of(store, records, names, options);
-  for (std::size_t n = 0; n < places.size(); ++n) {
-    all.measures[places[n]] = std::move(found.measures[n]);
-  }
+  for (std::size_t n = 0; n < measures.size(); ++n) *measures[n] = std::move(found.measures[n]);
   std::ranges::move(found.damage, std::back_inserter(table.damage));
   std::ranges::move(found.pruned, std::back_inserter(table.pruned));
   std::ranges::sort(table.damage);
@@ -269,32 +258,34 @@ std::span<const std::string> table_measures() {
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, bool ledger) {
   RunTable table;
-  Selected all = select(store, selection, options, table);
+  std::vector<MeasuredRun> runs = select(store, selection, options, table);
   std::vector<std::string> names(table_measures().begin(), table_measures().end());
   if (ledger) names.emplace_back("ledger");
-  measure_at(store, places(all, per), names, options, all, table);
+  const auto has_row = [per](const MeasuredRun& run, std::size_t k) {
+    return per == RowPer::checkpoint || k + 1 == run.records.size();
+  };
+  measure_where(store, names, options, runs, has_row, table);
   // An onset needs no more of the others than their scalars.
-  measure_at(store, places(all, per, false), table_measures().first(1), options, all, table);
+  measure_where(store, table_measures().first(1), options, runs, std::not_fn(has_row), table);
   const std::vector<Column> columns =
-      columns_for(all.runs, per, VariantNames(store), ledger, selection.all_versions);
+      columns_for(runs, per, VariantNames(store), ledger, selection.all_versions);
   table.columns.assign(columns.begin(), columns.end());
   const auto add = [&](const Row& row) {
     std::vector<json>& cells = table.rows.emplace_back();
     for (const Column& column : columns) cells.push_back(column.cell(row));
   };
-  std::size_t next = 0;
-  for (std::size_t r = 0; r < all.runs.size(); ++r) {
+  for (MeasuredRun& run : runs) {
     std::vector<Row> rows;
-    for (; next < all.ends[r]; ++next) {
-      rows.push_back({&all.runs[r], &all.records[next], std::move(all.measures[next])});
+    for (std::size_t k = 0; k < run.records.size(); ++k) {
+      rows.push_back({&run, &run.records[k], std::move(run.measures[k])});
     }
     if (per == RowPer::checkpoint) {
       for (const Row& row : rows) add(row);
       continue;
     }
-    const FigureRun history = history_of(all.runs[r], rows);
-    Row last = rows.empty() ? Row{&all.runs[r]} : rows.back();
-    if (all.runs[r].run.kind == name_of(Stage::shear)) last.history = &history;
+    const FigureRun history = history_of(run, rows);
+    Row last = rows.empty() ? Row{&run} : rows.back();
+    if (run.run.kind == name_of(Stage::shear)) last.history = &history;
     add(last);
   }
   return table;
@@ -304,22 +295,20 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
                      const MeasureOptions& options) {
   const std::string derived(measure.derived);
   RunTable table;
-  Selected all = select(store, selection, options, table);
-  measure_at(store, places(all, RowPer::checkpoint), {&derived, 1}, options, all, table);
-  std::vector<Column> columns =
-      columns_of_runs(all.runs, VariantNames(store), selection.all_versions);
+  std::vector<MeasuredRun> runs = select(store, selection, options, table);
+  const auto all = [](const MeasuredRun&, std::size_t) { return true; };
+  measure_where(store, {&derived, 1}, options, runs, all, table);
+  std::vector<Column> columns = columns_of_runs(runs, VariantNames(store), selection.all_versions);
   std::ranges::move(which_checkpoint(), std::back_inserter(columns));
   table.columns.assign(columns.begin(), columns.end());
   table.columns.push_back({std::string(measure.x), ""});
   table.columns.push_back({std::string(measure.name), std::string(measure.meaning)});
-  std::size_t next = 0;
-  for (std::size_t r = 0; r < all.runs.size(); ++r) {
-    for (; next < all.ends[r]; ++next) {
-      const Row row{&all.runs[r], &all.records[next]};
-      if (!all.measures[next]) continue;
-      const MeasuredCurve curve = measure.of(*all.measures[next]);
+  for (const MeasuredRun& run : runs) {
+    for (std::size_t k = 0; k < run.records.size(); ++k) {
+      if (!run.measures[k]) continue;
+      const MeasuredCurve curve = measure.of(*run.measures[k]);
       std::vector<json> cells;
-      for (const Column& column : columns) cells.push_back(column.cell(row));
+      for (const Column& column : columns) cells.push_back(column.cell({&run, &run.records[k]}));
       for (std::size_t i = 0; i < curve.x.size(); ++i) {
         table.rows.push_back(cells);
         table.rows.back().push_back(number(curve.x[i]));

@@ -40,11 +40,13 @@ Versions versions_of(const Store& store) {
   return versions;
 }
 
+/// The same of all versions of a manifest.
+auto place(const Membership& m) {
+  return std::tie(m.experiment, m.scale, m.variant, m.seed);
+}
+
 /// Of a run that an edited manifest declared again, the newest place alone.
 std::vector<Membership> newest_memberships(const RunRecord& run, Versions& versions) {
-  const auto place = [](const Membership& m) {
-    return std::tie(m.experiment, m.scale, m.variant, m.seed);
-  };
   std::vector<Membership> newest;
   for (const Membership& m : run.memberships) {
     const auto same = std::ranges::find(newest, place(m), place);
@@ -86,9 +88,7 @@ void note_shortened(const std::vector<SelectedRun>& runs, std::vector<std::strin
   std::map<ExperimentScale, Shortened> shortened;
   for (const auto& [run, m] : runs) {
     for (const Membership& older : run.memberships) {
-      const bool same = std::tie(older.experiment, older.scale, older.variant, older.seed) ==
-                        std::tie(m.experiment, m.scale, m.variant, m.seed);
-      if (!same || older.target_cycles <= m.target_cycles) continue;
+      if (place(older) != place(m) || older.target_cycles <= m.target_cycles) continue;
       Shortened& found = shortened[experiment_scale(m)];
       ++found.runs;
       found.asked = m.target_cycles;

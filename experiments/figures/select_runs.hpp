@@ -41,8 +41,8 @@ struct NewestRuns {
 
 /// Of each experiment at each scale the runs of the newest version of its manifest that has any
 /// there; with `all_versions` those of older versions too. Settled packings are left out.
-/// Each run comes once, and each seed of a variant once: counted twice, it would make errors too
-/// small.
+/// Each run is listed once, and each seed of a variant once: a run counted twice would make errors
+/// too small.
 NewestRuns newest_runs(const Store& store, std::vector<SelectedRun> selected, bool all_versions);
 
 /// "fluid=still, fluid=cell, fluid=none and 3 more".

@@ -47,7 +47,7 @@ bool fits(const json& value, const json& like) {
   });
 }
 
-/// As chart_json() writes it. The front end would stumble over anything else.
+/// As chart_json() writes it. The front end cannot draw anything else.
 json example_chart() {
   const json text = json::parse(R"([["", ""]])");
   const json axis = {{"label", text}, {"unit", text},   {"log", true},    {"whole", true},

@@ -72,18 +72,14 @@ std::string overview_html(const ReportData& data) {
   for (const ReportExperiment& experiment : data.experiments) {
     std::string figures;
     for (const std::size_t index : experiment.figures) {
-      const ReportFigure& figure = data.figures.at(index);
-      figures += fmt::format("<a href=\"#figure-{}\">{}</a> ", escape_html(figure.id),
-                             escape_html(figure.summary.name));
+      figures += figure_link(data.figures.at(index)) + " ";
     }
-    const RegisteredManifest& manifest = experiment.manifest;
-    const std::string& question =
-        manifest.question.empty() ? manifest.experiment : manifest.question;
-    rows.push_back({fmt::format("<a href=\"#experiment-{0}\">{1}</a> <span "
-                                "class=\"small\">{0}</span>",
-                                escape_html(manifest.experiment), escape_html(question)),
-                    ruling_html(ruling_of(data, experiment)), figures,
-                    std::to_string(experiment.runs.size())});
+    rows.push_back(
+        {fmt::format("<a href=\"#experiment-{0}\">{1}</a> <span "
+                     "class=\"small\">{0}</span>",
+                     escape_html(experiment.manifest.experiment), question_html(experiment)),
+         ruling_html(ruling_of(data, experiment)), figures,
+         std::to_string(experiment.runs.size())});
   }
   std::string html = "<nav aria-label=\"Experiments\">" +
                      html_table({"question", "verdict", "figures", "#stages"}, rows, "overview") +

@@ -20,6 +20,7 @@ std::string run_table_html(const ReportData& data, const ReportExperiment& exper
 
 /// A figure: its panels, claims and lineage.
 std::string figure_html(const ReportData& data, const ReportFigure& figure);
+std::string figure_link(const ReportFigure& figure);
 
 /// A plot (a place for one, when the page is interactive) and its numbers.
 std::string panel_html(const ReportData& data, const ReportPanel& panel);
@@ -29,6 +30,9 @@ std::string lineage_html(const ReportData& data, const ReportFigure& figure);
 
 /// Every run: how it was made, by which build, and its checkpoints.
 std::string runs_html(const ReportData& data);
+
+/// The experiment's question, or its name where the manifest asks none.
+std::string question_html(const ReportExperiment& experiment);
 
 /// "agrees", "differs" or "undecided", as a mark that can be read without colour; "" without
 /// claims.

@@ -101,11 +101,9 @@ std::string checkpoints_html(const ReportData& data, const ReportExperiment& exp
 std::string figures_html(const ReportData& data, const ReportExperiment& experiment) {
   std::string names;
   for (const std::size_t index : experiment.figures) {
-    const ReportFigure& figure = data.figures.at(index);
-    names += fmt::format(" <a href=\"#figure-{}\">{}</a>", escape_html(figure.id),
-                         escape_html(figure.summary.name));
+    names += " " + figure_link(data.figures.at(index));
   }
-  for (const std::string& name : experiment.unmade) names += fmt::format(" {}", escape_html(name));
+  for (const std::string& name : experiment.unmade) names += " " + escape_html(name);
   return counts_html({{"done", "✓", "made", experiment.figures.size()},
                       {"failed", "✗", "cannot be made", experiment.unmade.size()}}) +
          (names.empty() ? "" : "<p>" + names.substr(1) + "</p>");
@@ -131,6 +129,11 @@ std::string workflow_html(const ReportData& data, const ReportExperiment& experi
 
 }  // namespace
 
+std::string question_html(const ReportExperiment& experiment) {
+  const RegisteredManifest& manifest = experiment.manifest;
+  return escape_html(manifest.question.empty() ? manifest.experiment : manifest.question);
+}
+
 std::string ruling_html(std::optional<Ruling> ruling) {
   if (!ruling) return "";
   const char* mark = ruling == Ruling::agrees ? "✓" : ruling == Ruling::differs ? "✗" : "?";
@@ -145,6 +148,11 @@ std::optional<Ruling> ruling_of(const ReportData& data, const ReportExperiment& 
     all.insert(all.end(), own.begin(), own.end());
   }
   return overall(all);
+}
+
+std::string figure_link(const ReportFigure& figure) {
+  return fmt::format("<a href=\"#figure-{}\">{}</a>", escape_html(figure.id),
+                     escape_html(figure.summary.name));
 }
 
 std::string figure_html(const ReportData& data, const ReportFigure& figure) {
@@ -189,12 +197,10 @@ std::string panel_html(const ReportData& data, const ReportPanel& panel) {
 }
 
 std::string experiment_html(const ReportData& data, const ReportExperiment& experiment) {
-  const std::string name = escape_html(experiment.manifest.experiment);
   std::string html = fmt::format(
       "<section class=\"experiment\" id=\"experiment-{0}\">\n<p class=\"eyebrow\">{0}</p>\n"
       "<h2>{1}</h2>\n",
-      name,
-      experiment.manifest.question.empty() ? name : escape_html(experiment.manifest.question));
+      escape_html(experiment.manifest.experiment), question_html(experiment));
   if (experiment.figures.empty()) {
     html += "<p class=\"small\">No figure can be made of this experiment yet.</p>\n";
   } else if (const auto ruling = ruling_of(data, experiment)) {

@@ -45,9 +45,9 @@ const Claim equal = {"equal", 0.001};
 
 TEST(Scalars, AtACycleOrOverSeveral) {
   const FigureRun run = rising(1, 0.62);
-  EXPECT_NEAR(at_cycle("phi", &Measures::phi, 10).of(run).value, 0.63, 1e-12);
+  EXPECT_NEAR(over_cycles("phi", &Measures::phi, 10, 10).of(run).value, 0.63, 1e-12);
   EXPECT_NEAR(early_phi().of(run).value, 0.628, 1e-12);
-  EXPECT_EQ(at_cycle("phi", &Measures::phi, 10).name, "phi at cycle 10");
+  EXPECT_EQ(over_cycles("phi", &Measures::phi, 10, 10).name, "phi at cycle 10");
 }
 
 TEST(Scalars, SayWhyARunHasNone) {
@@ -99,7 +99,7 @@ TEST(Compare, OthersAreIndependent) {
 }
 
 TEST(Compare, RelativeDifferences) {
-  Scalar overlap = at_cycle("overlap", &Measures::mean_overlap, 1);
+  Scalar overlap = over_cycles("overlap", &Measures::mean_overlap, 1, 1);
   overlap.relative = true;
   const Claim claim = {"overlap", 0.03};
   const Verdict verdict =

@@ -12,7 +12,7 @@
 
 #include "analysis/growth.hpp"
 #include "analysis/published.hpp"
-#include "analysis/survival.hpp"
+#include "analysis/statistics.hpp"
 #include "analysis/verdict.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 

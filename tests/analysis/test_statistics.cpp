@@ -11,7 +11,6 @@
 #include <limits>
 #include <vector>
 
-#include "analysis/survival.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 
 namespace shearcell::test {

@@ -206,7 +206,15 @@ TEST_F(DrawFigure, PhiAtRestIsThatOfTheRestedPacking) {
   for (const RunRecord& run : store_.runs()) {
     if (run.kind == "prepare") continue;
     const std::vector<CheckpointRecord> records = store_.checkpoints(run.id);
-    const std::vector<double> phi = phi_at_rest(store_, records, {2, false, {}});
+    const auto at_rest = [&](std::size_t workers) {
+      const std::vector<std::string> names = {"scalars", "at_rest"};
+      std::vector<double> phi;
+      for (const auto& one : measures_of(store_, records, names, {workers, false, {}}).measures) {
+        phi.push_back(one.value().phi_at_rest);
+      }
+      return phi;
+    };
+    const std::vector<double> phi = at_rest(2);
     ASSERT_EQ(phi.size(), 3U);
     EXPECT_TRUE(std::isnan(phi[0])) << "the packings of cycle 0 are the same";
     Checkpoint checkpoint = store_.load_checkpoint(records[2]);
@@ -215,7 +223,7 @@ TEST_F(DrawFigure, PhiAtRestIsThatOfTheRestedPacking) {
                               checkpoint.state, 0.1);
     EXPECT_EQ(phi[2], analyse(checkpoint).measures.phi);
     EXPECT_NE(phi[2], recorded);
-    EXPECT_EQ(phi_at_rest(store_, records, {1, false, {}})[2], phi[2]) << "as kept";
+    EXPECT_EQ(at_rest(1)[2], phi[2]) << "as kept";
   }
 }
 

@@ -233,8 +233,9 @@ TEST_F(Phases, DrawALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
   EXPECT_NEAR(-area, work, 0.2 * work);
 
   // As kept, and as a plot or a claim has it.
-  const auto energies = cycle_energies(store_, records, {1, false, {}});
-  EXPECT_EQ(energies.back().at("work_of_walls_per_cycle_J"), work);
+  const std::vector<std::string> names = {"scalars", "ledger"};
+  const MeasuredPackings found = measures_of(store_, records, names, {1, false, {}});
+  EXPECT_EQ(found.measures.back().value().numbers.at("work_of_walls_per_cycle_J"), work);
 }
 
 }  // namespace
