@@ -277,7 +277,7 @@ std::vector<CheckpointRecord> select_checkpoints(const Database& database, const
 template <class Record>
 std::optional<Record> only(std::vector<Record> found) {
   if (found.empty()) return std::nullopt;
-  return std::move(found.front());
+  return std::make_optional(std::move(found.front()));
 }
 
 }  // namespace

@@ -39,13 +39,13 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
     const auto stated = std::ranges::find(manifest.scales, scale, &Scale::name);
     const Scale* own = stated == manifest.scales.end() ? nullptr : &*stated;
     const std::string path = "scales." + std::string(scale);
-    const bool sweeps = own != nullptr && own->sweep;
+    const Scale& swept = own != nullptr && own->sweep ? *own : manifest.base;
     const auto add_labels = [&](const std::vector<SweepAxis>& axes, const std::string& kind) {
       for (const SweepAxis& axis : axes) {
         const auto label = labels.find(axis.key);
         if (label == labels.end()) continue;
         const auto value = std::ranges::find(axis.values, *label, &Setting::value);
-        add((sweeps ? path + ".sweep." : "sweep.") + kind + axis.key,
+        add((&swept == own ? path + ".sweep." : "sweep.") + kind + axis.key,
             value == axis.values.end() ? axis.at : value->at);
       }
     };
@@ -57,9 +57,8 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
 
     add("experiment", manifest.experiment_at);
     if (own != nullptr) add(path, own->at);
-    const Sweep& sweep = sweeps ? *own->sweep : *manifest.base.sweep;
-    add_labels(sweep.grid, "grid.");
-    add_labels(sweep.zip, "zip.");
+    add_labels(swept.sweep->grid, "grid.");
+    add_labels(swept.sweep->zip, "zip.");
     if (own == nullptr || !add_cycles(*own, path)) add_cycles(manifest.base, "base");
     if (own != nullptr && own->seeds) {
       add(path + ".seeds", own->seeds->at);
