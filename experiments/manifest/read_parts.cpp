@@ -152,7 +152,8 @@ std::vector<Entry> read_list(const Entry& in, string_view example) {
   if (in.node.kind != Node::Kind::list) {
     in.reject_type("a list", remedy);
   } else if (count == 0) {
-    in.reject("is an empty list", remedy);
+    in.reject("is an empty list",
+              fmt::format("Remove the key, or write a list such as {}.", example));
   } else if (count > most) {
     in.problems.add(in.node.at, in.path, fmt::format("has more than {} values", most),
                     fmt::format("{} values", count), "Shorten the list.");
