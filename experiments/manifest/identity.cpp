@@ -175,6 +175,23 @@ StageRecord read_stage(const json& resolved) {
   return record;
 }
 
+json felt_parameters(const json& resolved) {
+  json values =
+      resolved.is_object() ? resolved.value("parameters", json::object()) : json::object();
+  if (!values.is_object()) return json::object();
+  try {
+    const auto [stage, parent, seed, parameters] = read_stage(resolved);
+    for (const Field& field : schema()) {
+      const bool felt = field.name != "pressure_at" || feels_pressure_at(parameters);
+      if (felt && enters(field.identity, stage, parameters.protocol, nullptr)) {
+        values.emplace(field.name, get_value(field, parameters));  // unless the record states it
+      }
+    }
+  } catch (const std::runtime_error&) {  // damaged
+  }
+  return values;
+}
+
 EngineKind engine_of(const json& resolved) {
   const json::json_pointer engine("/parameters/engine");
   const bool lammps = resolved.is_object() && resolved.contains(engine) &&

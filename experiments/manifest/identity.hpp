@@ -42,6 +42,10 @@ std::string stage_key(const nlohmann::json& resolved);
 /// missing, unknown or out of range. Compare stage_key(resolved) with the run's id as well.
 StageRecord read_stage(const nlohmann::json& resolved);
 
+/// The parameters that a stage of this record feels, with those that the record leaves out; of a
+/// damaged record those that it states.
+nlohmann::json felt_parameters(const nlohmann::json& resolved);
+
 /// The engine that a record names, whatever else is wrong with it.
 EngineKind engine_of(const nlohmann::json& resolved);
 

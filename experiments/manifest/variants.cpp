@@ -53,12 +53,10 @@ std::set<std::string> keys_in_brief(const std::vector<std::string>& keys,
   return found;
 }
 
-/// "A=0.05 rad", "fluid=cell".
+/// "A=0.05 rad", "fluid=cell". Empty for a key that the variant does not have.
 std::string setting_text(const std::string& key, const json& variant, bool brief) {
   if (!variant.contains(key)) {  // the program adds these keys to some of the runs
-    return key == "engine"     ? "engine=shearcell"
-           : key == "manifest" ? "newest manifest"
-                               : "no " + key;
+    return key == "engine" ? "engine=shearcell" : key == "manifest" ? "newest manifest" : "";
   }
   const Field* field = find_field(key);
   const json& value = variant.at(key);
@@ -83,7 +81,9 @@ std::string name_of_variant(const json& variant, const std::vector<std::string>&
     parts.push_back(label->name);
   }
   for (const std::string& key : keys) {
-    if (!named.contains(key)) parts.push_back(setting_text(key, variant, brief.contains(key)));
+    if (named.contains(key)) continue;
+    std::string text = setting_text(key, variant, brief.contains(key));
+    if (!text.empty()) parts.push_back(std::move(text));
   }
   return parts.empty() ? "base" : fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -244,7 +244,10 @@ bool selects(const VariantLabel& label, const json& variant) {
 
 std::map<json, std::string> variant_names(const std::vector<json>& variants,
                                           std::span<const VariantLabel> labels) {
-  const std::vector<std::string> all = keys_of(variants);
+  std::vector<std::string> all = keys_of(variants);
+  std::ranges::stable_partition(all, [&](const std::string& key) {
+    return std::ranges::all_of(variants, [&](const json& v) { return v.contains(key); });
+  });
   std::vector<std::string> keys = keys_telling_apart(variants, all);
   if (keys.empty() && !all.empty()) keys = {all.front()};
   std::vector<const VariantLabel*> longest_first;

@@ -13,9 +13,7 @@ using nlohmann::json;
 // Parameters and seed. The parent's id is left out: it differs because of a value that is compared
 // itself.
 json values_of(const json& resolved) {
-  json values =
-      resolved.is_object() ? resolved.value("parameters", json::object()) : json::object();
-  if (!values.is_object()) values = json::object();
+  json values = felt_parameters(resolved);
   if (resolved.is_object()) values["seed"] = resolved.value("seed", json());
   return values;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "provenance/json_text.hpp"
 
@@ -37,7 +38,7 @@ std::optional<Manifest> read(const RegisteredManifest& manifest) {
 
 void PackingNames::add(const Membership& place, const nlohmann::json& resolved) {
   std::vector<nlohmann::json>& known = parameters_[{place.experiment, place.scale}];
-  nlohmann::json parameters = member_of(resolved, "parameters");
+  nlohmann::json parameters = felt_parameters(resolved);
   if (std::ranges::find(known, parameters) == known.end()) known.push_back(std::move(parameters));
 }
 
@@ -45,7 +46,7 @@ std::string PackingNames::of(const Membership& place, const nlohmann::json& reso
   const auto known = parameters_.find({place.experiment, place.scale});
   if (known == parameters_.end() || known->second.size() < 2) return "packing";
   const auto names = variant_names(known->second, {});
-  const auto own = names.find(member_of(resolved, "parameters"));
+  const auto own = names.find(felt_parameters(resolved));
   return own == names.end() ? "packing" : fmt::format("packing {}", own->second);
 }
 

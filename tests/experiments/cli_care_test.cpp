@@ -140,6 +140,21 @@ TEST_F(Care, StatusListsASharedRunUnderEachExperiment) {
   EXPECT_EQ(json({"status", "--json"}).at("runs").size(), 4U) << "each once";
 }
 
+TEST_F(Care, ValuesThatARecordLeavesOutAreNamed) {
+  const auto swept = [](const std::string& zip) {
+    return tiny_manifest("", "sweep: {zip: {" + zip + "}}\n");
+  };
+  campaign(swept("moving_wall: [bottom, top], pressure_at: [top, top]"), {"--cycles", "0"});
+  const std::string status =
+      expect(0, {"status"}, {"packing moving_wall=bottom ", "packing moving_wall=top "}).out;
+  EXPECT_EQ(status.find("pressure_at"), status.npos) << status;
+  write("lighter.yaml", swept("moving_wall: [bottom], pressure_at: [moving_wall]"));
+  expect(0, {"plan", "lighter.yaml"}, {R"(new: pressure_at "moving_wall" (store has "top"))"});
+  write("draws.yaml", renamed(swept("wall_grain_draw: [0, 1]"), "draws"));
+  expect(0, {"run", "draws.yaml", "--cycles", "0", "-q"});
+  expect(0, {"status"}, {"packing wall_grain_draw=0 ", "packing wall_grain_draw=1 "});
+}
+
 TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
   campaign(manifest_, {"--cycles", "1"});
   const auto stage = [](const nlohmann::json& plan, const std::string& kind,
