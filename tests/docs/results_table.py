@@ -40,6 +40,7 @@ HEADLINES = [
 ]
 # Where README.md takes them from; of several verdicts on a claim, the one with the most runs, or else the first here.
 SOURCES = ("paper", "decide", "desk")
+FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "walls", "choices")
 
 # How a quantity of a verdict is shown: the pattern of its name, what converts its value, and a unit.
 SHOWN = [
@@ -85,6 +86,10 @@ def runs(claim):
     return f"{claim['runs']} of {claim['runs_needed']}" if claim["runs_needed"] else str(claim["runs"])
 
 
+def position(order, name):
+    return order.index(name) if name in order else len(order)
+
+
 def row(cells):
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
 
@@ -124,20 +129,25 @@ def headlines(page, results):
 
 
 def all_claims(page, results):
-    text = header(["figure", "claim", "quantity", "measured (90 % interval)", "margin", "runs", "verdict"])
-    last = None
+    """Claims in the order of FIGURES; of one claim, the scales follow each other in the order of SOURCES."""
+    text = header(["figure", "claim", "quantity", "from", "measured (90 % interval)", "margin", "runs", "verdict"])
     every = list(verdicts(results))
+    asked = {}  # by figure and claim: its rows
     for place, figure, drawing, claim in every:
-        if measured_elsewhere(place, figure, claim, every):
-            continue
-        link = f"[{place}/{figure}]({drawing.relative_to(page.parent).as_posix()})"
-        low, high = claim["interval"] or (None, None)
-        value = "not measured"
-        if claim["estimate"] is not None:
-            value = f"{digits(claim['estimate'])} ({digits(low)} to {digits(high)})"
-        text += row(["" if link == last else link, claim["claim"], claim["quantity"], value, digits(claim["margin"]),
-                     runs(claim), claim["verdict"]])
-        last = link
+        if not measured_elsewhere(place, figure, claim, every):
+            asked.setdefault((figure, claim["claim"]), []).append((place, drawing, claim))
+    last = None
+    for (figure, name), found in sorted(asked.items(), key=lambda item: position(FIGURES, item[0][0])):
+        for place, drawing, claim in sorted(found, key=lambda one: position(SOURCES, one[0].split("/")[0])):
+            low, high = claim["interval"] or (None, None)
+            value = "not measured"
+            if claim["estimate"] is not None:
+                value = f"{digits(claim['estimate'])} ({digits(low)} to {digits(high)})"
+            again = (figure, name) == last
+            text += row(["" if again else figure, "" if again else name, "" if again else claim["quantity"],
+                         f"[{place}]({drawing.relative_to(page.parent).as_posix()})", value, digits(claim["margin"]),
+                         runs(claim), claim["verdict"]])
+            last = (figure, name)
     return text
 
 
