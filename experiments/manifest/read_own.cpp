@@ -206,7 +206,8 @@ ClaimSpec read_claim(const Entry& in, const Manifest& manifest) {
   const string example =
       "{name: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: cell}], "
       "margin: 0.001}";
-  const Field margin = real_number("margin", "1", {0, std::numeric_limits<double>::max(), true});
+  const Field margin =
+      real_number("margin", "1", {0, std::numeric_limits<double>::infinity(), true});
   ClaimSpec claim;
   std::optional<Entry> when;
   const auto can_be_compared = joined(names_of(all_scalar_measures()), run_measures());
