@@ -256,25 +256,26 @@ std::string manifest_reference() {
   for (const ManifestKey& key : manifest_keys()) {
     text += fmt::format("| `{}` | `{}` | {} |\n", key.name, key.example, key.meaning);
   }
-  return text +
-         "\n## Parameters\n\n"
-         "Keys of `base`, `sweep` and of each scale, in SI units. Symbols and sections are those "
-         "of "
-         "the\nsupplement; d is the diameter and m the mass of a grain, A_w the area of the moving "
-         "wall. \"key of\"\nis the first stage whose [id](manifest/README.md#identity) depends on "
-         "the "
-         "parameter.\n\n" +
-         schema_markdown();
+  return text + R"(
+## Parameters
+
+Keys of `base`, `sweep` and of each scale, in SI units. Symbols and sections are those of the
+supplement; d is the diameter and m the mass of a grain, A_w the area of the moving wall. "key of"
+is the first stage whose [id](manifest/README.md#identity) depends on the parameter.
+
+)" + schema_markdown();
 }
 
 std::string measure_reference() {
-  std::string text =
-      "\n## Measures\n\n"
-      "Columns of `shearcell table`, which also has one for each swept parameter. Measures marked "
-      "*plot* can\nstand in `plots` and `claims` of a manifest. Columns from `critical_size` on "
-      "are "
-      "those of `--per run`.\n\n"
-      "| column | use | meaning |\n|---|---|---|\n";
+  std::string text = R"(
+## Measures
+
+Columns of `shearcell table`, which also has one for each swept parameter. Measures marked *plot* can
+stand in `plots` and `claims` of a manifest. Columns from `critical_size` on are those of `--per run`.
+
+| column | use | meaning |
+|---|---|---|
+)";
   for (const TableColumn& column : table_columns()) {
     const bool plots =
         find_measure(column.name) != nullptr || find_run_measure(column.name) != nullptr;
