@@ -200,17 +200,15 @@ std::string usage(const OptionEntry& option) {
                      option.placeholder);
 }
 
-std::string option_text(const OptionEntry& option) {
-  return fmt::format(".TP\n.B {}\n{}\n", escaped(usage(option)), escaped(option.meaning));
-}
-
 std::string section(const CommandEntry& command) {
   std::string text;
   if (!command.path.empty()) {
     text += fmt::format(".SS {}\n{}\n", escaped(spoken(command)),
                         escaped(command.app->get_description()));
   }
-  for (const OptionEntry& option : command.options) text += option_text(option);
+  for (const OptionEntry& option : command.options) {
+    text += fmt::format(".TP\n.B {}\n{}\n", escaped(usage(option)), escaped(option.meaning));
+  }
   if (!command.path.empty() && !command.app->get_footer().empty()) {
     text += fmt::format(".PP\n.nf\n{}\n.fi\n", escaped(command.app->get_footer()));
   }
@@ -304,16 +302,13 @@ std::string figure_reference() {
   return text;
 }
 
-std::string option_row(const OptionEntry& option) {
-  return fmt::format("| `{}` | {} |\n", cell(usage(option)), cell(option.meaning));
-}
-
 std::string command_reference(const CommandEntry& command) {
   std::string text =
       fmt::format("\n### {}\n\n{}.\n", spoken(command), command.app->get_description());
   std::string rows;
   for (const OptionEntry& option : command.options) {
-    if (option.names.empty() || option.names.back() != "--help") rows += option_row(option);
+    if (!option.names.empty() && option.names.back() == "--help") continue;
+    rows += fmt::format("| `{}` | {} |\n", cell(usage(option)), cell(option.meaning));
   }
   if (!rows.empty()) text += "\n| argument | meaning |\n|---|---|\n" + rows;
   // The columns and figures, which have tables of their own above, are not listed again.
