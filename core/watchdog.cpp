@@ -207,7 +207,8 @@ void check_grains(const WatchTask& task) {
                              "The grains are too soft for this load, or the time step is too "
                              "large: raise the stiffness, lower the pressure, or use a smaller "
                              "time step. If they are merely compressed, raise the limit "
-                             "(max_overlap_diameters; while settling it is 0.5 d at least)");
+                             "(max_overlap_diameters; 0.5 d at least until the moving wall has "
+                             "first compacted the loose grains)");
     }
   }
   check_time_step(task);

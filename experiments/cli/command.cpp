@@ -39,6 +39,10 @@ void tell_problems(const MeasureOutcome& outcome, const char* left_out, Context&
   if (!outcome.damage.empty()) fail(context, kStoreDamaged);
 }
 
+std::string unnamed(const std::string& path) {
+  return path.empty() ? "names no file or folder" : "";
+}
+
 void add_json_option(CLI::App& command, Context& context) {
   command.add_flag("--json", context.json, "Print JSON for programs");
 }
@@ -46,7 +50,7 @@ void add_json_option(CLI::App& command, Context& context) {
 void add_common_options(CLI::App& command, Context& context) {
   command.add_option("--store", context.store, "Folder of the store; else $SHEARCELL_STORE")
       ->capture_default_str()
-      ->check([](const std::string& folder) { return folder.empty() ? "names no folder" : ""; })
+      ->check(unnamed)
       ->type_name("DIR");
   add_json_option(command, context);
 }

@@ -64,6 +64,9 @@ void show_figure(const Store& store, const FigureRecord& record, Context& contex
 /// a file that the store does not know.
 void show_published(const Store& store, const std::filesystem::path& file, Context& context);
 
+/// What is wrong with a path that is empty; "" of others.
+std::string unnamed(const std::string& path);
+
 /// --json.
 void add_json_option(CLI::App& command, Context& context);
 

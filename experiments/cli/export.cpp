@@ -20,6 +20,7 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/progress.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/ro_crate.hpp"
@@ -275,7 +276,7 @@ void export_runs(const ExportOptions& options, Context& context) {
     single = !options.runs.empty() && runs.size() == 1;
     done = write_all(store, runs, format, options, single);
   } catch (const std::invalid_argument& problem) {
-    throw CLI::ValidationError("export", problem.what());
+    throw UsageError(problem.what());
   }
   for (Exported& one : done) {
     if (single) one.out = options.out;
@@ -315,6 +316,7 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("--to", options->format, "Format")->required()->check(CLI::IsMember(names));
   command->add_option("--out", options->out, "File or folder to write")
       ->required()
+      ->check(unnamed)
       ->type_name("PATH");
   command
       ->add_option("--cycles", options->cycles,

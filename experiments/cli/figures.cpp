@@ -28,8 +28,9 @@ void complain(const FigureSummary& result, std::set<std::string>& told, Context&
   }
   tell_problems(result, "left out", context);
   if (!result.empty.empty()) {
-    tell_stderr("warning: figure {}{}{}: nothing to draw in {}\n", result.experiment,
-                result.experiment.empty() ? "" : "/", result.name, fmt::join(result.empty, ", "));
+    tell_stderr("warning: figure {}{}{}: its runs have no values to draw in {}\n",
+                result.experiment, result.experiment.empty() ? "" : "/", result.name,
+                fmt::join(result.empty, ", "));
   }
   if (!result.plot_error.empty()) tell_stderr("no plot: {}\n", result.plot_error);
 }

@@ -200,17 +200,15 @@ std::string usage(const OptionEntry& option) {
                      option.placeholder);
 }
 
-std::string option_text(const OptionEntry& option) {
-  return fmt::format(".TP\n.B {}\n{}\n", escaped(usage(option)), escaped(option.meaning));
-}
-
 std::string section(const CommandEntry& command) {
   std::string text;
   if (!command.path.empty()) {
     text += fmt::format(".SS {}\n{}\n", escaped(spoken(command)),
                         escaped(command.app->get_description()));
   }
-  for (const OptionEntry& option : command.options) text += option_text(option);
+  for (const OptionEntry& option : command.options) {
+    text += fmt::format(".TP\n.B {}\n{}\n", escaped(usage(option)), escaped(option.meaning));
+  }
   if (!command.path.empty() && !command.app->get_footer().empty()) {
     text += fmt::format(".PP\n.nf\n{}\n.fi\n", escaped(command.app->get_footer()));
   }
@@ -256,25 +254,26 @@ std::string manifest_reference() {
   for (const ManifestKey& key : manifest_keys()) {
     text += fmt::format("| `{}` | `{}` | {} |\n", key.name, key.example, key.meaning);
   }
-  return text +
-         "\n## Parameters\n\n"
-         "Keys of `base`, `sweep` and of each scale, in SI units. Symbols and sections are those "
-         "of "
-         "the\nsupplement; d is the diameter and m the mass of a grain, A_w the area of the moving "
-         "wall. \"key of\"\nis the first stage whose [id](manifest/README.md#identity) depends on "
-         "the "
-         "parameter.\n\n" +
-         schema_markdown();
+  return text + R"(
+## Parameters
+
+Keys of `base`, `sweep` and of each scale, in SI units. Symbols and sections are those of the
+supplement; d is the diameter and m the mass of a grain, A_w the area of the moving wall. "key of"
+is the first stage whose [id](manifest/README.md#identity) depends on the parameter.
+
+)" + schema_markdown();
 }
 
 std::string measure_reference() {
-  std::string text =
-      "\n## Measures\n\n"
-      "Columns of `shearcell table`, which also has one for each swept parameter. Measures marked "
-      "*plot* can\nstand in `plots` and `claims` of a manifest. Columns from `critical_size` on "
-      "are "
-      "those of `--per run`.\n\n"
-      "| column | use | meaning |\n|---|---|---|\n";
+  std::string text = R"(
+## Measures
+
+Columns of `shearcell table`, which also has one for each swept parameter. Measures marked *plot* can
+stand in `plots` and `claims` of a manifest. Columns from `critical_size` on are those of `--per run`.
+
+| column | use | meaning |
+|---|---|---|
+)";
   for (const TableColumn& column : table_columns()) {
     const bool plots =
         find_measure(column.name) != nullptr || find_run_measure(column.name) != nullptr;
@@ -303,16 +302,13 @@ std::string figure_reference() {
   return text;
 }
 
-std::string option_row(const OptionEntry& option) {
-  return fmt::format("| `{}` | {} |\n", cell(usage(option)), cell(option.meaning));
-}
-
 std::string command_reference(const CommandEntry& command) {
   std::string text =
       fmt::format("\n### {}\n\n{}.\n", spoken(command), command.app->get_description());
   std::string rows;
   for (const OptionEntry& option : command.options) {
-    if (option.names.empty() || option.names.back() != "--help") rows += option_row(option);
+    if (!option.names.empty() && option.names.back() == "--help") continue;
+    rows += fmt::format("| `{}` | {} |\n", cell(usage(option)), cell(option.meaning));
   }
   if (!rows.empty()) text += "\n| argument | meaning |\n|---|---|\n" + rows;
   // The columns and figures, which have tables of their own above, are not listed again.

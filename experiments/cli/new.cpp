@@ -130,7 +130,7 @@ void add_new(CLI::App& app, Context&) {
   auto name = std::make_shared<std::string>();
   command->add_option("name", *name, "Name of the experiment, or path of the file")->required();
   command->footer(
-      R"(Writes every parameter with its meaning and default, the sweep of `drag`, and three scales.
+      R"(Writes every parameter with its meaning and default, a sweep of `fluid`, and three scales.
 Refuses to overwrite a file.
 Examples:
   shearcell new softer

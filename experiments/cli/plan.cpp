@@ -33,12 +33,12 @@ struct Line {
   StageCost left = {};
   std::optional<double> left_until = 0;       // particle-steps; nothing when it is not known
   std::vector<std::string> shared_with = {};  // other experiments that contain it
-  std::optional<Novelty> novelty = {};        // nothing when the store knows it, or none like it
+  nlohmann::json novelty = nullptr;           // null when the store knows it, or none like it
 };
 
 // "also in twin", "new: amplitude_rad 0.1 (store has 0.0833)".
 std::string remark(const Line& line) {
-  if (line.novelty) return "new: " + describe(*line.novelty);
+  if (!line.novelty.is_null()) return "new: " + describe_novelty(line.novelty);
   return line.shared_with.empty() ? ""
                                   : fmt::format("also in {}", fmt::join(line.shared_with, ", "));
 }
@@ -48,14 +48,6 @@ void add_shares(const RunRecord& record, const std::string& experiment, Line& li
     const bool known = std::ranges::count(line.shared_with, m.experiment) > 0;
     if (m.experiment != experiment && !known) line.shared_with.push_back(m.experiment);
   }
-}
-
-nlohmann::json facts(const std::optional<Novelty>& novelty) {
-  if (!novelty) return nullptr;
-  return {{"nearest", novelty->nearest},
-          {"fields", json_list(novelty->differences, [](const Difference& d) -> nlohmann::json {
-             return {{"field", d.field}, {"value", d.planned}, {"store_has", d.known}};
-           })}};
 }
 
 // The time step of a stage; none where no time passes.
@@ -77,19 +69,20 @@ nlohmann::json facts(const std::optional<TimeStep>& step) {
 void print_numerics(const std::vector<Line>& lines) {
   std::vector<Row> rows;
   for (const Line& line : lines) {
-    const std::optional<TimeStep> step = time_step_of(line);
-    const bool prepare = line.stage->stage == Stage::prepare;
-    const auto number = [&](const char* format, double value) {
-      return step ? fmt::format(fmt::runtime(format), value) : "";
-    };
-    const TimeStep t = step.value_or(TimeStep{});
-    Row row = {std::string(name_of(line.stage->stage)),
-               prepare ? "" : line.run->name,
-               step && !prepare ? std::to_string(line.run->parameters.steps_per_cycle) : "",
-               number("{:.4g}", t.seconds),
-               number("{:.3f}", t.over_contact_time),
-               number("{:.3f}", t.over_stability_limit),
-               fmt::format("{:.2g}", expected_overlap(line.run->parameters))};
+    const Parameters& p = line.run->parameters;
+    const Stage stage = line.stage->stage;
+    Row row = {std::string(name_of(stage)),
+               stage == Stage::prepare ? "" : line.run->name,
+               stage == Stage::shear ? std::to_string(p.steps_per_cycle) : "",
+               "",
+               "",
+               "",
+               fmt::format("{:.2g}", expected_overlap(p))};
+    if (const auto step = time_step_of(line)) {
+      row[3] = fmt::format("{:.4g}", step->seconds);
+      row[4] = fmt::format("{:.3f}", step->over_contact_time);
+      row[5] = fmt::format("{:.3f}", step->over_stability_limit);
+    }
     if (std::ranges::count(rows, row) == 0) rows.push_back(std::move(row));
   }
   fmt::print("\n");
@@ -100,16 +93,15 @@ void print_numerics(const std::vector<Line>& lines) {
 
 // Raises each target to the longest that the run was ever declared with, as `run` does. Returns how
 // many were raised.
-std::size_t take_longer_targets(const std::vector<RunRecord>& known, Plan& plan) {
-  std::map<std::string, const RunRecord*> unfinished;
-  for (const RunRecord& run : known) {
-    if (run.state != RunState::completed) unfinished[run.id] = &run;
-  }
+std::size_t take_longer_targets(const KnownRuns& known, Plan& plan) {
   std::size_t longer = 0;
   for (PlannedRun& run : plan.runs) {
-    const auto found = unfinished.find(run.last.key);
-    if (found == unfinished.end() || found->second->target_cycles <= run.target_cycles) continue;
-    run.target_cycles = found->second->target_cycles;
+    const RunRecord* record = known.find(run.last.key);
+    if (record == nullptr || record->state == RunState::completed ||
+        record->target_cycles <= run.target_cycles) {
+      continue;
+    }
+    run.target_cycles = record->target_cycles;
     ++longer;
   }
   return longer;
@@ -180,8 +172,7 @@ void print_until(const std::vector<Line>& lines, double at_most) {
 }
 
 std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
-                           const std::vector<RunRecord>& runs) {
-  const KnownRuns known(runs);
+                           const KnownRuns& known) {
   ExpectedEnds ends;
   std::vector<Line> lines;
   std::set<std::string> seen;
@@ -189,7 +180,6 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
     for (const StageSpec* stage : {&run.prepare, &run.last}) {
       if (!seen.insert(stage->key).second) continue;
       Line line{.run = &run, .stage = stage};
-      line.novelty = known.novelty(*stage);
       if (const RunRecord* record = known.find(stage->key)) {
         line.cycle = record->cycle;
         add_shares(*record, run.experiment, line);
@@ -199,6 +189,8 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
         // Short of checkpoints that were asked for later, or of cycles.
         const bool replayed = line.from < line.cycle;
         if (line.state == "completed") line.state = replayed ? "to replay" : "to extend";
+      } else {
+        line.novelty = known.novelty(*stage);
       }
       if (line.state != "done") {
         line.left = stage_cost(run, *stage, line.from);
@@ -247,7 +239,7 @@ nlohmann::json facts(const Line& line) {
           {"shared_with", line.shared_with},
           {"time_step", facts(time_step_of(line))},
           {"expected_overlap_d", expected_overlap(line.run->parameters)},
-          {"new", facts(line.novelty)},
+          {"new", line.novelty},
           {"particle_steps_left", line.left.particle_steps},
           {"bytes_left", line.left.bytes},
           {"most_particle_steps", most_particle_steps(*line.run, *line.stage)},
@@ -280,10 +272,11 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
           Context& context) {
   Plan expanded = joined(load_manifests(manifests, options).plans);
   const std::optional<Store> store = open_if_there(context.store);
-  const auto known = store ? store->runs() : std::vector<RunRecord>{};
+  const auto runs = store ? store->runs() : std::vector<RunRecord>{};
+  const KnownRuns known(runs);
   const std::size_t longer = take_longer_targets(known, expanded);
   const std::vector<Line> lines = lines_of(expanded, store, known);
-  const Left left = left_of(lines, known);
+  const Left left = left_of(lines, runs);
   const std::size_t cores = usable_cores();
   const double seconds = left.core_seconds / static_cast<double>(cores);
   std::vector<std::string> notes = notes_of(expanded);
@@ -309,14 +302,18 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
              counted(expanded.runs.size(), "run"), counted(lines.size(), "stage"));
   print_stages(lines, manifests.size() > 1);
   print_numerics(lines);
-  fmt::print(
-      "\nleft: {:.3g} particle-steps, about {} on {} cores at {:.0f} M particle-steps/s each ({}),"
-      "\n      about {} on disk\n",
-      left.cost.particle_steps, format_duration(seconds), cores,
-      left.rate.particle_steps_per_second * 1e-6,
-      left.rate.measured ? "measured in this store" : "assumed until a run has been measured",
-      format_bytes(left.cost.bytes));
-  print_until(lines, left.cost.particle_steps);
+  if (std::ranges::all_of(lines, [](const Line& line) { return line.state == "done"; })) {
+    fmt::print("\nleft: nothing\n");
+  } else {
+    fmt::print(
+        "\nleft: {:.3g} particle-steps, about {} on {} cores at {:.0f} M particle-steps/s each "
+        "({}),\n      about {} on disk\n",
+        left.cost.particle_steps, format_duration(seconds), cores,
+        left.rate.particle_steps_per_second * 1e-6,
+        left.rate.measured ? "measured in this store" : "assumed until a run has been measured",
+        format_bytes(left.cost.bytes));
+    print_until(lines, left.cost.particle_steps);
+  }
   if (!notes.empty()) fmt::print("\n{}\n", fmt::join(notes, "\n"));
 }
 

@@ -79,7 +79,10 @@ void add_report(CLI::App& app, Context& context) {
   auto command = std::make_shared<ReportCommand>();
   PackingChoice& packings = command->report.packings;
   CLI::App* sub = app.add_subcommand("report", "Write the whole store as one HTML file");
-  sub->add_option("--out", command->out, "File to write")->capture_default_str()->type_name("FILE");
+  sub->add_option("--out", command->out, "File to write")
+      ->capture_default_str()
+      ->check(unnamed)
+      ->type_name("FILE");
   add_selection_options(*sub, command->report.runs);
   sub->add_option("--run", packings.runs, "Show these runs in 3D instead of the default")
       ->type_name("RUN");

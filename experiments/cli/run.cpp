@@ -93,9 +93,9 @@ void report(const CampaignResult& result, Context& context) {
              0) {
     fmt::print("nothing is left to compute\n");
   } else {
-    fmt::print(
-        "{} stages computed, {} were done already, {} failed, {} interrupted, {} not begun\n",
-        result.completed, result.already, result.failed, result.interrupted, result.blocked);
+    fmt::print("{} computed, {} done already, {} failed, {} interrupted, {} not begun\n",
+               counted(result.completed, "stage"), result.already, result.failed,
+               result.interrupted, result.blocked);
     if (result.elsewhere > 0) {
       fmt::print("{} were computed by other programs meanwhile\n", result.elsewhere);
     }

@@ -15,6 +15,7 @@
 #include "experiments/figures/own_part.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/runner/progress.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
 
@@ -123,9 +124,9 @@ nlohmann::json run_facts(const Store& store, const RunRecord& run,
 
 void print_run(const Store& store, const RunRecord& run) {
   const nlohmann::json engine = engine_of_run(store, run.id);
-  tell("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {} attempts\n",
-       run.id, run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state), run.cycle,
-       run.target_cycles, run.attempts);
+  tell("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {}\n", run.id,
+       run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state), run.cycle,
+       run.target_cycles, counted(run.attempts, "attempt"));
   if (engine.is_object()) {
     tell("engine   {} {}, {} processes\n", engine.value("name", ""), engine.value("version", ""),
          engine.value("processes", 1));

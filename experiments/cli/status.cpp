@@ -321,7 +321,7 @@ void watch(const RunSelection& selection, const Context& context, double interva
   auto busy_at = std::chrono::steady_clock::now();
   while (true) {
     const View view(selection, context);
-    if (terminal_columns(stdout)) fmt::print("\x1b[H\x1b[2J");
+    if (moves_cursor(stdout)) fmt::print("\x1b[H\x1b[2J");
     print(view);
     std::fflush(stdout);
     const auto now = std::chrono::steady_clock::now();

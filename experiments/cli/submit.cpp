@@ -56,8 +56,8 @@ void print_json_of(const Proposal& proposal, const nlohmann::json& more) {
 void print_shares(const Proposal& proposal) {
   std::size_t runs = 0;
   for (const Share& share : proposal.shares) runs += share.runs.size();
-  fmt::print("{} runs in {} tasks; cores of each: {}\n\n", runs, proposal.shares.size(),
-             proposal.job.cpus);
+  fmt::print("{} in {}; cores of each: {}\n\n", counted(runs, "run"),
+             counted(proposal.shares.size(), "task"), proposal.job.cpus);
   std::size_t task = 0;
   print_table({"task", "runs", "packings", "particle-steps", "about"}, proposal.shares,
               [&](const Share& share) -> Row {

@@ -2,6 +2,7 @@
 // `verify`: checks that the store is unchanged and, on request, that it can be recomputed.
 // `rebuild`: mends its tables.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -32,11 +33,10 @@ const char* name_of_severity(const Finding& finding) {
 // "16 ab12...", as two words or one, or with a colon between.
 std::optional<Head> read_head(const std::vector<std::string>& words) {
   if (words.empty()) return std::nullopt;
-  std::string text = words.size() == 2 ? words[0] + ":" + words[1] : words[0];
-  if (const auto space = text.find(' '); space != std::string::npos) text[space] = ':';
-  if (const auto colon = text.find(':'); colon != std::string::npos) {
-    const auto seq = read_number<std::uint64_t>(std::string_view(text).substr(0, colon));
-    const std::string hash = text.substr(colon + 1);
+  const std::string text = fmt::format("{}", fmt::join(words, " "));
+  if (const auto gap = text.find_first_of(" :"); gap != std::string::npos) {
+    const auto seq = read_number<std::uint64_t>(std::string_view(text).substr(0, gap));
+    const std::string hash = text.substr(gap + 1);
     if (seq && is_sha256_hex(hash)) return Head{*seq, hash};
   }
   throw CLI::ValidationError(
@@ -179,7 +179,7 @@ void rebuild(Context& context) {
   if (context.json) {
     print_json({{"events", head.seq}, {"runs", runs.size()}});
   } else {
-    fmt::print("{} runs derived from {} events\n", runs.size(), head.seq);
+    fmt::print("{} derived from {}\n", counted(runs.size(), "run"), counted(head.seq, "event"));
   }
 }
 

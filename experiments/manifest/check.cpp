@@ -220,7 +220,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   }
   for (const VariantLabel& label : manifest.labels) {
     if (used.contains(&label)) continue;
-    problems.add(label.at, "labels", "names no variant of any scale", label.name,
+    problems.add(label.at, "labels", "names no variant of any scale", words_of(label.where),
                  "A label states swept keys and one of their values, as `\"fluid=still\"`.");
   }
 }
@@ -316,17 +316,17 @@ string without_effect(string_view key, const Parameters& p) {
   const Identity identity = field == nullptr ? Identity{} : field->identity;
   if (p.protocol == ProtocolKind::stiffen) {
     const bool of_shear = identity.stage == Stage::shear || key == "cycles" || key == "until";
-    if (of_shear && key != "protocol") return "not under protocol stiffen";
+    if (of_shear && key != "protocol") return "has no effect under protocol stiffen";
   } else if (identity.stage == Stage::stiffen || key == "stiffness_decades") {
-    return "only under protocol stiffen";
+    return "has an effect only under protocol stiffen";
   }
   if (identity.under && identity.under != p.protocol)
-    return fmt::format("only under protocol {}", name_of(*identity.under));
+    return fmt::format("has an effect only under protocol {}", name_of(*identity.under));
   if (key.starts_with("wall_grain_") && p.walls == WallTexture::smooth) {
-    return "only with rough walls";
+    return "has an effect only with rough walls";
   }
   if (key == "pressure_at" && !feels_pressure_at(p)) {
-    return "only with gravity and a moving bottom wall";
+    return "has an effect only with gravity and a moving bottom wall";
   }
   return "";
 }

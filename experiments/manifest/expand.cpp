@@ -104,9 +104,9 @@ void warn_of_variant(const std::string& file, const Variant& variant, Plan& plan
   };
   if (!pressure_lifts_column(p)) {
     warn(fmt::format(
-        "the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = {}). Turn "
-        "gravity off, raise pressure_Pa, move the top wall, or choose a lower cell "
-        "(height_over_width).",
+        "the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = {}). Use "
+        "`pressure_at: top`, raise pressure_Pa, move the top wall, turn gravity off, or choose a "
+        "lower cell (height_over_width).",
         p.pressure_Pa, p.grains));
   }
   if (const double overlap = expected_overlap(p); overlap > p.max_overlap_diameters) {
@@ -133,14 +133,13 @@ void warn_of_unfelt(const Manifest& manifest, const Scale& scale,
   }
   if (scale.until->until) stated["until"] = scale.until->at;
   for (const auto& [key, at] : stated) {
-    std::string when;
+    std::string why;
     for (const Variant& variant : variants) {
-      when = without_effect(key, variant.parameters);
-      if (when.empty()) break;
+      why = without_effect(key, variant.parameters);
+      if (why.empty()) break;
     }
-    if (when.empty()) continue;
-    const ManifestProblem problem{manifest.file,  at, key, "has no effect: " + when, "",
-                                  "Leave it out."};
+    if (why.empty()) continue;
+    const ManifestProblem problem{manifest.file, at, key, why, "", "Leave it out."};
     plan.warnings.push_back(problem.text());
   }
 }
@@ -229,7 +228,9 @@ Plan joined(std::span<const Plan> plans) {
   all.scale = plans.front().scale;
   std::map<std::string, std::size_t> places;  // of a run in all.runs, by its id
   for (const Plan& plan : plans) {
-    experiments.push_back(plan.experiment);
+    if (std::ranges::count(experiments, plan.experiment) == 0) {
+      experiments.push_back(plan.experiment);
+    }
     for (const PlannedRun& run : plan.runs) {
       const auto [place, fresh] = places.try_emplace(run.last.key, all.runs.size());
       if (fresh) {

@@ -109,7 +109,8 @@ std::vector<string_view> run_measures() {
 /// A name for files, different from those of the supplement's figures and their panels, and of
 /// other plots and claims.
 string read_own_name(const Entry& in, const Manifest& manifest) {
-  const string& name = in.node.text;
+  const string name = read_name(in);
+  if (name.empty()) return name;
   const auto is_panel = [&](const Figure& figure) {
     if (!name.starts_with(figure.name)) return false;
     const string_view rest = string_view(name).substr(figure.name.size());
@@ -118,9 +119,7 @@ string read_own_name(const Entry& in, const Manifest& manifest) {
   const auto is_taken = [&](const auto& others) {
     return std::ranges::any_of(others, [&](const auto& other) { return other.name == name; });
   };
-  if (!in.is_scalar() || !is_name(name)) {
-    in.reject_type("a name", "It takes letters, digits, - and _.");
-  } else if (std::ranges::any_of(all_figures(), is_panel)) {
+  if (std::ranges::any_of(all_figures(), is_panel)) {
     in.reject_value("is the name of a figure of the supplement", "Choose another one.");
   } else if (is_taken(manifest.plots) || is_taken(manifest.claims)) {
     in.reject_value("is the name of another plot or claim", "Choose another one.");
@@ -206,7 +205,8 @@ ClaimSpec read_claim(const Entry& in, const Manifest& manifest) {
   const string example =
       "{name: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: cell}], "
       "margin: 0.001}";
-  const Field margin = real_number("margin", "1", {0, std::numeric_limits<double>::max(), true});
+  const Field margin =
+      real_number("margin", "1", {0, std::numeric_limits<double>::infinity(), true});
   ClaimSpec claim;
   std::optional<Entry> when;
   const auto can_be_compared = joined(names_of(all_scalar_measures()), run_measures());

@@ -24,10 +24,10 @@ constexpr std::uint64_t kLargestCadence = 1'000'000;  // cycles
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
 std::vector<double> read_phases(const Entry& in) {
-  constexpr double largest = std::numeric_limits<double>::max();
+  constexpr double any = std::numeric_limits<double>::infinity();
   std::vector<double> phases;
   for (const Entry& item : read_list(in, "[0.25, 0.5, 0.75]")) {
-    const auto read = read_parameter(real_number("phases", "1", {-largest, largest}), item);
+    const auto read = read_parameter(real_number("phases", "1", {-any, any}), item);
     if (!read) continue;
     const auto phase = read->get<double>();
     if (!(phase > 0 && phase < 1)) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -36,6 +37,9 @@ bool is_auto(const Field& field, const Node& node);
 
 /// A whole number from 1 to `largest`, which a double holds exactly.
 std::optional<std::uint64_t> read_count(const Entry& in, std::uint64_t largest);
+
+/// A text that is_name(); else "", with a problem.
+std::string read_name(const Entry& in);
 
 /// Whether the node is one text of at most so many bytes without control characters, except ends
 /// of lines if `lines`.

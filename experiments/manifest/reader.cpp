@@ -20,13 +20,6 @@ using std::string_view;
 constexpr std::size_t kLongestName = 64;
 constexpr std::size_t kLongestQuestion = 2'000;
 
-string read_name(const Entry& in) {
-  if (in.is_scalar() && is_name(in.node.text)) return in.node.text;
-  in.reject_type("a name", fmt::format("It takes letters, digits, - and _, at most {} of them.",
-                                       kLongestName));
-  return {};
-}
-
 void read_question(const Entry& in, Manifest& manifest) {
   if (is_text(in.node, kLongestQuestion, true)) {
     manifest.question = in.node.text;
@@ -143,6 +136,13 @@ std::span<const ManifestKey> manifest_keys() {
        "named sizes, which override the keys above; default `desk`", read_scales},
   }};
   return keys;
+}
+
+string read_name(const Entry& in) {
+  if (in.is_scalar() && is_name(in.node.text)) return in.node.text;
+  in.reject_type("a name", fmt::format("It takes letters, digits, - and _, at most {} of them.",
+                                       kLongestName));
+  return {};
 }
 
 bool is_name(string_view text) {

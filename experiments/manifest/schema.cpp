@@ -255,9 +255,12 @@ std::string expected_values(const Field& field) {
   if (field.is_whole()) {
     return fmt::format("an integer from {:.0f} to {:.0f}", field.range.min, field.range.max);
   }
-  return fmt::format("a number {} {:g} and <= {:g}{}",
-                     field.range.min_excluded ? ">" : ">=", field.range.min, field.range.max,
-                     field.unit == "1" ? "" : fmt::format(" [{}]", field.unit));
+  std::string text = "a number";
+  if (std::isfinite(field.range.min)) {
+    text += fmt::format(" {} {:g}", field.range.min_excluded ? ">" : ">=", field.range.min);
+  }
+  if (std::isfinite(field.range.max)) text += fmt::format(" and <= {:g}", field.range.max);
+  return field.unit == "1" ? text : text + fmt::format(" [{}]", field.unit);
 }
 
 std::variant<json, ValueProblem> read_value(const Field& field, string_view text, bool quoted) {

@@ -64,8 +64,8 @@ std::string setting_text(const std::string& key, const json& variant, bool brief
                                ? fmt::format("{:.4g}", value.get<double>())
                                : value_text(value);
   if (field == nullptr || field->symbol.empty()) return key + "=" + text;
-  return fmt::format("{}={}{}{}", field->symbol, text, field->unit == "1" ? "" : " ",
-                     field->unit == "1" ? "" : field->unit);
+  return fmt::format("{}={}", field->symbol, text) +
+         (field->unit == "1" ? "" : fmt::format(" {}", field->unit));
 }
 
 std::string name_of_variant(const json& variant, const std::vector<std::string>& keys,

@@ -66,8 +66,8 @@ std::uint64_t variant_count(const Sweep& sweep);
 /// states everything, outlives the result, and has no more variants than ManifestLimits::runs.
 std::vector<Variant> variants_of(const Scale& scale);
 
-/// When a variant feels the parameter or `until`, as "only under protocol paused", if this variant
-/// does not; else "".
+/// "has an effect only under protocol paused" of a parameter, or `until`, that this variant does
+/// not feel; else "".
 std::string without_effect(std::string_view key, const Parameters& parameters);
 
 /// A warning for each plot or claim that `shearcell figures` would refuse or leave without data: a

@@ -2,6 +2,7 @@
 #include "experiments/runner/novelty.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -16,17 +17,6 @@ json values_of(const json& resolved) {
   json values = felt_parameters(resolved);
   if (resolved.is_object()) values["seed"] = resolved.value("seed", json());
   return values;
-}
-
-std::vector<Difference> differences(const json& planned, const json& known) {
-  std::vector<Difference> found;
-  for (const auto& [key, value] : planned.items()) {
-    const json other = known.value(key, json());
-    if (other != value) found.push_back({key, value, other});
-  }
-  // The seed follows the parameters.
-  std::ranges::stable_partition(found, [](const Difference& d) { return d.field != "seed"; });
-  return found;
 }
 
 std::string short_text(const json& value) {
@@ -58,9 +48,9 @@ const RunRecord* KnownRuns::find(const std::string& id) const {
   return found == by_id_.end() ? nullptr : found->second;
 }
 
-std::optional<Novelty> KnownRuns::novelty(const StageSpec& stage) const {
+json KnownRuns::novelty(const StageSpec& stage) const {
   const auto found = kinds_.find(name_of(stage.stage));
-  if (found == kinds_.end() || find(stage.key) != nullptr) return std::nullopt;
+  if (found == kinds_.end()) return nullptr;
   const auto& [runs, known] = found->second;
   std::vector<std::size_t> hits(runs.size(), 0);  // values that each shares with the stage
   const json values = values_of(stage.resolved);
@@ -72,21 +62,30 @@ std::optional<Novelty> KnownRuns::novelty(const StageSpec& stage) const {
   }
   const RunRecord& run =
       *runs[static_cast<std::size_t>(std::distance(hits.begin(), std::ranges::max_element(hits)))];
-  return Novelty{run.id, differences(values, values_of(run.resolved))};
+  const json nearest = values_of(run.resolved);
+  std::vector<json> fields;
+  for (const auto& [key, value] : values.items()) {
+    const json other = nearest.value(key, json());
+    if (other != value) fields.push_back({{"field", key}, {"value", value}, {"store_has", other}});
+  }
+  std::ranges::stable_partition(fields, [](const json& d) { return d["field"] != "seed"; });
+  return {{"nearest", run.id}, {"fields", fields}};
 }
 
-std::string describe(const Novelty& novelty) {
-  constexpr std::size_t kNamed = 3;
-  std::string text;
-  const std::size_t count = novelty.differences.size();
-  for (std::size_t i = 0; i < std::min(kNamed, count); ++i) {
-    const Difference& d = novelty.differences[i];
-    std::string planned = short_text(d.planned), known = short_text(d.known);
-    if (planned == known) planned = d.planned.dump(), known = d.known.dump();
-    text += fmt::format("{}{} {} (store has {})", i == 0 ? "" : ", ", d.field, planned, known);
+std::string describe_novelty(const json& novelty) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> parts;
+  for (const json& field : novelty.at("fields")) {
+    if (parts.size() == most) break;
+    const json &value = field["value"], &other = field["store_has"];
+    std::string planned = short_text(value), known = short_text(other);
+    if (planned == known) planned = value.dump(), known = other.dump();
+    const std::string name = field["field"];
+    parts.push_back(fmt::format("{} {} (store has {})", name, planned, known));
   }
-  if (count > kNamed) text += fmt::format(" and {} more", count - kNamed);
-  return text;
+  const std::size_t left_out = novelty.at("fields").size() - parts.size();
+  return fmt::format("{}{}", fmt::join(parts, ", "),
+                     left_out > 0 ? fmt::format(" and {} more", left_out) : "");
 }
 
 }  // namespace shearcell

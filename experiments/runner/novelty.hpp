@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -16,18 +15,6 @@
 
 namespace shearcell {
 
-/// A value that enters a run's identity.
-struct Difference {
-  std::string field;  ///< "seed", or the key of a parameter
-  nlohmann::json planned;
-  nlohmann::json known;  ///< in the nearest run
-};
-
-struct Novelty {
-  std::string nearest;  ///< id of the run of the same kind that differs in the fewest values
-  std::vector<Difference> differences;
-};
-
 /// The runs of a store, which must outlive this object, prepared for many searches.
 class KnownRuns {
  public:
@@ -36,8 +23,10 @@ class KnownRuns {
   /// Null when there is no run with this id.
   const RunRecord* find(const std::string& id) const;
 
-  /// Nothing when the store has the stage, or no stage of its kind.
-  std::optional<Novelty> novelty(const StageSpec& stage) const;
+  /// {"nearest": ID, "fields": [{"field": KEY, "value": V, "store_has": W}, ...]}: the run of the
+  /// same kind that differs from this stage in the fewest values, and these, the seed last. Null
+  /// when there is no stage of its kind.
+  nlohmann::json novelty(const StageSpec& stage) const;
 
  private:
   std::map<std::string_view, const RunRecord*> by_id_;
@@ -49,6 +38,6 @@ class KnownRuns {
 };
 
 /// "steps_per_cycle 500 (store has 400), seed 2 (store has 1)".
-std::string describe(const Novelty& novelty);
+std::string describe_novelty(const nlohmann::json& novelty);
 
 }  // namespace shearcell

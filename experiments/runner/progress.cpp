@@ -42,7 +42,7 @@ std::string format_duration(double seconds) {
 }
 
 Progress::Progress(std::size_t stages, bool quiet)
-    : stages_(stages), quiet_(quiet), terminal_(terminal_columns(stderr).has_value()) {}
+    : stages_(stages), quiet_(quiet), terminal_(moves_cursor(stderr)) {}
 
 Progress::~Progress() {
   erase();

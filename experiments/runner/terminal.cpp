@@ -32,9 +32,12 @@ std::optional<std::size_t> terminal_columns(std::FILE* stream) {
   return std::size_t{size.ws_col};
 }
 
+bool moves_cursor(std::FILE* stream) {
+  return isatty(fileno(stream)) != 0 && environment("TERM") != "dumb";
+}
+
 bool shows_colours(std::FILE* stream) {
-  return isatty(fileno(stream)) != 0 && environment("NO_COLOR").empty() &&
-         environment("TERM") != "dumb";
+  return moves_cursor(stream) && environment("NO_COLOR").empty();
 }
 
 std::string for_terminal(std::string_view text) {

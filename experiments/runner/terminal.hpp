@@ -17,7 +17,10 @@ namespace shearcell {
 /// Columns of the terminal behind the stream; none when it is a file or a pipe.
 std::optional<std::size_t> terminal_columns(std::FILE* stream);
 
-/// Whether colours may be written to the stream: a terminal, TERM is not "dumb", and NO_COLOR
+/// Whether the stream is a terminal that obeys control sequences: TERM is not "dumb".
+bool moves_cursor(std::FILE* stream);
+
+/// Whether colours may be written to the stream: such a terminal, and NO_COLOR
 /// (https://no-color.org) is not set to anything.
 bool shows_colours(std::FILE* stream);
 

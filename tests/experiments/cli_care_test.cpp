@@ -106,7 +106,7 @@ TEST_F(Care, MergesAndRefusesConflicts) {
   expect_refused({"merge", "a", "nowhere", "--store", "new"},
                  {"nowhere", "no store here to merge"});
   expect_refused({"merge", "", "--store", "new"}, {"no store here to merge"});
-  expect_refused({"run", "m.yaml", "--store", ""}, {"--store", "names no folder"});
+  expect_refused({"run", "m.yaml", "--store", ""}, {"--store", "names no file or folder"});
   {
     // Somebody's own arithmetic: another state for a step that is known.
     Store store(path("odd"), Access::create);
@@ -172,6 +172,8 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
     EXPECT_TRUE(line.at("new").is_null());
     EXPECT_TRUE(line.at("shared_with").empty());
   }
+  expect(0, {"plan", "m.yaml", "--cycles", "1"}, {"\nleft: nothing\n"});
+  expect(0, {"show", again.at("stages").at(0).at("id")}, {", 1 attempt\n"});
   const auto more = json({"plan", "m.yaml", "--cycles", "3", "--seeds", "2", "--json"});
   EXPECT_EQ(stage(more, "prepare", 1).at("state"), "done");
   EXPECT_EQ(stage(more, "shear", 1).at("state"), "to extend");
@@ -217,6 +219,7 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
   EXPECT_EQ(stage(both, "shear", 1).at("cycles"), 4);
   EXPECT_EQ(both.at("particle_steps_left"), 300.0 * (3 + 1 + 4) * 10000);
   expect(0, {"plan", "m.yaml", "twin.yaml"}, {"experiment", "tiny, twin at scale", "3 runs"});
+  EXPECT_EQ(json({"plan", "m.yaml", "m.yaml", "--json"}).at("experiment"), "tiny");
 }
 
 class Sharing : public Care {

@@ -152,7 +152,10 @@ TEST_F(Comfort, TablesFitTheTerminalAndHaveColoursThereAlone) {
     const bool of_table = has(line, "completed") && !has(line, "stages");
     EXPECT_TRUE(!of_table || line.size() <= 45U) << line;  // and the terminal's carriage return
   }
-  EXPECT_FALSE(has(on_terminal(80, "TERM=dumb", "status"), "\x1b"));
+  EXPECT_TRUE(has(on_terminal(80, "NO_COLOR=1", "run m.yaml --cycles 5"), "\x1b[2K"));
+  for (const char* words : {"status", "status --watch 0.1", "run m.yaml --cycles 6"}) {
+    EXPECT_FALSE(has(on_terminal(80, "TERM=dumb", words), "\x1b")) << words;
+  }
 }
 
 TEST_F(Comfort, TablesAreCutBetweenCharacters) {
@@ -189,7 +192,7 @@ TEST_F(Comfort, ExportsTheCyclesThatAreAskedFor) {
   EXPECT_EQ(files("lammps", "lammps", "0:1:1"), 3U);
 
   expect_refused({"export", id, "--to", "extxyz", "--out", "other", "--cycles", "99"},
-                 {"export: "});
+                 {"shearcell: run ", " has no stored checkpoint in cycles 99"});
   for (const std::string line : {"ro-crate --cycles 0", "ro-crate --metres", "vtk --metres",
                                  "h5md --license https://x.org"}) {
     expect_refused(joined({"export", id, "--out", "other", "--to"}, split(line)),

@@ -241,6 +241,8 @@ TEST_F(CommandLineTable, ExportsSelectedRunsWholeOrNotAtAll) {
   EXPECT_TRUE(fs::exists(path("frames/run.json")) && fs::exists(path("frames/frames.pvd")));
   expect(2, {"export", id, "--seed", "1", "--to", "vtk", "--out", "other"});
   expect(2, {"export", id, "--to", "extxyz", "--out", "frames"}, {"exists already"});
+  expect_refused({"export", id, "--to", "extxyz", "--out", ""}, {"--out: names no file or folder"});
+  expect_refused({"report", "--out", ""}, {"--out: names no file or folder"});
 
   // Killed by the limit on files' sizes, and told by write() as if the disk were full.
   for (const std::string trap : {"", "trap '' XFSZ; "}) {

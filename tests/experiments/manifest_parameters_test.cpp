@@ -214,7 +214,7 @@ TEST(TimeStep, WarnsInAPlanUnlessNoTimePasses) {
   EXPECT_EQ(warnings("grains: 600, steps_per_cycle: 18000").size(), 1U);
   EXPECT_EQ(warnings("grains: 600, settle_time_step_s: 1e-6").size(), 1U);
   EXPECT_EQ(warnings("grains: 600, protocol: stiffen, steps_per_cycle: 1000000"),
-            std::vector<std::string>{"test.yaml:2:57: steps_per_cycle: has no effect: not under "
+            std::vector<std::string>{"test.yaml:2:57: steps_per_cycle: has no effect under "
                                      "protocol stiffen. Leave it out."});
 }
 
