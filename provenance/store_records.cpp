@@ -179,22 +179,14 @@ void Store::rebuild() {
 std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   const std::scoped_lock guard(mutex_);
   const std::set<std::string> needed = initial_states(log_);
-  const auto readable = [this](const CheckpointRecord& record) {
-    try {
-      load_checkpoint(record);
-      return true;
-    } catch (const StoreDamaged&) {
-      return false;  // kept as well: `resume` reports it
-    }
-  };
   std::vector<CheckpointRecord> found;
   for (const RunRecord& run : runs()) {
     if (!chosen(choice, run)) continue;
-    // The newest is kept, and all back to the newest that can be read.
+    // The newest is kept, and all back to the newest that can be read: `resume` reports the others.
     std::vector<CheckpointRecord> records = checkpoints(run.id);
     bool kept = false;
     while (!records.empty() && !kept) {
-      kept = readable(records.back());
+      kept = load_if_readable(records.back()).has_value();
       records.pop_back();
     }
     for (CheckpointRecord& record : records) {
