@@ -144,7 +144,7 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record, co
     }
   } catch (const AnalysisError& error) {
     return error.what();
-  } catch (const CheckpointPruned&) {
+  } catch (const FilePruned&) {
     // Another program pruned it meanwhile.
   }
   return "";
