@@ -17,7 +17,7 @@ struct NotFound : UsageError {
 };
 
 /// The checkpoint was pruned: its record is kept and its file was deleted on purpose.
-struct CheckpointPruned : NotFound {
+struct FilePruned : NotFound {
   using NotFound::NotFound;
 };
 

@@ -362,7 +362,8 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
     MergeReport& report = reports.emplace_back();
     report.source = source.folder.string();
     report.head = source.head;
-    for (const CheckpointRecord& record : needed_objects(database_, source)) {
+    const std::vector<CheckpointRecord> needed = needed_objects(database_, source);
+    for (const CheckpointRecord& record : needed) {
       objects_.put(read_object(source, record));
       ++report.checkpoints;
       report.bytes += record.size;
@@ -370,6 +371,12 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
     sqlite::WriteTransaction lock(database_);
     require_idle(database_, name);
     merge_events(database_, log_, lock, source, report);
+    // Events that both stores have were skipped, and so a rejection by this store may still count.
+    for (const CheckpointRecord& record : needed) {
+      const auto now = query_checkpoint(database_, record.run, record.sha256);
+      if (!now || now->state != CheckpointState::rejected) continue;
+      append(run_stream(now->run), events::encode(events::CheckpointRegenerated{{*now}}), lock);
+    }
     lock.commit();
   }
   return reports;

@@ -72,6 +72,20 @@ bool adds_something(const RunRecord& known, const RunDeclaration& declared) {
       });
 }
 
+/// Why the holder of this token lost the run of its own attempt; "" while it holds it.
+std::string loss_of(const sqlite::Database& database, const std::string& token,
+                    const std::string& id, std::uint64_t attempt) {
+  const auto lease = query_lease(database, id);
+  if (lease && lease->holder.token != token) {
+    return fmt::format("its lease expired and another program took the run ({})",
+                       describe(lease->holder));
+  }
+  // Whoever continued it began an attempt, and a merge may have brought its end.
+  const auto run = query_run(database, id);
+  const bool own = run && run->attempts == attempt && run->state == RunState::running;
+  return own ? "" : "another process continued it";
+}
+
 }  // namespace
 
 Store::Store(std::filesystem::path folder, Access access, const StoreOptions& options)
@@ -132,19 +146,9 @@ void Store::append_held(const std::string& id, const NewEvent& event, bool relea
         fmt::format("run {}: this program does not hold the run; start it first", id));
   }
   sqlite::WriteTransaction lock(database_);
-  const auto lose = [&](const std::string& why) {
+  if (const std::string why = loss_of(database_, self_.token, id, held->second); !why.empty()) {
     held_.erase(held);
     throw ConcurrencyConflict(fmt::format("run {}: {}", id, why));
-  };
-  const auto lease = query_lease(database_, id);
-  if (lease && lease->holder.token != self_.token) {
-    lose(fmt::format("its lease expired and another program took the run ({})",
-                     describe(lease->holder)));
-  }
-  // Whoever continued it began an attempt, and a merge may have brought its end.
-  const auto run = query_run(database_, id);
-  if (!run || run->attempts != held->second || run->state != RunState::running) {
-    lose("another process continued it");
   }
   append(run_stream(id), event, lock);
   if (!release) {
@@ -247,12 +251,10 @@ void Store::renew_leases() {
   const std::scoped_lock guard(mutex_);
   if (held_.empty()) return;
   sqlite::WriteTransaction lock(database_);
-  for (auto run = held_.begin(); run != held_.end();) {
-    const auto lease = query_lease(database_, run->first);
-    const bool lost = lease && lease->holder.token != self_.token;
-    if (!lost) hold(run->first, run->second);
-    run = lost ? held_.erase(run) : std::next(run);
-  }
+  std::erase_if(held_, [this](const auto& run) {
+    return !loss_of(database_, self_.token, run.first, run.second).empty();
+  });
+  for (const auto& [id, attempt] : held_) hold(id, attempt);
   lock.commit();
 }
 

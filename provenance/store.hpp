@@ -161,7 +161,7 @@ class Store {
   /// The checkpoint with this prefix of the SHA-256, in any state, if there is one. Throws
   /// NotFound, with the candidates, if it is ambiguous.
   std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;
-  /// Reads, verifies and decodes. Throws StoreDamaged, which names the file, or CheckpointPruned.
+  /// Reads, verifies and decodes. Throws StoreDamaged, which names the file, or FilePruned.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
   /// The same; nothing when it is damaged or was pruned.
   std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;

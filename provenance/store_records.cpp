@@ -57,7 +57,7 @@ std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string
     if (record.step >= before_step) continue;
     try {
       return LoadedCheckpoint{record, load_checkpoint(record)};
-    } catch (const CheckpointPruned&) {
+    } catch (const FilePruned&) {
       continue;
     } catch (const StoreDamaged& error) {
       if (damage == nullptr) continue;
@@ -125,7 +125,7 @@ Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
     const std::scoped_lock guard(mutex_);
     const auto now = query_checkpoint(database_, record.run, record.sha256);
     if (!now || now->state != CheckpointState::pruned) return;
-    throw CheckpointPruned(fmt::format(
+    throw FilePruned(fmt::format(
         "{}: checkpoint {:.12} (run {:.12}, cycle {:g}) was pruned; restore it with `shearcell "
         "regenerate {:.12}`",
         file, record.sha256, record.run, record.cycle, record.sha256));
@@ -149,7 +149,7 @@ Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
 std::optional<Checkpoint> Store::load_if_readable(const CheckpointRecord& record) const {
   try {
     return load_checkpoint(record);
-  } catch (const CheckpointPruned&) {
+  } catch (const FilePruned&) {
   } catch (const StoreDamaged&) {
   }
   return std::nullopt;
@@ -179,22 +179,14 @@ void Store::rebuild() {
 std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   const std::scoped_lock guard(mutex_);
   const std::set<std::string> needed = initial_states(log_);
-  const auto readable = [this](const CheckpointRecord& record) {
-    try {
-      load_checkpoint(record);
-      return true;
-    } catch (const StoreDamaged&) {
-      return false;  // kept as well: `resume` reports it
-    }
-  };
   std::vector<CheckpointRecord> found;
   for (const RunRecord& run : runs()) {
     if (!chosen(choice, run)) continue;
-    // The newest is kept, and all back to the newest that can be read.
+    // The newest is kept, and all back to the newest that can be read: `resume` reports the others.
     std::vector<CheckpointRecord> records = checkpoints(run.id);
     bool kept = false;
     while (!records.empty() && !kept) {
-      kept = readable(records.back());
+      kept = load_if_readable(records.back()).has_value();
       records.pop_back();
     }
     for (CheckpointRecord& record : records) {

@@ -8,6 +8,7 @@
 #include <random>
 #include <system_error>
 
+#include "experiments/runner/asks.hpp"
 #include "experiments/runner/audit.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
@@ -50,12 +51,6 @@ void apply(std::vector<Submission>& known, const Event& event) {
   }
 }
 
-bool all_completed(const Submission& submission, const std::set<std::string>& completed) {
-  return std::ranges::all_of(submission.tasks, [&](const auto& task) {
-    return std::ranges::all_of(task, [&](const auto& run) { return completed.contains(run); });
-  });
-}
-
 fs::path report_file(fs::path folder) {
   return folder += ".progress.json";
 }
@@ -93,13 +88,23 @@ std::vector<Submission> read_submissions(const Store& store) {
 
 std::vector<Submission> unfinished_submissions(const Store& store) {
   std::vector<Submission> open = read_submissions(store);
-  std::set<std::string> completed;
-  for (const RunRecord& run : store.runs()) {
-    if (run.state == RunState::completed) completed.insert(run.id);
-  }
+  // Those without a folder were merged from other stores.
+  std::erase_if(open, [&](const Submission& s) { return !fs::exists(s.folder(store.folder())); });
+  if (open.empty()) return open;
+  std::map<std::string, RunRecord> runs;  // by id, those that are not found done yet
+  for (RunRecord& run : store.runs()) runs.emplace(run.id, std::move(run));
+  std::set<std::string> done;
+  const auto is_done = [&](const std::string& id) {
+    const auto run = runs.find(id);
+    if (run != runs.end() && !has_work_left(store, run->second)) {
+      done.insert(id);
+      runs.erase(run);
+    }
+    return done.contains(id);
+  };
   std::erase_if(open, [&](const Submission& submission) {
-    // Those without a folder were merged from other stores.
-    return !fs::exists(submission.folder(store.folder())) || all_completed(submission, completed);
+    return std::ranges::all_of(
+        submission.tasks, [&](const auto& task) { return std::ranges::all_of(task, is_done); });
   });
   return open;
 }

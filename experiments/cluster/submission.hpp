@@ -39,7 +39,8 @@ struct Submission {
 /// Oldest first. Throws StoreDamaged when an event does not hold what it must.
 std::vector<Submission> read_submissions(const Store& store);
 
-/// Those that are in this store's folder and have runs that the store does not hold completed.
+/// Those that are in this store's folder and have runs that are not completed in the store, or lack
+/// checkpoints there.
 std::vector<Submission> unfinished_submissions(const Store& store);
 
 /// Adds what the queue says of each. Asks Slurm only when there are any. Throws ProgramError.

@@ -104,9 +104,10 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
   const nlohmann::json parameters =
       resolved.is_object() ? resolved.value("parameters", nlohmann::json()) : nlohmann::json();
   for (const auto& [key, value] : parameters.items()) {
-    // A key that is no longer part of the identity is recorded as a constant, not as it was.
+    // A key that is no longer part of the identity is recorded as a constant, not as it was; keys
+    // of a forged store could hold anything.
     const Field* field = find_field(key);
-    if (field != nullptr && !field->identity.recorded_as.empty()) continue;
+    if (field == nullptr || !field->identity.recorded_as.empty()) continue;
     if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);
   }
 }

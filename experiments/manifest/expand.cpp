@@ -158,6 +158,7 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   run.last = last_stage(run.parameters, seed, run.prepare);
   if (run.last.stage == Stage::shear) run.ends_early = scale.until->until;
   if (run.ends_early) run.until = to_json(*run.ends_early);
+  run.places = {run};
   return run;
 }
 
@@ -241,6 +242,12 @@ Plan joined(std::span<const Plan> plans) {
       const bool longer = run.target_cycles > known.target_cycles;
       if (known.ends_early && (longer || !run.ends_early)) known.ends_early = run.ends_early;
       known.target_cycles = std::max(known.target_cycles, run.target_cycles);
+      known.checkpoint_every = std::gcd(known.checkpoint_every, run.checkpoint_every);
+      for (const double phase : run.checkpoint_phases) {
+        if (std::ranges::count(known.checkpoint_phases, phase) > 0) continue;
+        known.checkpoint_phases.push_back(phase);
+      }
+      std::ranges::copy(run.places, std::back_inserter(known.places));
     }
   }
   all.experiment = fmt::format("{}", fmt::join(experiments, ", "));

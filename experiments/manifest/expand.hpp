@@ -30,6 +30,7 @@ struct PlannedRun : Membership {
   StageSpec last;                   ///< what is done to the packing: shear, or stiffening
   std::optional<Until> ends_early;  ///< `until`, read
   Parameters parameters;
+  std::vector<Membership> places;  ///< what each of the joined plans asks of it; its own first
 };
 
 struct Plan {
@@ -43,7 +44,7 @@ struct Plan {
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
 
 /// The runs of several manifests, one or more, each once: as long as the experiment that asks for
-/// most of it, and with an early end only if all have one.
+/// most of it, with the checkpoints of all, and with an early end only if all have one.
 Plan joined(std::span<const Plan> plans);
 
 /// Whether LAMMPS computes any of its runs.

@@ -108,7 +108,7 @@ void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings)
       } catch (const StoreDamaged& damage) {
         packings.notes.emplace_back(damage.what());
         run.checkpoints.pop_back();
-      } catch (const CheckpointPruned&) {
+      } catch (const FilePruned&) {
         run.checkpoints.pop_back();
       }
     }

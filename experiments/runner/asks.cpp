@@ -31,7 +31,7 @@ using Place = std::array<json, 5>;  // of an experiment, as the store tells memb
 
 std::map<Place, RunAsk> asks_by_place(const Store& store, const std::string& run) {
   std::map<Place, RunAsk> asks;
-  for (const Event& event : store.events("run/" + run, "RunDeclared")) {
+  for (const Event& event : store.events(run_stream(run), "RunDeclared")) {
     const json body = event.body();
     try {
       const json& m = body.at("membership");
@@ -93,7 +93,7 @@ std::uint64_t checkpoint_cadence(const RunRecord& run) {
 }
 
 std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run,
-                                               const std::optional<RunAsk>& planned) {
+                                               std::span<const RunAsk> planned) {
   if (run.kind != name_of(Stage::shear) || engine_of(run.resolved) != EngineKind::shearcell) {
     return {};
   }
@@ -101,7 +101,7 @@ std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunReco
   const Drive motion = drive(read_stage(run.resolved).parameters);
   std::set<std::uint64_t> steps;
   std::vector<RunAsk> asks = asks_of(store, run.id);
-  if (planned) asks.push_back(*planned);
+  asks.insert(asks.end(), planned.begin(), planned.end());
   for (const RunAsk& ask : asks) {
     const double end = std::min(run.cycle, static_cast<double>(ask.target_cycles));
     for (const std::uint64_t step : checkpoint_steps(ask, motion, 0, end)) {
@@ -114,6 +114,15 @@ std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunReco
     steps.erase(record.step);
   }
   return {steps.begin(), steps.end()};
+}
+
+bool has_work_left(const Store& store, const RunRecord& run) {
+  if (run.state != RunState::completed) return true;
+  try {
+    return !missing_checkpoints(store, run).empty();
+  } catch (const std::exception&) {
+    return false;
+  }
 }
 
 }  // namespace shearcell

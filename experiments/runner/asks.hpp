@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,10 +38,14 @@ std::vector<std::uint64_t> checkpoint_steps(const RunAsk& ask, const Drive& driv
 /// The cadence [cycles] that has the checkpoints at whole cycles of every experiment.
 std::uint64_t checkpoint_cadence(const RunRecord& run);
 
-/// Steps before the run's last one at which an experiment, or the one `planned`, asks for a
-/// checkpoint that was never recorded, ascending: it asked for a denser cadence later. None for a
+/// Steps before the run's last one at which an experiment, or one of those `planned`, asks for
+/// a checkpoint that was never recorded, ascending: it asked for a denser cadence later. None for a
 /// run of LAMMPS, which cannot be repeated.
 std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run,
-                                               const std::optional<RunAsk>& planned = std::nullopt);
+                                               std::span<const RunAsk> planned = {});
+
+/// Whether the run is not completed or lacks checkpoints. A completed run whose records cannot be
+/// read has none left; `verify` names them.
+bool has_work_left(const Store& store, const RunRecord& run);
 
 }  // namespace shearcell

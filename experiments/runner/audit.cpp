@@ -64,12 +64,14 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
   std::set<std::uint64_t> steps;
   std::map<std::string, std::uint64_t> recorded;  // by SHA-256
   std::optional<std::uint64_t> last;              // of the attempt
-  for (const Event& event : store.events("run/" + run)) {
+  for (const Event& event : store.events(run_stream(run))) {
     const events::Any decoded = events::decode(event);
     if (const auto* made = std::get_if<events::CheckpointRecorded>(&decoded)) {
       last = recorded[made->checkpoint.sha256] = made->checkpoint.step;
     } else if (const auto* bad = std::get_if<events::CheckpointRejected>(&decoded)) {
       recorded.erase(bad->sha256);
+    } else if (const auto* again = std::get_if<events::CheckpointRegenerated>(&decoded)) {
+      recorded[again->checkpoint.sha256] = again->checkpoint.step;
     } else if (std::holds_alternative<events::RunCompleted>(decoded)) {
       if (last) steps.insert(*last);
       std::uint64_t furthest = 0;
@@ -85,7 +87,7 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
 /// store lacks are not checked: a merge leaves out files that another HDF5 library wrote.
 void check_beginning(const Store& store, const RunRecord& run,
                      const std::set<std::uint64_t>& completed) {
-  for (const Event& event : store.events("run/" + run.id, events::RunStarted::kType)) {
+  for (const Event& event : store.events(run_stream(run.id), events::RunStarted::kType)) {
     const auto started = std::get<events::RunStarted>(events::decode(event));
     for (const CheckpointRecord& record : store.checkpoints(run.parent, Listed::all)) {
       if (record.sha256 != started.parent_checkpoint || completed.contains(record.step)) continue;
@@ -142,7 +144,7 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record, co
     }
   } catch (const AnalysisError& error) {
     return error.what();
-  } catch (const CheckpointPruned&) {
+  } catch (const FilePruned&) {
     // Another program pruned it meanwhile.
   }
   return "";

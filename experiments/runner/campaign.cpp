@@ -303,14 +303,6 @@ nlohmann::json overlap_limits(const Manifest& manifest) {
   return limits;
 }
 
-bool lacks_checkpoints(const Store& store, const RunRecord& run) {
-  try {
-    return !missing_checkpoints(store, run).empty();
-  } catch (const std::exception&) {
-    return false;  // a record that cannot be read; `verify` names it
-  }
-}
-
 }  // namespace
 
 std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan& plan) {
@@ -354,9 +346,7 @@ std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& p
   for (const std::string& prefix : prefixes) asked.push_back(store.find_run(prefix));
   if (prefixes.empty()) {
     asked = store.runs();
-    std::erase_if(asked, [&](const RunRecord& run) {
-      return run.state == RunState::completed && !lacks_checkpoints(store, run);
-    });
+    std::erase_if(asked, [&](const RunRecord& run) { return !has_work_left(store, run); });
   }
   // The stages before are asked for as well: one of them may have lost its last checkpoint.
   std::set<std::string> wanted;

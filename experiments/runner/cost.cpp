@@ -52,13 +52,16 @@ constexpr double kMinimization = 15e3;
 /// Cycle of the last checkpoint before the first one that is missing; nothing when none is missing.
 std::optional<double> cycle_to_replay(const PlannedRun& run, const RunRecord& known,
                                       const Store& store) {
-  const bool declared = std::ranges::any_of(known.memberships, [&](const Membership& m) {
-    return m.experiment == run.experiment && m.scale == run.scale && m.variant == run.variant &&
-           m.seed == run.seed && m.manifest == run.manifest;
-  });
-  const RunAsk ask{run.target_cycles, {}, run.checkpoint_every, run.checkpoint_phases};
-  const auto missing =
-      missing_checkpoints(store, known, declared ? std::nullopt : std::optional(ask));
+  std::vector<RunAsk> planned;
+  for (const Membership& place : run.places) {
+    const bool declared = std::ranges::any_of(known.memberships, [&](const Membership& m) {
+      return m.experiment == place.experiment && m.scale == place.scale &&
+             m.variant == place.variant && m.seed == place.seed && m.manifest == place.manifest;
+    });
+    if (declared) continue;
+    planned.push_back({place.target_cycles, {}, place.checkpoint_every, place.checkpoint_phases});
+  }
+  const std::vector<std::uint64_t> missing = missing_checkpoints(store, known, planned);
   if (missing.empty()) return std::nullopt;
   double from = 0;
   for (const CheckpointRecord& record : store.checkpoints(known.id)) {

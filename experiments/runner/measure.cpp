@@ -154,7 +154,7 @@ UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
       } catch (const StoreDamaged& damage) {
         const std::lock_guard lock(mutex);
         unread.damage.emplace_back(damage.what());
-      } catch (const CheckpointPruned& pruned) {
+      } catch (const FilePruned& pruned) {
         const std::lock_guard lock(mutex);
         unread.pruned.emplace_back(pruned.what());
       } catch (...) {

@@ -68,7 +68,7 @@ MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& c
 /// Called after each item that succeeded, by one thread at a time; may be empty.
 using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// Calls work(0) .. work(count - 1), at most `workers` at once. StoreDamaged and CheckpointPruned
+/// Calls work(0) .. work(count - 1), at most `workers` at once. StoreDamaged and FilePruned
 /// become lines; the first other exception ends the work and is rethrown.
 UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
                                    const std::function<void(std::size_t)>& work,

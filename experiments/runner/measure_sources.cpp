@@ -63,7 +63,7 @@ std::optional<nlohmann::json> MeasureSources::measure(const CheckpointRecord& re
   };
   try {
     return measure.from({analysis, &checkpoint, load});
-  } catch (const CheckpointPruned&) {
+  } catch (const FilePruned&) {
   } catch (const StoreDamaged&) {
   }
   return std::nullopt;

@@ -59,9 +59,9 @@ class Replaying {
   /// The state at the record's step; nothing when that was not reached.
   std::optional<Checkpoint> compute(std::size_t threads) {
     const CheckpointRecord& record = replay_.record;
-    Beginning beginning = continue_stage(store_, plan_, nullptr, record.step);
-    replay_.from = beginning.from;
     try {
+      Beginning beginning = continue_stage(store_, plan_, nullptr, record.step);
+      replay_.from = beginning.from;
       Simulation simulation = make_simulation(plan_, std::move(beginning), threads);
       first_ = simulation.step();
       double cycle = 0;  // where nothing is stepped: at the beginning of the stage
@@ -76,12 +76,12 @@ class Replaying {
                   fmt::format("the stage ended at step {} already", simulation.step()));
           return std::nullopt;
         }
-        if (stop_requested()) {
-          replay_.interrupted = true;
-          return std::nullopt;
-        }
+        give_up_if_requested();
       }
       return make_checkpoint(plan_, simulation, cycle);
+    } catch (const Interrupted&) {
+      replay_.interrupted = true;
+      return std::nullopt;
     } catch (const NumericalFailure& failure) {
       diverge(failure.step, failure.what());
       return std::nullopt;

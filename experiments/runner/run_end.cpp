@@ -81,7 +81,7 @@ std::optional<json> ended_early(std::span<const RunAsk> asks,
 }
 
 json recorded_end(const Store& store, const std::string& run) {
-  const std::vector<Event> ends = store.events("run/" + run, "RunCompleted");
+  const std::vector<Event> ends = store.events(run_stream(run), "RunCompleted");
   if (ends.empty()) return json();
   return member_of(member_of(ends.back().body(), "summary"), "ended");
 }

@@ -213,7 +213,8 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
       computed = attempt.computed();
     }
     const std::vector<std::uint64_t> missing = missing_checkpoints(store, run);
-    if (!missing.empty()) return StageAttempt(store, std::move(run), options).fill(missing);
+    // Read again: its record must have every experiment whose checkpoints are missing.
+    if (!missing.empty()) return StageAttempt(store, store.run(id), options).fill(missing);
     return computed ? StageOutcome::completed : StageOutcome::already;
   } catch (const RunHeld&) {
     return StageOutcome::held;

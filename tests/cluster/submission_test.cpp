@@ -84,6 +84,21 @@ TEST_F(Submitted, ATaskGoesOnFromWhatTheStoreHolds) {
   }
 }
 
+TEST_F(Submitted, AreOpenWhileACompletedRunLacksCheckpoints) {
+  const std::string text = tiny_manifest("  cycles: 4\n");
+  compute(store_, text + "checkpoints: {every_cycles: 2}\n");
+  const Manifest manifest = parse_manifest(text, "tiny.yaml");
+  const Plan plan = expand(manifest);
+  declare(store_, manifest, plan);
+  const Submission made = submit(share_out(work_left({plan}, &store_), 1));
+  EXPECT_EQ(unfinished_submissions(store_).size(), 1U) << "its tasks have only begun";
+  Store own = store_of(made, 1);
+  EXPECT_EQ(resume(own).completed, 1U);
+  fold(store_, made);
+  EXPECT_TRUE(unfinished_submissions(store_).empty());
+  EXPECT_EQ(store_.checkpoints(sheared(store_).id).size(), 5U);
+}
+
 TEST_F(Submitted, TasksEndRunsWhereUntilSays) {
   const std::string text = tiny_manifest("", "until: {phi: 0.1, extra_cycles: 1}\n");
   const Manifest manifest = parse_manifest(text, "tiny.yaml");
@@ -254,6 +269,20 @@ TEST(WorkLeft, TakesARunOfTwoManifestsOnceAndAtItsLongerLength) {
   EXPECT_EQ(bundles[0].runs, shorter[0].runs);
   EXPECT_NEAR(bundles[0].particle_steps - shorter[0].particle_steps, 7.0 * kStepsPerCycle * kGrains,
               1);
+}
+
+TEST(WorkLeft, HasTheCheckpointsOfEveryManifestThatSharesARun) {
+  const TemporaryFolder folder;
+  Store store(folder.path() / "store", Access::create);
+  const std::string dense = tiny_manifest("  cycles: 4\n");
+  const std::string sparse = renamed(dense, "sparse") + "checkpoints: {every_cycles: 2}\n";
+  compute(store, sparse);
+  std::vector<Plan> both = plans(sparse);
+  EXPECT_TRUE(work_left(both, &store).empty());
+  both.push_back(plans(dense).front());
+  EXPECT_EQ(work_left(both, &store).size(), 1U) << "cycles 1 and 3 are missing";
+  compute(store, dense);
+  EXPECT_TRUE(work_left(both, &store).empty());
 }
 
 TEST(WorkLeft, LeavesOutWhatTheStoreHolds) {

@@ -42,6 +42,13 @@ TEST_F(ReplayTest, GivesEveryRecordedState) {
   EXPECT_TRUE(store_.verify().ok());
 }
 
+TEST_F(ReplayTest, RecordsNothingWhenItIsInterruptedWhileTheCellIsFilled) {
+  const StopWish withdrawn_at_the_end;
+  request_stop(true);
+  EXPECT_TRUE(verify_by_replay(store_, store_.checkpoints(packing().id).front(), 1).interrupted);
+  EXPECT_EQ(count_events(store_, "ReplayVerified") + count_events(store_, "ReplayDiverged"), 0U);
+}
+
 TEST_F(ReplayTest, SamplesWithoutRepetitionAndAlikeForOneSeed) {
   const auto all = replayable(store_);
   const auto names = [](const std::vector<CheckpointRecord>& records) {

@@ -303,6 +303,14 @@ TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
   EXPECT_TRUE(has(text, " experiment=\"drag\" variant="));
 }
 
+TEST(Export, HasNoKeyThatIsNotOneOfAManifest) {
+  SelectedRun run = about();
+  run.run.resolved["parameters"]["forged=1\n99\n"] = 1;
+  for (const auto& [key, value] : frame_of(checkpoints().back(), {}, run).parameters) {
+    EXPECT_FALSE(has(key, "forged"));
+  }
+}
+
 TEST(Export, SaysWhatItCannotWrite) {
   const Frame frame = frame_of(checkpoints().front());
   EXPECT_THROW(extxyz_writer("/nowhere/run.xyz", Lengths::metres), std::runtime_error);

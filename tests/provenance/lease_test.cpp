@@ -96,6 +96,18 @@ TEST_F(LeaseTest, IsNotMissedByWhoWasOvertaken) {
   EXPECT_TRUE(other.checkpoints(id_).empty());
 }
 
+TEST_F(LeaseTest, IsNotRenewedForARunThatAnotherProgramTookAndEnded) {
+  Store late = open(0.01);
+  late.start_run(id_, {});
+  std::this_thread::sleep_for(20ms);
+  Store other = open();
+  other.start_run(id_, {});
+  other.interrupt_run(id_, "SIGTERM");
+  late.renew_leases();
+  EXPECT_FALSE(late.holds(id_));
+  EXPECT_EQ(other.start_run(id_, {}), 3u);
+}
+
 TEST_F(LeaseTest, OfADeadProcessIsTakenAtOnce) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);

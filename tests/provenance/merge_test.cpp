@@ -280,6 +280,23 @@ TEST_F(MergeTest, HealsAndRespectsPruning) {
   EXPECT_TRUE(other.verify().ok());
 }
 
+TEST_F(MergeTest, OfABackupRestoresTheFilesThatWereRejected) {
+  computed("a", {{0, 3, 3}});
+  copy("a", "backup");
+  Store a = open("a");
+  const std::string id = run_id(0);
+  fs::resize_file(path("a") / a.checkpoints(id).back().file, 1000);
+  std::vector<std::string> damage;
+  a.newest_valid_checkpoint(id, &damage);
+  ASSERT_EQ(damage.size(), 1u);
+  ASSERT_EQ(a.run(id).cycle, 2);
+  EXPECT_EQ(a.merge({path("backup")}).at(0).checkpoints, 1u);
+  EXPECT_EQ(a.run(id).cycle, 3);
+  EXPECT_EQ(a.newest_valid_checkpoint(id)->record.cycle, 3);
+  EXPECT_TRUE(a.verify().findings.empty());
+  EXPECT_EQ(a.merge({path("backup")}).at(0).checkpoints, 0u);
+}
+
 TEST_F(MergeTest, ReadsAStoreOfTheFirstSchema) {
   Store a = open("a");
   a.merge({fs::path(SHEARCELL_TEST_DATA) / "store_v1"});

@@ -77,10 +77,10 @@ TEST_F(PruneTest, FreesTheFilesAndKeepsTheRecords) {
   store_.rebuild();
   EXPECT_TRUE(store_.verify().ok());
 
-  expect_refused<CheckpointPruned>(
+  expect_refused<FilePruned>(
       [&] { store_.load_checkpoint(store_.find_checkpoint(chosen[0].sha256).value()); },
       {"shearcell regenerate " + chosen[0].sha256.substr(0, 12)});
-  EXPECT_THROW(store_.load_checkpoint(chosen[0]), CheckpointPruned) << "an older record of it";
+  EXPECT_THROW(store_.load_checkpoint(chosen[0]), FilePruned) << "an older record of it";
 }
 
 TEST_F(PruneTest, KeepsTheNewestThatCanBeRead) {
@@ -101,7 +101,7 @@ TEST_F(PruneTest, FinishesWhatACrashLeft) {
   ASSERT_EQ(report.findings.size(), 1u);
   EXPECT_EQ(report.findings[0].subject, records_[1].file);
   EXPECT_THROW(store_.load_checkpoint(store_.find_checkpoint(records_[1].sha256).value()),
-               CheckpointPruned);
+               FilePruned);
   const auto left = store_.prune_leftovers();
   ASSERT_EQ(left.size(), 1u);
   EXPECT_EQ(store_.prune(left), records_[1].size);
