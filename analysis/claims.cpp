@@ -19,21 +19,27 @@ namespace {
 constexpr const char* no_group =
     "there are no such runs, or they differ in another swept parameter too";
 
-/// The numbers of a group and the runs without one.
+/// The numbers of one or two groups and the runs without one.
 struct Values {
   std::map<const FigureRun*, double> found;
   std::size_t runs = 0;
   std::map<Missing, std::size_t> missing;
+  bool enough = true;  ///< three quarters of each group have a number
 
   void take(const Scalar& scalar, RunGroup group) {
+    std::size_t without = 0;
     for (const FigureRun* run : group) {
       const RunValue value = scalar.of(*run);
       ++runs;
       ++missing[value.missing];
-      if (value.missing == Missing::nothing) found[run] = value.value;
+      if (value.missing == Missing::nothing) {
+        found[run] = value.value;
+      } else {
+        ++without;
+      }
     }
+    enough = enough && 4 * without <= group.size();
   }
-  bool enough() const { return 4 * found.size() >= 3 * runs; }
 };
 
 void add(std::string& note, const std::string& text) {
@@ -57,7 +63,7 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   add_missing(note, values, scalar);
   if (values.runs == 0) {
     note = no_group;
-  } else if (!values.enough()) {
+  } else if (!values.enough) {
     add(note, "more than a quarter of the runs are left out");
     estimate.reset();
   } else if (runs < least_runs) {

@@ -58,8 +58,8 @@ bool share_packing(const FigureRun& a, const FigureRun& b);
 
 /// a less b. Paired, by Student's t, if some runs share packings: those that do not are then left
 /// out. Else Welch's interval. A verdict needs least_runs runs or pairs and, so that runs that end
-/// early do not bias it, the number of three quarters of the runs; with pairs, also partners for as
-/// many. [choice]
+/// early do not bias it, the number of three quarters of each group; with pairs, also partners for
+/// as many. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
 /// The mean over runs less the published number.

@@ -231,9 +231,14 @@ std::optional<Estimate> monotone_critical_size(std::span<const GrowthBySize> run
 }
 
 std::optional<Estimate> fitted_delta_rho(std::span<const GrowthBySize> runs, double size) {
-  return over_fits(cases_of(runs, Vanished::shrank), [size](const GrowthFit& fit) {
+  auto found = over_fits(cases_of(runs, Vanished::shrank), [size](const GrowthFit& fit) {
     return std::optional<double>(fit.delta_rho(size));
   });
+  if (found) {
+    found->interval.low = std::max(-1.0, found->interval.low);
+    found->interval.high = std::min(1.0, found->interval.high);
+  }
+  return found;
 }
 
 }  // namespace shearcell

@@ -73,8 +73,8 @@ std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs,
                                     Vanished vanished = Vanished::shrank);
 
 /// Over runs; the interval is the bootstrap's with runs as its unit, since one crystallite is
-/// followed over many cycles. None for fewer than least_runs, if the fit has no critical size, or
-/// if that is less than a grain or more than the largest size that was fitted.
+/// followed over many cycles. None for fewer than least_bootstrap_runs, if the fit has no critical
+/// size, or if that is less than a grain or more than the largest size that was fitted.
 std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs,
                                       Vanished vanished = Vanished::shrank);
 
@@ -83,7 +83,8 @@ std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs,
 /// of critical_size(); none if all sizes grow, or none does.
 std::optional<Estimate> monotone_critical_size(std::span<const GrowthBySize> runs);
 
-/// The fitted delta_rho at `size` and its interval.
+/// The fitted delta_rho at `size` and its interval, which ends at -1 and 1 where many selections of
+/// runs have no fit.
 std::optional<Estimate> fitted_delta_rho(std::span<const GrowthBySize> runs, double size);
 
 }  // namespace shearcell

@@ -147,7 +147,7 @@ std::optional<Estimate> difference_of_means(std::span<const double> a, std::span
 }
 
 std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic) {
-  if (runs < least_runs) return std::nullopt;
+  if (runs < least_bootstrap_runs) return std::nullopt;
   std::vector<std::size_t> every(runs);
   std::iota(every.begin(), every.end(), std::size_t{0});
   const std::optional<double> value = statistic(every);

@@ -36,6 +36,10 @@ inline constexpr double confidence_level = 0.9;
 
 /// With fewer runs, or fewer pairs of runs, nothing is estimated. [choice]
 inline constexpr std::size_t least_runs = 3;
+/// The same for the bootstrap. Its interval of a mean cannot extend beyond the smallest and the
+/// largest run, which enclose the median with a probability of 1 - 2^(1 - runs): 75 % for 3 runs,
+/// 94 % for 5.
+inline constexpr std::size_t least_bootstrap_runs = 5;
 
 struct Interval {
   double low = 0;
@@ -67,14 +71,15 @@ std::optional<Estimate> difference_of_means(std::span<const double> a, std::span
 /// A statistic of a selection of runs that is not a mean. Expanded percentile interval of the
 /// bootstrap, which has the length of Student's interval where the statistic is a mean: T. C.
 /// Hesterberg, The American Statistician 69, 371 (2015). A selection's statistic may be infinite.
-/// Selections that have none widen the interval at both ends. None when all runs together have no
-/// finite statistic.
+/// Selections that have none widen the interval at both ends. None for fewer than
+/// least_bootstrap_runs, or when all runs together have no finite statistic.
 std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic);
 
 /// Runs per group, or pairs, from which on an interval excludes a value at `distance` from the
 /// truth with 90 % probability; on both sides of the truth if `both_sides`. Normal theory, with
 /// Student's t for both errors: Chow, Shao and Wang, Sample Size Calculations in Clinical Research
-/// (2008), section 3.2. None when it is more than 10000.
+/// (2008), section 3.2. None when it is more than 10000. It is as uncertain as the square of the
+/// spread: from 3 runs the right number is 0.3 to 20 times as large, from 6 runs 0.5 to 4 times.
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,
                                            bool both_sides);
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -35,7 +36,9 @@ std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, 
   const std::optional<std::size_t> planned = runs_to_resolve(estimate, margin, within);
   if (may_be_zero && (!planned || *planned > estimate.runs)) return planned;
   const double size = within ? std::abs(estimate.value) : estimate.value;
-  return runs_to_resolve(estimate, std::abs(size - margin), false);
+  const auto needed = runs_to_resolve(estimate, std::abs(size - margin), false);
+  // The spread is that of the mean of both sides of the interval; one side may be much longer.
+  return needed ? std::max(*needed, estimate.runs + 1) : needed;
 }
 
 json claim_of(const Verdict& verdict) {

@@ -41,7 +41,7 @@ struct Verdict {
 /// agrees: the interval lies where the claim puts it. differs: the interval lies wholly outside.
 /// undecided: otherwise, and without an estimate. runs_needed decides with 90 % probability if the
 /// truth is what is claimed, or twice the margin; where there are as many runs already, if the
-/// truth is the estimate.
+/// truth is the estimate. It is always more than the runs of the estimate.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note);
 

@@ -249,7 +249,8 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
     relative = mapped(*one.critical, [&](double size) { return size / published - 1; });
     relative->spread /= published;
   } else {
-    note += one.runs.size() < least_runs ? "; too few runs" : "; no size at which growth begins";
+    note += one.runs.size() < least_bootstrap_runs ? "; too few runs"
+                                                   : "; no size at which growth begins";
   }
   GrowthCount all;
   for (const GrowthBySize& run : one.runs) {

@@ -143,7 +143,7 @@ FigureResult figure_nucleation(std::span<const FigureRun> runs) {
   FigureResult result{{survival_table(groups), rate_table(groups)}, {}};
   if (runs_by(runs, "grains").size() < 2) return result;
   const double walls = exponent_of_walls(runs);
-  if (std::isfinite(walls)) result.verdicts.push_back(rate_follows_volume(runs, walls));
+  if (walls < 1) result.verdicts.push_back(rate_follows_volume(runs, walls));
   return result;
 }
 

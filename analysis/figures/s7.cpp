@@ -110,9 +110,13 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
     return std::optional<double>(sum / all);
   };
   const std::size_t found = places.runs.size();
+  std::string note = fmt::format("{} nuclei of {} to {} grains in {} of {} runs", places.count,
+                                 nucleus_smallest, nucleus_largest, found, runs.size());
+  if (found < least_bootstrap_runs) {
+    note += fmt::format("; too few runs; at least {} are needed", least_bootstrap_runs);
+  }
   return decide(claim, std::move(quantity), bootstrapped(found, difference), found,
-                fmt::format("{} nuclei of {} to {} grains in {} of {} runs", places.count,
-                            nucleus_smallest, nucleus_largest, found, runs.size()));
+                std::move(note));
 }
 
 /// Inner half of the accessible width against the outer half.

@@ -252,7 +252,7 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
   require(".caption.txt", "Figure " + result.name + ". ", "");
   require(".lineage.json", "{\n \"analysis_version\": ", "\n \"figure\": \"" + result.name + "\"");
   const auto write = [&](const char* ending, const std::string& text) {
-    if (text.empty()) {  // nor may that of an older figure stay
+    if (text.empty()) {  // that of an older figure is deleted
       std::filesystem::remove(base + ending);
       return;
     }

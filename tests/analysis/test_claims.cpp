@@ -120,6 +120,10 @@ TEST(Compare, MissingCheckpointsShortRunsAndFewRunsAreThreeSentences) {
             "6 and 8 independent runs; 1 of 16 runs lack a checkpoint of cycles 1 to 15; "
             "1 of 16 runs end too early for cycles 1 to 15");
   EXPECT_TRUE(verdict.estimate.has_value());
+  a[2].checkpoints.resize(10);
+  verdict = compare(equal, early_phi(), pointers(a), pointers(b));
+  EXPECT_FALSE(verdict.estimate.has_value()) << "3 of 8, though only 3 of all 16";
+  EXPECT_TRUE(has(verdict.note, "more than a quarter of the runs are left out"));
   for (FigureRun& run : a) run.checkpoints.resize(10);
   verdict = compare(equal, early_phi(), pointers(a), pointers(b));
   EXPECT_EQ(verdict.ruling, Ruling::undecided);

@@ -90,7 +90,7 @@ TEST(Curves, EndTheirMeanWithTheFirstRunThatEnds) {
   runs[1].checkpoints.resize(5);  // up to cycle 4
   const FigureTable table = find_figure("S2")->make(runs).tables.at(0);
   EXPECT_EQ(table.rows.size(), before.rows.size()) << "the numbers of those that are left";
-  ASSERT_EQ(table.chart.series.size(), 2U) << "the mean and the run that goes on";
+  ASSERT_EQ(table.chart.series.size(), 2U) << "the mean and the run that continues";
   const std::vector<ChartPoint> mean = points_of(table, table.chart.series[0]);
   const std::vector<ChartPoint> rest = points_of(table, table.chart.series[1]);
   const std::vector<ChartPoint> all = points_of(before, before.chart.series[0]);

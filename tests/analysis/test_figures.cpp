@@ -130,7 +130,8 @@ FigureRun biased_walks(std::uint32_t seed) {
 }
 
 TEST(FigureC, FollowsCrystallitesOverSeveralNumbersOfCycles) {
-  const std::vector<FigureRun> runs = {biased_walks(1), biased_walks(2), biased_walks(3)};
+  std::vector<FigureRun> runs;
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) runs.push_back(biased_walks(seed));
   const FigureResult made = find_figure("C")->make(runs);
   const FigureTable &followed = panel(made, "C_followed"),
                     &critical = panel(made, "C_critical_size");

@@ -125,18 +125,27 @@ TEST(CriticalSize, IntervalComesFromTheRuns) {
   // Student's interval of the mean of these six: +- 2.015 sqrt(0.8 / 6).
   EXPECT_NEAR(found.interval.high - found.interval.low, 2 * 2.015 * std::sqrt(0.8 / 6), 0.4);
   EXPECT_EQ(found.runs, 6U);
-  EXPECT_FALSE(critical_size(std::span(runs).first(2)).has_value());
+  EXPECT_FALSE(critical_size(std::span(runs).first(4)).has_value());
   const GrowthBySize nearly_flat = {{1, {600, 400, 0}}, {10, {601, 399, 0}}};
   EXPECT_LT(fit_growth(std::vector{nearly_flat})->critical_size().value(), 1);
-  EXPECT_FALSE(critical_size(std::vector(3, nearly_flat)).has_value()) << "less than a grain";
+  EXPECT_FALSE(critical_size(std::vector(5, nearly_flat)).has_value()) << "less than a grain";
   const Estimate band = fitted_delta_rho(runs, 15).value();
   EXPECT_LT(band.interval.low, 0);
   EXPECT_GT(band.interval.high, 0);
 }
 
+// An unbounded end would leave the whole band out of the drawing.
+TEST(FittedDeltaRho, IsUnknownWhereManySelectionsHaveNoFit) {
+  std::vector<GrowthBySize> runs(5, GrowthBySize{{3, {0, 9, 0}}, {9, {0, 4, 0}}});
+  runs[0] = logistic_growth(15, 2);
+  const Estimate band = fitted_delta_rho(runs, 15).value();
+  EXPECT_EQ(band.interval.low, -1);
+  EXPECT_EQ(band.interval.high, 1);
+}
+
 TEST(MonotoneCriticalSize, IsWhereTheShareThatGrowsPassesAHalf) {
   const auto size = [](const GrowthBySize& counts) {
-    return monotone_critical_size(std::vector(3, counts));
+    return monotone_critical_size(std::vector(5, counts));
   };
   EXPECT_EQ(size({{1, {1, 9, 0}}, {2, {4, 6, 0}}, {3, {3, 7, 0}}, {5, {8, 2, 0}}})->value, 5);
   EXPECT_EQ(size({{1, {1, 9, 0}}, {2, {7, 3, 0}}, {3, {4, 6, 0}}, {5, {8, 2, 0}}})->value, 2)

@@ -242,10 +242,16 @@ TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
   EXPECT_NEAR(*result.verdicts[0].estimate, 0, 0.15);
   EXPECT_NEAR(result.verdicts[0].margin, 1.0 / 6, 1e-12) << "all grains are interior ones here";
   EXPECT_TRUE(find_figure("nucleation")->make(std::span(runs.data(), 1)).verdicts.empty());
-  for (FigureRun& run : runs) {
-    if (number_of(run, "grains") > 1000) continue;
-    for (CheckpointMeasures& c : run.checkpoints) c.measures.interior_grains = 0;
-  }
+  const auto set_interior_of_small = [&](std::size_t interior) {
+    for (FigureRun& run : runs) {
+      if (number_of(run, "grains") > 1000) continue;
+      for (CheckpointMeasures& c : run.checkpoints) c.measures.interior_grains = interior;
+    }
+  };
+  set_interior_of_small(2000);
+  EXPECT_TRUE(find_figure("nucleation")->make(runs).verdicts.empty())
+      << "a rate at the walls would rise faster with N_inves than one in the bulk";
+  set_interior_of_small(0);
   EXPECT_TRUE(find_figure("nucleation")->make(runs).verdicts.empty()) << "nothing to compare with";
 }
 

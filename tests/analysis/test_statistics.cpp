@@ -125,7 +125,26 @@ TEST(Bootstrapped, SelectionsWithoutAValueWidenIt) {
   EXPECT_TRUE(std::isinf(found.interval.low) && std::isinf(found.interval.high));
   EXPECT_FALSE(runs_to_resolve(found, 1, true).has_value());
   EXPECT_FALSE(bootstrapped(6, [](auto) { return std::optional<double>(); }).has_value());
-  EXPECT_FALSE(bootstrapped(2, mean_over(values)).has_value());
+}
+
+double coverage_of_bootstrap(std::size_t runs) {
+  constexpr std::uint32_t samples = 400;
+  std::uint32_t covered = 0;
+  for (std::uint32_t s = 0; s < samples; ++s) {
+    const auto found = bootstrapped(runs, mean_over(normal_numbers(s, runs)));
+    if (!found) return std::nan("");
+    covered += found->interval.low <= 0 && found->interval.high >= 0 ? 1U : 0U;
+  }
+  return static_cast<double>(covered) / samples;
+}
+
+TEST(Bootstrapped, CoversTheTrueMeanAsOftenAsItSaysOrHasNoInterval) {
+  for (const std::size_t runs : {2U, 3U, 4U}) EXPECT_TRUE(std::isnan(coverage_of_bootstrap(runs)));
+  for (const std::size_t runs : {5U, 6U, 8U}) {
+    const double share = coverage_of_bootstrap(runs);
+    std::printf("%zu runs: covered %.3f, expected %.3f +- 0.015\n", runs, share, confidence_level);
+    EXPECT_NEAR(share, confidence_level, 0.045) << runs;
+  }
 }
 
 TEST(RunsToResolve, SolvesTheFormulaOfTheSampleSize) {

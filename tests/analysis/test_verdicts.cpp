@@ -55,6 +55,14 @@ TEST(Verdict, SaysHowManyRunsWouldDecide) {
       << "enough runs for most truths, but the estimate is near the margin";
 }
 
+// Both sides together would say 36 runs, the longer one alone says more than there are.
+TEST(Verdict, NeedsMoreRunsThanItHasWhereOneSideOfTheIntervalIsLong) {
+  Estimate skewed = between(0.98, 2.05, 40, 2);
+  skewed.value = 1;
+  EXPECT_LE(runs_to_resolve(skewed, 1, false).value(), 40U);
+  EXPECT_EQ(decide({"c", 2}, "q", skewed, 40, "").runs_needed, 41U);
+}
+
 TEST(Verdict, OverallIsTheWorst) {
   const Verdict good = decide({"c", 2}, "q", between(0, 1), 6, "");
   const Verdict bad = decide({"c", 2}, "q", between(3, 4), 6, "");

@@ -129,7 +129,7 @@ TEST_F(Frames, KeepFieldsToHalfAStepOfTheirRange) {
   }
 }
 
-TEST_F(Frames, HaveTheSizeThatIsReckonedWith) {
+TEST_F(Frames, HaveTheSizeThatTheBudgetCountsWith) {
   EXPECT_EQ(frame_.bytes.size(), 6 * kAll + 10 * kFrameGrains);
   EXPECT_EQ(frame_size_in_page(kFrameGrains, 4, 3), (frame_.bytes.size() + 2) / 3 * 4);
 }

@@ -6,7 +6,7 @@
 >>> store.table(per="run")                    # pandas.DataFrame, by the program's `table`
 >>> store.run("3f9a").checkpoint(5).position  # (N, 3) [d]
 
-Nothing is written into a store.
+Only the cache `derived.sqlite` is written into a store.
 """
 from .checkpoint import Checkpoint
 from .store import Run, ShearcellError, Store

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Colours of grains: structures by the colour-blind safe palette of Okabe and Ito, quantities by
 // viridis.
-import {crystalliteSizes} from "./frames.js";
+import {crystalliteSizes, structureNames} from "./frames.js";
 import {italic, plain, sub} from "./text.js";
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
@@ -100,5 +100,5 @@ export function keyOf(grains, mode) {
     const end = (value) => `${Number(value.toPrecision(3))}`;
     return {bar: {label: fieldLabels[mode], low: end(field.low), high: end(field.high) + unit}};
   }
-  return classKey(grains.structure, ["disordered", "FCC", "HCP"]);
+  return classKey(grains.structure, structureNames);
 }
