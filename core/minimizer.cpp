@@ -136,6 +136,7 @@ void minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings)
   State end = fire.state();
   ++end.step;
   simulation.set_state(end);
+  simulation.check();
 }
 
 double force_residual(const Cell& cell, const Scene& scene, const State& state) {
