@@ -12,9 +12,8 @@ namespace {
 
 using Visit = std::function<void(const Contact&)>;
 
-void visit_planes(const Cell& cell, const WallPose& pose, std::int32_t i, const Eigen::Vector3d& p,
+void visit_planes(const std::array<WallPlane, 4>& planes, std::int32_t i, const Eigen::Vector3d& p,
                   const Visit& visit) {
-  const auto planes = wall_planes(cell, pose);
   for (std::size_t w = 0; w < 4; ++w) {
     const auto& [point, normal] = planes[w];
     const double distance = (p.x() - point[0]) * normal[0] + (p.y() - point[1]) * normal[1];
@@ -30,6 +29,7 @@ void visit_planes(const Cell& cell, const WallPose& pose, std::int32_t i, const 
 void for_each_contact(const Cell& cell, const Eigen::Matrix3Xd& positions, const WallPose& pose,
                       const Visit& visit) {
   const Eigen::Matrix3Xd walls = wall_grain_positions(cell, pose);
+  const auto planes = wall_planes(cell, pose);
   const Eigen::Index grains = positions.cols();
   const auto site = [&](std::int32_t s) -> Eigen::Vector3d {
     return s < grains ? positions.col(s) : walls.col(s - grains);
@@ -54,8 +54,12 @@ void for_each_contact(const Cell& cell, const Eigen::Matrix3Xd& positions, const
       }
       visit(contact);
     });
-    visit_planes(cell, pose, i, p, visit);
+    visit_planes(planes, i, p, visit);
   }
+}
+
+double force_unit(const Scene& scene) {
+  return scene.pressure > 0 ? scene.pressure : std::max(scene.gravity, 1.0);
 }
 
 Diagnostics diagnose(const Cell& cell, const Scene& scene, const State& state,

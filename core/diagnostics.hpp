@@ -28,6 +28,9 @@ struct Contact {
 void for_each_contact(const Cell& cell, const Eigen::Matrix3Xd& grains, const WallPose& pose,
                       const std::function<void(const Contact&)>& visit);
 
+/// Unit of the tolerances on forces: P d^2, or without pressure m g, at least 1 [m d/s^2].
+double force_unit(const Scene& scene);
+
 struct Diagnostics {
   double kinetic_energy = 0;      ///< per grain, at the half step [m d^2/s^2]
   double mean_overlap = 0;        ///< Eq. S3 over pairs of grains [d]

@@ -82,12 +82,15 @@ double cell_width(const Geometry& geometry) {
   const double volume =
       static_cast<double>(geometry.grains) * kGrainVolume / geometry.nominal_packing_fraction;
   const double layers = geometry.walls == WallTexture::rough ? 2 * kRoughLayer : 0.0;
+  const auto too_small = [&](double width) {
+    return (width - layers) * (geometry.height_over_width * width - layers) * width < volume;
+  };
   double low = layers;
   double high = std::cbrt(volume) + 1.0 + layers;
+  while (too_small(high)) high *= 2;  // a cell lower than it is wide
   for (int i = 0; i < 200 && low < high; ++i) {
     const double width = 0.5 * (low + high);
-    const double free = (width - layers) * (geometry.height_over_width * width - layers) * width;
-    (free < volume ? low : high) = width;
+    (too_small(width) ? low : high) = width;
   }
   return 0.5 * (low + high);
 }
@@ -150,6 +153,12 @@ Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Look& look) {
 }
 
 State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, const Look& look) {
+  const double height = cell.top - cell.bottom;
+  if (!(height >= 1)) {
+    throw GeometryError("a cell for " + std::to_string(geometry.grains) + " grains is only " +
+                        std::to_string(height) +
+                        " d high, too low for a grain: use more grains or raise height_over_width");
+  }
   State state;
   const auto n = static_cast<Eigen::Index>(geometry.grains);
   state.position.resize(3, n);
@@ -178,8 +187,7 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, 
       look_sometimes(look, attempt);
       const auto u = draw(seed, geometry.grains, kFillStream, attempt);
       const Eigen::Vector3d p(0.5 + u[0] * (cell.width - 1.0),
-                              cell.bottom + 0.5 + u[1] * (cell.top - cell.bottom - 1.0),
-                              u[2] * cell.depth);
+                              cell.bottom + 0.5 + u[1] * (height - 1.0), u[2] * cell.depth);
       free = true;
       near.for_each_near(p, [&](std::int32_t j) {
         Eigen::Vector3d r = p - sites[static_cast<std::size_t>(j)];

@@ -19,10 +19,6 @@ constexpr int kDelay = 20;
 constexpr double kWallMass = 1;
 constexpr std::uint64_t kWatchInterval = 256;
 
-double force_unit(const Scene& scene) {
-  return scene.pressure > 0 ? scene.pressure : std::max(scene.gravity, 1.0);
-}
-
 double residual_of(const Forces& forces, const Cell& cell, const Scene& scene) {
   double largest = 0;
   for (Eigen::Index i = 0; i < forces.on_grain.cols(); ++i) {
@@ -136,6 +132,7 @@ void minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings)
   State end = fire.state();
   ++end.step;
   simulation.set_state(end);
+  simulation.check();
 }
 
 double force_residual(const Cell& cell, const Scene& scene, const State& state) {

@@ -21,9 +21,9 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state, Engine
       scene_(scene),
       settings_(settings),
       kernels_(*settings.kernels),
-      team_(std::make_unique<Team>(settings.threads)),
+      team_(settings.threads),
       walls_(cell_),
-      lists_(kernels_, settings.lists, cell_.depth, walls_, *team_) {
+      lists_(kernels_, settings.lists, cell_.depth, walls_, team_) {
   if (state.position.cols() == 0 || state.position.cols() != state.velocity.cols()) {
     throw std::invalid_argument("a simulation needs as many velocities as positions, and a grain");
   }
@@ -133,7 +133,7 @@ void Simulation::set_contacts(double tan_theta) {
 double Simulation::over_blocks(const StepTask& task) {
   const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;
   ++evaluations_;
-  return team_->largest(blocks, [&](std::size_t first, std::size_t last) {
+  return team_.largest(blocks, [&](std::size_t first, std::size_t last) {
     return kernels_.step(task, first, last);
   });
 }
@@ -294,7 +294,7 @@ void Simulation::rebuild_lists(const Drive& drive) {
   for (std::size_t g = 0; g < id_.size(); ++g) {
     sites.push_back({static_cast<std::int32_t>(4 * g), walls + id_[g]});
   }
-  order_.build(cell_, pose_, reach, rows_[0].data(), sites, *team_);
+  order_.build(cell_, pose_, reach, rows_[0].data(), sites, team_);
   // The order in memory stays good for longer than the lists of a loose, fast packing are valid.
   const bool stale = counts_.builds < 2 || step_ - sorted_at_ >= 200;
   if (settings_.lists.sort_memory && stale) sort_memory();
@@ -323,7 +323,7 @@ void Simulation::sort_memory() {
       return (lists_.near()[at] << 16) + neighbours[at];
     };
     const std::size_t stretches = (from.size() + kStretch - 1) / kStretch;
-    team_->run(stretches, [&](std::size_t, std::size_t first, std::size_t last) {
+    team_.run(stretches, [&](std::size_t, std::size_t first, std::size_t last) {
       for (std::size_t stretch = first; stretch < last; ++stretch) {
         const std::size_t end = std::min((stretch + 1) * kStretch, from.size());
         std::stable_sort(from.begin() + static_cast<std::ptrdiff_t>(stretch * kStretch),
@@ -334,7 +334,7 @@ void Simulation::sort_memory() {
   }
   const auto old_id = id_;
   const auto old_velocity = velocity_;
-  team_->run(id_.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+  team_.run(id_.size(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t g = first; g < last; ++g) {
       const auto old = static_cast<std::size_t>(from[g]);
       id_[g] = old_id[old];

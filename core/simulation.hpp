@@ -11,7 +11,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "core/aligned.hpp"
@@ -111,7 +110,7 @@ class Simulation {
   Scene scene_;
   EngineSettings settings_;
   const Kernels& kernels_;
-  std::unique_ptr<Team> team_;
+  Team team_;
   std::uint64_t step_ = 0;
   std::uint64_t sorted_at_ = 0;  // step when the memory was last sorted
   double wall_height_ = 0, wall_velocity_ = 0;

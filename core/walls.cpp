@@ -5,10 +5,11 @@
 
 namespace shearcell {
 
-Walls::Walls(const Cell& cell) : cell_(cell), grains_(cell.wall_grains) {
+Walls::Walls(const Cell& cell) : cell_(cell) {
+  std::vector<WallGrain>& grains = cell_.wall_grains;
   const auto moves = [&](const WallGrain& grain) { return grain.side == moving_side(cell_); };
-  const auto others = std::stable_partition(grains_.begin(), grains_.end(), moves);
-  moving_size_ = static_cast<std::size_t>(others - grains_.begin());
+  const auto others = std::stable_partition(grains.begin(), grains.end(), moves);
+  moving_size_ = static_cast<std::size_t>(others - grains.begin());
 }
 
 std::array<WallPlane, 4> Walls::planes(const WallPose& pose) const {
@@ -19,7 +20,7 @@ std::array<WallPlane, 4> Walls::planes(const WallPose& pose) const {
 }
 
 void Walls::place_all(const WallPose& pose, double margin, double* rows) const {
-  for (const WallGrain& grain : grains_) {
+  for (const WallGrain& grain : cell_.wall_grains) {
     const Eigen::Vector3d p = wall_grain_position(cell_, pose, grain);
     for (Eigen::Index axis = 0; axis < 3; ++axis) rows[axis] = p(axis);
     rows[3] = margin;
@@ -29,8 +30,8 @@ void Walls::place_all(const WallPose& pose, double margin, double* rows) const {
 
 void Walls::choose_active(const WallPose& pose, double reach) {
   active_.clear();
-  for (std::size_t w = 0; w < grains_.size(); ++w) {
-    const double y = wall_grain_position(cell_, pose, grains_[w]).y();
+  for (std::size_t w = 0; w < cell_.wall_grains.size(); ++w) {
+    const double y = wall_grain_position(cell_, pose, cell_.wall_grains[w]).y();
     if (y > pose.bottom - reach && y < pose.top + reach) {
       active_.push_back(static_cast<std::int32_t>(w));
     }
@@ -43,7 +44,7 @@ void Walls::place(const WallPose& pose, double* rows) const {
   const double bottom_y = pose.bottom - cell_.bottom;
   const double top_y = pose.top - cell_.top;
   for (const std::int32_t w : active_) {
-    const auto& [side, p] = grains_[static_cast<std::size_t>(w)];
+    const auto& [side, p] = cell_.wall_grains[static_cast<std::size_t>(w)];
     double* row = rows + 4 * static_cast<std::ptrdiff_t>(w);
     if (side == WallSide::bottom) {
       row[0] = p.x() + bottom_x;

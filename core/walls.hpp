@@ -19,7 +19,7 @@ class Walls {
  public:
   explicit Walls(const Cell& cell);
 
-  std::size_t size() const { return grains_.size(); }
+  std::size_t size() const { return cell_.wall_grains.size(); }
   /// Number of wall grains of the moving wall; they come first.
   std::size_t moving_size() const { return moving_size_; }
 
@@ -37,11 +37,10 @@ class Walls {
   /// Updates the active wall grains in rows that place_all has filled.
   void place(const WallPose& pose, double* rows) const;
 
-  std::size_t bytes() const { return 64 * grains_.size() + 4 * active_.size(); }
+  std::size_t bytes() const { return sizeof(WallGrain) * size() + 4 * active_.size(); }
 
  private:
-  Cell cell_;
-  std::vector<WallGrain> grains_;
+  Cell cell_;  // its wall grains in the order of their permanent ids
   std::size_t moving_size_ = 0;
   std::vector<std::int32_t> active_;
 };

@@ -12,8 +12,8 @@ namespace shearcell {
 /// Of all grains and the moving wall, over some steps [m d^2/s^2].
 struct Ledger {
   double work_of_walls = 0;  ///< of the drive, which tilts the walls; not of the load
-  double lost_by_grains =
-      0;  ///< to the fluid, by drag: sum of b v.(v - u); negative if it drives them
+  /// To the fluid, by drag: sum of b v.(v - u); negative if the fluid drives them.
+  double lost_by_grains = 0;
   double lost_by_wall = 0;   ///< by the moving wall's own drag
   double elastic = 0;        ///< change of the energy of all contacts
   double kinetic = 0;        ///< change, the moving wall's included

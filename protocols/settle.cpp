@@ -57,8 +57,7 @@ State pressed(const Cell& cell, const State& loose, Scene scene) {
 
 bool Settle::settled(const Simulation& simulation) const {
   const State state = simulation.state();
-  // Without pressure the forces on the wall are of the order of m g.
-  const double pressure = scene_.pressure > 0 ? scene_.pressure : std::max(scene_.gravity, 1.0);
+  const double pressure = force_unit(scene_);
   const double kinetic =
       0.5 * state.velocity.squaredNorm() / static_cast<double>(state.velocity.cols());
   if (kinetic > parameters_.kinetic_tolerance * pressure) return false;

@@ -13,7 +13,7 @@ namespace shearcell::bench {
 // peak of the vector units, and its counted bytes at the measured speed of reading.
 //
 // Peak: a loop of independent fused multiply-adds, additions and shuffles of doubles in registers,
-// 4 : 2 : 3 as in the kernel. Reading: sums over an array as large as the one that a time step
+// 4 : 2 : 3 as in the kernel. Reading: searches an array as large as those that a time step
 // passes through, so from the cache that holds it, or from memory. Both are the best of several
 // short runs on one core.
 
@@ -55,8 +55,7 @@ struct SpeedResult {
   double steps_per_search = 0, steps_per_prune = 0;
   double bytes_per_grain = 0;
   /// What a particle-step does at least, and the rates that this machine's vector units and its
-  /// caches or memory would allow, as measured on one core and multiplied by
-  /// the threads.
+  /// caches or memory would allow, as measured on one core and multiplied by the threads.
   StepWork work = {};
   double arithmetic_limit = 0, memory_limit = 0;
   std::string state_hash = {};  ///< after 200 steps; the same for all results of one size

@@ -7,6 +7,7 @@
 
 #include "core/filling.hpp"
 #include "tests/core/scenes.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell {
 namespace {
@@ -111,6 +112,19 @@ TEST(Filling, WidthHoldsTheGrainsAtTheNominalFraction) {
   EXPECT_GT(cell_width(of(5200)), cell_width(geometry));
 }
 
+TEST(Filling, CellsOfAnyShapeHoldTheGrainsAtTheNominalFraction) {
+  for (const double ratio : {0.1, 0.3, 0.8, 1.0, 1.675, 100.0}) {
+    for (const WallTexture walls : {WallTexture::rough, WallTexture::smooth}) {
+      Geometry geometry = of(5200);
+      geometry.walls = walls;
+      geometry.height_over_width = ratio;
+      const double layers = walls == WallTexture::rough ? 0.35 : 0, width = cell_width(geometry);
+      const double free = (width - layers) * (ratio * width - layers) * width;
+      EXPECT_NEAR(free * 0.64 / (5200 * std::numbers::pi / 6), 1, 1e-12) << ratio;
+    }
+  }
+}
+
 TEST(Filling, RefusesWhatCannotBe) {
   Geometry sparse = of(600);
   sparse.fill_packing_fraction = 1e-300;
@@ -119,6 +133,10 @@ TEST(Filling, RefusesWhatCannotBe) {
   Geometry dense = of(300);
   dense.fill_packing_fraction = 0.5;  // beyond what random sequential addition reaches (0.38)
   EXPECT_THROW(fill_cell(make_cell(dense, 1), dense, 1), GeometryError);
+  Geometry flat = of(10);  // lower than a grain even before it settles
+  flat.height_over_width = 0.1;
+  const Cell low = make_cell(flat, 1);
+  test::expect_refused<GeometryError>([&] { fill_cell(low, flat, 1); }, {"height_over_width"});
 }
 
 TEST(Filling, IsGivenUpWhenTheCallerAsks) {

@@ -256,7 +256,7 @@ TEST(LinkedCells, VisitEveryPointNearbyOnceInShallowCellsToo) {
     near.for_each_near({2, 2, 0.1}, [&](std::int32_t i) { seen.insert(i); });
     for (const std::int32_t i : seen) EXPECT_EQ(seen.count(i), 1U) << depth;
     EXPECT_FALSE(seen.empty());
-    // Wild coordinates land somewhere, and nothing breaks.
+    // Coordinates that are not finite belong to some cell.
     near.insert(50, {std::nan(""), 1e300, -1e300});
   }
 }

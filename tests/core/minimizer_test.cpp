@@ -134,6 +134,13 @@ TEST(Minimizer, FailsWhenTheToleranceIsOutOfReach) {
                                    {"minimize_force_tolerance"});
 }
 
+// The forces of grains at one place are not numbers, and no other force is over the tolerance.
+TEST(Minimizer, FailsWhenGrainsAreAtOnePlace) {
+  const Cell cell = open_cell();
+  EXPECT_THROW(minimized(cell, only_contacts(), at_rest({{9, 9, 9}, {9, 9, 9}}, cell)),
+               NumericalFailure);
+}
+
 TEST(Simulation, GoesOnFromAStateThatWasSet) {
   const auto& [cell, start] = small_packing();
   const Scene scene = table_1();

@@ -39,7 +39,7 @@ class EngineRun : public ProgramTest {
     return all;
   }
 
-  /// A program that passes for LAMMPS and then does as it is told.
+  /// A program that answers -h as LAMMPS does, and otherwise runs `body`.
   std::string fake(const std::string& body) {
     std::string file = path("fake").string();
     write_script(
@@ -75,7 +75,7 @@ TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
   expect(0, {"figures", "S2", "--out", "figures"});
   EXPECT_TRUE(has(read_bytes(path("figures/tiny/S2a.csv")), "engine=lammps"));
 
-  // Ours alone are replayed, pruned and made again.
+  // Only our checkpoints are replayed, pruned and regenerated.
   const auto replayed = json({"verify", "--replay", "99", "--json"});
   EXPECT_TRUE(replayed["ok"]);
   EXPECT_EQ(replayed["replay"]["left_out"], 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The text that LAMMPS is given, and what is made of the text that it gives back. No LAMMPS needed.
+// The input that LAMMPS gets, and the reading of its output. Does not need LAMMPS.
 #include <gtest/gtest.h>
 
 #include <algorithm>

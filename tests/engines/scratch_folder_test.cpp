@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a killed run left in the folder for temporary files goes at the next start, and nothing
-// else.
+// What a killed run left in the folder for temporary files is deleted at the next start, and
+// nothing else.
 #include "experiments/runner/lammps/scratch_folder.hpp"
 
 #include <gtest/gtest.h>

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <string_view>
 
 #include "provenance/io/child_process.hpp"
@@ -99,13 +100,13 @@ class Deck {
         scene_.drag_rate * fluid_share(scene_.fluid));
   }
 
-  // Displacements of a wall's grains, which stand in the data file as in the untilted cell.
+  // Displaces a wall's grains, which the data file holds as in the untilted cell.
   void carry(const char* group, const char* x, const char* y) {
     add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero NULL NULL NULL", group, x, y);
     add(text_, "displace_atoms {} move v_{} v_{} 0 units box", group, x, y);
   }
 
-  // The wall's atom moves first, since the wall grains go by its height.
+  // The wall's atom moves first, because the wall grains follow its height.
   void motion() {
     add(text_, "fix step free nve\nvariable zero equal 0");
     if (has(WallSide::left) && shears_) carry("sides", "side_x", "zero");
@@ -115,7 +116,7 @@ class Deck {
     if (has(WallSide::top) && !bottom_moves_) carry("top", "zero", "rise");
   }
 
-  // A side plane, which turns about its end at the top wall.
+  // A side plane turns about its end at the top wall.
   void side_plane(const char* name, double x, int normal) {
     add(text_, "region {} plane {:.17g} {:.17g} 0 {} 0 0 side in units box{}{}", name, x, cell_.top,
         normal, shears_ ? fmt::format(" rotate v_turn {:.17g} {:.17g} 0 0 0 1", x, cell_.top) : "",
@@ -166,22 +167,22 @@ class Deck {
     }
   }
 
-  // Our velocities are those of half a step before. With the forces of `run 0`, half a kick makes
-  // those that LAMMPS begins with, and the same half kick is taken back from what it writes.
+  // Our velocities are those of half a step before, LAMMPS's those of the step. Half a kick with
+  // the forces of `run 0` is added at the start; half a kick is subtracted in each frame.
   void steps() {
     const double half = 0.5 * scene_.time_step;
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable kicked_{0} atom v{0}+{1:.17g}*f{0}/mass", axis, half);
       add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half);
     }
-    // Every process must see the same answer, so one of them looks for the file.
+    // One process checks for the file, so that all processes get the same answer.
     add(text_, "variable asked atom is_file(stop)\ncompute asked wall reduce sum v_asked");
     add(text_,
         "variable stop equal c_asked\nfix stop all halt {} v_stop > 0.5 error continue "
         "message no",
         task_.look);
     add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.look);
-    // Under mpirun: as many grains for each process, however far the wall grains reach.
+    // Under mpirun each process gets equally many grains, however far the wall grains reach.
     add(text_, "balance 1.05 shift xyz 20 1.02 weight group 1 planted 0.1");
     add(text_, "timestep {:.17g}\nrun 0 post no", scene_.time_step);
     add(text_, "velocity free set v_kicked_x v_kicked_y v_kicked_z units box");
@@ -208,7 +209,7 @@ class Deck {
 };
 
 void add_atom(std::string& text, Eigen::Index id, int type, const Eigen::Vector3d& p) {
-  constexpr double density = 6 / 3.14159265358979323846;  // mass 1
+  constexpr double density = 6 / std::numbers::pi;  // mass 1
   add(text, "{} {} 1 {:.17g} {:.17g} {:.17g} {:.17g}", id, type, density, p.x(), p.y(), p.z());
 }
 
@@ -216,12 +217,12 @@ void add_velocity(std::string& text, Eigen::Index id, const Eigen::Vector3d& v) 
   add(text, "{} {:.17g} {:.17g} {:.17g} 0 0 0", id, v.x(), v.y(), v.z());
 }
 
-// Numbers one after the other, none of which is trusted.
+// Reads numbers from a text that may be damaged.
 class Numbers {
  public:
   Numbers(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
 
-  /// Goes behind a line that begins so.
+  /// Skips the text up to the end of the line that begins with `heading`.
   void skip_past(std::string_view heading) {
     const auto at = text_.find(heading);
     const auto end = at == text_.npos ? at : text_.find('\n', at);
@@ -242,7 +243,7 @@ class Numbers {
   }
 
   [[noreturn]] void refuse() const {
-    throw ProgramError(file_ + ": not the whole state of the grains, as LAMMPS was to write");
+    throw ProgramError(file_ + ": not a complete state of the grains");
   }
 
  private:
@@ -263,7 +264,7 @@ std::string lammps_data(const LammpsTask& task) {
     low = std::min(low, grain.position.y());
     high = std::max(high, grain.position.y());
   }
-  // Boundaries shrink to the atoms when the run begins; until then they must hold them all.
+  // The box must hold all atoms; LAMMPS shrinks it to them when the run begins.
   const double reach = high - low + 2;
   std::string text;
   add(text, "by shearcell: lengths in d, masses in m, times in s, velocities at step - 1/2\n");

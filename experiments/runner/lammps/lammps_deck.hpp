@@ -22,7 +22,7 @@ struct LammpsTask {
   Cell cell;
   Scene scene;
   Drive drive;
-  State state;               ///< from which it begins
+  State state;               ///< at the start
   std::uint64_t end = 0;     ///< step at which it ends
   std::uint64_t stride = 1;  ///< a frame at every multiple of it, and at the end
   std::uint64_t look = 100;  ///< steps between two checks for a file `stop`, which ends it early
@@ -33,12 +33,13 @@ struct LammpsTask {
 /// Lengths in d, masses in m, times in s.
 std::string lammps_data(const LammpsTask& task);
 
-/// The input deck. Run in a folder with `scene.data` it leaves there `frame.STEP` for every frame,
-/// each complete when it has that name; a file `stop` makes it leave one more and end.
+/// The input deck. It runs in a folder with `scene.data` and writes each frame there as
+/// `frame.STEP`, renamed to that when complete. If a file `stop` appears, it writes one more frame
+/// and ends.
 std::string lammps_deck(const LammpsTask& task);
 
-/// Reads a frame. Throws ProgramError, naming the file, when it is not the whole state of so
-/// many grains.
+/// Reads a frame. Throws ProgramError, with the file's name, unless it is a complete state of this
+/// number of grains.
 State read_lammps_frame(const std::filesystem::path& file, std::size_t grains);
 
 }  // namespace shearcell

@@ -42,8 +42,8 @@ std::string last_line(std::string_view text) {
   return std::string(newline == text.npos ? text : text.substr(newline + 1));
 }
 
-// What the environment does not set already. Several of these may share a machine: Open MPI would
-// tie them to the same cores, and keep these busy while it waits.
+// Variables for LAMMPS and MPI that the environment does not set. Several runs may share a machine,
+// where Open MPI would bind all of them to the same cores and keep those busy while it waits.
 std::vector<std::string> variables() {
   std::vector<std::pair<std::string, std::string>> all = {
       {"OMP_NUM_THREADS", "1"},
@@ -76,7 +76,7 @@ std::unique_ptr<ChildProcess> start(const LammpsProgram& program, const fs::path
 // "... Massively Parallel Simulator - 29 Sep 2021 - Update 2"
 constexpr std::string_view kTitle = "Massively Parallel Simulator - ";
 
-// MPI has failed to start beside other programs that were starting theirs: it is asked again.
+// MPI sometimes fails to start while other programs start theirs, so it is tried several times.
 std::string help_of(const fs::path& program, const fs::path& folder) {
   constexpr int kAttempts = 3;
   try {
@@ -155,7 +155,7 @@ std::optional<State> LammpsRun::take_frame() {
 std::optional<State> LammpsRun::next_frame(std::chrono::milliseconds patience) {
   const auto until = std::chrono::steady_clock::now() + patience;
   for (;;) {
-    const auto code = process_->exit_code();  // before the look, or a last frame would be missed
+    const auto code = process_->exit_code();  // read first, or a last frame could be missed
     if (auto state = take_frame()) return state;
     if (code) fail(*code);
     if (std::chrono::steady_clock::now() >= until) return std::nullopt;
@@ -170,7 +170,7 @@ void LammpsRun::ask_to_stop() {
 std::uint64_t LammpsRun::step() {
   std::ifstream log(folder_.path() / "log", std::ios::binary);
   if (!log.seekg(-64, std::ios::end)) return step_;
-  // Between the last two line ends stands a step, or words.
+  // The last complete line is a step or a message.
   std::string tail{std::istreambuf_iterator<char>(log), {}};
   tail.resize(tail.rfind('\n') == tail.npos ? 0 : tail.rfind('\n'));
   std::string line = last_line(tail);
@@ -207,7 +207,7 @@ void LammpsRun::fail(int code) const {
   if (why.empty()) why = last_line(said.empty() ? log : said);
   throw ProgramError(fmt::format("LAMMPS{} ended with code {} near step {}: {}",
                                  ranks_ > 1 ? fmt::format(" on {} processes", ranks_) : "", code,
-                                 step_, why.empty() ? "it said nothing" : why));
+                                 step_, why.empty() ? "no message" : why));
 }
 
 LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks) {
@@ -222,8 +222,8 @@ LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protoc
                               std::size_t ranks, const std::function<void(const State&)>& seen) {
   LammpsResult settled{loose, 0, 0};
   for (;;) {
-    // One step of our own, which is discarded: before it the protocol decides whether the packing
-    // has settled, with it what acts on the grains now, and the watchdog looks at them.
+    // One step of our own, whose result is discarded: in it the protocol decides whether the
+    // packing has settled and which forces act now, and the watchdog checks the grains.
     Simulation look(cell, scene, settled.state);
     if (protocol.advance(look, 1).finished) return settled;
     const std::uint64_t end = protocol.next_look(settled.state.step);

@@ -23,7 +23,7 @@ struct LammpsProgram {
 
 /// The program `lmp` on PATH, or the one that $SHEARCELL_LAMMPS names. Throws ProgramError when
 /// there is none, it lacks the package GRANULAR or does not answer, and Interrupted when it does
-/// not answer and a stop is requested. Removes what killed runs left behind.
+/// not answer and a stop is requested. Deletes the folders of killed runs.
 LammpsProgram find_lammps();
 
 /// Steps between two checks of LAMMPS for a request to stop, and of this program for progress:
@@ -36,14 +36,14 @@ class LammpsRun {
   /// ProgramError.
   LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
 
-  /// The next frame; waits at most so long. Throws ProgramError with LAMMPS's message if it ended
-  /// without one.
+  /// The next frame; waits for it at most for `patience`. Throws ProgramError with LAMMPS's message
+  /// if it ended without one.
   std::optional<State> next_frame(std::chrono::milliseconds patience);
 
   /// Asks it to write one more frame and end.
   void ask_to_stop();
 
-  /// The last step that it reported.
+  /// The newest step in its log.
   std::uint64_t step();
 
   /// Waits for its end. Throws ProgramError if it failed.
@@ -62,7 +62,7 @@ class LammpsRun {
   std::size_t grains_;
   std::size_t ranks_;
   std::uint64_t step_;
-  std::unique_ptr<ChildProcess> process_;  // ends before its folder goes
+  std::unique_ptr<ChildProcess> process_;  // ends before its folder is deleted
 };
 
 struct LammpsResult {
@@ -76,9 +76,9 @@ LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, st
 
 /// Settles loose grains as protocols/settle does: LAMMPS takes the steps between two checks, and
 /// our protocol decides from the resulting state whether more are needed. `scene` is the
-/// protocol's; the result's step counts the steps that LAMMPS took. `seen` gets what came back
-/// after each look. Throws NumericalFailure as the protocol does, after its time limit above all,
-/// and ProgramError.
+/// protocol's; the result's step counts the steps that LAMMPS took. `seen` gets the state at each
+/// check. Throws ProgramError, and NumericalFailure as the protocol does (for example after its
+/// time limit).
 LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protocol,
                               const Scene& scene, const Cell& cell, const State& loose,
                               std::size_t ranks,
