@@ -43,7 +43,7 @@ double pair_volume(const InteriorRegion& region, double from, double to) {
   return 4 * kPi * region.depth * (integral(to) - integral(from));
 }
 
-MeasuredCurve bins(double width, std::size_t count) {
+MeasuredCurve empty_bins(double width, std::size_t count) {
   MeasuredCurve function;
   for (std::size_t b = 0; b < count; ++b) {
     function.x.push_back((static_cast<double>(b) + 0.5) * width);
@@ -124,7 +124,7 @@ MeasuredCurve pair_correlation(const Cell& cell, const WallPose& pose,
   const double reach =
       std::min({pair_reach_d, 0.5 * region.depth, region.height, region.width * pose.cos_theta});
   if (!(reach > 0) || sites.cols() < 2) return {};
-  MeasuredCurve g = bins(pair_bin_d, static_cast<std::size_t>(reach / pair_bin_d));
+  MeasuredCurve g = empty_bins(pair_bin_d, static_cast<std::size_t>(reach / pair_bin_d));
   std::vector<double> pairs(g.x.size(), 0);
   for_each_pair(cell, pose, sites, reach,
                 [&](std::int32_t, std::int32_t, const Eigen::Vector3d& r) {
@@ -162,7 +162,7 @@ MeasuredCurve structure_factor(const Cell& cell, const WallPose& pose,
     ++taken[bin];
     sum[bin] += std::norm((along_x.of(n[0]) * along_y.of(n[1]) * along_z.of(n[2])).sum());
   });
-  MeasuredCurve s = bins(wave_bin_per_d, kWaveBins);
+  MeasuredCurve s = empty_bins(wave_bin_per_d, kWaveBins);
   for (std::size_t b = 0; b < kWaveBins; ++b) {
     const double count = static_cast<double>(taken[b]) * static_cast<double>(sites.cols());
     if (count > 0) s.y[b] = sum[b] / count;

@@ -19,7 +19,7 @@
 namespace shearcell {
 namespace {
 
-constexpr std::size_t bins = 20;
+constexpr std::size_t density_bins = 20;
 /// Centres of such crystallites cannot lie nearer to a plane than this [d]: interior grains begin
 /// 1.875 d inside a rough plane, and the crystallite has a radius. [choice]
 constexpr double inaccessible = 4;
@@ -70,7 +70,7 @@ FigureTable density_table(std::string name, std::string first_column, Text x,
   table.chart = {.x = {.name = "position", .symbol = std::move(x), .low = 0, .high = 1},
                  .y = {.name = "probability density", .symbol = italic("P"), .low = 0}};
   for (const Profile& profile : profiles) {
-    for (const DensityBin& bin : density(profile.places.runs, bins)) {
+    for (const DensityBin& bin : density(profile.places.runs, density_bins)) {
       table.rows.push_back({profile.key, bin.low, bin.high, bin.density, bin.error,
                             profile.places.count, profile.places.runs.size()});
     }

@@ -61,10 +61,10 @@ nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   return engine;
 }
 
-using Facts = std::vector<std::pair<TableColumn, nlohmann::json>>;
+using CheckpointFacts = std::vector<std::pair<TableColumn, nlohmann::json>>;
 
 /// As `table` has them, measured now if the store does not keep them.
-Facts facts_at(const Store& store, const CheckpointRecord& record, Context& context) {
+CheckpointFacts facts_at(const Store& store, const CheckpointRecord& record, Context& context) {
   MeasuredPackings found;
   try {
     found = measures_of(store, {&record, 1}, table_measures(), {});
@@ -76,21 +76,22 @@ Facts facts_at(const Store& store, const CheckpointRecord& record, Context& cont
   return facts_of(record, found.measures.front());
 }
 
-Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& checkpoints,
-                      Context& context) {
+CheckpointFacts newest_measures(const Store& store,
+                                const std::vector<CheckpointRecord>& checkpoints,
+                                Context& context) {
   for (auto c = checkpoints.rbegin(); c != checkpoints.rend(); ++c) {
     if (c->state != CheckpointState::rejected) return facts_at(store, *c, context);
   }
   return {};
 }
 
-nlohmann::json as_json(const Facts& facts) {
+nlohmann::json as_json(const CheckpointFacts& facts) {
   nlohmann::json all = nlohmann::json::object();
   for (const auto& [column, value] : facts) all[column.name] = value;
   return all;
 }
 
-void print(const Facts& facts) {
+void print(const CheckpointFacts& facts) {
   for (const auto& [column, value] : facts) {
     if (value.is_null() || value.is_string()) continue;
     tell("{:<37} {:<12.6g} {}\n", column.name, value.get<double>(), column.meaning);
@@ -176,7 +177,7 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                         format_bytes(static_cast<double>(c.size)),
                         c.state == CheckpointState::recorded ? "" : std::string(name_of(c.state))};
               });
-  if (const Facts facts = newest_measures(store, checkpoints, context); !facts.empty()) {
+  if (const CheckpointFacts facts = newest_measures(store, checkpoints, context); !facts.empty()) {
     tell("\nnewest checkpoint:\n");
     print(facts);
   }
