@@ -36,9 +36,10 @@ HEADLINES = [
     ("S5b", "C: the onset at N = 11400", "phi at the onset, N = 11400, A = 0.05", "0.646 +- 0.001"),
     ("S5b", "C: the onset at N = 18200", "phi at the onset, N = 18200, A = 0.05", "0.646 +- 0.001"),
     ("nucleation", "title: the rate", "exponent of the nucleation rate against N_inves, minus 1", "homogeneous: 0"),
+    ("S7", "E: crystallites are equally probable", "nuclei in the inner minus the outer half of the width", "equal"),
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper minus the lower third", "more near the top"),
 ]
-# Where README.md takes them from; of several verdicts on a claim, the one with the most runs, or else the first here.
+# Where README.md takes them from: the first of these where the claim was measured, and there the one with the most runs.
 SOURCES = ("paper", "decide", "desk")
 FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "walls", "choices")
 
@@ -117,12 +118,13 @@ def measured_elsewhere(place, figure, claim, others):
 def headlines(page, results):
     text = header(["claim", "supplement", "ours (90 % interval)", "runs", "verdict"])
     for figure, beginning, name, supplement in HEADLINES:
-        found = [(claim, drawing) for source in SOURCES for place, of, drawing, claim in verdicts(results)
+        found = [(source, claim, drawing) for source in SOURCES for place, of, drawing, claim in verdicts(results)
                  if of == figure and claim["claim"].startswith(beginning) and "(P on" not in claim["claim"]
                  and place.startswith(source)]
         if not found:
             continue
-        claim, drawing = max(found, key=lambda one: one[0]["runs"])
+        best = next((source for source, claim, _ in found if claim["estimate"] is not None), found[0][0])
+        _, claim, drawing = max((one for one in found if one[0] == best), key=lambda one: one[1]["runs"])
         verdict = f"[{claim['verdict']}]({drawing.relative_to(page.parent).as_posix()})"
         text += row([name, supplement, measured(claim), runs(claim), verdict])
     return text
