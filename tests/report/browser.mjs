@@ -16,7 +16,7 @@ const {chromium} = createRequire(join(modules, "package.json"))("playwright-core
 const address = pathToFileURL(report).href;
 mkdirSync(shots, {recursive: true});
 
-const limits = {bytes: 15e6, milliseconds: 2000};
+const limits = {bytes: 15e6, milliseconds: 10000};
 const failures = [];
 const expect = (holds, what) => {
   if (holds) return;
@@ -114,7 +114,7 @@ const checks = {
       `hostile: its question is not shown as it stands: ${found.headings}`);
   },
 
-  // The best of three, since programs that are not ours may keep the machine busy.
+  // Prints how long it takes; fails only beyond what any machine needs, since times differ between machines.
   async quick() {
     const times = [];
     for (let n = 0; n < 3; ++n) {
