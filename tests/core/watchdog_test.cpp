@@ -81,7 +81,7 @@ TEST(Watchdog, StopsOverlapsOverTheLimitBeforeTheFirstStep) {
   EXPECT_NEAR(test::failure_of([&] { again.advance(Drive{}, 1); }).value, 0.5, 1e-12);
 }
 
-// Drag hides the instability: at 1.3 times 2/sqrt(8 k/m) the grains vibrate for ever, with
+// Drag hides the instability: at 1.3 times 2/sqrt(8 k/m) the grains vibrate without end, with
 // plausible overlaps and speeds.
 TEST(Watchdog, StopsATimeStepThatDragKeepsFromBlowingUp) {
   const auto& [cell, start] = pressed(300, 9000);
