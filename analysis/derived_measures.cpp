@@ -159,6 +159,7 @@ template <Scalars kWhich>
 void read_scalars(const json& result, Measures& measures) {
   for_each_kept<kWhich>(measures,
                         [&](std::string_view name, auto& value) { result.at(name).get_to(value); });
+  if (measures.phi < 0 || measures.phi > 1) throw AnalysisError("a kept phi is not in 0 to 1");
 }
 
 void read_numbers(const json& result, Measures& measures) {

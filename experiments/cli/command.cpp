@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -93,7 +94,9 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
 LoadedManifests load_manifests(const std::vector<std::string>& paths,
                                const ExpandOptions& options) {
   LoadedManifests loaded;
+  std::set<std::string> known;
   for (const std::string& path : paths) {
+    if (!known.insert(path).second) continue;
     loaded.manifests.push_back(load_manifest(path));
     loaded.plans.push_back(expand(loaded.manifests.back(), options));
     for (const std::string& warning : loaded.plans.back().warnings) {

@@ -188,8 +188,10 @@ std::string caption(const FigureSummary& summary, const std::map<std::string, st
                      fmt::join(counts, ", "), summary.experiment, scale_name(summary.scale));
 }
 
-std::string verdict_text(const FigureSummary& summary, std::span<const Verdict> verdicts) {
-  nlohmann::json verdict = to_json(verdicts);
+std::string verdict_text(const ComputedFigure& computed) {
+  const FigureSummary& summary = computed.summary;
+  nlohmann::json verdict = to_json(computed.result.verdicts);
+  verdict["runs"] = computed.runs_by_variant;
   verdict["figure"] = summary.name;
   if (!summary.experiment.empty()) verdict["experiment"] = summary.experiment;
   verdict["scale"] = summary.scale;
@@ -271,7 +273,7 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
   }
   const bool drawn = !made.tables.empty() && !made.tables.front().chart.series.empty();
   write(".caption.txt", drawn ? caption(result, computed.runs_by_variant, made.tables) + "\n" : "");
-  write(".verdict.json", made.verdicts.empty() ? "" : verdict_text(result, made.verdicts));
+  write(".verdict.json", made.verdicts.empty() ? "" : verdict_text(computed));
 
   nlohmann::json& facts = computed.lineage;
   for (const auto& file : result.files) {

@@ -108,7 +108,7 @@ std::string describe_end(const json& ended) {
                   ended.at("value").get<double>(), ended.at("reached_at_cycle").get<double>(),
                   extra > 0 ? fmt::format(" and {} cycles more", extra) : "");
   if (const json asked = member_of(ended, "cycles_asked"); !asked.is_null()) {
-    why = fmt::format("another experiment asks for {} cycles; {}", asked.get<double>(), why);
+    why = fmt::format("an experiment asks for {} cycles; {}", asked.get<double>(), why);
   }
   return why;
 }

@@ -127,6 +127,9 @@ TEST(DerivedMeasures, OtherBytesAreRefused) {
   EXPECT_THROW(decode_result(broken), AnalysisError);
   EXPECT_THROW(read_scalars(nlohmann::json::object()), AnalysisError);
   EXPECT_THROW(read_scalars(nlohmann::json::array({1})), AnalysisError);
+  nlohmann::json forged = derived_measure("scalars").from({pinned_analysis()});
+  forged.at("phi") = 1e300;
+  EXPECT_THROW(read_scalars(forged), AnalysisError);
 }
 
 }  // namespace

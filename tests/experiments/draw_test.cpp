@@ -261,6 +261,7 @@ TEST_F(DrawFigure, VerdictsAndLineageAreWrittenAndRecorded) {
   const auto verdict = nlohmann::json::parse(files.at("S2.verdict.json"));
   EXPECT_EQ(verdict.at("figure"), "S2");
   EXPECT_EQ(verdict.at("verdict"), "undecided");
+  EXPECT_EQ(verdict.at("runs"), (nlohmann::json{{"fluid=still", 1}, {"fluid=cell", 1}}));
   EXPECT_EQ(verdict.at("claims").size(), 3U);
   const auto lineage = nlohmann::json::parse(files.at("S2.lineage.json"));
   nlohmann::json recorded_facts = store_.figures().at(0).provenance;

@@ -177,7 +177,7 @@ TEST_F(UntilTest, OfTwoExperimentsTheReasonIsThatOfTheLongest) {
   EXPECT_EQ(run.state, RunState::completed);
   const nlohmann::json why = end_of(store_, run);
   EXPECT_EQ(why.at("cycles_asked"), 5);
-  EXPECT_TRUE(describe_end(why).starts_with("another experiment asks for 5 cycles; phi >= "));
+  EXPECT_TRUE(describe_end(why).starts_with("an experiment asks for 5 cycles; phi >= "));
   EXPECT_EQ(expected_end(store_, {StopMeasure::phi, value_, 0}), std::nullopt);
   EXPECT_FALSE(recorded_end(store_, run.id).contains("cycles_asked"));
 }
