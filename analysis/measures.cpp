@@ -76,7 +76,8 @@ std::span<const ScalarMeasure> kept_scalar_measures() {
                         &U::kinetic_stress_Pa}},
       {"coordination", "1", "contacts per interior grain",
        MechanicalMember{"coordination", &F::coordination, nullptr}},
-      {"rattlers_percent", "%", "interior grains with fewer than four contacts",
+      {"rattlers_percent", "%",
+       "interior grains with fewer than four contacts with walls and grains that are not rattlers",
        MechanicalMember{"rattlers_percent", &F::rattlers, nullptr}},
       {"coordination_without_rattlers", "1",
        "contacts among interior grains that are not rattlers, per grain",
@@ -170,7 +171,8 @@ std::span<const CurveMeasure> all_curve_measures() {
       {"crystalline_by_phi_local_percent", "%", "crystalline grains, if phi_local is above this",
        "phi_local_threshold", "1", "sensitivity"},
       {"largest_by_face", "1",
-       "grains in the largest crystallite, if faces connect from this share of a mean cell surface",
+       "grains in the largest crystallite, if grains are connected by faces of at least this share "
+       "of the mean cell surface",
        "connecting_face", "1", "sensitivity"}};
   return measures;
 }

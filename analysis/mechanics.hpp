@@ -25,9 +25,11 @@ struct Mechanics {
   /// Kinetic part of the pressure, of velocities less their mean, for v_x less its linear profile
   /// in y [m/(d s^2)].
   double kinetic_pressure = 0;
-  double coordination = 0;                        ///< contacts per interior grain
-  double rattlers = 0;                            ///< of interior grains [%]; see find_rattlers()
-  double coordination_without_rattlers = 0;       ///< among interior grains that are none
+  double coordination = 0;  ///< contacts per interior grain
+  /// Interior grains [%] with fewer than four contacts with walls and grains that are not rattlers.
+  double rattlers = 0;
+  /// Contacts of interior grains that are not rattlers with walls and such grains, per such grain.
+  double coordination_without_rattlers = 0;
   double force_bottom_x = 0, force_bottom_y = 0;  ///< of all grains on a wall [k d]
   double force_top_x = 0, force_top_y = 0;
   double force_left_x = 0, force_left_y = 0;

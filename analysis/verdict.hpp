@@ -40,8 +40,9 @@ struct Verdict {
 
 /// agrees: the interval lies where the claim puts it. differs: the interval lies wholly outside.
 /// undecided: otherwise, and without an estimate. runs_needed decides with 90 % probability if the
-/// truth is what is claimed, or twice the margin; where there are as many runs already, if the
-/// truth is the estimate. It is always more than the runs of the estimate.
+/// true value is 0 or twice the margin. If the interval excludes 0, or there are as many runs
+/// already, the true value is taken to be the estimate. It is always more than the runs of the
+/// estimate.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note);
 

@@ -2,7 +2,7 @@
 // Mechanical equilibrium of a packing under gravity and pressure: a local minimum of the enthalpy
 //   H = sum of contacts (k/2) overlap^2 + m g sum y + F h
 // over the positions of the grains and the height h between bottom and top, walls upright. F is the
-// load on the moving wall: P A, and under PressureAt::top what a moving bottom wall carries.
+// load on the moving wall: P A_w, plus carried_weight() (scene.hpp).
 #pragma once
 
 #include <cstdint>

@@ -107,8 +107,8 @@ class Projector {
     if (has_run(database_, id_)) {
       // A completed run may also have ended early, as other experiments asked for.
       run("UPDATE runs SET state = CASE WHEN state = 'completed' AND (target_cycles < ?2 OR "
-          "(step > 0 AND cycle < ?2)) THEN 'declared' ELSE state END, target_cycles = "
-          "max(target_cycles, ?2) WHERE id = ?1",
+          "cycle < ?2) THEN 'declared' ELSE state END, target_cycles = max(target_cycles, ?2) "
+          "WHERE id = ?1",
           id_, d.target_cycles);
     } else {
       run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "

@@ -97,8 +97,8 @@ Packing repeated(const Packing& one, std::size_t copies) {
   return made;
 }
 
-// The pressure of Table I cannot lift the column of a cell with more than 18,200 grains: beyond
-// that, the smallest number of equal parts along the depth, with at least so many grains in all.
+// Beyond 18,200 grains the cell becomes deeper, not higher: the smallest number of equal parts
+// along the depth, with at least so many grains in all.
 Packing prepare(std::size_t grains) {
   const std::size_t parts = (grains + 18199) / 18200;
   Parameters parameters;

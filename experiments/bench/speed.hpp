@@ -62,8 +62,8 @@ struct SpeedResult {
 };
 
 /// Table I in a rough cell sheared at A = 0.0833, from a packing pressed together first. Beyond
-/// N = 18200 a smaller packing is repeated along the depth, because the pressure cannot lift a
-/// higher column; the result has the N of the repeated packing. Before anything is timed every
+/// N = 18200 a smaller packing is repeated along the depth, so the cell becomes deeper and not
+/// higher; the result has the N of the repeated packing. Before anything is timed every
 /// kernel must give the same state after 200 steps; otherwise std::runtime_error is thrown. Shares
 /// are measured with one thread.
 std::vector<SpeedResult> measure_speed(const SpeedOptions& options);

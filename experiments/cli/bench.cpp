@@ -308,7 +308,7 @@ void add_engines(CLI::App& bench, Context& context) {
              "Simulated time after which grains that have not settled are an error "
              "(settle_time_limit_s)",
              "S", 1e-3, 1e6);
-  command->add_flag("--no-gravity", *weightless, "Without gravity, for cells that P cannot lift");
+  command->add_flag("--no-gravity", *weightless, "Without gravity");
   add_json_option(*command, context);
   command->footer(
       "Ends with code 3 if the engines do not agree: trajectories within the effect of rounding,\n"

@@ -109,8 +109,11 @@ CycleRange parse_cycles(const std::string& text) {
   return range;
 }
 
-std::vector<CheckpointRecord> chosen(const Store& store, const RunRecord& run,
-                                     const std::string& cycles) {
+// Of a run that was named all that any experiment asks for, else those of its experiment.
+std::vector<CheckpointRecord> chosen(const Store& store, const SelectedRun& selected,
+                                     const ExportOptions& options) {
+  const RunRecord& run = selected.run;
+  const std::string& cycles = options.cycles;
   const CycleRange range = parse_cycles(cycles);
   const bool shears = run.kind == name_of(Stage::shear);
   const double near =
@@ -119,11 +122,14 @@ std::vector<CheckpointRecord> chosen(const Store& store, const RunRecord& run,
   std::vector<CheckpointRecord> records;
   std::size_t pruned = 0;
   const bool by_name = range.first == range.last;  // also one that an interruption left
-  for (CheckpointRecord& record : by_name ? store.checkpoints(run.id, Listed::and_pruned)
-                                          : own_checkpoints(store, run, asks_of(store, run.id))) {
+  const std::vector<CheckpointRecord> all =
+      by_name                ? store.checkpoints(run.id, Listed::and_pruned)
+      : options.runs.empty() ? own_checkpoints(store, run, selected.membership, {})
+                             : own_checkpoints(store, run, asks_of(store, run.id));
+  for (const CheckpointRecord& record : all) {
     if (!range.holds(record.cycle, near)) continue;
     if (record.state == CheckpointState::pruned) ++pruned;
-    if (record.state == CheckpointState::recorded) records.push_back(std::move(record));
+    if (record.state == CheckpointState::recorded) records.push_back(record);
   }
   if (records.empty()) {
     throw std::invalid_argument(fmt::format(
@@ -137,8 +143,10 @@ std::vector<CheckpointRecord> chosen(const Store& store, const RunRecord& run,
   return records;
 }
 
-void require_new(const fs::path& out) {
-  if (fs::exists(fs::symlink_status(out)) && !(fs::is_directory(out) && fs::is_empty(out))) {
+/// Free, or an empty folder where a folder is to be written.
+void require_new(const fs::path& out, bool folder) {
+  const bool usable = folder && fs::is_directory(out) && fs::is_empty(out);
+  if (fs::exists(fs::symlink_status(out)) && !usable) {
     throw std::invalid_argument(out.string() + " exists already. Name a new one.");
   }
 }
@@ -160,7 +168,7 @@ std::vector<std::string> write_run(const Store& store, const SelectedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out) {
   if (format.writer == nullptr) return write_ro_crate(store, run.run.id, out, options.licence);
-  const std::vector<CheckpointRecord> records = chosen(store, run.run, options.cycles);
+  const std::vector<CheckpointRecord> records = chosen(store, run, options);
   if (*format.ending == '\0') fs::create_directory(out);
   {
     const FrameWriter write = format.writer(options, out, records.size());
@@ -244,7 +252,8 @@ std::vector<Exported> write_all(const Store& store, const std::vector<SelectedRu
   if (single && format.writer == nullptr) {  // a crate may add to an earlier one
     return {{runs.front(), out, write_run(store, runs.front(), format, options, out)}};
   }
-  require_new(out);
+  const bool folder = !single || *format.ending == '\0';
+  require_new(out, folder);
   fs::create_directories(out.parent_path());
   const TemporaryFolder stage(out.parent_path() / ("." + out.filename().string() + ".tmp-"));
   const fs::path staged = stage.path() / out.filename();
@@ -260,7 +269,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<SelectedRu
       tell_stderr("left out: {}\n", problem.what());
     }
   }
-  require_new(out);
+  require_new(out, folder);
   fs::rename(staged, out);
   return done;
 }
@@ -332,8 +341,9 @@ void add_export(CLI::App& app, Context& context) {
       R"(Each file holds its run, seed, parameters and units, every scalar measure of each frame, and for
 each grain id, radius, velocity, phi_local, q6, largest overlap, contacts, pressure, structure (by q6),
 lattice (by common neighbours), crystallite, and displacement and D^2_min over the cycle before, with
-wall grains and the tilted cell. Writes one RUN to PATH, several to the folder PATH with a name
-each. PATH must be new; that of a crate may be an earlier export of the same run.
+wall grains and the tilted cell. Writes a single RUN to PATH; several runs, or those that options
+select, go into the folder PATH, each under a name of its own. PATH must be new; that of a crate
+may be an earlier export of the same run.
 Examples:
   shearcell export 3f9a --to extxyz --cycles 0:60:10 --out run.xyz
   shearcell export 3f9a --to vtk --out frames

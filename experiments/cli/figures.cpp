@@ -127,11 +127,13 @@ void add_figures(CLI::App& app, Context& context) {
   command->add_flag("--all", options->all, "Every figure that the store's manifests list");
   command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/NAME.csv, ...")
       ->capture_default_str()
+      ->check(unnamed)
       ->type_name("DIR");
   add_selection_options(*command, how.runs);
   command->get_option("--experiment")
       ->description("Only of this experiment, which need not list the figures named");
-  command->get_option("--scale")->description("Scale of the runs (default: declared last)");
+  command->get_option("--scale")->description(
+      "Scale of the runs (default: the one added to the store last)");
   command->add_flag("--all-versions", how.runs.all_versions,
                     "Runs of older versions of a manifest too, as variants of their own");
   command

@@ -205,18 +205,24 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
 struct Left {
   StageCost cost;
   double core_seconds = 0;
-  Rate rate{0, true};  ///< mean, of one core
+  double longest_seconds = 0;  ///< of one run with its packing, on one core
+  Rate rate{0, true};          ///< mean, of one core
 };
 
 Left left_of(const std::vector<Line>& lines, const std::vector<RunRecord>& known) {
   Left left;
   const Rates rates(known);
+  std::map<std::string, double> chains;  // of a stage and the one before it, which comes first
   for (const Line& line : lines) {
     const Rate own =
         rates.of(engine_of(line.stage->resolved), static_cast<double>(line.run->parameters.grains));
     left.cost.particle_steps += line.left.particle_steps;
     left.cost.bytes += line.left.bytes;
-    left.core_seconds += line.left.particle_steps / own.particle_steps_per_second;
+    const double seconds = line.left.particle_steps / own.particle_steps_per_second;
+    left.core_seconds += seconds;
+    const double chain = chains[line.stage->parent] + seconds;
+    chains[line.stage->key] = chain;
+    left.longest_seconds = std::max(left.longest_seconds, chain);
     if (left.rate.particle_steps_per_second == 0) left.rate = own;  // where nothing is left to do
     left.rate.measured = left.rate.measured && own.measured;
   }
@@ -278,7 +284,8 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
   const std::vector<Line> lines = lines_of(expanded, store, known);
   const Left left = left_of(lines, runs);
   const std::size_t cores = usable_cores();
-  const double seconds = left.core_seconds / static_cast<double>(cores);
+  const double seconds =
+      std::max(left.longest_seconds, left.core_seconds / static_cast<double>(cores));
   std::vector<std::string> notes = notes_of(expanded);
   if (longer > 0) {
     notes.push_back(fmt::format("`run` continues {} to a larger number of cycles, asked for before",

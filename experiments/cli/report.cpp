@@ -100,8 +100,9 @@ void add_report(CLI::App& app, Context& context) {
                   "Folder that `bench accuracy --out` wrote: adds its diagrams")
       ->type_name("DIR");
   sub->add_flag_callback(
-      "--drawings", [command] { command->report.interactive = false; },
-      "Figures as gnuplot draws them, no script, no packings");
+         "--drawings", [command] { command->report.interactive = false; },
+         "Static figures drawn by gnuplot; no JavaScript, no packings")
+      ->excludes("--run");
   add_common_options(*sub, context);
   sub->footer(
       R"(The file needs no network: figures to zoom and read values from, verdicts, runs, lineage, and

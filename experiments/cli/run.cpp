@@ -48,7 +48,7 @@ void run(const RunOptions& options, Context& context) {
   const auto [manifests, plans] = load_manifests(options.inputs, options.expand);
   const bool lammps = std::ranges::any_of(plans, asks_for_lammps);
   require_lammps_for_ranks(options, lammps);
-  if (lammps) find_lammps();  // or say what to install
+  if (lammps) find_lammps(options.parallel.ranks);  // or say what to install
   Store store(context.store, Access::create);
   std::vector<StageJob> jobs;
   std::set<std::string> known;

@@ -32,20 +32,22 @@ nlohmann::json checkpoint_facts(const CheckpointRecord& c) {
           {"sha256", c.sha256},
           {"state_hash", c.state_hash},
           {"state", name_of(c.state)},
-          {"rejected", c.state == CheckpointState::rejected},
           {"observables", c.observables}};
 }
 
-/// `asked`: an experiment asks for it; else only an interruption left it.
+/// `asked_by`: places in the run's memberships of those that have it in their figures and tables;
+/// none where only an interruption left it.
 nlohmann::json facts_of_all(const Store& store, const RunRecord& run,
                             const std::vector<CheckpointRecord>& checkpoints) {
-  std::set<std::uint64_t> asked;
-  for (const CheckpointRecord& c : own_checkpoints(store, run, asks_of(store, run.id))) {
-    asked.insert(c.step);
+  std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
+  for (std::size_t k = 0; k < run.memberships.size(); ++k) {
+    for (const CheckpointRecord& c : own_checkpoints(store, run, run.memberships[k], {})) {
+      asked_by[c.step].push_back(k);
+    }
   }
   return json_list(checkpoints, [&](const CheckpointRecord& c) {
     nlohmann::json facts = checkpoint_facts(c);
-    facts["asked"] = asked.contains(c.step);
+    facts["asked_by"] = asked_by[c.step];
     return facts;
   });
 }
@@ -280,7 +282,7 @@ void add_show(CLI::App& app, Context& context) {
       R"(For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and the
 SHA-256 of every checkpoint in it. For a file (CSV, SVG or lineage): checks that it is what the
 store recorded and that every checkpoint behind it is intact; exit code 4 if not. Pruned
-checkpoints are counted, and are no fault.
+checkpoints are counted and are not an error.
 Examples:
   shearcell show 3f9a
   shearcell show drag/S2

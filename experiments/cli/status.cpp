@@ -103,9 +103,9 @@ nlohmann::json facts(const QueuedRun& run) {
 
 nlohmann::json facts_of_place(const SelectedRun& selected, const View& view) {
   const Membership& m = selected.membership;
-  return {
-      {"experiment", m.experiment},    {"scale", m.scale}, {"variant", m.variant},
-      {"name", view.called(selected)}, {"seed", m.seed},   {"newest", view.is_newest(selected)}};
+  return {{"experiment", m.experiment},    {"scale", m.scale}, {"variant", m.variant},
+          {"name", view.called(selected)}, {"seed", m.seed},   {"newest", view.is_newest(selected)},
+          {"manifest", m.manifest}};
 }
 
 nlohmann::json facts(const SelectedRun& selected, const View& view) {
@@ -186,7 +186,7 @@ std::optional<Estimate> estimate(const View& view) {
                                        [](const RunAsk& ask) { return ask.until.has_value(); });
   }
   try {
-    made.work = remaining_work(records, view.store.runs());
+    made.work = remaining_work(view.store, records);
   } catch (const std::runtime_error&) {
     return std::nullopt;  // a record that this version cannot read; `verify` names it
   }

@@ -259,8 +259,8 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
                   "Time limit of one start of a task; it restarts until it is done")
       ->check(unfit_value)
       ->type_name("HH:MM:SS");
-  add_number(command, "--array-size", options.array_size, "Most tasks (default: one per packing)",
-             "K", 1, 100000);
+  add_number(command, "--array-size", options.array_size,
+             "Largest number of tasks (default: one per packing)", "K", 1, 100000);
   add_number(command, "--cpus-per-task,-c", job.cpus,
              "Cores, and so runs at a time, of a task (default: one per run, at most 16)", "C", 1,
              1024);

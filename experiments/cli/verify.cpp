@@ -189,7 +189,9 @@ void add_verify(CLI::App& app, Context& context) {
   auto options = std::make_shared<VerifyOptions>();
   CLI::App* command = app.add_subcommand(
       "verify", "Check the event chain, every file's hash and the derived tables");
-  command->add_option("--against", options->against, "A head that an earlier `verify` printed")
+  command
+      ->add_option("--against", options->against,
+                   "Number and hash of the last event, as an earlier `verify` printed them")
       ->expected(1, 2)
       ->type_name("SEQ HASH");
   add_number(*command, "--replay", options->replay, "Recompute K sampled checkpoints", "K", 1,

@@ -29,7 +29,8 @@ constexpr std::array<std::uint64_t, 2> whole_run = {0, StoreLimits::cycles};
 /// it names cycles.
 RunAsk ask_for(const Store& store, const Figure& figure, const CollectedRun& run) {
   return figure.within ? ask_of(store, run.run.id, run.membership)
-                       : RunAsk{.checkpoint_every = run.membership.checkpoint_every};
+                       : RunAsk{.target_cycles = run.membership.target_cycles,
+                                .checkpoint_every = run.membership.checkpoint_every};
 }
 
 /// Not beyond the run's end for this experiment. A figure that measures nothing gets the last one

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <stdexcept>
 #include <vector>
@@ -43,13 +42,7 @@ double own_end(const Store& store, const RunRecord& run, const Membership& membe
   const RunAsk ask = ask_of(store, run.id, membership);
   if (!ask.until) return target;
   const auto cadence = static_cast<double>(ask.checkpoint_every);
-  const auto measured = measured_at(store, run, cadence, options);
-  const auto ended =
-      ended_early(std::span(&ask, 1), measured, std::numeric_limits<double>::infinity());
-  if (!ended) return target;
-  const double end =
-      ended->at("reached_at_cycle").get<double>() + static_cast<double>(ask.until->extra_cycles);
-  return std::min(target, std::ceil(end / cadence) * cadence);
+  return asked_end(ask, measured_at(store, run, cadence, options));
 }
 
 std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, double first,
@@ -72,11 +65,26 @@ std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecor
     if (ask.phases.empty()) continue;
     for (const std::uint64_t step : asked_steps(run, ask, first, end)) phases.insert(step);
   }
+  const bool every = asks.empty() || run.kind != name_of(Stage::shear);
+  const auto asked = [&](double cycle) {
+    if (cycle != std::floor(cycle)) return false;
+    return every || std::ranges::any_of(asks, [&](const RunAsk& ask) {
+             return std::fmod(cycle, static_cast<double>(ask.checkpoint_every)) == 0 ||
+                    cycle == static_cast<double>(ask.target_cycles);
+           });
+  };
   std::erase_if(found, [&](const CheckpointRecord& record) {
-    const bool whole = record.cycle == std::floor(record.cycle);
-    return record.cycle < first || record.cycle > last || !(whole || phases.contains(record.step));
+    return record.cycle < first || record.cycle > last ||
+           !(asked(record.cycle) || phases.contains(record.step));
   });
   return found;
+}
+
+std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecord& run,
+                                              const Membership& membership,
+                                              const MeasureOptions& options) {
+  const RunAsk ask = ask_of(store, run.id, membership);
+  return own_checkpoints(store, run, {&ask, 1}, 0, own_end(store, run, membership, options));
 }
 
 }  // namespace shearcell

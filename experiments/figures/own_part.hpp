@@ -25,11 +25,17 @@ double own_end(const Store& store, const RunRecord& run, const Membership& membe
 std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, double first,
                                        double last);
 
-/// The checkpoints of cycles first to last, pruned ones too, at whole cycles and at the phases that
-/// one of `asks` has. An interruption leaves others, which no figure or table has: they would
-/// differ from those of a run that was never interrupted.
+/// The checkpoints of cycles first to last, pruned ones too, that one of `asks` has: on its
+/// cadence, at its phases and at its last cycle; of another kind of run all at whole cycles.
+/// Interruptions and other experiments leave more, which no figure or table has: they would differ
+/// from those of a run that was never interrupted and that nobody shares.
 std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecord& run,
                                               std::span<const RunAsk> asks, double first = 0,
                                               double last = StoreLimits::cycles);
+
+/// Those of one experiment, up to own_end().
+std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecord& run,
+                                              const Membership& membership,
+                                              const MeasureOptions& options);
 
 }  // namespace shearcell

@@ -137,10 +137,10 @@ std::vector<Column> ends() {
        [](const Row& row) -> json {
          return row.history == nullptr ? json() : number(critical_size_for(*row.history));
        }});
-  add_onset("size", "the largest crystallite has the critical size (method 1)", onset_by_size,
-            columns);
-  add_onset("slope", "its logarithm rises most steeply with phi (method 2)", onset_by_slope,
-            columns);
+  add_onset("size", "outcome of method 1, where the largest crystallite reaches the critical size",
+            onset_by_size, columns);
+  add_onset("slope", "outcome of method 2, where the logarithm of its size rises most steeply",
+            onset_by_slope, columns);
   columns.insert(
       columns.end(),
       {of_run("state", "declared, running, interrupted, failed or completed",
@@ -203,9 +203,7 @@ std::vector<MeasuredRun> select(const Store& store, const RunSelection& selectio
   std::vector<MeasuredRun> runs;
   for (SelectedRun& selected : newest.runs) {
     MeasuredRun& run = runs.emplace_back(MeasuredRun{std::move(selected)});
-    const double end = own_end(store, run.run, run.membership, options);
-    const RunAsk ask = ask_of(store, run.run.id, run.membership);
-    run.records = own_checkpoints(store, run.run, {&ask, 1}, 0, end);
+    run.records = own_checkpoints(store, run.run, run.membership, options);
     run.measures.resize(run.records.size());
   }
   return runs;

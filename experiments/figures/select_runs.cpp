@@ -68,10 +68,13 @@ ExperimentScale experiment_scale(const Membership& m) {
 /// Moves the runs of older versions behind the others; how many the others are.
 std::size_t sort_by_version(const Store& store, std::vector<SelectedRun>& runs) {
   Versions versions = versions_of(store);
-  std::map<ExperimentScale, std::size_t> newest;
-  for (const auto& [run, m] : runs) {
-    std::size_t& known = newest[experiment_scale(m)];
-    known = std::max(known, versions[m.manifest]);
+  std::map<ExperimentScale, std::size_t> newest;  // of all runs, selected or not
+  for (const RunRecord& run : store.runs()) {
+    if (run.kind == name_of(Stage::prepare)) continue;
+    for (const Membership& m : run.memberships) {
+      std::size_t& known = newest[experiment_scale(m)];
+      known = std::max(known, versions[m.manifest]);
+    }
   }
   const auto older = std::ranges::stable_partition(runs, [&](const SelectedRun& run) {
     return versions[run.membership.manifest] == newest[experiment_scale(run.membership)];

@@ -132,6 +132,7 @@ void warn_of_unfelt(const Manifest& manifest, const Scale& scale,
     for (const SweepAxis& axis : *axes) stated[axis.key] = axis.at;
   }
   if (scale.until->until) stated["until"] = scale.until->at;
+  if (scale.checkpoints->every_cycles != 1) stated["checkpoints"] = scale.checkpoints->at;
   for (const auto& [key, at] : stated) {
     std::string why;
     for (const Variant& variant : variants) {
@@ -224,13 +225,15 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
 }
 
 Plan joined(std::span<const Plan> plans) {
-  std::vector<std::string> experiments;
+  std::vector<std::string> experiments, scales;
   Plan all;
-  all.scale = plans.front().scale;
   std::map<std::string, std::size_t> places;  // of a run in all.runs, by its id
   for (const Plan& plan : plans) {
     if (std::ranges::count(experiments, plan.experiment) == 0) {
       experiments.push_back(plan.experiment);
+    }
+    if (std::ranges::count(scales, scale_name(plan.scale)) == 0) {
+      scales.push_back(scale_name(plan.scale));
     }
     for (const PlannedRun& run : plan.runs) {
       const auto [place, fresh] = places.try_emplace(run.last.key, all.runs.size());
@@ -251,6 +254,7 @@ Plan joined(std::span<const Plan> plans) {
     }
   }
   all.experiment = fmt::format("{}", fmt::join(experiments, ", "));
+  all.scale = scales.size() == 1 ? plans.front().scale : fmt::format("{}", fmt::join(scales, ", "));
   return all;
 }
 

@@ -127,12 +127,12 @@ std::span<const Field> schema() {
       row("gravity_m_per_s2", "g", "m/s^2", &P::gravity_m_per_s2, from(0, 1e6), kPrepare,
           "gravitational acceleration (Table I); 0 turns it off (D)"),
       row("pressure_Pa", "P", "Pa", &P::pressure_Pa, from(kSmallest, 1e12), kPrepare,
-          "pressure on the moving wall (Table I)"),
+          "confining pressure (Table I); pressure_at says where it acts"),
       row("pressure_at", "", "", choice<&P::pressure_at>(), {},
           {.stage = Stage::prepare, .omitted_at = "moving_wall"},
-          "where the pressure acts: `moving_wall`, whose load is P A_w, or `top`, for which a "
-          "moving bottom wall is loaded with P A_w and the grains' weight; the same without "
-          "gravity and for a moving top wall"),
+          "wall on which the pressure is P: `moving_wall`, whose load is then P A_w, or `top`, for "
+          "which a moving bottom wall is loaded with P A_w plus the grains' weight; both are the "
+          "same without gravity or with a moving top wall"),
       // The cell.
       row("walls", "", "", choice<&P::walls>(), {}, kPrepare,
           "texture of the walls; rough walls carry fixed wall grains"),
@@ -150,7 +150,7 @@ std::span<const Field> schema() {
           kPrepare, "wall grain centres lie up to this depth behind the wall plane"),
       row("wall_grain_draw", "", "1", &P::wall_grain_draw, from(0, 1e6),
           {.stage = Stage::prepare, .omitted_at = "0"},
-          "draws other wall grains from the same seed"),
+          "other values give other random places of the wall grains for the same seed"),
       row("wall_mass_grains_per_d2", "", "m/d^2", &P::wall_mass_grains_per_d2, above(0, 1e6),
           kPrepare, "mass of the moving wall per area"),
       row("wall_drag_grains_per_d2_s", "", "m/(d^2 s)", &P::wall_drag_grains_per_d2_s, from(0, 1e9),
@@ -163,7 +163,8 @@ std::span<const Field> schema() {
           "time step while settling; not tied to that of the shear, so that variants of the latter "
           "share their packing; `auto` keeps Table I's fraction of the stability limit"),
       row("settle_force_tolerance", "", "1", &P::settle_force_tolerance, above(0, 1), kPrepare,
-          "settling ends when the moving wall's force imbalance over P A_w is below this"),
+          "settling ends when the moving wall's force imbalance and drag force over P A_w are "
+          "below this"),
       row("settle_kinetic_tolerance", "", "1", &P::settle_kinetic_tolerance, above(0, 1), kPrepare,
           "settling also needs a kinetic energy per grain over P d^3 below this"),
       row("settle_time_limit_s", "", "s", &P::settle_time_limit_s, above(0, 1e6), kPrepare,

@@ -66,7 +66,8 @@ json example_chart() {
 
 ReportPanel read_panel(const std::filesystem::path& csv) {
   ReportPanel panel;
-  panel.name = panel.id = csv.stem().string();
+  panel.name = csv.stem().string();
+  panel.id = "accuracy." + panel.name;
   panel.csv = read_beside(csv, ".csv").value_or("");
   if (const auto text = read_beside(csv, ".chart.json")) {
     panel.chart = parse_json(*text);

@@ -14,6 +14,7 @@
 #include "analysis/motion.hpp"
 #include "analysis/profiles.hpp"
 #include "analysis/voronoi.hpp"
+#include "experiments/figures/own_part.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/measure_sources.hpp"
@@ -62,7 +63,9 @@ std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<
   std::vector<ChosenRun> last;
   for (const auto& [run, member] : runs) {
     if (member.experiment != experiment) continue;
-    std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id);
+    std::vector<CheckpointRecord> checkpoints = own_checkpoints(store, run, member, {});
+    std::erase_if(checkpoints,
+                  [](const CheckpointRecord& c) { return c.state != CheckpointState::recorded; });
     if (checkpoints.empty()) continue;
     auto same = std::ranges::find(last, member.variant,
                                   [](const ChosenRun& other) { return other.membership.variant; });

@@ -77,7 +77,7 @@ ReportFigure figure_of(const Store& store, const WantedFigure& wanted, const Rep
   how.workers = options.workers;
   how.report = options.measured;
   ComputedFigure computed = compute_figure(store, wanted, how);
-  const std::string prefix = wanted.experiment.empty() ? "" : wanted.experiment + "-";
+  const std::string prefix = wanted.experiment.empty() ? "" : wanted.experiment + ".";
   ReportFigure made;
   made.id = prefix + wanted.figure.name;
   made.summary = std::move(computed.summary);

@@ -164,7 +164,8 @@ class Campaign {
       note(job, &CampaignResult::blocked, error.what());  // LAMMPS is missing
     } catch (const TooLittleMemory& error) {
       note(job, &CampaignResult::failed, error.what());
-    } catch (...) {
+    } catch (const std::exception& error) {
+      progress_.say(job.name + ": " + error.what());
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
     }
@@ -320,7 +321,8 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   for (const PlannedRun& run : plan.runs) {
     for (const StageSpec* stage : {&run.prepare, &run.last}) {
       const bool prepare = stage->stage == Stage::prepare;
-      if (!known.insert(stage->key).second) continue;
+      const bool first = known.insert(stage->key).second;
+      if (prepare && !first) continue;
       Membership membership = run;
       if (prepare) {
         membership = {.experiment = run.experiment,
@@ -332,7 +334,7 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
       }
       const std::string kind(name_of(stage->stage));
       const std::string name = prepare ? packings.of(run, stage->resolved) : run.name;
-      jobs.push_back({stage->key, stage->parent, job_name(membership, name)});
+      if (first) jobs.push_back({stage->key, stage->parent, job_name(membership, name)});
       store.declare_run({stage->key, stage->parent, kind, stage->resolved, run.parameters.grains,
                          membership.target_cycles, std::move(membership)});
     }

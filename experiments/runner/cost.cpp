@@ -49,9 +49,8 @@ double settling_time(double height) {
 // of B.2: 7e3 to 21e3 measured at N = 600 and 2000.
 constexpr double kMinimization = 15e3;
 
-/// Cycle of the last checkpoint before the first one that is missing; nothing when none is missing.
-std::optional<double> cycle_to_replay(const PlannedRun& run, const RunRecord& known,
-                                      const Store& store) {
+/// What the places of the run that the store does not know ask of it.
+std::vector<RunAsk> planned_asks(const PlannedRun& run, const RunRecord& known) {
   std::vector<RunAsk> planned;
   for (const Membership& place : run.places) {
     const bool declared = std::ranges::any_of(known.memberships, [&](const Membership& m) {
@@ -61,6 +60,12 @@ std::optional<double> cycle_to_replay(const PlannedRun& run, const RunRecord& kn
     if (declared) continue;
     planned.push_back({place.target_cycles, {}, place.checkpoint_every, place.checkpoint_phases});
   }
+  return planned;
+}
+
+/// Cycle of the last checkpoint before the first one that is missing; nothing when none is missing.
+std::optional<double> cycle_to_replay(const Store& store, const RunRecord& known,
+                                      std::span<const RunAsk> planned) {
   const std::vector<std::uint64_t> missing = missing_checkpoints(store, known, planned);
   if (missing.empty()) return std::nullopt;
   double from = 0;
@@ -86,13 +91,16 @@ std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& 
   if (known == nullptr) return 0;
   const bool completed = known->state == RunState::completed;
   if (stage.stage == Stage::prepare) return completed ? std::nullopt : std::optional(known->cycle);
-  const bool long_enough = known->cycle >= static_cast<double>(run.target_cycles);
-  const bool ended_as_asked =
-      run.ends_early && std::ranges::any_of(asks_of(*store, known->id), [&](const RunAsk& a) {
-        return a.until == run.ends_early && a.target_cycles >= run.target_cycles;
-      });
-  const std::optional<double> replayed = cycle_to_replay(run, *known, *store);
-  if (completed && (long_enough || ended_as_asked)) return replayed;
+  const std::vector<RunAsk> asks = asks_of(*store, known->id);
+  const bool has_its_length = std::ranges::all_of(run.places, [&](const Membership& place) {
+    return known->cycle >= static_cast<double>(place.target_cycles) ||
+           std::ranges::any_of(asks, [&](const RunAsk& ask) {
+             return ask.until && to_json(*ask.until) == place.until &&
+                    ask.target_cycles >= place.target_cycles;
+           });
+  });
+  const std::optional<double> replayed = cycle_to_replay(*store, *known, planned_asks(run, *known));
+  if (completed && has_its_length) return replayed;
   return std::min(known->cycle, replayed.value_or(known->cycle));
 }
 
@@ -148,10 +156,9 @@ Rate Rates::of(EngineKind engine, double grains) const {
   return {assumed_rate(kOurRates, grains), false};
 }
 
-RemainingWork remaining_work(const std::vector<RunRecord>& stages,
-                             const std::vector<RunRecord>& known) {
+RemainingWork remaining_work(const Store& store, const std::vector<RunRecord>& stages) {
   RemainingWork work;
-  const Rates rates(known);
+  const Rates rates(store.runs());
   std::map<std::string, double> seconds;  // of a stage and those before it, which come first
   for (const RunRecord& run : stages) {
     if (run.state == RunState::completed || run.state == RunState::failed) continue;
@@ -159,8 +166,11 @@ RemainingWork remaining_work(const std::vector<RunRecord>& stages,
     PlannedRun planned;
     planned.parameters = record.parameters;
     planned.target_cycles = run.target_cycles;
+    const bool replays =
+        record.stage == Stage::shear && run.cycle >= static_cast<double>(run.target_cycles);
+    const double from = replays ? cycle_to_replay(store, run, {}).value_or(run.cycle) : run.cycle;
     const double steps =
-        stage_cost(planned, {record.stage, run.id, run.parent, {}}, run.cycle).particle_steps;
+        stage_cost(planned, {record.stage, run.id, run.parent, {}}, from).particle_steps;
     const Rate rate = rates.of(record.parameters.engine, static_cast<double>(run.grains));
     ++work.stages;
     work.particle_steps += steps;

@@ -67,11 +67,10 @@ class Rates {
 struct RemainingWork {
   std::size_t stages = 0;
   double particle_steps = 0;
-  double core_seconds = 0;     ///< at the rates of `known`
+  double core_seconds = 0;     ///< at the rates of the store's runs
   double longest_seconds = 0;  ///< of the longest run, its packing included
   bool measured = true;        ///< the rates, or assumed
 };
-RemainingWork remaining_work(const std::vector<RunRecord>& stages,
-                             const std::vector<RunRecord>& known);
+RemainingWork remaining_work(const Store& store, const std::vector<RunRecord>& stages);
 
 }  // namespace shearcell

@@ -112,9 +112,9 @@ class LammpsEngine final : public Engine {
 
 }  // namespace
 
-std::optional<LammpsProgram> find_engine(const StagePlan& plan) {
+std::optional<LammpsProgram> find_engine(const StagePlan& plan, const Parallel& parallel) {
   if (plan.stage.parameters.engine != EngineKind::lammps) return std::nullopt;
-  return find_lammps();
+  return find_lammps(parallel.ranks);
 }
 
 std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,

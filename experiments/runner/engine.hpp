@@ -34,7 +34,7 @@ class Engine {
 
 /// The program that computes a stage of LAMMPS; nothing for one of ours. Throws ProgramError when
 /// it is not installed.
-std::optional<LammpsProgram> find_engine(const StagePlan& plan);
+std::optional<LammpsProgram> find_engine(const StagePlan& plan, const Parallel& parallel);
 
 /// Takes ownership of the beginning's cell and state. `lammps` computes the stage where it is one.
 std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,

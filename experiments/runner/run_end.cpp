@@ -16,17 +16,20 @@ namespace {
 
 using nlohmann::json;
 
-auto first_reached(std::span<const MeasuredCycle> measured, const std::optional<Until>& until) {
-  const ScalarMeasure* measure = until ? find_measure(name_of(until->measure)) : nullptr;
+// Others may have asked for more checkpoints than `ask` has.
+auto first_reached(std::span<const MeasuredCycle> measured, const RunAsk& ask) {
+  const ScalarMeasure* measure = ask.until ? find_measure(name_of(ask.until->measure)) : nullptr;
+  const auto every = static_cast<double>(ask.checkpoint_every);
   return std::ranges::find_if(measured, [&](const MeasuredCycle& m) {
-    return measure != nullptr && measure->of(m.measures) >= until->value;
+    return measure != nullptr && std::fmod(m.cycle, every) == 0 &&
+           measure->of(m.measures) >= ask.until->value;
   });
 }
 
 // Whether every `until` is reached; then only numbers of cycles decide.
 bool all_reached(std::span<const RunAsk> asks, std::span<const MeasuredCycle> measured) {
   return std::ranges::all_of(asks, [&](const RunAsk& ask) {
-    return !ask.until || first_reached(measured, ask.until) != measured.end();
+    return !ask.until || first_reached(measured, ask) != measured.end();
   });
 }
 
@@ -55,17 +58,23 @@ double longest_length(const Store& store, const RunRecord& run, const json& ende
 
 }  // namespace
 
+double asked_end(const RunAsk& ask, std::span<const MeasuredCycle> measured) {
+  const auto target = static_cast<double>(ask.target_cycles);
+  const auto reached = first_reached(measured, ask);
+  if (reached == measured.end()) return target;
+  const auto every = static_cast<double>(ask.checkpoint_every);
+  const double end = reached->cycle + static_cast<double>(ask.until->extra_cycles);
+  return std::min(target, std::ceil(end / every) * every);
+}
+
 std::optional<json> ended_early(std::span<const RunAsk> asks,
                                 std::span<const MeasuredCycle> measured, double now) {
   double end = -1;
   json why;
   for (const RunAsk& ask : asks) {
     const auto& until = ask.until;
-    const auto reached = first_reached(measured, until);
-    auto own = static_cast<double>(ask.target_cycles);
-    if (reached != measured.end()) {
-      own = std::min(own, reached->cycle + static_cast<double>(until->extra_cycles));
-    }
+    const auto reached = first_reached(measured, ask);
+    const double own = asked_end(ask, measured);
     if (now < own) return std::nullopt;
     if (own <= end || reached == measured.end()) continue;
     end = own;

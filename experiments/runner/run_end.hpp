@@ -24,6 +24,11 @@ struct MeasuredCycle {
   Measures measures;
 };
 
+/// The cycle at which the run ends for this experiment alone, by those checkpoints of `measured`
+/// that are on its own cadence: its number of cycles, or the first checkpoint at or after the end
+/// that its `until` gives.
+double asked_end(const RunAsk& ask, std::span<const MeasuredCycle> measured);
+
 /// Why the run ends at cycle `now`, that of its last checkpoint: every experiment that shares it
 /// has reached the end that it asks for, by `measured`, its checkpoints on the cadence in order.
 /// Nothing while the run continues.

@@ -31,7 +31,7 @@ class StageAttempt {
     }
     const bool fresh = !beginning.from;
     nlohmann::json facts = host_facts();
-    const auto lammps = find_engine(plan_);
+    const auto lammps = find_engine(plan_, options_.parallel);
     if (lammps) facts["engine"] = engine_facts(*lammps, options_.parallel);
     start(beginning, facts);
     if (options_.begun) options_.begun();

@@ -92,6 +92,16 @@ TEST_F(DrawFigure, AnEditedManifestThatRanAtOneScaleLeavesTheRunsOfTheOther) {
   EXPECT_EQ(newest_runs(store_, select_runs(store_, {}), false).runs.size(), 3U) << "in a table";
 }
 
+TEST_F(DrawFigure, AFilterDoesNotMakeAnOlderVersionTheNewest) {
+  compute(store_, tiny_manifest("", kBothFluids), {.cycles = 1});
+  compute(store_, tiny_manifest("  pressure_Pa: 700\n"), {.cycles = 1});
+  const NewestRuns cells =
+      newest_runs(store_, select_runs(store_, {.variants = {"fluid=cell"}}), false);
+  EXPECT_TRUE(cells.runs.empty());
+  ASSERT_EQ(cells.notes.size(), 1U);
+  EXPECT_TRUE(has(cells.notes[0], "left out: 1 run of another version"));
+}
+
 // Another version of the program may resolve one manifest to other runs.
 TEST_F(DrawFigure, ASeedCountsOncePerVariant) {
   compute(store_, tiny_manifest("", kBothFluids));

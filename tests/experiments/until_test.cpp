@@ -6,6 +6,7 @@
 #include "analysis/derived_measures.hpp"
 #include "experiments/figures/draw.hpp"
 #include "experiments/figures/run_table.hpp"
+#include "experiments/runner/cost.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/derived.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -43,6 +44,10 @@ TEST(RunEnd, IsTheLongestThatAnyExperimentAsksFor) {
       {{ask(50, ten)}, measured({1, 12, 3}), 2},        // reached once is reached
       {{ask(50, later)}, measured({1, 10, 11}), -1},    // cycle 4 of 5
       {{ask(50, later)}, measured({1, 10, 11, 9}), 2},  // the first checkpoint at or after 5
+      {{{50, ten, 4}}, measured({1, 10}), -1},  // it has no checkpoint at cycle 2
+      {{{50, ten, 4}}, measured({1, 10, 10}), 4},
+      {{{50, later, 4}}, measured({1, 1, 10, 10}), -1},  // cycle 6 of 7, its next is 8
+      {{{50, later, 4}}, measured({1, 1, 10, 10, 10}), 4},
       {{ask(50, ten), ask(50, twenty)}, measured({1, 10}), -1},
       {{ask(50, ten), ask(50, twenty)}, measured({1, 10, 20}), 4},
       {{ask(50, ten), ask(4)}, measured({1, 10}), -1},  // another wants four cycles
@@ -162,6 +167,28 @@ TEST_F(UntilTest, IsExtendedWithoutOneOrWithALaterOne) {
   EXPECT_TRUE(end_of(store_, sheared(store_)).is_null());
 }
 
+TEST_F(UntilTest, IsExtendedFromCycleZero) {
+  compute(store_, manifest("until: {phi: 0.1}\n"));
+  expect_end(store_, 0);
+  EXPECT_EQ(compute(store_, manifest("")).completed, 1U);
+  expect_end(store_, 6);
+}
+
+TEST_F(UntilTest, IsOpenForAPlanThatAlsoAsksForALaterOne) {
+  compute(store_, manifest(until(0)));
+  const auto plan_of = [](const std::string& text) {
+    return expand(parse_manifest(text, "tiny.yaml"), {});
+  };
+  const Plan early = plan_of(manifest(until(0))), late = plan_of(renamed(manifest(until(1)), "b"));
+  for (const auto& plans : {std::vector{early, late}, std::vector{late, early}}) {
+    const PlannedRun run = joined(plans).runs.front();
+    const RunRecord known = sheared(store_);
+    EXPECT_EQ(cycle_to_continue(run, run.last, &known, &store_), known.cycle);
+  }
+  const RunRecord known = sheared(store_);
+  EXPECT_EQ(cycle_to_continue(early.runs[0], early.runs[0].last, &known, &store_), std::nullopt);
+}
+
 TEST_F(UntilTest, OfTwoExperimentsTheLongestCounts) {
   declared(store_, manifest(until(0)));
   declared(store_, renamed(tiny_manifest("  cycles: 5\n"), "twin"));
@@ -197,6 +224,16 @@ TEST_F(UntilTest, AnExperimentEndsItsRunsInItsFiguresToo) {
   EXPECT_EQ(rows(), table);
   std::filesystem::remove(store_.folder() / DerivedCache::kFile);
   EXPECT_EQ(compute_figure(store_, s2, {}).lineage, alone) << "measured again";
+}
+
+TEST_F(UntilTest, AnExperimentKeepsItsCadenceInItsTable) {
+  RunSelection tiny;
+  tiny.experiments = {"tiny"};
+  const auto rows = [&] { return run_table(store_, tiny, RowPer::checkpoint, {}).rows.size(); };
+  compute(store_, tiny_manifest("  cycles: 3\n", "checkpoints: {every_cycles: 2}\n"));
+  EXPECT_EQ(rows(), 3U) << "cycles 0, 2 and 3";
+  compute(store_, renamed(manifest(""), "twin"));
+  EXPECT_EQ(rows(), 3U);
 }
 
 TEST_F(UntilTest, IsTheSameAfterInterruptionsWithinCycles) {

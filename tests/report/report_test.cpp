@@ -89,8 +89,8 @@ TEST_F(ReportOfRuns, GivesTheFrontEndPlotsPackingsAndTraces) {
   if (!has_front_end()) GTEST_SKIP() << "built without Node: there is no front end";
   const nlohmann::json data = data_of(make());
   ASSERT_TRUE(data.is_object());
-  EXPECT_TRUE(data.at("charts").contains("tiny-S2b"));
-  const auto& series = data.at("charts").at("tiny-S2a").at("series");
+  EXPECT_TRUE(data.at("charts").contains("tiny.S2b"));
+  const auto& series = data.at("charts").at("tiny.S2a").at("series");
   ASSERT_EQ(series.size(), 2U);
   EXPECT_EQ(series[0].at("points").size(), 3U) << "cycles 0, 1 and 2";
   ASSERT_EQ(data.at("packings").size(), 2U);
@@ -150,7 +150,7 @@ TEST_F(ReportOfRuns, ShowsTheStateOfEachStepOfTheWorkflow) {
   const std::string flow = html.substr(begin, html.find("</ol>", begin) - begin);
   for (const char* part : {"<h4>Manifest</h4>", ">tiny.yaml</a>", "</span> 1 done",
                            "</span> 1 failed", "</span> 1 waiting", "</span> 7 stored",
-                           "</span> 6 to come, at most", "<a href=\"#figure-tiny-S2\">S2</a>"}) {
+                           "</span> 6 to come, at most", "<a href=\"#figure-tiny.S2\">S2</a>"}) {
     EXPECT_EQ(count(flow, part), 1U) << part << "\n" << flow;
   }
 }

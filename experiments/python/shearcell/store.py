@@ -94,7 +94,7 @@ class Store:
 
     def measure(self, function: Measure, *, fresh: bool = False, all_versions: bool = False,
                 **select: Any) -> "pandas.DataFrame":
-        """An own measure of every checkpoint that the experiments ask for: experiment, scale,
+        """An own measure of every checkpoint that figures and tables have: experiment, scale,
         variant, run, seed, cycle, checkpoint and what the function returns, in a column of its name
         or one for each key; needs pandas.
 
@@ -116,7 +116,7 @@ class Store:
         try:
             for run in self.runs(all_versions=all_versions, **select):
                 for record in run.records():
-                    if not record["asked"]:
+                    if run._place not in record["asked_by"]:
                         continue
                     result = kept.of(record["sha256"], lambda: Checkpoint(run, record))
                     rows.append({"experiment": run.experiment, "scale": run.scale,
@@ -153,14 +153,21 @@ class Run:
     def _shown(self) -> dict[str, Any]:
         return json.loads(self.store.call("show", self.id, "--json"))
 
+    @cached_property
+    def _place(self) -> int:
+        """Of its experiment in the run's memberships."""
+        keys = ("experiment", "scale", "variant", "seed", "manifest")
+        places = [[m[key] for key in keys] for m in self._shown["memberships"]]
+        return places.index([self.facts[key] for key in keys])
+
     @property
     def parameters(self) -> dict[str, Any]:
         """Every parameter of the run, by its key in a manifest (units are in the keys)."""
         return self._shown["resolved"]["parameters"]
 
     def records(self) -> list[dict[str, Any]]:
-        """What the store recorded of each checkpoint whose file it has, by cycle. `asked` is false
-        for those that only an interruption left."""
+        """What the store recorded of each checkpoint whose file it has, by cycle. `asked_by` is
+        empty for those that only an interruption left."""
         return [c for c in self._shown["checkpoints"] if c["state"] == "recorded"]
 
     @property

@@ -93,7 +93,7 @@ std::string help_of(const fs::path& program, const fs::path& folder) {
 
 }  // namespace
 
-LammpsProgram find_lammps() {
+LammpsProgram find_lammps(std::size_t ranks) {
   const char* named = std::getenv("SHEARCELL_LAMMPS");
   const std::string name = named == nullptr || *named == '\0' ? "lmp" : named;
   const auto path = find_program(name);
@@ -101,6 +101,9 @@ LammpsProgram find_lammps() {
     throw ProgramError("LAMMPS is not installed: there is no program " + name +
                        ". Install the Debian package lammps, or name the program in "
                        "SHEARCELL_LAMMPS");
+  }
+  if (ranks > 1 && !find_program("mpirun")) {
+    throw ProgramError("there is no program mpirun; install the Debian package openmpi-bin");
   }
   remove_abandoned_folders();
   const ScratchFolder folder;
@@ -125,9 +128,6 @@ LammpsRun::LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::
     : grains_(static_cast<std::size_t>(task.state.position.cols())),
       ranks_(ranks),
       step_(task.state.step) {
-  if (ranks > 1 && !find_program("mpirun")) {
-    throw ProgramError("there is no program mpirun; install the Debian package openmpi-bin");
-  }
   write_text(folder_.path() / "scene.data", lammps_data(task));
   write_text(folder_.path() / "deck.in", lammps_deck(task));
   process_ = start(program, folder_.path(), ranks);

@@ -22,9 +22,10 @@ struct LammpsProgram {
 };
 
 /// The program `lmp` on PATH, or the one that $SHEARCELL_LAMMPS names. Throws ProgramError when
-/// there is none, it lacks the package GRANULAR or does not answer, and Interrupted when it does
-/// not answer and a stop is requested. Deletes the folders of killed runs.
-LammpsProgram find_lammps();
+/// there is none, it lacks the package GRANULAR or does not answer, or when there is no mpirun for
+/// several ranks, and Interrupted when it does not answer and a stop is requested. Deletes the
+/// folders of killed runs.
+LammpsProgram find_lammps(std::size_t ranks = 1);
 
 /// Steps between two checks of LAMMPS for a request to stop, and of this program for progress:
 /// about half a second of work.

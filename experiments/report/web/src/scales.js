@@ -102,6 +102,7 @@ function logTicks(scale, wanted) {
 export function formatOn(scale, value) {
   const [low, high] = scale.domain();
   if (Number.isInteger(value) && Math.abs(value) < 1e6) return minus(String(value));
+  if (scale.base) return minus(String(Number(value.toPrecision(3))));  // of a logarithmic axis
   const span = Math.abs(high - low);
   const digits = Math.ceil(-Math.log10(span / 1000));
   const size = Math.abs(value);
