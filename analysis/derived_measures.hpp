@@ -51,7 +51,7 @@ const DerivedMeasure& derived_measure(std::string_view name);
 
 /// CBOR (RFC 8949): every double and integer exactly, equal results in equal bytes.
 std::vector<std::byte> encode_result(const nlohmann::json& result);
-/// Throws AnalysisError when the bytes are no CBOR.
+/// Throws AnalysisError when the bytes are not CBOR.
 nlohmann::json decode_result(std::span<const std::byte> bytes);
 
 }  // namespace shearcell

@@ -73,7 +73,7 @@ struct ScalarMeasure {
   /// In `unit`; not a number where it is unknown.
   double of(const Measures& measures) const;
 };
-/// N is a parameter of the run, so it is no measure; kept results have it all the same.
+/// N is a parameter of the run, so it is not a measure; kept results have it all the same.
 std::span<const ScalarMeasure> all_scalar_measures();
 std::span<const ScalarMeasure> kept_scalar_measures();
 /// The one of that name, or null.

@@ -38,7 +38,8 @@ struct Grid {
            static_cast<std::size_t>(layers);
   }
 
-  /// The number of the cell of {x, y, z}; a wild coordinate (or NaN) belongs to a border cell.
+  /// The number of the cell of {x, y, z}; a coordinate outside of the grid (or NaN) belongs to a
+  /// border cell.
   std::uint32_t cell_of(const double* point) const;
 
   /// The place among all lines of cells along x of the line at `row` and `layer`.

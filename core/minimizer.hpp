@@ -12,7 +12,7 @@
 namespace shearcell {
 
 struct MinimizeSettings {
-  /// Largest net force on any grain over P d^2, and |net force on the moving wall| over P A.
+  /// Largest net force on any grain over P d^2, and |net force on the moving wall| over P A_w.
   double force_tolerance = 1e-4;
   std::uint64_t most_evaluations = 1'000'000;  ///< of the forces, before it counts as a failure
 };

@@ -14,19 +14,19 @@ inline constexpr double kMostSteps = 1e15;
 inline constexpr double kLookInterval = 0.1;
 
 struct SettleParameters {
-  double force_tolerance = 1e-3;    ///< largest |load - contact force| / (P A) of the moving wall
+  double force_tolerance = 1e-3;    ///< largest |load - contact force| / (P A_w) of the moving wall
   double kinetic_tolerance = 1e-8;  ///< largest kinetic energy per grain over P d^3
   double time_limit = 60;           ///< [s]; longer is an error
   double overlap_limit = 0.1;       ///< of the watchdog, after the wall has pressed the grains [d]
 };
 
 /// Gravity is switched on only after the moving wall has had time to press the grains together.
-/// Grains that fall first form a heap, and a heap nearly as heavy as P A (0.95 of it at N = 18200)
-/// jams between rough side walls before it reaches the top.
+/// Grains that fall first form a heap, and a heap nearly as heavy as P A_w (0.95 of it at N =
+/// 18200) jams between rough side walls before it reaches the top.
 ///
 /// The packing has settled when, at a check every 0.1 s under gravity, the force balance of the
 /// moving wall, its speed and the kinetic energy per grain are below their tolerances. The speed
-/// enters as the drag force B_w y' over P A, so that a creeping wall does not count as balanced.
+/// enters as the drag force B_w y' over P A_w, so that a creeping wall does not count as balanced.
 ///
 /// While it presses, the wall may catch a grain between its own wall grains and those of a side
 /// wall and push it out with its whole force: overlaps up to half a diameter are accepted until

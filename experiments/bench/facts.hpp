@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What a benchmark found, as a row of a table, CSV or JSON.
 #pragma once
 
 #include <string>

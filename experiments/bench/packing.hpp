@@ -49,7 +49,7 @@ struct PackingNumbers {
   double phi_uncorrected = 0;  ///< without the correction for overlaps
   double contacts = 0;         ///< per grain
   double overlap = 0;          ///< mean, Eq. S3 [d]
-  double imbalance = 0;        ///< |P A - F| / (P A) of the moving wall
+  double imbalance = 0;        ///< |P A_w - F| / (P A_w) of the moving wall
   double height = 0;           ///< of the cell [d]
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Selection by values that the command line names.
 #pragma once
 
 #include <algorithm>

@@ -18,7 +18,7 @@ struct ManifestLine {
 };
 
 /// Where a manifest states its experiment, the scale, the value of each swept key in `labels`, and
-/// the seeds that the scale uses. Empty when the text is no manifest that this program reads.
+/// the seeds that the scale uses. Empty when the text is not a manifest that this program reads.
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& labels);
 

@@ -46,7 +46,7 @@ Field row(string_view name, string_view symbol, string_view unit, decltype(Field
   return {name, symbol, unit, member, range, identity, doc};
 }
 
-// A number too large or too small for a double is infinite; nothing when the text is no number.
+// A number too large or too small for a double is infinite; nothing when the text is not a number.
 std::optional<double> parse_real(string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;

@@ -62,7 +62,7 @@ struct Field {
   bool is_whole() const { return std::holds_alternative<std::uint64_t Parameters::*>(member); }
 };
 
-/// A number that is read and checked like a parameter but is none.
+/// A number that is read and checked like a parameter but is not one.
 Field real_number(std::string_view name, std::string_view unit, const Range& range);
 Field whole_number(std::string_view name, const Range& range);
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Where LAMMPS runs.
 #pragma once
 
 #include <filesystem>
