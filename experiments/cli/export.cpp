@@ -6,9 +6,10 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <memory>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -109,8 +110,26 @@ CycleRange parse_cycles(const std::string& text) {
   return range;
 }
 
-// Of a run that was named all that any experiment asks for, else those of its experiment.
-std::vector<CheckpointRecord> chosen(const Store& store, const SelectedRun& selected,
+struct WantedRun : SelectedRun {
+  std::vector<Membership> places = {};  // those selected; none where the run itself was named
+};
+
+// What the selected experiments have of the run; without any all that somebody asks for.
+std::vector<CheckpointRecord> asked_of(const Store& store, const WantedRun& wanted) {
+  const RunRecord& run = wanted.run;
+  if (wanted.places.empty()) return own_checkpoints(store, run, asks_of(store, run.id));
+  std::map<std::uint64_t, CheckpointRecord> by_step;
+  for (const Membership& place : wanted.places) {
+    for (CheckpointRecord& record : own_checkpoints(store, run, place, {})) {
+      by_step.insert_or_assign(record.step, std::move(record));
+    }
+  }
+  std::vector<CheckpointRecord> all;
+  for (auto& [step, record] : by_step) all.push_back(std::move(record));
+  return all;
+}
+
+std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& selected,
                                      const ExportOptions& options) {
   const RunRecord& run = selected.run;
   const std::string& cycles = options.cycles;
@@ -123,9 +142,7 @@ std::vector<CheckpointRecord> chosen(const Store& store, const SelectedRun& sele
   std::size_t pruned = 0;
   const bool by_name = range.first == range.last;  // also one that an interruption left
   const std::vector<CheckpointRecord> all =
-      by_name                ? store.checkpoints(run.id, Listed::and_pruned)
-      : options.runs.empty() ? own_checkpoints(store, run, selected.membership, {})
-                             : own_checkpoints(store, run, asks_of(store, run.id));
+      by_name ? store.checkpoints(run.id, Listed::and_pruned) : asked_of(store, selected);
   for (const CheckpointRecord& record : all) {
     if (!range.holds(record.cycle, near)) continue;
     if (record.state == CheckpointState::pruned) ++pruned;
@@ -164,7 +181,7 @@ std::vector<std::string> files_of(const fs::path& out) {
 
 /// Writes to `out`, which is free, and returns the files, relative to it. Throws
 /// std::invalid_argument when the run cannot be exported.
-std::vector<std::string> write_run(const Store& store, const SelectedRun& run,
+std::vector<std::string> write_run(const Store& store, const WantedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out) {
   if (format.writer == nullptr) return write_ro_crate(store, run.run.id, out, options.licence);
@@ -200,23 +217,31 @@ void require_effect(const ExportOptions& options, const ExportFormat& format) {
 }
 
 /// The named runs, or else the newest_runs() of the filters, each once; packings only by name.
-std::vector<SelectedRun> wanted(const Store& store, const ExportOptions& options) {
+std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) {
   parse_cycles(options.cycles);  // or throw once, not for each run
-  std::vector<SelectedRun> runs;
+  std::vector<WantedRun> runs;
   for (const std::string& prefix : options.runs) {
     RunRecord run = store.find_run(prefix);
-    runs.push_back({run, first_membership(run)});
+    runs.push_back({{run, first_membership(run)}});
   }
   if (runs.empty()) {
     NewestRuns newest =
         newest_runs(store, select_runs(store, options.selection), options.selection.all_versions);
     for (const std::string& note : newest.notes) tell_stderr("{}\n", note);
-    runs = std::move(newest.runs);
+    for (SelectedRun& one : newest.runs) runs.push_back({one, {one.membership}});
   }
-  std::set<std::string> seen;
-  std::erase_if(runs, [&](const SelectedRun& s) { return !seen.insert(s.run.id).second; });
-  if (runs.empty()) throw std::invalid_argument("no run of the store is selected");
-  return runs;
+  std::map<std::string, std::size_t> first;  // of each run
+  std::vector<WantedRun> each;
+  for (WantedRun& run : runs) {
+    const auto [at, fresh] = first.try_emplace(run.run.id, each.size());
+    if (fresh) {
+      each.push_back(std::move(run));
+    } else {
+      std::ranges::copy(run.places, std::back_inserter(each[at->second].places));
+    }
+  }
+  if (each.empty()) throw std::invalid_argument("no run of the store is selected");
+  return each;
 }
 
 /// "drag_fluid=still_seed1_3f9a52c1.xyz": a file of its own in a folder of several runs.
@@ -243,7 +268,7 @@ struct Exported {
 /// A `single` run to `out` itself, others into that folder. Written in a folder beside `out` and
 /// renamed when it is complete, so that an export that is killed or meets a full disk leaves
 /// nothing of that name.
-std::vector<Exported> write_all(const Store& store, const std::vector<SelectedRun>& runs,
+std::vector<Exported> write_all(const Store& store, const std::vector<WantedRun>& runs,
                                 const ExportFormat& format, const ExportOptions& options,
                                 bool single) {
   // "frames/" has no file name; "frames" is the same folder.
@@ -259,7 +284,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<SelectedRu
   const fs::path staged = stage.path() / out.filename();
   std::vector<Exported> done;
   if (!single) fs::create_directory(staged);
-  for (const SelectedRun& run : runs) {
+  for (const WantedRun& run : runs) {
     const std::string name = single ? "" : entry_name(run, format);
     try {
       auto files = write_run(store, run, format, options, single ? staged : staged / name);
@@ -281,7 +306,7 @@ void export_runs(const ExportOptions& options, Context& context) {
   std::vector<Exported> done;
   bool single = false;
   try {
-    const std::vector<SelectedRun> runs = wanted(store, options);
+    const std::vector<WantedRun> runs = wanted(store, options);
     single = !options.runs.empty() && runs.size() == 1;
     done = write_all(store, runs, format, options, single);
   } catch (const std::invalid_argument& problem) {

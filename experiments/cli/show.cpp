@@ -36,7 +36,7 @@ nlohmann::json checkpoint_facts(const CheckpointRecord& c) {
 }
 
 /// `asked_by`: places in the run's memberships of those that have it in their figures and tables;
-/// none where only an interruption left it.
+/// none where an interruption or a shared cadence left it.
 nlohmann::json facts_of_all(const Store& store, const RunRecord& run,
                             const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;

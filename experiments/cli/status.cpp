@@ -37,7 +37,7 @@ struct View {
   std::vector<SelectedRun> places;  // one for each experiment and scale that a run is part of
   std::vector<SelectedRun> runs;    // each once, in the first place of those selected
   std::map<std::string, std::vector<std::size_t>> places_of;  // by run: indices of its places
-  std::set<Place> newest;                                     // those of newest_runs()
+  std::map<Place, Membership> newest;                         // those of newest_runs()
   std::map<std::string, Lease> holders;                       // by run
   QueueView queue;
   VariantNames names;
@@ -48,7 +48,7 @@ struct View {
     std::map<Place, std::size_t> known;
     std::vector<SelectedRun> selected = select_runs(store, selection);
     for (const SelectedRun& one : newest_runs(store, selected, false).runs) {
-      newest.insert(place_of(one));
+      newest.emplace(place_of(one), one.membership);
     }
     for (SelectedRun& found : selected) {
       if (seen.insert(found.run.id).second) runs.push_back(found);
@@ -60,6 +60,10 @@ struct View {
       } else {
         places[at->second] = std::move(found);
       }
+    }
+    for (SelectedRun& place : places) {
+      const auto of_newest = newest.find(place_of(place));
+      if (of_newest != newest.end()) place.membership = of_newest->second;
     }
     for (Lease& lease : store.leases()) holders.emplace(lease.run, std::move(lease));
   }

@@ -241,6 +241,12 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   std::erase_if(selected,
                 [&](const SelectedRun& s) { return s.membership.scale != collected.scale; });
   NewestRuns newest = newest_runs(store, std::move(selected), selection.all_versions);
+  if (newest.runs.empty()) {
+    throw NotFound(
+        fmt::format("the runs selected for figure {} are of an older version of the "
+                    "manifest; --all-versions adds them",
+                    wanted.path()));
+  }
   collected.notes = std::move(newest.notes);
   for (SelectedRun& run : newest.runs) {
     Membership& m = run.membership;

@@ -63,7 +63,7 @@ std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<
   std::vector<ChosenRun> last;
   for (const auto& [run, member] : runs) {
     if (member.experiment != experiment) continue;
-    std::vector<CheckpointRecord> checkpoints = own_checkpoints(store, run, member, {});
+    std::vector<CheckpointRecord> checkpoints = own_checkpoints(store, run, asks_of(store, run.id));
     std::erase_if(checkpoints,
                   [](const CheckpointRecord& c) { return c.state != CheckpointState::recorded; });
     if (checkpoints.empty()) continue;

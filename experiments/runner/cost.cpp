@@ -96,7 +96,8 @@ std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& 
     return known->cycle >= static_cast<double>(place.target_cycles) ||
            std::ranges::any_of(asks, [&](const RunAsk& ask) {
              return ask.until && to_json(*ask.until) == place.until &&
-                    ask.target_cycles >= place.target_cycles;
+                    ask.target_cycles >= place.target_cycles &&
+                    ask.checkpoint_every % place.checkpoint_every == 0;
            });
   });
   const std::optional<double> replayed = cycle_to_replay(*store, *known, planned_asks(run, *known));

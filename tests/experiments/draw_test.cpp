@@ -100,6 +100,7 @@ TEST_F(DrawFigure, AFilterDoesNotMakeAnOlderVersionTheNewest) {
   EXPECT_TRUE(cells.runs.empty());
   ASSERT_EQ(cells.notes.size(), 1U);
   EXPECT_TRUE(has(cells.notes[0], "left out: 1 run of another version"));
+  EXPECT_THROW(collect_runs(store_, kS2, {.variants = {"fluid=cell"}}), NotFound);
 }
 
 // Another version of the program may resolve one manifest to other runs.

@@ -191,8 +191,8 @@ Answer rattlers() {
                                 largest_difference(end, advanced(without, 20000, drive)), 0)});
 }
 
-// Drag alone takes the speed of a free grain below the normal numbers after ten seconds. The cost of
-// a step is told, not judged: other programs share the machine.
+// Drag alone takes the speed of a free grain below the normal numbers after ten seconds. The cost
+// of a step is told, not judged: other programs share the machine.
 Answer subnormal(bool quick) {
   Scene scene = only_springs();
   scene.drag_rate = 64;
@@ -315,8 +315,7 @@ void add_crystal_cases(Cases& cases, bool quick) {
   add(cases, "rattlers", "a packing without gravity, sheared with and without its loose grains",
       "the others move alike to the last bit", rattlers);
   add(cases, "subnormal-speed", "grains at 1e-310 d/s, at the start or after decay by drag",
-      "set to rest",
-      [quick] { return subnormal(quick); });
+      "set to rest", [quick] { return subnormal(quick); });
   add(cases, "drag-0", "a crystal vibrates 1e6 steps without drag", "energy and momentum are kept",
       [quick] { return vibrations(crystal(5, 2e-3), 1, 1000, quick ? 20'000 : 1'000'000, 1e-3); });
   add(cases, "1e7-steps-sheared", "a small crystal sheared for 50 000 cycles of 200 steps",

@@ -167,7 +167,7 @@ class Run:
 
     def records(self) -> list[dict[str, Any]]:
         """What the store recorded of each checkpoint whose file it has, by cycle. `asked_by` is
-        empty for those that only an interruption left."""
+        empty for those that no experiment has in its figures."""
         return [c for c in self._shown["checkpoints"] if c["state"] == "recorded"]
 
     @property
