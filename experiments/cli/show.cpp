@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"

@@ -32,8 +32,7 @@ class Engine {
   virtual std::uint64_t evaluations() const = 0;  ///< of the forces since construction
 };
 
-/// The program that computes a stage of LAMMPS; nothing for one of ours. Throws ProgramError when
-/// it is not installed.
+/// The program that computes a stage of LAMMPS; nothing for one of ours. Throws as find_lammps().
 std::optional<LammpsProgram> find_engine(const StagePlan& plan, const Parallel& parallel);
 
 /// Takes ownership of the beginning's cell and state. `lammps` computes the stage where it is one.
