@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A measure against volume fraction: runs that reach the same phi at different cycles are averaged
-// where they have the same phi.
+// A measure against volume fraction. Runs reach the same phi at different cycles, so they are
+// averaged at equal phi.
 #pragma once
 
 #include <vector>
@@ -22,8 +22,8 @@ struct PhiBin {
   RunStatistics value;
 };
 
-/// Bins at whole multiples of phi_bin, ascending, those that some run visits. Checkpoints without a
-/// finite phi are left out.
+/// Ascending bins between whole multiples of phi_bin; only those that some run visits. Checkpoints
+/// without a finite phi are left out.
 std::vector<PhiBin> binned_by_phi(RunGroup runs, const Quantity& quantity);
 
 }  // namespace shearcell

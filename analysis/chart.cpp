@@ -23,7 +23,7 @@ struct FieldText {
   std::string operator()(const std::string& value) const { return csv_field(value); }
 };
 
-/// Counted from 1.
+/// Place of a column, counted from 1.
 std::size_t column_number(const FigureTable& table, const std::string& name) {
   const auto found = std::find(table.columns.begin(), table.columns.end(), name);
   if (found == table.columns.end()) {
@@ -32,7 +32,7 @@ std::size_t column_number(const FigureTable& table, const std::string& name) {
   return static_cast<std::size_t>(found - table.columns.begin()) + 1;
 }
 
-/// That of a numbered column; nothing for column 0.
+/// The number in a column, counted from 1; none for column 0 and where there is no finite number.
 std::optional<double> number_in(const TableRow& row, std::size_t column) {
   if (column == 0) return std::nullopt;
   const TableValue& value = row.at(column - 1);
@@ -50,7 +50,7 @@ json to_json(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? json(rounded(*value)) : json();
 }
 
-/// "mean overlap ⟨δ⟩ [d]".
+/// As "mean overlap ⟨δ⟩ [d]".
 std::string axis_text(const Axis& axis) {
   std::string text = plain_text(axis.name);
   if (!axis.symbol.empty()) text += (text.empty() ? "" : " ") + plain_text(axis.symbol);

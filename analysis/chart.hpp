@@ -14,7 +14,7 @@
 
 namespace shearcell {
 
-/// Text in runs of one style each. A style is the HTML element that shows it: "" (plain), "i",
+/// A piece of text in one style. The style is the HTML element that shows it: "" (plain), "i",
 /// "sub" or "sup".
 struct TextRun {
   std::string text;
@@ -162,8 +162,8 @@ std::string digits(double value);
 /// Without styles; "v_fluid" of a subscript.
 std::string plain_text(const Text& text);
 
-/// What a reader needs beside the drawings of a figure's panels: what each shows, the errors, and
-/// what its reference lines are. One paragraph that begins with `title`.
+/// The caption of a figure: what each panel shows, what the errors are, and what the reference
+/// lines are. One paragraph that begins with `title`.
 std::string caption_of(const std::string& title, std::span<const FigureTable> tables);
 
 /// [[text, style], ...].

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -19,7 +18,7 @@ namespace {
 constexpr const char* no_group =
     "there are no such runs, or they differ in another swept parameter too";
 
-/// The numbers of one or two groups and the runs without one.
+/// The numbers of one or two groups of runs, and why other runs have none.
 struct Values {
   std::map<const FigureRun*, double> found;
   std::size_t runs = 0;
@@ -70,6 +69,11 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
     add(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
   }
   return decide(claim, quantity, estimate, runs, std::move(note));
+}
+
+/// Whether one stage prepared the packing that both runs begin with.
+bool share_packing(const FigureRun& a, const FigureRun& b) {
+  return !a.parent.empty() && a.parent == b.parent;
 }
 
 /// Differences a - b of the runs that share packings.
@@ -179,10 +183,6 @@ Estimate mapped(Estimate estimate, const std::function<double(double)>& increasi
   estimate.value = increasing(estimate.value);
   estimate.interval = {increasing(estimate.interval.low), increasing(estimate.interval.high)};
   return estimate;
-}
-
-bool share_packing(const FigureRun& a, const FigureRun& b) {
-  return !a.parent.empty() && a.parent == b.parent;
 }
 
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {

@@ -16,8 +16,9 @@
 
 namespace shearcell {
 
-/// Why a run has no number: it has no checkpoint of that cycle; it ends before; it begins after;
-/// or the quantity does not exist in it (phi without interior grains).
+/// Why a run has no number: it lacks a checkpoint of that cycle (`checkpoint`), ends before it,
+/// begins after it, or the quantity does not exist in it (`undefined`: phi without interior
+/// grains).
 enum class Missing { nothing, checkpoint, too_short, too_late, undefined };
 
 struct RunValue {
@@ -53,13 +54,10 @@ Scalar onset_phi(OnsetMethod method);
 /// The estimate of an increasing function of the quantity. The spread stays that of the quantity.
 Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing);
 
-/// Whether one stage prepared the packing that both runs begin with.
-bool share_packing(const FigureRun& a, const FigureRun& b);
-
-/// a less b. Paired, by Student's t, if some runs share packings: those that do not are then left
-/// out. Else Welch's interval. A verdict needs least_runs runs or pairs and, so that runs that end
-/// early do not bias it, the number of three quarters of each group; with pairs, also partners for
-/// as many. [choice]
+/// a less b. Paired, by Student's t, if some runs share a packing; runs without a partner are then
+/// left out. Otherwise Welch's interval. A verdict needs least_runs runs or pairs. So that runs
+/// that end early do not bias it, three quarters of each group must have the number, and with pairs
+/// also a partner. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
 /// The mean over runs less the published number.

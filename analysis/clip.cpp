@@ -4,6 +4,7 @@
 #include <CGAL/MP_Float.h>
 #include <CGAL/Mpzf.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -19,8 +20,8 @@ using Exact = CGAL::Mpzf;
 using Exact = CGAL::MP_Float;
 #endif
 
-// Above this the corner is computed again in exact arithmetic: its three planes nearly share a
-// line.
+// A corner with a larger error bound [d] is computed again in exact arithmetic: its three planes
+// nearly share a line.
 constexpr double worst_corner_error = 1e-10;
 
 // The relative error of one operation in doubles.
@@ -169,8 +170,8 @@ double ConvexCell::measure(std::vector<double>& areas) {
     for_each_edge(corners_[k].planes,
                   [&](auto a, auto b) { owner_[pair(a, b)] = static_cast<std::uint16_t>(k); });
   }
-  // An edge lies in two faces. With the origin as apex it spans a triangle, whose projections on
-  // the two planes are the triangles that it spans with their foot points: those sum to the faces.
+  // An edge lies in two faces. Edge and origin span a triangle. Its projection on the plane of a
+  // face is the triangle of the edge and the foot of the origin; these triangles sum to the face.
   for (std::size_t k = 0; k < corners_.size(); ++k) {
     for_each_edge(corners_[k].planes, [&](auto a, auto b) {
       if (a > b) return;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A convex polyhedron cut by one half-space after another, each corner's side decided exactly.
 //
-// Three properties carry the rest:
+// Three properties make this exact:
 //  1. A corner is the meeting point of three planes and is stored as those three, oriented so that
 //     det(n_a, n_b, n_c) > 0. Its coordinates are computed from the planes themselves, never from
 //     other corners, so no error accumulates.
@@ -14,7 +14,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -36,8 +35,8 @@ HalfSpace bisector_to(const Eigen::Vector3d& site);
 /// The side of a plane with unit `normal` at signed distance `offset` from the origin.
 HalfSpace plane_at(const Eigen::Vector3d& normal, double offset);
 
-/// More planes than the cell of a grain of any packing has. The tables grow as its square, and a
-/// corner's number, below twice as many, has 16 bits.
+/// No cell of a packing has so many planes. The tables grow as the square of the number of planes,
+/// and the number of a corner, which is less than twice that of the planes, has 16 bits.
 inline constexpr std::size_t most_planes = 4096;
 
 /// Reuse one object for many cells: it keeps its memory. Not for use by two threads at once.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <span>
@@ -20,7 +19,7 @@ constexpr double kReach = 1.5;  // [d]; the 14 nearest neighbours in BCC are wit
 constexpr std::size_t kMost = 14;
 using Bonds = std::array<std::uint32_t, kMost>;  // a bit for each neighbour it is bonded to
 
-// Between the first and the second shell of FCC, as a multiple of the first.
+// Halfway between the first and the second shell of FCC, in units of the first.
 const double kCut = 0.5 * (1 + std::numbers::sqrt2);
 
 struct Neighbour {
@@ -29,7 +28,7 @@ struct Neighbour {
   Eigen::Vector3d separation;  // from the grain to the neighbour's nearest image [d]
 };
 
-// The neighbours of each grain, nearest first; equal distances by site.
+// The neighbours of each grain, nearest first; those at equal distances in the order of sites.
 std::vector<std::vector<Neighbour>> neighbours_of_all(const Cell& cell, const WallPose& pose,
                                                       const Eigen::Matrix3Xd& grains) {
   std::vector<std::vector<Neighbour>> near(static_cast<std::size_t>(grains.cols()));
@@ -71,7 +70,7 @@ int bonds_among(const Bonds& bonds, std::uint32_t members) {
   return ends / 2;
 }
 
-// Those in the largest connected part of the graph that the members form.
+// Most bonds in a connected part of the graph that the members form.
 int longest_chain(const Bonds& bonds, std::uint32_t members) {
   int longest = 0;
   for (std::uint32_t left = members; left != 0;) {
@@ -96,7 +95,7 @@ int signature(const Bonds& bonds, std::size_t neighbour) {
          longest_chain(bonds, common);
 }
 
-// How many of the neighbours have each of two signatures; none if one of them has another.
+// Number of neighbours with each of two signatures; zeros if a neighbour has another signature.
 std::array<int, 2> count_signatures(std::span<const Neighbour> near, double cut, int first,
                                     int second) {
   const Bonds bonds = find_bonds(near, cut);

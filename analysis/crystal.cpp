@@ -76,8 +76,8 @@ std::vector<std::int32_t> unpacked(const json& result, const char* key) {
   return values;
 }
 
-/// Ascending ids, each in a crystallite that exists, which has at least one grain, and as many in
-/// each as its size says; places that can be drawn.
+/// Throws unless ids ascend, labels name crystallites, sizes count their grains, no crystallite is
+/// empty, and centres and the cell are finite.
 void check(const CrystalliteMap& map) {
   if (map.label.size() != map.grain.size()) refuse("labels and grains differ in number");
   if (map.centre.size() != map.size.size()) refuse("centres and sizes differ in number");
@@ -127,7 +127,7 @@ Structure structure(double phi_local, double q6) {
 Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::uint8_t> crystalline,
                           double least_face) {
   const std::size_t count = crystalline.size();
-  // Disjoint sets of grains; the lowest id of a set stands for it.
+  // Disjoint sets of grains; the root of a set is its lowest id.
   std::vector<std::size_t> parent(count);
   std::iota(parent.begin(), parent.end(), std::size_t{0});
   const auto root_of = [&](std::size_t i) {

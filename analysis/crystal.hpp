@@ -48,8 +48,8 @@ struct Crystallites {
 Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::uint8_t> crystalline,
                           double least_face);
 
-/// The crystallites of one checkpoint, their places and their grains, in a form that can be stored,
-/// for tracking.
+/// The crystallites of one checkpoint, with their places and grains, as they are stored to follow
+/// them from checkpoint to checkpoint.
 struct CrystalliteMap {
   std::vector<std::int32_t> grain;      ///< ids of the crystalline interior grains, ascending
   std::vector<std::int32_t> label;      ///< crystallite of each of them
@@ -60,9 +60,9 @@ struct CrystalliteMap {
   double top = 0;
 };
 
-/// Centres are in the untilted cell: x is less the displacement of the walls at that height, so
-/// that 0 <= x <= width. z is a mean of angles over the period, in [0, depth): exact for what is
-/// small beside the period.
+/// Centres are in the untilted cell: the displacement of the walls at that height is subtracted
+/// from x, so that 0 <= x <= width. z is a circular mean over the period, in [0, depth): exact for
+/// crystallites that are small compared with the period.
 CrystalliteMap crystallite_map(const Crystallites& crystallites, const Cell& cell,
                                const WallPose& pose, const Eigen::Matrix3Xd& positions);
 

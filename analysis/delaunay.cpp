@@ -7,6 +7,7 @@
 #include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -169,7 +170,7 @@ std::vector<DualFace> Delaunay::faces(const std::vector<std::uint8_t>& wanted) {
 }
 
 double Delaunay::face_area(std::int32_t start, std::size_t i, std::size_t j) {
-  // The face is the polygon of the circumcentres around the edge from i to j, taken in turn.
+  // The face is the polygon of the circumcentres of the tetrahedra around the edge from i to j.
   const Tetrahedron& first = tetrahedra_[static_cast<std::size_t>(start)];
   const std::int32_t a = first.vertex[i];
   const std::int32_t b = first.vertex[j];

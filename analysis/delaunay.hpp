@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CGAL's Delaunay triangulation of the sites and of their images in z, and what its dual needs:
-// circumcentres, the faces between sites, and the neighbours of a site.
+// CGAL's Delaunay triangulation of the sites and of their images in z, with the circumcentres, the
+// Voronoi faces between sites, and the neighbours of a site.
 #pragma once
 
 #include <CGAL/Delaunay_triangulation_3.h>
@@ -10,7 +10,6 @@
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <array>
 #include <compare>
 #include <cstddef>
@@ -99,8 +98,8 @@ class Delaunay {
     std::int32_t value = -1;
   };
   using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<Number, Kernel>;
-  // A number fits into the padding of CGAL's cell, a centre would not: with the smaller cells CGAL
-  // takes a tenth less time.
+  // A number fits into the padding of CGAL's cell; a centre would not. The smaller cells take a
+  // tenth less time.
   using CellBase =
       CGAL::Triangulation_cell_base_with_info_3<Number, Kernel,
                                                 CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;

@@ -69,7 +69,7 @@ json lattices_of(const MeasureInput& input) {
 
 constexpr auto any_grain = [](std::size_t) { return true; };
 
-/// Over the interior grains for which `selected` holds and the value is a number.
+/// Mean of the finite values of the interior grains for which `selected` holds.
 template <class Value, class Selected>
 double mean_over(const GrainMeasures& grains, const Value& value, const Selected& selected) {
   double sum = 0, count = 0;
@@ -99,7 +99,7 @@ json motion_of(const MeasureInput& input) {
     kept[std::string("msd_") + lag] = mean_over(grains, square, any_grain);
     kept[std::string("d2min_") + lag] = mean_over(grains, nonaffine, any_grain);
     if (cycles != 1) continue;
-    // How grains of each structure moved over one cycle.
+    // Motion over one cycle by the structure of the grains.
     std::vector<std::uint8_t> crystalline;
     for (const Structure structure : grains.structure) {
       crystalline.push_back(structure == Structure::disordered ? 0 : 1);
@@ -121,7 +121,7 @@ json to_json(const MeasuredCurve& curve) {
   return {{"x", curve.x}, {"y", curve.y}};
 }
 
-/// A curve that depends on the places of the interior grains.
+/// A function of the positions of the interior grains.
 template <auto kCompute>
 json of_places(const char* name, const MeasureInput& input) {
   const Checkpoint& c = *input.checkpoint;
@@ -181,7 +181,7 @@ void read_crystallites(const json& result, Measures& measures) {
   measures.crystallite_map = read_crystallite_map(result);
 }
 
-/// kRead, with an error for people where the result is not what it was kept as.
+/// Calls kRead and turns errors of the JSON library into AnalysisError.
 template <void (*kRead)(const json&, Measures&)>
 void checked(const json& result, Measures& measures) {
   try {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Named results of the analysis of one checkpoint, in a form that can be kept and read back
-// exactly.
+// Named results of the analysis of one checkpoint, which are stored and read back exactly.
 #pragma once
 
 #include <cstddef>
@@ -16,22 +15,22 @@
 
 namespace shearcell {
 
-/// Raise it with every change that may alter a bit of any result: what was kept under another
-/// version is then computed again. tests/analysis/test_derived_measures.cpp pins results to it.
+/// Raise it with every change that may alter a bit of any result: results that were stored with
+/// another version are computed again. tests/analysis/test_derived_measures.cpp pins results to it.
 inline constexpr std::uint64_t analysis_version = 1;
 
-/// What a result is taken from.
+/// What a result is computed from.
 struct MeasureInput {
   const Analysis& analysis;
-  const Checkpoint* checkpoint = nullptr;  ///< only scalars and crystallites do without
+  const Checkpoint* checkpoint = nullptr;  ///< not needed for scalars and crystallites
   /// The same run's checkpoint so many cycles earlier, valid until the next call; null where the
   /// run has none.
   std::function<const Checkpoint*(std::uint64_t cycles)> earlier = {};
 };
 
-/// One result that can be kept, with what it depends on besides the checkpoint. Several are taken
-/// from one Analysis, so that the Voronoi cells are found once. A result may be anything JSON
-/// holds, binary arrays (nlohmann::json::binary) of one entry per grain included.
+/// One result that can be stored, with the parameters on which it depends besides the checkpoint.
+/// All are computed from one Analysis, so that the Voronoi cells are computed once. A result is any
+/// JSON value; it may hold binary arrays (nlohmann::json::binary) of one entry per grain.
 struct DerivedMeasure {
   std::string name;
   nlohmann::json parameters;
@@ -44,7 +43,7 @@ struct DerivedMeasure {
   std::string key() const { return name + " " + parameters.dump(); }
 };
 
-/// Every result that can be kept: "scalars" are those of `Measures` itself.
+/// Every result that can be stored. "scalars" has the scalars of `Measures` itself.
 std::span<const DerivedMeasure> all_derived_measures();
 /// The one of that name, which must exist.
 const DerivedMeasure& derived_measure(std::string_view name);

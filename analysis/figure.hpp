@@ -36,7 +36,7 @@ struct FigureRun {
   std::string name;           ///< of the variant, for people; "" for `variant`
   bool named = false;         ///< by a label of the manifest
   nlohmann::json labels;      ///< the swept parameters of the run
-  nlohmann::json parameters;  ///< all that its stages feel, by their keys in a manifest
+  nlohmann::json parameters;  ///< of all its stages, by their keys in a manifest
   std::uint64_t seed = 0;
   std::vector<CheckpointMeasures> checkpoints;  ///< by cycle
 };
@@ -52,9 +52,10 @@ struct FigureResult {
   std::vector<Verdict> verdicts;
 };
 
-/// `table`: of the runs of every experiment, each run once per experiment, with its last checkpoint
-/// alone, unmeasured. The others are of the runs of one experiment: `curves` has one curve for each
-/// variant; `groups` averages over the variants that have the same values of the figure's `keys`.
+/// `table` shows the runs of all experiments, each run once per experiment, with its last
+/// checkpoint only, which is not measured. The others show the runs of one experiment: `curves` has
+/// one curve for each variant; `groups` averages over variants with the same values of the figure's
+/// `keys`.
 enum class FigureForm { table, curves, groups };
 
 /// A figure of the supplement.
@@ -80,9 +81,9 @@ double number_of(const FigureRun& run, const std::string& key);
 /// Whether its engine is one of its swept values: `run --engine` adds such runs to an experiment.
 bool sweeps_engine(const FigureRun& run);
 
-/// Those of `keys` that distinguish the variants: each varies, and without any one of them two
-/// variants would be equal. Of keys that advance together the first stays. `variants` are objects
-/// of swept keys and values.
+/// The keys that distinguish the variants: each of them varies, and without it two variants would
+/// be equal. Of keys that advance together the first stays. `variants` are objects of swept keys
+/// and values.
 std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,
                                             std::vector<std::string> keys);
 

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -66,7 +65,7 @@ std::string label_of(const Axis& axis) {
   return label;
 }
 
-/// What an axis has to show.
+/// The range of the data along one axis, error bars included.
 struct Extent {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -78,8 +77,8 @@ struct Extent {
   }
 };
 
-/// For a logarithmic axis with fewer than two powers of ten: 1, 2 and 5 times a power of ten, or
-/// more values where few of these lie within.
+/// Ticks of a logarithmic axis with fewer than two powers of ten: 1, 2 and 5 times a power of ten,
+/// or more values where few of these lie in the range.
 std::vector<std::string> ticks_of_decades(const Extent& data) {
   std::vector<std::string> ticks;
   const bool narrow = data.high < 4 * data.low;
@@ -168,7 +167,8 @@ class Script {
     const double high = std::max(data.high, axis.high.value_or(data.high));
     const double length = axis.clip && axis.low && axis.high ? *axis.high - *axis.low : high - low;
     if (!(length > 0) || !std::isfinite(length)) return;
-    // About five steps of 1, 2 or 5 times a power of ten, all with as many decimals.
+    // About five steps of 1, 2 or 5 times a power of ten; all ticks have the same number of
+    // decimals.
     const double power = std::pow(10, std::floor(std::log10(length / 5)));
     const double ratio = length / 5 / power;
     const double step = power * (ratio < 1.5 ? 1 : ratio < 3.5 ? 2 : ratio < 7.5 ? 5 : 10);
@@ -186,24 +186,22 @@ class Script {
     }
     const double room = lines.high > lines.low ? (lines.high - lines.low) / 4 : 0;
     const bool any = lines.low <= lines.high;
-    std::array<std::string, 4> offsets;  // left, right, top, bottom
+    struct End {
+      std::string range, offset;
+    };
     const auto end = [](const std::optional<double>& fixed, bool holds,
-                        const std::string& otherwise, const char* beyond, std::string& offset) {
-      offset = fixed && holds ? "0" : beyond;
-      return fixed && holds ? digits(*fixed) : otherwise;
+                        const std::string& otherwise, const char* beyond) {
+      return fixed && holds ? End{digits(*fixed), "0"} : End{otherwise, beyond};
     };
     const Axis &x = chart_.x, &y = chart_.y;
-    const std::string left = end(x.low, x.clip || x_.low >= x.low, "*", "graph 0.03", offsets[0]);
-    const std::string right =
-        end(x.high, x.clip || x_.high <= x.high, "*", "graph 0.03", offsets[1]);
-    const std::string top =
-        end(y.high, y.clip || y_.high <= y.high, any ? digits(lines.high + room) + "<*" : "*",
-            "graph 0.05", offsets[2]);
-    const std::string bottom =
-        end(y.low, y.clip || y_.low >= y.low, any ? "*<" + digits(lines.low - room) : "*",
-            "graph 0.05", offsets[3]);
-    add("set xrange [{}:{}]\nset yrange [{}:{}]\nset offsets {}, {}, {}, {}\n", left, right, bottom,
-        top, offsets[0], offsets[1], offsets[2], offsets[3]);
+    const End left = end(x.low, x.clip || x_.low >= x.low, "*", "graph 0.03");
+    const End right = end(x.high, x.clip || x_.high <= x.high, "*", "graph 0.03");
+    const End top = end(y.high, y.clip || y_.high <= y.high,
+                        any ? digits(lines.high + room) + "<*" : "*", "graph 0.05");
+    const End bottom = end(y.low, y.clip || y_.low >= y.low,
+                           any ? "*<" + digits(lines.low - room) : "*", "graph 0.05");
+    add("set xrange [{}:{}]\nset yrange [{}:{}]\nset offsets {}, {}, {}, {}\n", left.range,
+        right.range, bottom.range, top.range, left.offset, right.offset, top.offset, bottom.offset);
   }
 
   void reference(const ReferenceLine& line) {
@@ -229,7 +227,7 @@ class Script {
     add("EOD\n");
   }
 
-  /// Every how many points a joined curve has a mark, so that marks stay apart.
+  /// A joined curve has a mark at every so many points, so that marks do not overlap.
   std::size_t spacing(const Series& series) const {
     constexpr std::size_t most_marks = 20;
     std::size_t every = 1;
@@ -307,7 +305,7 @@ int height_of(const TextTable& table) {
   return row_height * (static_cast<int>(table.rows.size()) + 1);
 }
 
-/// Texts at places of the drawing; the first column is left aligned, others are centred.
+/// Labels at fixed places; the first column is left aligned, the others are centred.
 std::string text_table_commands(const TextTable& table) {
   std::string text = "unset border\nunset tics\nunset key\nset margins 0,0,0,0\n";
   const double width = width_of(table), height = height_of(table);
@@ -333,7 +331,7 @@ std::string text_table_commands(const TextTable& table) {
   return text + "plot [0:1] [0:1] NaN\n";
 }
 
-/// As tall as the frame and the rows of the key need.
+/// Height of the frame and of the rows of the key [px].
 int height_of(const Chart& chart) {
   std::size_t entries = 0, longest = 0;
   for (const Series& series : chart.series) {

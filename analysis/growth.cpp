@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace shearcell {
 namespace {
 
-/// One row for each size, of one run or of several.
+/// Counts of each size from 1 on, in one column per run.
 struct Cases {
   Eigen::ArrayXd log_size;
   Eigen::ArrayXXd grew;    ///< sizes x runs
@@ -66,7 +65,7 @@ std::optional<GrowthFit> fit(const Eigen::ArrayXd& log_size, const Eigen::ArrayX
   return GrowthFit{theta[0] - theta[1] * mean, theta[1]};
 }
 
-/// Interval of what `value` computes from the counts of a selection of runs, added up.
+/// Bootstrap of `value`, a function of the sums of the counts over the selected runs.
 template <class Value>
 std::optional<Estimate> over_selections(const Cases& cases, const Value& value) {
   return bootstrapped(static_cast<std::size_t>(cases.grew.cols()),
@@ -81,7 +80,7 @@ std::optional<Estimate> over_selections(const Cases& cases, const Value& value) 
                       });
 }
 
-/// The same of what `value` computes from the fit.
+/// Bootstrap of `value`, a function of the fit.
 template <class Value>
 std::optional<Estimate> over_fits(const Cases& cases, const Value& value) {
   return over_selections(cases, [&](const Eigen::ArrayXd& grew, const Eigen::ArrayXd& shrank) {
@@ -90,8 +89,8 @@ std::optional<Estimate> over_fits(const Cases& cases, const Value& value) {
   });
 }
 
-/// Pools neighbouring sizes until the share that grew rises from pool to pool; the smallest size of
-/// the first pool of which more than half grew. Infinite if there is none.
+/// Pools neighbouring sizes until the share that grew rises from pool to pool. Returns the smallest
+/// size of the first pool of which more than half grew; infinite if there is no such pool.
 double first_that_grows(const Eigen::ArrayXd& grew, const Eigen::ArrayXd& shrank) {
   struct Pool {
     double size, grew, all;

@@ -14,7 +14,7 @@
 
 namespace shearcell {
 
-/// What became of the crystallites of one size.
+/// How many crystallites of one size grew and shrank.
 struct GrowthCount {
   std::size_t grew = 0;      ///< more than half of the grains are in larger crystallites
   std::size_t shrank = 0;    ///< more than half are in smaller ones, or in none
@@ -23,10 +23,10 @@ struct GrowthCount {
   bool operator==(const GrowthCount&) const = default;
 };
 
-/// By size in grains; of all sizes that were followed, whatever became of them.
+/// By size in grains; has every size that was followed.
 using GrowthBySize = std::map<std::int32_t, GrowthCount>;
 
-/// Follows every crystallite of `now` to `later` and adds what became of it.
+/// Follows every crystallite of `now` to `later` and counts it.
 void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize& counts);
 
 /// All pairs of checkpoints of a run that are `cycles` apart, from every cycle on.
@@ -45,8 +45,9 @@ struct GrowthRate {
   double delta_error = 0;  ///< twice grow_error, since rho_g + rho_s = 1
 };
 
-/// Over all runs, from the smallest size on: each takes sizes until it has at least `least_counted`
-/// crystallites, by default one size; a rest with fewer is left out.
+/// Over all runs, in bins of sizes: each bin takes sizes, from the smallest on, until it has at
+/// least `least_counted` crystallites. By default a bin is one size. The last bin is left out if it
+/// has fewer.
 std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
                                      std::size_t least_counted = 1);
 
@@ -54,8 +55,8 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
 /// [choice]
 inline constexpr std::int32_t largest_size_fitted = 100;
 
-/// Crystallites that leave no majority in any crystallite: shrank, or not counted. The supplement
-/// names those that become smaller only. [choice]: shrank.
+/// Whether crystallites that vanished (GrowthCount) count as shrinking. The supplement speaks only
+/// of crystallites that become smaller. [choice]: they do.
 enum class Vanished { shrank, left_out };
 
 /// Logistic regression, P(grow) = 1 / (1 + exp(-slope (ln size - ln size_0))), by maximum

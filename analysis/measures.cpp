@@ -215,7 +215,7 @@ const ScalarMeasure* find_measure(std::string_view name) {
 }
 
 Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions) {
-  // A grain would overlap its own image, and the number of images grows as the depth falls.
+  // In a shallower cell a grain would overlap its own image.
   if (!(cell.depth >= 1)) {
     throw AnalysisError("the cell is " + std::to_string(cell.depth) + " d deep; 1 d is the least");
   }

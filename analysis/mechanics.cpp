@@ -21,8 +21,8 @@ struct Touch {
   std::int32_t grain, other;  // other: -1 for a wall
 };
 
-// Grains that fewer than four contacts hold, those with rattlers not counted: they are removed one
-// after the other until none is left.
+// A grain with fewer than four contacts is a rattler. Contacts with rattlers do not count, so
+// grains are removed until each of the others has at least four.
 std::vector<std::uint8_t> find_rattlers(std::size_t grains, std::span<const Touch> touches) {
   std::vector<int> held(grains, 0);
   std::vector<std::vector<std::int32_t>> neighbours(grains);
@@ -51,7 +51,7 @@ std::vector<std::uint8_t> find_rattlers(std::size_t grains, std::span<const Touc
   return rattler;
 }
 
-// Everything that contacts alone give.
+// Sums over all contacts.
 struct ContactSums {
   Eigen::Matrix3d virial = Eigen::Matrix3d::Zero();             // of interior grains [k d^2]
   double squares = 0;                                           // of overlaps [d^2]
@@ -66,7 +66,7 @@ ContactSums sums_of(const Checkpoint& checkpoint, Selected interior) {
   const auto grain = [](std::int32_t id) { return static_cast<std::size_t>(id); };
   const auto add = [&](const Contact& contact) {
     sums.squares += contact.overlap * contact.overlap;
-    // The contact is in the middle of the overlap; that with a plane is on the plane.
+    // The contact point is in the middle of the overlap; with a plane, it is on the plane.
     const double arm = contact.kind == Contact::Kind::wall_plane ? 0.5 - contact.overlap
                                                                  : 0.5 * (1 - contact.overlap);
     const double moment = contact.overlap * arm;

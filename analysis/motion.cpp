@@ -20,7 +20,7 @@ Eigen::Matrix3Xd untilted(const Checkpoint& checkpoint) {
   return position;
 }
 
-// What an affine deformation needs of the relative positions of one grain's neighbours.
+// Sums over one grain's neighbours, from which the best affine deformation follows.
 struct Neighbours {
   Eigen::Matrix3d product = Eigen::Matrix3d::Zero();  // later x earlier
   Eigen::Matrix3d square = Eigen::Matrix3d::Zero();   // earlier x earlier
@@ -36,7 +36,7 @@ struct Neighbours {
 
   // With the best deformation F = X Y^-1, sum |r' - F r|^2 = sum |r'|^2 - tr(F X^T).
   double nonaffine() const {
-    // Grains in one plane leave the deformation open.
+    // Neighbours in one plane do not determine the deformation.
     const double flat = 1e-9 * std::pow(square.trace() / 3, 3);
     if (count < 4 || !(square.determinant() > flat)) {
       return std::numeric_limits<double>::quiet_NaN();

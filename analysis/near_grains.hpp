@@ -1,20 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains near grains, whether they touch or not.
+// Pairs of grains within a distance, whether they touch or not.
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 
 #include "core/cell.hpp"
+#include "core/contact.hpp"
+#include "core/linked_cells.hpp"
 
 namespace shearcell {
 
 /// Calls visit(i, j, r) for every pair i < j of `sites` (3 x n [d], z unwrapped) that are at most
 /// `reach` [d] apart, with r from j's nearest image to i. `reach` must not exceed half the depth
 /// of the cell, beyond which images would be missed.
-void for_each_pair(
-    const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites, double reach,
-    const std::function<void(std::int32_t i, std::int32_t j, const Eigen::Vector3d& r)>& visit);
+template <class Visit>
+void for_each_pair(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites,
+                   double reach, const Visit& visit) {
+  const auto count = static_cast<std::int32_t>(sites.cols());
+  LinkedCells near(cell, pose, reach, static_cast<std::size_t>(count));
+  for (std::int32_t i = 0; i < count; ++i) {
+    near.for_each_near(sites.col(i), [&](std::int32_t j) {
+      Eigen::Vector3d r = sites.col(i) - sites.col(j);
+      r.z() = nearest_image(r.z(), cell.depth, 1 / cell.depth);
+      if (r.squaredNorm() <= reach * reach) visit(j, i, Eigen::Vector3d(-r));
+    });
+    near.insert(i, sites.col(i));
+  }
+}
 
 }  // namespace shearcell

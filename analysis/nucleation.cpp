@@ -43,7 +43,7 @@ std::optional<double> pooled(std::span<const std::vector<double>> histograms,
   return inside / all * static_cast<double>(histograms.front().size());
 }
 
-/// What one run spent in one bin of phi before its onset.
+/// The time of one run in one bin of phi before its onset.
 struct Stay {
   double cycles = 0;
   double grain_cycles = 0;
@@ -93,8 +93,8 @@ struct Likelihood {
   double score = 0;      ///< its derivative by the exponent, which falls with the exponent
 };
 
-/// Of the exponent, with each stratum's c at its maximum. The score is the sum over events of ln N
-/// less its mean over the stratum, weighted by cycles N^a.
+/// Likelihood of the exponent, with the most likely c of each stratum. The score is a sum over
+/// events: ln N less its mean over the stratum with the weights cycles N^a.
 Likelihood likelihood(const Strata& strata, double exponent) {
   Likelihood sum;
   for (const auto& [stratum, shares] : strata) {
@@ -113,11 +113,11 @@ Likelihood likelihood(const Strata& strata, double exponent) {
   return sum;
 }
 
-/// Where `falls`, which is true from some point between the ends on, begins to be true.
-double bisected(double low, double high, const auto& falls) {
+/// The point between the ends from which on `holds` is true.
+double bisected(double low, double high, const auto& holds) {
   for (int halving = 0; halving < 60; ++halving) {
     const double middle = (low + high) / 2;
-    (falls(middle) ? high : low) = middle;
+    (holds(middle) ? high : low) = middle;
   }
   return (low + high) / 2;
 }

@@ -24,7 +24,7 @@ inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 /// height h, so that both lie in [0, 1]; a cell higher than 1.675 L exceeds that. [choice]
 std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis);
 
-/// The same with one place for each nucleus, where it first has 15 to 25 grains, so that one that
+/// The same with one place for each nucleus, where it first has 15 to 25 grains. So a nucleus that
 /// is seen in many cycles counts once. A crystallite of 15 grains or more is a new nucleus if fewer
 /// than half of its grains have been in nuclei before, at any cycle. A nucleus that is first seen
 /// with more than 25 grains has no place. [choice]
@@ -50,9 +50,9 @@ struct NucleationRate {
   Interval interval;  ///< of the rate; of a Poisson count, F. Garwood, Biometrika 28, 437 (1936)
 };
 
-/// Ascending; bins in which some run spent time. The phi of an interval between two checkpoints is
-/// that of its beginning, so that a growing crystallite does not raise it. Runs that begin with a
-/// critical crystallite do not count.
+/// Ascending; only bins in which some run spent time. The phi of an interval between two
+/// checkpoints is that of its beginning, so that a growing crystallite does not raise it. Runs that
+/// begin with a critical crystallite do not count.
 std::vector<NucleationRate> nucleation_rates(RunGroup runs);
 
 /// The exponent a of rate = c(amplitude, phi) N_inves^a, by maximum likelihood: onsets are a

@@ -116,7 +116,8 @@ const RunMeasure* find_run_measure(std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-Onset onset(RunGroup runs, OnsetMethod method, double critical_size) {
+Onset onset(RunGroup runs, OnsetMethod method) {
+  const double critical_size = critical_size_for(*runs.front());
   Onset result;
   std::vector<double> phi;
   std::vector<double> cycle;

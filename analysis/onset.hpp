@@ -14,8 +14,8 @@
 
 namespace shearcell {
 
-/// A run is censored when its onset lies outside of what was observed. `unclear`: it is within, but
-/// the method finds no phi.
+/// A run is censored if its onset is before its first or after its last checkpoint. `unclear`: the
+/// onset is between them, and the method finds no phi.
 enum class Observed : std::uint8_t { yes, never, before_start, unclear };
 template <>
 inline constexpr auto kNames<Observed> = names_in_order<Observed>("observed", "never",
@@ -45,7 +45,7 @@ double critical_size_for(const FigureRun& run);
 
 using OnsetMethod = RunOnset (*)(const FigureRun& run, double critical_size);
 
-/// One number of a whole run that plots and claims take, by its name in tables.
+/// One number of a whole run, for plots and claims, by its name in tables.
 struct RunMeasure {
   std::string_view name;
   OnsetMethod method;
@@ -57,8 +57,8 @@ std::span<const RunMeasure> all_run_measures();
 /// The one of that name, or null.
 const RunMeasure* find_run_measure(std::string_view name);
 
-/// Over independent runs. Censored runs do not enter the mean, which is biased towards early onsets
-/// as long as there are any: they are counted for that reason.
+/// Over independent runs. Censored runs do not enter the mean. They are counted, because without
+/// them the mean is biased towards early onsets.
 struct Onset {
   RunStatistics phi;                ///< over observed runs
   std::optional<double> phi_error;  ///< of the mean, bootstrap over runs
@@ -67,6 +67,8 @@ struct Onset {
   std::size_t before_start = 0;     ///< runs that begin after
   std::size_t unclear = 0;          ///< runs in which the method finds none
 };
-Onset onset(RunGroup runs, OnsetMethod method, double critical_size);
+/// With the supplement's critical size for the amplitude of the first run; `runs` must not be
+/// empty.
+Onset onset(RunGroup runs, OnsetMethod method);
 
 }  // namespace shearcell

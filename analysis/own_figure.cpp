@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -20,7 +19,7 @@
 namespace shearcell {
 namespace {
 
-/// "phi_profile" and "", "deviator" and "Pa" of "deviator_Pa".
+/// Splits a measure's name: "deviator_Pa" is the column "deviator" with the unit "Pa".
 MeasureColumn column_of(std::string_view measure, std::string_view of, Quantity quantity = {}) {
   std::string name(measure);
   std::string unit(of == "%" ? "percent" : of == "1" ? "" : of == "d^2" ? "d2" : of);
@@ -28,13 +27,13 @@ MeasureColumn column_of(std::string_view measure, std::string_view of, Quantity 
   return {std::move(name), std::move(unit), std::move(quantity)};
 }
 
-/// That of a scalar measure that exists.
+/// The column of a scalar measure, which must exist.
 MeasureColumn scalar_column(std::string_view name) {
   const ScalarMeasure& measure = *find_measure(name);
   return column_of(name, measure.unit, [&measure](const Measures& m) { return measure.of(m); });
 }
 
-/// "largest crystallite" of "largest_crystallite".
+/// The axis of "largest_crystallite" is named "largest crystallite".
 Axis named_axis(std::string_view measure, std::string_view unit) {
   std::string name = column_of(measure, unit).name;
   std::ranges::replace(name, '_', ' ');
@@ -63,7 +62,7 @@ Axis x_axis(const std::string& key, std::span<const FigureRun> runs) {
   return {.name = "step of the stiffening", .whole = true};
 }
 
-/// The cycle that every run of the plot is measured at: as stated, or the last that all have.
+/// The cycle of the plot: as stated, or the last that all runs have.
 double cycle_of(const PlotSpec& plot, std::span<const FigureRun> runs) {
   if (plot.cycle) return static_cast<double>(*plot.cycle);
   double last = std::numeric_limits<double>::infinity();
@@ -79,8 +78,8 @@ const Measures* measures_at(const FigureRun& run, double cycle) {
   return found == run.checkpoints.end() ? nullptr : &found->measures;
 }
 
-/// A copy of the runs in which the curve is the variant: runs that differ in `x` alone, or those
-/// with one value of `by`, share a curve. It has the name of its variant where it is of one.
+/// A copy of the runs in which `variant` is the curve: runs that differ in `x` alone, or runs with
+/// the same value of `by`, share a curve. A curve of one variant keeps its name.
 std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec& plot,
                                 const NameVariants& name) {
   std::vector<std::string> keys = varied_keys(runs, plot.x);
@@ -116,7 +115,7 @@ FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Qu
     const Curve& curve = curves[k];
     Text title = curve.style.title;  // once in the key
     for (const FigureRun* run : curve.runs) {
-      // Without symbols, each curve has a colour of its own; when they run out, dashes.
+      // Thin lines have no symbols: each curve has its own colour, and dashes once these run out.
       Series series =
           thin_line(std::exchange(title, Text()), safe_colours[k % safe_colours.size()]);
       if (k / safe_colours.size() % 2 == 1) series.join = Join::dashes;
@@ -131,7 +130,7 @@ FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Qu
   return table;
 }
 
-/// What a curve is drawn from: y by x along each of its traces, and the values of all at each x.
+/// The data of one curve: y against x of each trace, and the values of all traces at each x.
 struct Points {
   std::map<std::uint64_t, std::map<double, double>> traces;
   std::map<double, std::vector<double>> values;
@@ -143,23 +142,25 @@ struct Points {
   }
 };
 
-/// One number of each run against a parameter; a trace for each seed.
-Points along_parameter(const PlotSpec& plot, const Curve& curve,
-                       const std::function<double(const FigureRun&)>& number) {
-  Points points;
-  for (const FigureRun* run : curve.runs) {
-    points.add(run->seed, number_of(*run, plot.x), number(*run));
-  }
-  return points;
-}
-
-/// A measured curve of one checkpoint of each run; a trace for each run.
-Points along_curve(const Curve& curve, const CurveMeasure& measure, double cycle) {
+/// Against a parameter: one number of each run, a trace for each seed. Of a curve measure: the
+/// curve of each run, a trace for each run. Checkpoints are those of `cycle`.
+Points points_of(const PlotSpec& plot, const Curve& curve, double cycle) {
+  const RunMeasure* of_run = find_run_measure(plot.y);
+  const CurveMeasure* of_curve = find_curve_measure(plot.y);
   Points points;
   for (std::size_t r = 0; r < curve.runs.size(); ++r) {
-    const Measures* measures = measures_at(*curve.runs[r], cycle);
+    const FigureRun& run = *curve.runs[r];
+    if (of_run != nullptr) {
+      points.add(run.seed, number_of(run, plot.x), of_run->of(run));
+      continue;
+    }
+    const Measures* measures = measures_at(run, cycle);
     if (measures == nullptr) continue;
-    const MeasuredCurve measured = measure.of(*measures);
+    if (of_curve == nullptr) {
+      points.add(run.seed, number_of(run, plot.x), find_measure(plot.y)->of(*measures));
+      continue;
+    }
+    const MeasuredCurve measured = of_curve->of(*measures);
     for (std::size_t i = 0; i < measured.x.size(); ++i) {
       points.add(r, measured.x[i], measured.y[i]);
     }
@@ -167,58 +168,37 @@ Points along_curve(const Curve& curve, const CurveMeasure& measure, double cycle
   return points;
 }
 
-/// What a panel against a parameter, or of measured curves, shows.
-struct Panel {
-  std::string x;
-  MeasureColumn y;
-  std::function<Points(const Curve&)> points;
-  std::optional<double> cycle = {};  ///< of the checkpoints; none for a number of the whole run
-};
-
-Panel panel_of(const PlotSpec& plot, std::span<const FigureRun> runs) {
-  const RunMeasure* of_run = find_run_measure(plot.y);
-  std::optional<double> cycle;
-  if (of_run == nullptr) cycle = cycle_of(plot, runs);
-  if (const CurveMeasure* measured = find_curve_measure(plot.y)) {
-    return {std::string(measured->x), column_of(measured->name, measured->unit),
-            [=](const Curve& curve) { return along_curve(curve, *measured, *cycle); }, cycle};
-  }
-  MeasureColumn y = of_run != nullptr ? column_of(of_run->name, "1") : scalar_column(plot.y);
-  const auto number = [of_run, cycle, quantity = y.quantity](const FigureRun& run) {
-    if (of_run != nullptr) return of_run->of(run);
-    const Measures* measures = measures_at(run, *cycle);
-    return measures == nullptr ? std::nan("") : quantity(*measures);
-  };
-  return {plot.x, std::move(y),
-          [&plot, number](const Curve& curve) { return along_parameter(plot, curve, number); },
-          cycle};
-}
-
-/// A sentence of the caption: which checkpoints, and how many runs have no value.
-std::string note_of(const PlotSpec& plot, const Panel& panel, std::span<const FigureRun> runs,
-                    std::size_t with_value) {
-  if (panel.cycle && std::isfinite(*panel.cycle)) {
-    return fmt::format("At {} {}{}", all_stiffen(runs) ? "step" : "cycle", *panel.cycle,
+/// A sentence of the caption: which checkpoints, and how many runs have no value. `cycle` is none
+/// for a number of the whole run.
+std::string note_of(const PlotSpec& plot, std::optional<double> cycle,
+                    std::span<const FigureRun> runs, std::size_t with_value) {
+  if (cycle && std::isfinite(*cycle)) {
+    return fmt::format("At {} {}{}", all_stiffen(runs) ? "step" : "cycle", *cycle,
                        plot.cycle ? "" : ", the last that all runs have");
   }
-  if (panel.cycle || with_value == runs.size()) return "";
+  if (cycle || with_value == runs.size()) return "";
   return fmt::format("{} of {} runs have no value and are left out of the means",
                      runs.size() - with_value, runs.size());
 }
 
-/// The mean over the runs at each x, or each trace: of a parameter, or of a measured curve.
+/// Against a parameter, or of a curve measure: the mean over the runs at each x, or each trace.
 FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
                       std::span<const Curve> curves) {
-  const bool measured_curves = find_curve_measure(plot.y) != nullptr;
-  const Panel panel = panel_of(plot, runs);
-  FigureTable table{.name = plot.name, .columns = {"variant", panel.x}};
-  add_columns(panel.y, table.columns);
+  const CurveMeasure* of_curve = find_curve_measure(plot.y);
+  const std::string x(of_curve != nullptr ? of_curve->x : plot.x);
+  const bool of_whole_run = find_run_measure(plot.y) != nullptr;
+  const MeasureColumn y = of_curve != nullptr ? column_of(plot.y, of_curve->unit)
+                          : of_whole_run      ? column_of(plot.y, "1")
+                                              : scalar_column(plot.y);
+  const double cycle = cycle_of(plot, runs);
+  FigureTable table{.name = plot.name, .columns = {"variant", x}};
+  add_columns(y, table.columns);
   table.columns.emplace_back("runs");
-  if (panel.cycle) table.columns.emplace_back("cycle");
+  if (!of_whole_run) table.columns.emplace_back("cycle");
   std::vector<Series> traces;
   std::size_t with_value = 0;
   for (const Curve& curve : curves) {
-    const Points points = panel.points(curve);
+    const Points points = points_of(plot, curve, cycle);
     Text title = curve.style.title;  // once in the key
     for (const auto& [trace, values] : points.traces) {
       traces.push_back(
@@ -230,21 +210,22 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
       const RunStatistics over = over_runs(values);
       add_values(over, row);
       row.emplace_back(over.runs);
-      if (panel.cycle) row.emplace_back(*panel.cycle);
+      if (!of_whole_run) row.emplace_back(cycle);
       with_value += over.runs;
     }
   }
-  table.chart.series = series_of(curves, columns_against(panel.x, panel.y));
+  table.chart.series = series_of(curves, columns_against(x, y));
   if (plot.traces) table.chart.series = std::move(traces);
   for (Series& series : table.chart.series) {
-    if (measured_curves) {
+    if (of_curve != nullptr) {
       series.point = 0;  // hundreds of values: symbols would hide the curve
     } else {
       series.band = false;
     }
     if (curves.size() == 1) series.title = {};
   }
-  table.chart.note = note_of(plot, panel, runs, with_value);
+  table.chart.note =
+      note_of(plot, of_whole_run ? std::nullopt : std::optional(cycle), runs, with_value);
   return table;
 }
 

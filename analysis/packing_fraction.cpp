@@ -2,7 +2,6 @@
 #include "analysis/packing_fraction.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "analysis/voronoi.hpp"
@@ -28,16 +27,16 @@ Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd
     largest = std::max(largest, overlap);
     ++result.contacts[static_cast<std::size_t>(grain)];
   };
-  double sum = 0;
+  double sum = 0, pairs = 0;
   for_each_contact(cell, grains, pose, [&](const Contact& contact) {
     if (contact.kind == Contact::Kind::wall_plane) return;
     touch(contact.grain, contact.overlap);
     if (contact.kind == Contact::Kind::wall_grain) return;
     touch(contact.other, contact.overlap);
     sum += contact.overlap;
-    ++result.pairs;
+    ++pairs;
   });
-  if (result.pairs > 0) result.mean = sum / static_cast<double>(result.pairs);
+  if (pairs > 0) result.mean = sum / pairs;
   return result;
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -27,7 +26,6 @@ struct Overlaps {
   std::vector<double> largest;         ///< delta_max,i [d], 0 for a grain without contact
   std::vector<std::int32_t> contacts;  ///< of each grain, with grains and wall grains
   double mean = 0;                     ///< Eq. S3 over distinct pairs of grains [d]; 0 without any
-  std::size_t pairs = 0;               ///< n_ovl, the distinct pairs of grains that overlap
 };
 
 /// Contacts of `grains` (3 x n [d], z unwrapped).

@@ -26,7 +26,7 @@ Eigen::Matrix3Xd selected(const Eigen::Matrix3Xd& grains, std::span<const std::u
   return found;
 }
 
-// Volume of the pairs (r, r + s) with both ends in the region and |s| between two distances [d^6].
+// Volume of all pairs (r, r + s) with both ends in the region and from <= |s| < to [d^6].
 // Averaged over directions n, the set covariance is D <(W - s |a n|)(H - s |b n|)>, with a = (1,
 // -tan theta, 0) and b = (0, 1, 0).
 double pair_volume(const InteriorRegion& region, double from, double to) {
@@ -77,7 +77,7 @@ WaveVector largest_components(const InteriorRegion& region) {
   const auto within = [](double length) {
     return static_cast<int>(largest_wave_per_d * length / (2 * kPi));
   };
-  // The second component of k has a share of the first one's where the walls are tilted.
+  // Where the walls are tilted, the first component of k adds to the second.
   return {within(region.width), within(region.height * (1 + std::abs(region.tan_theta))),
           within(region.depth)};
 }

@@ -13,8 +13,8 @@
 namespace shearcell {
 namespace {
 
-/// A name is part of a script and of file names, so it may hold no character that is special in
-/// either.
+/// The name is part of a script and of file names: it may only have characters that are special in
+/// neither.
 void require_plain_name(const std::string& name) {
   const bool plain = !name.empty() && name.front() != '-' &&
                      name.find_first_not_of(
@@ -23,7 +23,7 @@ void require_plain_name(const std::string& name) {
   if (!plain) throw AnalysisError("'" + name + "' cannot name a figure's files");
 }
 
-/// Runs a program with the date that it writes into its files fixed.
+/// Runs a program so that it writes a fixed date into its files.
 std::optional<ProgramOutcome> run_timeless(const std::filesystem::path& folder,
                                            const std::vector<std::string>& words) {
   return run_program(words, folder, {"SOURCE_DATE_EPOCH=0"});
@@ -77,11 +77,11 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
   const TemporaryFolder apart;
   write_output(apart.path() / script, gnuplot_script(table));
 
-  // -d keeps a user's own defaults out of the figure.
+  // -d: without the user's own settings.
   const std::optional<ProgramOutcome> outcome =
       run_timeless(apart.path(), {"gnuplot", "-d", script});
   auto drawn = outcome ? drawing(*outcome, apart.path() / svg.filename()) : std::nullopt;
-  if (!drawn) {  // what is there is of other data
+  if (!drawn) {  // older drawings show other data
     for (const auto& old : {svg, pdf}) std::filesystem::remove(old);
   }
   if (!outcome) {
@@ -104,7 +104,7 @@ std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path&
       svg.parent_path(),
       {"rsvg-convert", "--format=pdf", "--output", made.string(), svg.filename().string()});
   const auto drawn = outcome ? drawing(*outcome, made) : std::nullopt;
-  if (!drawn) std::filesystem::remove(pdf);  // of other data
+  if (!drawn) std::filesystem::remove(pdf);  // it shows other data
   if (!outcome) return std::nullopt;
   if (!drawn) {
     throw AnalysisError("rsvg-convert could not read " + svg.string() + ":\n" + outcome->messages);

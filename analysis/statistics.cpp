@@ -24,7 +24,7 @@ Interval around(double value, double error, double freedom) {
   return {value - half, value + half};
 }
 
-/// Values over all selections; those without one are left out.
+/// The statistic of each selection that has one.
 std::vector<double> bootstrap_values(std::size_t runs, const RunStatistic& statistic) {
   std::vector<std::size_t> selection(runs);
   std::vector<double> values;
@@ -39,7 +39,7 @@ std::vector<double> bootstrap_values(std::size_t runs, const RunStatistic& stati
   return values;
 }
 
-/// Runs that still wait just before `cycle`, and events at it.
+/// Runs that still wait just before `cycle`, and events at `cycle`.
 struct AtRisk {
   double waiting = 0;
   double events = 0;
@@ -173,7 +173,7 @@ std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double dist
   constexpr double power = 0.9;
   const double hit = both_sides ? (1 + power) / 2 : power;
   const double ratio = estimate.spread / distance;
-  // Student's quantiles exceed the normal ones, so no smaller number is enough.
+  // Student's quantiles exceed the normal ones, so fewer runs are never enough.
   const double least = std::pow((normal_quantile(upper) + normal_quantile(hit)) * ratio, 2);
   if (!(least <= most)) return std::nullopt;
   for (auto n = std::max(least_runs, static_cast<std::size_t>(least)); n <= most; ++n) {

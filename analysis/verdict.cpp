@@ -37,7 +37,7 @@ std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, 
   if (may_be_zero && (!planned || *planned > estimate.runs)) return planned;
   const double size = within ? std::abs(estimate.value) : estimate.value;
   const auto needed = runs_to_resolve(estimate, std::abs(size - margin), false);
-  // The spread is that of the mean of both sides of the interval; one side may be much longer.
+  // The spread is the mean of both sides of the interval, of which one may be much longer.
   return needed ? std::max(*needed, estimate.runs + 1) : needed;
 }
 

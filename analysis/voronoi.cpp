@@ -16,7 +16,7 @@ namespace shearcell {
 namespace {
 
 constexpr double smallest_face = 1e-13;  // [d^2]
-// In a dense packing no image farther away touches a cell; other packings need a second pass.
+// In a dense packing, images farther away touch no cell. Other packings need a second pass.
 constexpr double first_margin_spacings = 2.1;
 
 constexpr std::array<const char*, 4> side_names = {"left", "right", "bottom", "top"};
@@ -31,9 +31,9 @@ class Dual {
         grains_(grains),
         delaunay_(sites, grains, cell.depth, first_margin_spacings * spacing()) {}
 
-  /// Measures all cells. More images can only make cells smaller. So the first pass bounds the
-  /// margin that is needed, by spheres around the corners that hold no image, and the second pass
-  /// is the last.
+  /// Measures all cells. A cell is right if the sphere around each of its corners, through the
+  /// site, lies within the margin. More images can only make cells smaller, so the reach of the
+  /// first pass is enough for the second.
   VoronoiDiagram measure(WallGrainCells wall_grain_cells) {
     while (true) {
       reach_ = 0;
@@ -85,8 +85,8 @@ class Dual {
     reach_ = std::max({reach_, z + radius - cell_.depth, radius - z});
   }
 
-  /// Inside the walls, and no farther out in z than a grain's own images leave room for. Where a
-  /// wide gap has too few images yet, spheres may be centred anywhere.
+  /// Whether a cell's corner may be here: inside the walls, and within the distance in z at which a
+  /// grain's own images bound its cell. With too few images, spheres may be centred anywhere.
   bool may_be_corner(const Eigen::Vector3d& centre) const {
     return std::abs(centre.z() - cell_.depth / 2) <= cell_.depth &&
            wall_distances(cell_, pose_, centre).minCoeff() >= 0;
@@ -153,7 +153,7 @@ class Dual {
   /// Cuts the box by the bisectors to the neighbours and leaves the cell in polyhedron_ and areas_.
   /// Returns its volume [d^3].
   double clip(std::int32_t site) {
-    // Near ones first, so that few cuts have no effect; the order is unique.
+    // Near ones first, so that most later planes do not cut. The order is unique.
     std::vector<std::pair<double, SiteImage>> ranks;
     for (const SiteImage& other : delaunay_.neighbours(site)) {
       ranks.emplace_back(delaunay_.offset(site, other).squaredNorm(), other);

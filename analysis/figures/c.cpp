@@ -19,7 +19,8 @@
 namespace shearcell {
 namespace {
 
-/// Over how many cycles crystallites are followed, beside n_bin, to show what that choice does.
+/// Crystallites are followed over n_bin cycles, and over these to show how the result depends on
+/// it.
 constexpr std::array<std::int64_t, 5> cycles_to_follow = {1, 2, 5, 10, 20};
 
 /// The counts of those runs in which some crystallite could be followed over so many cycles.
@@ -33,6 +34,7 @@ std::vector<GrowthBySize> followed(RunGroup runs, std::int64_t cycles) {
 }
 
 struct AmplitudeGrowth {
+  CurveStyle style;  ///< its value is the amplitude
   double amplitude;
   const PublishedAmplitude* published;
   std::vector<const FigureRun*> all_runs;
@@ -44,12 +46,18 @@ struct AmplitudeGrowth {
   std::optional<Estimate> monotone;          ///< without an assumed curve
 };
 
+constexpr std::array<const char*, 5> amplitude_colours = {"#6a3d9a", "#000000", "#009e73",
+                                                          "#0072b2", "#d55e00"};
+
 std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs) {
   std::vector<AmplitudeGrowth> all;
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
     const PublishedAmplitude& published = published_nearest(amplitude);
     const std::vector<GrowthBySize> counts = followed(members, published.n_bin);
-    all.push_back({.amplitude = amplitude,
+    const std::size_t k = all.size();
+    all.push_back({.style = {amplitude, italic("A") + fmt::format(" = {}", amplitude),
+                             amplitude_colours[k % amplitude_colours.size()], filled_symbol(k)},
+                   .amplitude = amplitude,
                    .published = &published,
                    .all_runs = members,
                    .runs = counts,
@@ -62,21 +70,16 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
   return all;
 }
 
-const std::array<const char*, 5> amplitude_colours = {"#6a3d9a", "#000000", "#009e73", "#0072b2",
-                                                      "#d55e00"};
-
-Text title_of(double amplitude) {
-  return italic("A") + fmt::format(" = {}", amplitude);
+ReferenceLine critical_line(const AmplitudeGrowth& one) {
+  return {.at = one.published->critical_size,
+          .colour = one.style.colour,
+          .title = "the supplement's critical sizes"};
 }
 
-std::string colour_of(std::size_t k) {
-  return amplitude_colours[k % amplitude_colours.size()];
-}
-
-/// Fewer crystallites are not drawn as a point. [choice]
+/// Points of fewer crystallites are not drawn. [choice]
 constexpr std::size_t least_counted = 20;
 
-/// The fitted curve, and half the length of its interval.
+/// The fitted curve. Its error is half the length of the interval.
 std::vector<ChartPoint> fitted_points(const AmplitudeGrowth& one) {
   std::vector<ChartPoint> points;
   for (double size = 1; one.fit && size <= 60; size += size < 10 ? 1 : 5) {
@@ -88,7 +91,7 @@ std::vector<ChartPoint> fitted_points(const AmplitudeGrowth& one) {
   return points;
 }
 
-/// Binned data over the fitted curve with its band.
+/// Binned data, and the fitted curve with its band.
 Chart chart_of(std::span<const AmplitudeGrowth> all) {
   Chart chart{
       .x = {.name = "crystallite size", .unit = "grains", .low = 0, .high = 60, .clip = true},
@@ -99,24 +102,19 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
             .clip = true},
       .lines = {{.at = 0, .title = "growth as probable as shrinking"}},
       .errors = "bars are binomial errors, bands half the length of the 90 % interval of the fit"};
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const AmplitudeGrowth& one = all[k];
-    const std::string colour = colour_of(k);
-    chart.series.push_back({.colour = colour,
+  for (const AmplitudeGrowth& one : all) {
+    chart.series.push_back({.colour = one.style.colour,
                             .point = 0,
                             .join = Join::line,
                             .band = true,
                             .points = fitted_points(one)});
     Series& data = chart.series.emplace_back(
-        Series{.title = title_of(one.amplitude), .colour = colour, .point = filled_symbol(k)});
+        Series{.title = one.style.title, .colour = one.style.colour, .point = one.style.point});
     for (const GrowthRate& bin : growth_rates(one.runs, least_counted)) {
       data.points.push_back({bin.size, bin.delta, std::nullopt, bin.delta_error});
     }
-    chart.lines.push_back({.at = one.published->critical_size,
-                           .vertical = true,
-                           .stub = true,
-                           .colour = colour,
-                           .title = "the supplement's critical sizes"});
+    ReferenceLine& line = chart.lines.emplace_back(critical_line(one));
+    line.vertical = line.stub = true;
   }
   return chart;
 }
@@ -143,7 +141,7 @@ void add_size_columns(const std::string& name, std::vector<std::string>& columns
   }
 }
 
-/// Their values; empty without an estimate.
+/// The values of those columns; empty without an estimate.
 void add_size(const std::optional<Estimate>& size, TableRow& row) {
   if (!size) {
     row.resize(row.size() + 4);
@@ -183,35 +181,33 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
   return table;
 }
 
-/// Grains that have longer to grow appear to be past the critical size when they are smaller.
+/// The critical size against the number of cycles over which crystallites are followed.
 FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
   FigureTable table{.name = "C_followed", .columns = {"amplitude_rad", "cycles_followed"}};
   add_size_columns("critical_size", table.columns);
   table.columns.emplace_back("runs");
   table.chart = {.x = {.name = "cycles that crystallites are followed", .log = true},
                  .y = {.name = "critical size", .unit = "grains", .log = true}};
-  for (std::size_t k = 0; k < all.size(); ++k) {
+  for (const AmplitudeGrowth& one : all) {
     std::set<std::int64_t> choices(cycles_to_follow.begin(), cycles_to_follow.end());
-    choices.insert(all[k].published->n_bin);
+    choices.insert(one.published->n_bin);
     for (const std::int64_t cycles : choices) {
-      const std::vector<GrowthBySize> runs = followed(all[k].all_runs, cycles);
-      TableRow& row = table.rows.emplace_back(TableRow{all[k].amplitude, cycles});
+      const std::vector<GrowthBySize> runs = followed(one.all_runs, cycles);
+      TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles});
       std::optional<Estimate> size = critical_size(runs);
       if (size && !std::isfinite(size->interval.high - size->interval.low)) size.reset();
       add_size(size, row);
       row.emplace_back(runs.size());
     }
-    table.chart.series.push_back({.title = title_of(all[k].amplitude),
-                                  .colour = colour_of(k),
-                                  .point = filled_symbol(k),
+    table.chart.series.push_back({.title = one.style.title,
+                                  .colour = one.style.colour,
+                                  .point = one.style.point,
                                   .join = Join::line,
                                   .columns = {.x = "cycles_followed",
                                               .y = "critical_size_grains",
                                               .y_error = "critical_size_standard_error_grains"},
-                                  .filter = {"amplitude_rad", all[k].amplitude}});
-    table.chart.lines.push_back({.at = all[k].published->critical_size,
-                                 .colour = colour_of(k),
-                                 .title = "the supplement's critical sizes"});
+                                  .filter = {"amplitude_rad", one.amplitude}});
+    table.chart.lines.push_back(critical_line(one));
   }
   return table;
 }
@@ -220,20 +216,13 @@ FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
 /// reaches its critical size. No crystallite counts as one grain, as in method 2.
 FigureTable largest_table(std::span<const FigureRun> runs, std::span<const AmplitudeGrowth> all) {
   std::vector<CurveStyle> styles;
-  std::vector<ReferenceLine> lines;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    styles.push_back(
-        {all[k].amplitude, title_of(all[k].amplitude), colour_of(k), filled_symbol(k)});
-    lines.push_back({.at = all[k].published->critical_size,
-                     .colour = colour_of(k),
-                     .title = "the supplement's critical sizes"});
-  }
+  for (const AmplitudeGrowth& one : all) styles.push_back(one.style);
   const MeasureColumn largest{"largest_crystallite", "grains", [](const Measures& m) {
                                 return std::max(1.0, static_cast<double>(m.largest_crystallite));
                               }};
   FigureTable table = against_phi("C_largest", curves_of(runs, "amplitude_rad", styles), largest,
                                   {.name = "largest crystallite", .unit = "grains", .log = true});
-  table.chart.lines = std::move(lines);
+  for (const AmplitudeGrowth& one : all) table.chart.lines.push_back(critical_line(one));
   return table;
 }
 

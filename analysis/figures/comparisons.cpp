@@ -30,7 +30,8 @@ FigureResult drawn(Curves curves, std::initializer_list<Panel> panels,
   return result;
 }
 
-/// Compares what is meant to be measured before the grains crystallize, and says where they did.
+/// Compares a quantity of the cycles before crystallization. The note counts the runs whose onset
+/// is earlier.
 Verdict compare_early(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {
   Verdict verdict = compare(claim, scalar, a, b);
   std::size_t early = 0;
@@ -76,7 +77,7 @@ std::vector<Verdict> similar(const std::string& section, const std::string& what
       same_percentage(section, what, a, b)};
 }
 
-/// Overlap or contacts; an overlap is proportional to the pressure.
+/// For the mean overlap or the contacts per grain.
 Verdict same_contacts(const std::string& section, const std::string& what, const char* name,
                       Quantity quantity, RunGroup a, RunGroup b) {
   Scalar scalar = over_cycles(name, std::move(quantity), 1, early_cycles);
@@ -85,7 +86,7 @@ Verdict same_contacts(const std::string& section, const std::string& what, const
                  scalar, a, b);
 }
 
-/// What must be the same for a time step larger than those of Fig. S3 to replace Table I's.
+/// What a time step larger than those of Fig. S3 must leave unchanged to replace that of Table I.
 std::vector<Verdict> equal_physics(const std::string& what, RunGroup a, RunGroup b) {
   const char* section = "time step";
   return {
@@ -95,7 +96,7 @@ std::vector<Verdict> equal_physics(const std::string& what, RunGroup a, RunGroup
       same_contacts(section, what, "mean overlap", &Measures::mean_overlap, a, b)};
 }
 
-// What a manifest has when it does not say (experiments/manifest/README.md; a test compares).
+// Defaults of a manifest (experiments/manifest/README.md); a test compares them.
 constexpr double default_wall_mass = 10;    // [m/d^2]
 constexpr double default_wall_drag = 1000;  // [m/(d^2 s)]
 
@@ -109,7 +110,7 @@ std::string times(const char* what, double ratio) {
                    : fmt::format("{} /{:.3g}", what, 1 / ratio);
 }
 
-/// In what the run departs from the default.
+/// How the run differs from the default.
 nlohmann::json choice_of(const FigureRun& run) {
   std::string text;
   for (const std::string& part :
@@ -177,7 +178,7 @@ FigureResult figure_s3(Runs runs) {
                std::move(verdicts));
 }
 
-/// The wall that moves, and where the pressure acts if it lifts the grains with it.
+/// The wall that moves; `lifting` if the pressure alone also lifts the grains.
 nlohmann::json load_of(const FigureRun& run) {
   nlohmann::json moves = parameter_of(run, "moving_wall");
   if (moves == "bottom" && parameter_of(run, "pressure_at") == "moving_wall") moves = lifting;

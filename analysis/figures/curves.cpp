@@ -28,7 +28,7 @@ bool matches(const nlohmann::json& a, const nlohmann::json& b) {
 }
 
 /// gnuplot's strcol() ends a field at every comma and does not read quotes as RFC 4180 does.
-/// Variants of our manifests have no other special characters; those of a foreign store may.
+/// Variants of manifests have no other special characters; those of another program's store may.
 std::string plain_field(std::string variant) {
   const auto odd = [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -39,8 +39,8 @@ std::string plain_field(std::string variant) {
   return variant;
 }
 
-/// Styles by what varies: the rank of a run's value of the first key decides the colour, that of
-/// the other values the symbol. Each pair comes once.
+/// Styles of curves by the keys that vary: the rank of the first key's value decides the colour,
+/// the rank of the other values the symbol.
 class StylesOfOthers {
  public:
   explicit StylesOfOthers(std::span<const FigureRun> runs) : keys_(varied_keys(runs)) {
@@ -108,8 +108,9 @@ RunStatistics over(const CurvePoint& point, const Quantity& quantity) {
   return over_runs(values);
 }
 
-/// Where runs end at different cycles, a mean over those that are left jumps: it ends with the
-/// first of them, and each run continues as a thin line. Returns whether there are such lines.
+/// Where runs end at different cycles, the mean over the rest would jump. So the mean ends where
+/// the first run ends, and every run continues as a thin line. Returns whether the runs end at
+/// different cycles.
 bool follow_runs(const Curve& curve, const Quantity& quantity, Series& mean,
                  std::vector<Series>& single) {
   double first_end = std::numeric_limits<double>::infinity();

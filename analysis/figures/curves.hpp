@@ -16,11 +16,11 @@
 
 namespace shearcell {
 
-/// How a curve is drawn, following the supplement. The style is that of the runs in which the
-/// figure's parameter has this value; numbers match within 3 %, because a time step is a whole
-/// fraction of a cycle. It is used where the runs differ in the figure's parameters alone, and by
-/// one curve. Other curves are named by what varies, with a colour for each value of the first
-/// parameter and a symbol for the others.
+/// How a curve is drawn, following the supplement: that of the runs in which the figure's parameter
+/// has this value. Numbers match within 3 %, because a time step is a whole fraction of a cycle. A
+/// style is used only if the runs differ in the figure's parameters alone and one curve fits it.
+/// Other curves are named by what varies, with a colour for each value of the first parameter and a
+/// symbol for the others.
 struct CurveStyle {
   nlohmann::json value;
   Text title;
@@ -53,8 +53,8 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs, std::span<const st
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
                              std::span<const CurveStyle> styles);
 
-/// Runs of the one curve in which the parameter has that value, of another engine only if it is the
-/// only one; none if there is no such curve, or several.
+/// Runs of the one curve in which the parameter has that value; empty if there is no such curve, or
+/// several. A curve of another engine counts only if there is no other.
 RunGroup runs_with(std::span<const Curve> curves, const nlohmann::json& value);
 
 // The axes that several figures share.

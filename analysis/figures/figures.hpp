@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The functions behind the registry in analysis/figure.cpp: one per figure, each in its own file.
+// The functions of the figures in analysis/figure.cpp.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace shearcell {
 
-// Table I beside what the runs had.
+// Table I and the parameters of the runs.
 FigureResult figure_table1(std::span<const FigureRun> runs);
 
 // phi and phi_u of a packing whose springs are made stiffer.

@@ -60,28 +60,4 @@ Verdict onset_is_published(RunGroup runs, std::string claim) {
                       published_onset_phi);
 }
 
-Onset onset_of(RunGroup runs, OnsetMethod method) {
-  return onset(runs, method, critical_size_for(*runs.front()));
-}
-
-std::vector<std::string> onset_columns(std::vector<std::string> columns) {
-  columns.insert(columns.end(), {"onset_phi_mean", "onset_phi_standard_error", "runs",
-                                 "runs_ended_before", "runs_began_after", "runs_unclear"});
-  return columns;
-}
-
-TableRow onset_row(TableRow row, const Onset& onset) {
-  row.insert(row.end(), {onset.phi.mean, onset.phi_error, onset.phi.runs, onset.never,
-                         onset.before_start, onset.unclear});
-  return row;
-}
-
-Series onset_points(Text title, const char* colour, int point, const char* x, RowFilter filter) {
-  return {.title = std::move(title),
-          .colour = colour,
-          .point = point,
-          .columns = {.x = x, .y = "onset_phi_mean", .y_error = "onset_phi_standard_error"},
-          .filter = std::move(filter)};
-}
-
 }  // namespace shearcell

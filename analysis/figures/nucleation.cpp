@@ -12,7 +12,6 @@
 #include "analysis/figures/figures.hpp"
 #include "analysis/figures/groups.hpp"
 #include "analysis/nucleation.hpp"
-#include "analysis/published.hpp"
 #include "analysis/statistics.hpp"
 
 namespace shearcell {
@@ -35,7 +34,7 @@ std::string name_of(const Group& group) {
   return fmt::format("A={} N={}", group.first, group.second);
 }
 
-/// One curve for each group, by the rows whose first column names it.
+/// One curve for each group. The first column of the table names the group.
 std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns, Join join) {
   std::vector<Series> series;
   for (const auto& [group, runs] : groups) {
@@ -78,7 +77,7 @@ FigureTable survival_table(const Groups& groups) {
   return table;
 }
 
-/// That of a Poisson count; none for one event, whose bar would reach zero on a logarithmic axis.
+/// Error of a Poisson count. None for one event: its bar would reach zero on a logarithmic axis.
 TableValue error_of(const NucleationRate& bin) {
   if (bin.events < 2) return {};
   return bin.rate / std::sqrt(static_cast<double>(bin.events));
@@ -109,9 +108,9 @@ FigureTable rate_table(const Groups& groups) {
   return table;
 }
 
-/// The exponent of a rate that is proportional to the area of the walls, N^(2/3), against N_inves,
-/// of which small cells have a smaller share: from the smallest cells to the largest. Not a number
-/// where those have no interior grains.
+/// The exponent a of N_inves^a for a rate proportional to the area of the walls, N^(2/3), between
+/// the smallest and the largest cells. It is less than 2/3, since the share N_inves / N grows with
+/// N. Not a number where those cells have no interior grains.
 double exponent_of_walls(std::span<const FigureRun> runs) {
   const auto sizes = runs_by(runs, "grains");
   const auto& [smallest, in_smallest] = *sizes.begin();
@@ -121,8 +120,8 @@ double exponent_of_walls(std::span<const FigureRun> runs) {
   return 2.0 / 3 * std::log(largest / smallest) / std::log(many / few);
 }
 
-/// `walls` is the exponent for the area of the walls. The margin is half of what separates the
-/// volume from the walls.
+/// `walls` is the exponent for the area of the walls. The margin is half of its distance from 1,
+/// the exponent for the volume.
 Verdict rate_follows_volume(std::span<const FigureRun> runs, double walls) {
   const std::vector<const FigureRun*> all = pointers(runs);
   std::optional<Estimate> excess = size_exponent(all);

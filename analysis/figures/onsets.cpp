@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
@@ -19,6 +20,30 @@ namespace {
 
 constexpr double smallest_size = 5200;  // of the supplement; always claimed
 
+/// `columns`, then those of an onset.
+std::vector<std::string> onset_columns(std::vector<std::string> columns) {
+  columns.insert(columns.end(), {"onset_phi_mean", "onset_phi_standard_error", "runs",
+                                 "runs_ended_before", "runs_began_after", "runs_unclear"});
+  return columns;
+}
+
+/// `row`, then the values of those columns.
+TableRow onset_row(TableRow row, const Onset& onset) {
+  row.insert(row.end(), {onset.phi.mean, onset.phi_error, onset.phi.runs, onset.never,
+                         onset.before_start, onset.unclear});
+  return row;
+}
+
+/// Points of those columns against the column `x`.
+Series onset_points(Text title, const char* colour, int point, const char* x,
+                    RowFilter filter = {}) {
+  return {.title = std::move(title),
+          .colour = colour,
+          .point = point,
+          .columns = {.x = x, .y = "onset_phi_mean", .y_error = "onset_phi_standard_error"},
+          .filter = std::move(filter)};
+}
+
 struct AmplitudeOnset {
   double amplitude;
   Onset by_size;
@@ -26,7 +51,7 @@ struct AmplitudeOnset {
 };
 
 /// The supplement takes the standard deviation of its simulations at A = 0.05 rad as the error of
-/// the one experiment; this is ours. It states a number for method 1 only.
+/// the one experiment. This is that of our runs, by method 1.
 std::optional<double> experiment_error(std::span<const AmplitudeOnset> onsets) {
   for (const AmplitudeOnset& o : onsets) {
     const RunStatistics& phi = o.by_size.phi;
@@ -65,7 +90,7 @@ FigureTable amplitude_table(std::span<const AmplitudeOnset> onsets) {
   return table;
 }
 
-/// Both methods read the same runs.
+/// The difference of both methods in each run.
 Verdict methods_agree(double amplitude, RunGroup runs) {
   Scalar shift = onset_phi(onset_by_slope);
   shift.name = "phi at the onset by steepest growth less that by size";
@@ -121,7 +146,7 @@ std::vector<CurveOnset> onsets_of(std::span<const Curve> curves) {
   for (const Curve& curve : curves) {
     const FigureRun& run = *curve.runs.front();
     onsets.push_back({&curve, number_of(run, "amplitude_rad"), has_gravity(run),
-                      onset_of(curve.runs, onset_by_size)});
+                      onset(curve.runs, onset_by_size)});
   }
   return onsets;
 }
@@ -170,7 +195,7 @@ std::vector<FigureTable> structure_panels(std::span<const Curve> curves) {
   return panels;
 }
 
-/// What holds at each amplitude.
+/// The claims at one amplitude.
 std::vector<Verdict> same_without_gravity(double amplitude, RunGroup without, RunGroup with) {
   return {
       compare({fmt::format("D: the onset at A = {} rad is the same with and without gravity",
@@ -190,8 +215,7 @@ FigureResult figure_s5a(std::span<const FigureRun> runs) {
   std::vector<AmplitudeOnset> onsets;
   const auto groups = runs_by(runs, "amplitude_rad");
   for (const auto& [amplitude, members] : groups) {
-    onsets.push_back(
-        {amplitude, onset_of(members, onset_by_size), onset_of(members, onset_by_slope)});
+    onsets.push_back({amplitude, onset(members, onset_by_size), onset(members, onset_by_slope)});
   }
   FigureResult result{{amplitude_table(onsets)}, {}};
   for (const auto& [amplitude, members] : groups) {
@@ -213,8 +237,8 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
   const auto groups = runs_by(runs, "grains");
   for (const auto& [grains, members] : groups) {
     const double interior = interior_grains(members);
-    table.rows.push_back(onset_row({grains, interior, published_interior(grains)},
-                                   onset_of(members, onset_by_size)));
+    table.rows.push_back(
+        onset_row({grains, interior, published_interior(grains)}, onset(members, onset_by_size)));
     if (published_interior(grains)) {
       result.verdicts.push_back(interior_is_published(grains, members));
     }

@@ -5,9 +5,9 @@
 #include <map>
 #include <vector>
 
+#include "analysis/claims.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
-#include "analysis/figures/groups.hpp"
 #include "analysis/published.hpp"
 #include "analysis/statistics.hpp"
 
@@ -21,9 +21,9 @@ struct Stiffness {
   std::vector<double> overlap;
 };
 
-/// By log10(k/k0) in hundredths, so that rounding does not part equal steps; k0 is the stiffness at
-/// which the packing settled. Of two checkpoints at one stiffness the later counts: the packing as
-/// it settled, then the minimum.
+/// By log10(k/k0), rounded to hundredths, so that equal steps have equal keys; k0 is the stiffness
+/// at which the packing settled. Of two checkpoints at one stiffness the later one counts: at k0
+/// the minimum, not the packing as it settled.
 std::map<int, Stiffness> by_stiffness(RunGroup runs) {
   std::map<int, Stiffness> found;
   for (const FigureRun* run : runs) {
@@ -52,7 +52,7 @@ struct Load {
   std::vector<const FigureRun*> runs = {};
 };
 
-/// Those that some run has, the default first.
+/// The loads that occur in the runs, the default first.
 std::vector<Load> loads_of(std::span<const FigureRun> runs) {
   std::vector<Load> loads = {
       {"top", "", "", "#000000"},
@@ -100,7 +100,7 @@ FigureTable table_of(std::span<const Load> loads) {
   return table;
 }
 
-/// What `change` computes from the packings of a run at k0 and 100 k0.
+/// `change` of the packings of one run at k0 and at 100 k0.
 Scalar over_the_hundredfold(std::string name,
                             double (*change)(const Stiffness& soft, const Stiffness& hard)) {
   const auto of = [change](const FigureRun& run) -> RunValue {

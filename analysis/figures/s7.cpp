@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figure S7: where crystallites near the critical size are; in two definitions of the height, and
+// Figure S7: places of crystallites near the critical size, with two definitions of the height and
 // for several spring constants. Supplement E.
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 #include <functional>
 #include <limits>
 
-#include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/figures/groups.hpp"
 #include "analysis/nucleation.hpp"
@@ -29,7 +28,7 @@ struct Places {
   std::size_t count = 0;
 };
 
-/// By `find`: of all crystallites of that size, or of each nucleus once.
+/// `find` is nucleus_places, or nucleus_births to count each nucleus once.
 Places places_of(RunGroup runs, CellAxis axis, decltype(nucleus_places)* find = nucleus_places) {
   Places places;
   for (const FigureRun* run : runs) {
@@ -119,7 +118,7 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
                 std::move(note));
 }
 
-/// Inner half of the accessible width against the outer half.
+/// The inner half of the accessible width is compared with the outer half.
 Verdict uniform_in_the_middle(RunGroup runs) {
   const double half = 0.5 - (inaccessible + 1) / (smallest_width(runs) + 2);
   return share_verdict(
@@ -141,7 +140,7 @@ Verdict upper_less_lower(RunGroup runs, const Claim& claim) {
 }  // namespace
 
 FigureResult figure_s7(std::span<const FigureRun> runs) {
-  // The panels of the supplement are those of the softest springs; a manifest may have others.
+  // The panels of the supplement are for the softest springs; a manifest may sweep the stiffness.
   const auto by_stiffness = runs_by(runs, "stiffness_N_per_m");
   std::vector<const FigureRun*> softest;
   for (const FigureRun& run : runs) {

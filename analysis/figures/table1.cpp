@@ -9,7 +9,6 @@
 #include <numbers>
 #include <string_view>
 
-#include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/published.hpp"
 

@@ -2,12 +2,10 @@
 #include "tests/analysis/packings.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
 
-#include "analysis/voronoi.hpp"
 #include "core/diagnostics.hpp"
 
 namespace shearcell::test {

@@ -43,10 +43,12 @@ TEST(OnsetBySize, IsTheFirstPassage) {
   EXPECT_DOUBLE_EQ(onset_by_size(run, 16).phi, 0.641);
 }
 
-TEST(OnsetBySize, CensoredAtEitherEnd) {
+TEST(Onset, IsCensoredAtEitherEnd) {
   const FigureRun run = logistic(0.66, 20);
-  EXPECT_EQ(onset_by_size(run, 16).observed, Observed::never);
-  EXPECT_EQ(onset_by_size(run, 2).observed, Observed::before_start);
+  for (const OnsetMethod method : {onset_by_size, onset_by_slope}) {
+    EXPECT_EQ(method(run, 16).observed, Observed::never);
+    EXPECT_EQ(method(run, 2).observed, Observed::before_start);
+  }
 }
 
 TEST(OnsetBySlope, IsTheSteepestPoint) {
@@ -56,10 +58,6 @@ TEST(OnsetBySlope, IsTheSteepestPoint) {
     EXPECT_NEAR(found.phi, onset, 0.0006);
     EXPECT_NEAR(found.cycle, (onset - 0.63) / 0.0005, 1.5);
   }
-}
-
-TEST(OnsetBySlope, NeverWithoutCrystallization) {
-  EXPECT_EQ(onset_by_slope(logistic(0.66, 20), 16).observed, Observed::never);
 }
 
 // Two checkpoints are too few for a slope, though the largest crystallite is critical in one.
@@ -74,7 +72,7 @@ TEST(OnsetBySlope, UnclearWithoutAWindow) {
 TEST(Onset, CountsCensoredRuns) {
   const std::vector<FigureRun> runs = {logistic(0.645), logistic(0.647), logistic(0.646),
                                        logistic(0.66, 10)};
-  const Onset found = onset(pointers(runs), onset_by_slope, 16);
+  const Onset found = onset(pointers(runs), onset_by_slope);
   EXPECT_EQ(found.phi.runs, 3U);
   EXPECT_EQ(found.never, 1U);
   EXPECT_NEAR(found.phi.mean.value(), 0.646, 0.0006);

@@ -31,7 +31,6 @@ TEST(Overlaps, ChainThroughThePeriodicBoundary) {
   p.grains.col(1) << 2, 2, 1.1;   // overlap 0.1 with grain 0
   p.grains.col(2) << 2, 2, -0.6;  // overlap 0.2 with grain 0; 1.3 from grain 1 around the back
   const Overlaps o = overlaps(p.cell, p.pose, p.grains);
-  EXPECT_EQ(o.pairs, 2U);
   EXPECT_NEAR(o.mean, 0.15, 1e-15);
   EXPECT_NEAR(o.largest[0], 0.2, 1e-15);
   EXPECT_NEAR(o.largest[1], 0.1, 1e-15);
@@ -44,7 +43,6 @@ TEST(Overlaps, WallGrainsCountForTheGrainButNotForTheMean) {
   p.grains.resize(3, 1);
   p.grains.col(0) << 0.5, 2, 1;  // touches the plane behind, and overlaps the wall grain by 0.3
   const Overlaps o = overlaps(p.cell, p.pose, p.grains);
-  EXPECT_EQ(o.pairs, 0U);
   EXPECT_EQ(o.mean, 0);
   EXPECT_EQ(o.contacts[0], 1);
   EXPECT_NEAR(o.largest[0], 0.3, 1e-15);

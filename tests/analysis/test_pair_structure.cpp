@@ -40,17 +40,7 @@ TEST(PairStructure, TheInteriorRegionHoldsTheInteriorGrains) {
 // In a tilted cell, where the shape of the region shows most.
 TEST(PairStructure, GrainsAtRandomHaveNoCorrelation) {
   Packing p = empty_cell(14, 12, 10, 0.3);
-  p.grains.resize(3, 20000);
-  std::uint64_t state = 7;
-  const auto uniform = [&] {
-    state = state * 6364136223846793005U + 1442695040888963407U;
-    return static_cast<double>(state >> 11) * 0x1p-53;
-  };
-  for (auto grain : p.grains.colwise()) {
-    const double y = 12 * uniform();
-    grain =
-        Eigen::Vector3d(14 * uniform() + p.pose.tan_theta * (y - p.pose.top), y, 10 * uniform());
-  }
+  fill(p, 20000, 0, 7);
   const MeasuredCurve g = pair_correlation(p.cell, p.pose, p.grains, interior_of(p));
   ASSERT_EQ(g.x.size(), 250U);
   double mean_far = 0;
