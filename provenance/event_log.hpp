@@ -44,7 +44,7 @@ struct Event {
 };
 
 std::string run_stream(std::string_view run);  ///< "run/<id>"
-/// The run that the event is about; nothing for other streams.
+/// The id of the event's run; nothing if its stream is not that of a run.
 std::optional<std::string> run_of(const Event& event);
 
 struct NewEvent {

@@ -140,7 +140,7 @@ struct StoreMerged {
   }
 };
 
-/// Kept as its writer composed it.
+/// The payload is kept as given.
 struct FigureGenerated {
   static constexpr std::string_view kType = "FigureGenerated";
   nlohmann::json facts;

@@ -14,8 +14,8 @@
 
 namespace shearcell::hdf5 {
 
-/// To be held around all calls of the library, which may be built without thread safety. From then
-/// on the library does not print errors; they are reported as exceptions.
+/// Hold one around all calls of the library, which may be built without thread safety. The library
+/// then prints no errors; they are reported as exceptions.
 class Library {
  public:
   Library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
@@ -58,12 +58,12 @@ inline Handle creation_list(hid_t kind) {
   return list;
 }
 
-/// `links` and `attributes`: how many it will have, if more than 8.
+/// `links` and `attributes`: how many it will have; needed if more than 8.
 inline Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0,
                          std::size_t attributes = 0) {
   const Handle list = creation_list(H5P_GROUP_CREATE);
-  // By default more than eight are stored in a heap, which hdf5_read.cpp does not read, and of
-  // which HDF5 1.10 writes bytes that it did not set.
+  // By default more than eight are stored in a heap. hdf5_read.cpp does not read heaps, and HDF5
+  // 1.10 writes uninitialized bytes into them.
   if (links > 8) H5Pset_link_phase_change(list.get(), 65535, 0);
   if (attributes > 8) H5Pset_attr_phase_change(list.get(), 65535, 0);
   return {require(H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
@@ -111,8 +111,8 @@ inline void put_attribute(const Handle& object, const std::string& name, const s
   put_strings(object, name, cell, cell.size(), {});
 }
 
-/// Contiguous; `unit` becomes its attribute of that name unless empty. Without `data` it is left to
-/// be written later.
+/// Contiguous; `unit` becomes its attribute `unit` unless empty. If `data` is null, the caller
+/// writes the values later.
 inline Handle put_dataset(const Handle& parent, const std::string& name, hid_t type,
                           const void* data, const Shape& shape, const std::string& unit = "") {
   const Handle space = make_space(shape);

@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// Identifies one process, also after another process got its process id.
+/// Identifies one process, even after another process got its process id.
 struct Holder {
   std::string host;           ///< name, for messages
   std::string place;          ///< boot id and process-id namespace; "" when unknown
@@ -36,7 +36,7 @@ struct Lease {
 /// This process, with a new token.
 Holder this_process();
 
-/// The longest lease: a later end, of a wrong clock or a forged row, is not waited for.
+/// The longest lease. A later end comes from a wrong clock or a forged row and is ignored.
 inline constexpr std::uint64_t kLongestLeaseMs = 60'000;
 
 /// Whether any program may take the lease: it expired or is older than kLongestLeaseMs, its holder

@@ -92,7 +92,7 @@ class LineageBuilder {
   const Event& event_;
 };
 
-/// What the events before number `before` say of a run.
+/// The lineage by the events before number `before`.
 RunLineage build_lineage(const RunRecord& run, const std::vector<Event>& events,
                          std::uint64_t before = UINT64_MAX) {
   RunLineage lineage{run, {}, {}};
@@ -134,7 +134,7 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
     RunLineage stage = build_lineage(run, events);
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;
-      // It began before this was recorded: with the newest state of the stage before it, then.
+      // Early events lack it: the attempt began from the newest state of the stage before it.
       attempt.from_checkpoint = newest_of(build_lineage(stages.back().run, before, attempt.seq));
       if (!attempt.from_checkpoint.empty()) attempt.from_run = run.parent;
     }

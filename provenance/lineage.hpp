@@ -23,7 +23,7 @@ inline constexpr auto kNames<AttemptOutcome> =
 struct Attempt {
   std::uint64_t seq = 0;   ///< the event that began it
   std::string started_at;  ///< UTC
-  std::string ended_at;    ///< UTC; "" when no event says so
+  std::string ended_at;    ///< UTC; "" when no event ended it
   AttemptOutcome outcome = AttemptOutcome::running;
   std::string why;  ///< of a failure or interruption; "" otherwise
   /// Recorded host, build and libraries; an object, maybe empty.
@@ -46,7 +46,7 @@ struct CheckpointHistory {
 
 struct RunLineage {
   RunRecord run;
-  std::vector<Attempt> attempts;               ///< in the order of the log; shown counted from 1
+  std::vector<Attempt> attempts;               ///< in the order of the log; shown as 1, 2, ...
   std::vector<CheckpointHistory> checkpoints;  ///< in the order in which they were first recorded
 
   const CheckpointHistory* find(std::string_view sha256) const;

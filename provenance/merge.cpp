@@ -39,7 +39,7 @@ struct Source {
   ObjectStore objects;
 };
 
-/// Equal for events of different logs that are the same event.
+/// Equal for the same event in different logs.
 std::string content_key(const Event& event) {
   return Sha256()
       .add_fields(event.stream, event.type, event.schema, event.recorded_at, event.payload)
@@ -219,15 +219,11 @@ RunMerge plan_run(const Database& into, const EventLog& log, const Database& sou
 constexpr std::string_view kMergeStream = "store/merge";
 
 bool merged_before(const EventLog& log, const Head& head) {
-  for (const Event& event : log.events(kMergeStream)) {
-    const events::Any decoded = events::decode(event);
-    const auto* merged = std::get_if<events::StoreMerged>(&decoded);
-    if (merged != nullptr && merged->head.is_object() &&
-        merged->head.value("hash", nlohmann::json()) == head.hash) {
-      return true;
-    }
-  }
-  return false;
+  return std::ranges::any_of(
+      log.events(kMergeStream, events::StoreMerged::kType), [&](const Event& event) {
+        const auto merged = std::get<events::StoreMerged>(events::decode(event));
+        return member_of(merged.head, "hash") == head.hash;
+      });
 }
 
 /// If `runs` is not empty, only these runs and the manifests.

@@ -36,7 +36,7 @@ using TableRows = std::vector<std::vector<std::string>>;
 /// Every row of every table, to compare two derivations.
 std::map<std::string, TableRows> projection_rows(const sqlite::Database& database);
 
-// Queries. All throw StoreDamaged when a table holds what no event gives.
+// Queries. All throw StoreDamaged when a table holds a value that no event can give.
 
 NotFound unknown_run(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);

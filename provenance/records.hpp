@@ -13,10 +13,10 @@
 
 namespace shearcell {
 
-/// The place of a run in an experiment. A run shared by two experiments has two of them.
+/// The place of a run in an experiment. A run that two experiments share has two memberships.
 struct Membership {
   std::string experiment;
-  std::string scale;                                 ///< "" where the manifest has none
+  std::string scale;                                 ///< "" if the manifest has no scales
   std::string variant;                               ///< the swept values: "drag=still"
   nlohmann::json labels = nlohmann::json::object();  ///< swept key -> value
   std::uint64_t seed = 0;
@@ -24,11 +24,11 @@ struct Membership {
   std::uint64_t checkpoint_every = 1;  ///< requested cycles between checkpoints
   std::uint64_t target_cycles = 0;     ///< requested length of the run; set by the store
 
-  // Recorded where there is one, but not read back: experiments/runner/asks.hpp reads the events.
-  nlohmann::json until = nullptr;              ///< measure that may end the run before that
+  // Recorded if given, but decode() does not read them: experiments/runner/asks.hpp does.
+  nlohmann::json until = nullptr;              ///< measure that may end the run earlier
   std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle, for more checkpoints
 
-  /// What an event records of it, without the last two.
+  /// The recorded members, without the last two.
   static void fields(auto& m, auto field) {
     field("experiment", m.experiment), field("scale", m.scale), field("variant", m.variant);
     field("labels", m.labels), field("seed", m.seed), field("manifest", m.manifest);
@@ -36,7 +36,13 @@ struct Membership {
   }
 };
 
-/// What people call a scale: "base" for that of a manifest that has none.
+/// Whether two memberships name the same place.
+inline bool same_place(const Membership& a, const Membership& b) {
+  return a.experiment == b.experiment && a.scale == b.scale && a.variant == b.variant &&
+         a.seed == b.seed && a.manifest == b.manifest;
+}
+
+/// The name to show: "base" if the manifest has no scales.
 inline std::string scale_name(const std::string& scale) {
   return scale.empty() ? "base" : scale;
 }
@@ -52,7 +58,7 @@ struct RunDeclaration {
   Membership membership;
 };
 
-/// Checkpoints in a list: those whose file is there, pruned ones too, or rejected ones too.
+/// Which checkpoints are listed: recorded ones; also pruned ones; also rejected ones.
 enum class Listed { recorded, and_pruned, all };
 
 /// In the order in which a merge prefers them when two attempts reached the same step.
@@ -85,7 +91,7 @@ struct RunRecord {
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
-/// Whether two declarations or records of one id compute the same.
+/// Whether two declarations or records with one id describe the same computation.
 bool same_computation(const auto& a, const auto& b) {
   return a.parent == b.parent && a.kind == b.kind && a.resolved == b.resolved &&
          a.grains == b.grains;

@@ -2,6 +2,7 @@
 // The folder of a crate, and prov.json in it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 
@@ -146,17 +147,12 @@ std::string dump(const json& value) {
 }
 
 bool is_crate_of(const fs::path& folder, const std::string& run) {
-  const fs::path metadata = folder / kCrateMetadata;
-  const auto text = read_plain(metadata, StoreLimits::value_bytes);
-  const json crate = text ? parse_json(*text) : json();
-  if (!crate.is_object() || !crate.contains("@graph") || !crate["@graph"].is_array()) return false;
-  for (const json& entity : crate["@graph"]) {
-    if (entity.is_object() && entity.value("@id", json()) == "./" &&
-        entity.value("identifier", json()) == crate_identifier(run)) {
-      return true;
-    }
-  }
-  return false;
+  const auto text = read_plain(folder / kCrateMetadata, StoreLimits::value_bytes);
+  const json graph = member_of(parse_json(text.value_or("")), "@graph");
+  return graph.is_array() && std::any_of(graph.begin(), graph.end(), [&](const json& entity) {
+           return member_of(entity, "@id") == "./" &&
+                  member_of(entity, "identifier") == crate_identifier(run);
+         });
 }
 
 /// Creates a folder in the crate; a link is refused.

@@ -36,16 +36,16 @@ namespace shearcell::sqlite {
 std::string full_name(const std::filesystem::path& file);
 
 /// One connection, for one thread at a time. All functions throw StoreDamaged when the file is not
-/// a valid database, MachineError when another process kept it locked or when its name has come to
-/// stand for another file, and std::runtime_error when the machine fails (disk full, no
-/// permission). Messages name the file.
+/// a valid database, MachineError when another process kept it locked or when the file was moved,
+/// replaced or deleted, and std::runtime_error when the machine fails (disk full, no permission).
+/// Messages name the file.
 ///
 /// The file and SQLite's own files beside it must be regular files without hard links: SQLite finds
 /// its journal by the name of the file, so a second name of the file would make it play back a
 /// journal of another database, or none.
 class Database {
  public:
-  /// With Access::read it may be written to all the same: SQLite rolls back what a crash left.
+  /// Even with Access::read SQLite may write: it rolls back the transaction of a crashed program.
   Database(const std::filesystem::path& file, Access access);
   /// Errors name it `name`.
   static Database in_memory(const std::string& name = ":memory:");
@@ -135,7 +135,7 @@ class Statement {
   Database::Prepared handle_;
 };
 
-/// Rolled back at the end of its life unless it was committed.
+/// The destructor rolls it back unless it was committed.
 class Transaction {
  public:
   ~Transaction();
@@ -151,12 +151,12 @@ class Transaction {
   bool open_ = true;
 };
 
-/// Holds the write lock from its construction.
+/// Takes the write lock when it is constructed.
 struct WriteTransaction : Transaction {
   explicit WriteTransaction(Database& database) : Transaction(database, "BEGIN IMMEDIATE") {}
 };
 
-/// All reads during its life see the same state of the database.
+/// All reads in it see the same state of the database.
 struct ReadTransaction : Transaction {
   explicit ReadTransaction(Database& database) : Transaction(database, "BEGIN DEFERRED") {}
 };

@@ -63,13 +63,10 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
 
 bool adds_something(const RunRecord& known, const RunDeclaration& declared) {
   const Membership& m = declared.membership;
-  return std::none_of(
-      known.memberships.begin(), known.memberships.end(), [&](const Membership& old) {
-        return old.experiment == m.experiment && old.scale == m.scale && old.variant == m.variant &&
-               old.seed == m.seed && old.manifest == m.manifest &&
-               old.checkpoint_every == m.checkpoint_every &&
-               old.target_cycles >= declared.target_cycles;
-      });
+  return std::ranges::none_of(known.memberships, [&](const Membership& old) {
+    return same_place(old, m) && old.checkpoint_every == m.checkpoint_every &&
+           old.target_cycles >= declared.target_cycles;
+  });
 }
 
 /// Why the holder of this token lost the run of its own attempt; "" while it holds it.

@@ -113,8 +113,8 @@ std::string excerpt(const std::string& cell, std::size_t place) {
                      begin + part.size() < cell.size() ? "..." : "");
 }
 
-/// What is wrong with the first row that differs; `expected` or `found` is null where there is no
-/// row more. Rows begin with their keys.
+/// Describes the first row that differs. `expected` or `found` is null if that table has no more
+/// rows. Rows begin with their keys.
 std::string row_difference(const sqlite::Database& database, const std::string& table,
                            const std::vector<std::string>* expected,
                            const std::vector<std::string>* found) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Our engine and LAMMPS compared in one scene: settling from one loose filling (optional),
+// Compares our engine with LAMMPS in one scene: settling from one loose filling (optional),
 // trajectories from one state, means over seeds, speed and memory.
 #pragma once
 
@@ -24,14 +24,15 @@ struct EngineCheckOptions {
   std::function<void(const std::string&)> report;            ///< progress messages
 };
 
-/// How far two runs from one settled packing are apart after the same time under shear.
+/// The distance between the runs of both engines from one settled packing, after the same time
+/// under shear.
 struct TrajectoryCheck {
   std::string scene;
   std::uint64_t steps = 0;
-  double distance = 0;  ///< largest of a grain from where our engine has it [d]
-  double height = 0;    ///< of the moving walls from each other [d]
-  /// Largest distance [d] between two runs of our own engine, one of which starts with a grain
-  /// moved by 1e-16 d: the effect of rounding alone.
+  double distance = 0;  ///< largest distance between the two positions of a grain [d]
+  double height = 0;    ///< difference of the heights of the moving walls [d]
+  /// The same distance [d] between two runs of our own engine, one of which starts with one
+  /// coordinate changed by a unit in the last place: the effect of rounding alone.
   double rounding = 0;
 };
 
@@ -49,7 +50,7 @@ struct EngineMean {
 };
 
 struct EngineMeans {
-  std::vector<EngineMean> means;  ///< of each quantity ours first; empty for a single seed
+  std::vector<EngineMean> means;  ///< for each quantity, ours first; empty for a single seed
   double limit = 0;               ///< of `apart`, by Student's t, shared among all comparisons
 
   bool agree() const;
@@ -62,7 +63,7 @@ struct Settling : EngineSpeed {
   PackingNumbers numbers;
 };
 
-/// Settles the grains in LAMMPS with so many processes, or in our engine if that is 0. Throws
+/// Settles the grains in LAMMPS with `ranks` processes, or in our engine if `ranks` is 0. Throws
 /// NumericalFailure, for example when a packing is not settled after the time limit, and
 /// ProgramError. `seen` gets the state of LAMMPS every 0.1 s of simulated time.
 Settling settle_by(std::size_t ranks, const LammpsProgram& program, const Packing& loose,

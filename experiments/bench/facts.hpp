@@ -9,8 +9,8 @@
 
 namespace shearcell::bench {
 
-/// A value of a result, for JSON and CSV; with a heading also in the printed table, as `text` or as
-/// it is.
+/// A value of a result, for JSON and CSV. With a heading it is also in the printed table: as `text`
+/// if given, else the value itself.
 struct Fact {
   std::string key;
   TableValue value;

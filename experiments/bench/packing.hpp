@@ -15,7 +15,7 @@ namespace shearcell::bench {
 
 /// Grains in a cell, and the scene that acts on them.
 struct Packing {
-  Parameters parameters;  ///< default where the cell is not made from parameters
+  Parameters parameters;  ///< defaults if the cell is not made from parameters
   Cell cell;
   Scene scene;
   State state;
@@ -29,12 +29,12 @@ Packing placed(const Scene& scene, const std::vector<Eigen::Vector3d>& positions
 /// GeometryError.
 Packing loose_packing(const Parameters& parameters, std::uint64_t seed);
 
-/// The same, pressed together without gravity: dense but not at rest, at step 0, with the scene of
-/// shearing.
+/// A loose packing pressed together without gravity: dense but not at rest, at step 0, with the
+/// scene of shearing.
 Packing pressed_packing(const Parameters& parameters, std::uint64_t seed);
 
-/// Settled, at step 0, with the scene of settling. Throws NumericalFailure if the grains do not
-/// settle.
+/// A settled packing at step 0, with the scene of settling. Throws NumericalFailure if the grains
+/// do not settle.
 Packing settled_packing(const Parameters& parameters, std::uint64_t seed);
 
 Simulation simulate(const Packing& packing, const EngineSettings& settings = {});
@@ -53,7 +53,7 @@ struct PackingNumbers {
   double height = 0;           ///< of the cell [d]
 };
 
-/// Of a state at tilt `theta` [rad]. Throws AnalysisError as analyse() does.
+/// The numbers of a state at tilt `theta` [rad]. Throws AnalysisError as analyse() does.
 PackingNumbers numbers_of(const Cell& cell, const Scene& scene, double theta, const State& state);
 
 /// Statistics of one number over several packings.

@@ -16,7 +16,7 @@ namespace shearcell::bench {
 namespace {
 
 // The engine has no clock, so its kernels are timed from outside: a table of functions that call
-// those of the kernel in use and add up their times. One simulation at a time, one thread.
+// the kernel's functions and sum their times. Only for one simulation at a time, with one thread.
 struct KernelTimes {
   const Kernels* inner = nullptr;
   std::size_t calls = 0;
@@ -144,7 +144,7 @@ void measure_limits(std::size_t lanes, SpeedResult& result) {
   const StepWork work = result.work = step_work(lanes, slots);
   const auto threads = static_cast<double>(result.threads);
   result.arithmetic_limit = 1e-6 * threads * peak_operations(lanes) / work.vector_operations;
-  // More than any cache holds is read no slower.
+  // An array larger than any cache is read at the same speed.
   constexpr double kMostRead = 1 << 28;
   const double arrays = work.footprint * static_cast<double>(result.grains);
   const auto read = static_cast<std::size_t>(std::min(arrays, kMostRead));

@@ -9,22 +9,22 @@
 
 namespace shearcell::bench {
 
-// How fast the kernel could run at most on this machine: its counted operations at the measured
-// peak of the vector units, and its counted bytes at the measured speed of reading.
+// Upper limits of the kernel's speed on this machine: its counted operations at the measured peak
+// of the vector units, and its counted bytes at the measured read bandwidth.
 //
 // Peak: a loop of independent fused multiply-adds, additions and shuffles of doubles in registers,
-// 4 : 2 : 3 as in the kernel. Reading: searches an array as large as those that a time step
-// passes through, so from the cache that holds it, or from memory. Both are the best of several
-// short runs on one core.
+// 4 : 2 : 3 as in the kernel. Bandwidth: a search through an array as large as those that a time
+// step reads, so from the cache that holds it, or from memory. Both are the best of several short
+// runs on one core.
 
-/// What one particle-step does at least.
+/// The least work of one particle-step.
 struct StepWork {
   double vector_operations = 0;  ///< arithmetic and shuffles; loads and stores are not counted
   double bytes = 0;              ///< read and written in arrays over grains; each row counts once
   double footprint = 0;  ///< bytes of these arrays; the velocity is written where it was read
 };
 
-/// Work of a kernel with `lanes` grains per vector and `slots` neighbour slots per block, averaged.
+/// Mean work of a kernel with `lanes` grains per vector and `slots` neighbour slots per block.
 StepWork step_work(std::size_t lanes, double slots);
 
 /// Vector operations per second in vectors of `lanes` doubles: 8, 4 or 2 as kernels_here() offers
@@ -54,8 +54,8 @@ struct SpeedResult {
   double search_share = 0, prune_share = 0;  ///< of the outer list, of the inner list
   double steps_per_search = 0, steps_per_prune = 0;
   double bytes_per_grain = 0;
-  /// What a particle-step does at least, and the rates that this machine's vector units and its
-  /// caches or memory would allow, as measured on one core and multiplied by the threads.
+  /// The least work of a particle-step, and the rates that this machine's vector units and its
+  /// caches or memory allow: measured on one core and multiplied by the threads.
   StepWork work = {};
   double arithmetic_limit = 0, memory_limit = 0;
   std::string state_hash = {};  ///< after 200 steps; the same for all results of one size

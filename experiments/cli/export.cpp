@@ -226,7 +226,7 @@ std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) 
   }
   if (runs.empty()) {
     NewestRuns newest =
-        newest_runs(store, select_runs(store, options.selection), options.selection.all_versions);
+        newest_runs(select_runs(store, options.selection), options.selection.all_versions);
     for (const std::string& note : newest.notes) tell_stderr("{}\n", note);
     for (SelectedRun& one : newest.runs) runs.push_back({one, {one.membership}});
   }

@@ -203,32 +203,23 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
 }
 
 struct Left {
-  StageCost cost;
-  double core_seconds = 0;
-  double longest_seconds = 0;  ///< of one run with its packing, on one core
-  Rate rate{0, true};          ///< mean, of one core
+  RemainingWork work;
+  double bytes = 0;
+  double rate = 0;  ///< mean particle-steps/s of one core
 };
 
 Left left_of(const std::vector<Line>& lines, const std::vector<RunRecord>& known) {
   Left left;
   const Rates rates(known);
-  std::map<std::string, double> chains;  // of a stage and the one before it, which comes first
   for (const Line& line : lines) {
     const Rate own =
         rates.of(engine_of(line.stage->resolved), static_cast<double>(line.run->parameters.grains));
-    left.cost.particle_steps += line.left.particle_steps;
-    left.cost.bytes += line.left.bytes;
-    const double seconds = line.left.particle_steps / own.particle_steps_per_second;
-    left.core_seconds += seconds;
-    const double chain = chains[line.stage->parent] + seconds;
-    chains[line.stage->key] = chain;
-    left.longest_seconds = std::max(left.longest_seconds, chain);
-    if (left.rate.particle_steps_per_second == 0) left.rate = own;  // where nothing is left to do
-    left.rate.measured = left.rate.measured && own.measured;
+    left.work.add(line.stage->key, line.stage->parent, line.left.particle_steps, own);
+    left.bytes += line.left.bytes;
+    if (left.rate == 0) left.rate = own.particle_steps_per_second;  // where nothing is left to do
   }
-  if (left.core_seconds > 0) {
-    left.rate.particle_steps_per_second = left.cost.particle_steps / left.core_seconds;
-  }
+  const RemainingWork& work = left.work;
+  if (work.core_seconds > 0) left.rate = work.particle_steps / work.core_seconds;
   return left;
 }
 
@@ -284,8 +275,7 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
   const std::vector<Line> lines = lines_of(expanded, store, known);
   const Left left = left_of(lines, runs);
   const std::size_t cores = usable_cores();
-  const double seconds =
-      std::max(left.longest_seconds, left.core_seconds / static_cast<double>(cores));
+  const double seconds = left.work.seconds(cores);
   std::vector<std::string> notes = notes_of(expanded);
   if (longer > 0) {
     notes.push_back(fmt::format("`run` continues {} to a larger number of cycles, asked for before",
@@ -297,13 +287,13 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
                        {"notes", notes},
                        {"runs", expanded.runs.size()},
                        {"stages", json_list(lines, [](const Line& line) { return facts(line); })},
-                       {"particle_steps_left", left.cost.particle_steps},
+                       {"particle_steps_left", left.work.particle_steps},
                        {"particle_steps_left_with_until", left_until(lines)},
-                       {"bytes_left", left.cost.bytes},
+                       {"bytes_left", left.bytes},
                        {"seconds_left", seconds},
                        {"cores", cores},
-                       {"particle_steps_per_second_and_core", left.rate.particle_steps_per_second},
-                       {"rate_measured", left.rate.measured}});
+                       {"particle_steps_per_second_and_core", left.rate},
+                       {"rate_measured", left.work.measured}});
   }
   fmt::print("{} at scale {}: {}, {}\n\n", expanded.experiment, scale_name(expanded.scale),
              counted(expanded.runs.size(), "run"), counted(lines.size(), "stage"));
@@ -315,11 +305,10 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
     fmt::print(
         "\nleft: {:.3g} particle-steps, about {} on {} cores at {:.0f} M particle-steps/s each "
         "({}),\n      about {} on disk\n",
-        left.cost.particle_steps, format_duration(seconds), cores,
-        left.rate.particle_steps_per_second * 1e-6,
-        left.rate.measured ? "measured in this store" : "assumed until a run has been measured",
-        format_bytes(left.cost.bytes));
-    print_until(lines, left.cost.particle_steps);
+        left.work.particle_steps, format_duration(seconds), cores, left.rate * 1e-6,
+        left.work.measured ? "measured in this store" : "assumed until a run has been measured",
+        format_bytes(left.bytes));
+    print_until(lines, left.work.particle_steps);
   }
   if (!notes.empty()) fmt::print("\n{}\n", fmt::join(notes, "\n"));
 }

@@ -47,7 +47,7 @@ struct View {
     std::set<std::string> seen;
     std::map<Place, std::size_t> known;
     std::vector<SelectedRun> selected = select_runs(store, selection);
-    for (const SelectedRun& one : newest_runs(store, selected, false).runs) {
+    for (const SelectedRun& one : newest_runs(selected, false).runs) {
       newest.emplace(place_of(one), one.membership);
     }
     for (SelectedRun& found : selected) {
@@ -69,8 +69,7 @@ struct View {
   }
 
   std::string called(const SelectedRun& selected) const {
-    const auto& [run, place] = selected;
-    return names.of(run, place);
+    return names.of(selected.run, selected.membership);
   }
 
   bool is_newest(const SelectedRun& selected) const {
@@ -170,9 +169,7 @@ struct Estimate {
   bool running = false;       ///< else on all cores of this machine, once resumed
   bool at_most = false;       ///< `until` may end runs earlier
 
-  double seconds() const {
-    return std::max(work.longest_seconds, work.core_seconds / static_cast<double>(at_a_time));
-  }
+  double seconds() const { return work.seconds(at_a_time); }
 };
 
 std::optional<Estimate> estimate(const View& view) {
@@ -185,9 +182,7 @@ std::optional<Estimate> estimate(const View& view) {
     const bool in_task = queued != nullptr && queued->task.state == "running";
     running += view.holders.contains(run.id) || in_task ? 1 : 0;
     if (run.state == RunState::completed) continue;
-    made.at_most = made.at_most ||
-                   std::ranges::any_of(asks_of(view.store, run.id),
-                                       [](const RunAsk& ask) { return ask.until.has_value(); });
+    made.at_most = made.at_most || may_end_early(view.store, run.id);
   }
   try {
     made.work = remaining_work(view.store, records);
@@ -237,7 +232,7 @@ void print_tables(const View& view) {
     ++count[Shown{each.run, view.queued(each.run)}.state()];
   }
   for (const SelectedRun& selected : view.places) {
-    const auto& [run, place] = selected;
+    const auto& [run, place, newest] = selected;
     const std::string name = place.experiment + " at scale " + scale_name(place.scale);
     if (!tables.contains(name)) experiments.push_back(name);
     const Shown shown{run, view.queued(run)};
@@ -276,7 +271,7 @@ void print(const View& view) {
     if (problem.empty()) tell("{}\n", describe(submission));
   }
   if (!problem.empty()) tell("The queue is not known: {}\n", problem);
-  for (const auto& [run, membership] : view.runs) {
+  for (const auto& [run, membership, newest] : view.runs) {
     if (!run.error.empty()) tell("{}: {}\n", run.id.substr(0, 8), run.error);
     if (const nlohmann::json ended = end_of(view.store, run); !ended.is_null()) {
       tell("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle, describe_end(ended));

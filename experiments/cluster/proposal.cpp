@@ -61,7 +61,7 @@ std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks) {
   std::ranges::stable_sort(packings, std::greater(), &Share::core_seconds);
   std::vector<Share> shares(std::min(tasks, packings.size()));
   for (const Share& packing : packings) {
-    // Costs may be 0, and no share may stay empty.
+    // The number of packings decides between equal costs, so that no share stays empty.
     const auto load = [](const Share& share) {
       return std::pair(share.core_seconds, share.packings.size());
     };

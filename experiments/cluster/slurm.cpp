@@ -80,7 +80,7 @@ std::string trimmed(std::string text) {
 // Slurm waits 10 s for an answer of its controller.
 constexpr double kAnswerSeconds = 15;
 
-// Only queries may have a limit in seconds: a job may be queued although sbatch does not answer.
+// Only queries may have a time limit: sbatch may queue a job and not answer in time.
 std::string ask(const std::vector<std::string>& words, const std::filesystem::path& folder,
                 std::optional<double> seconds = std::nullopt) {
   const auto outcome = run_program(words, folder, {}, seconds);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is particular to Slurm: the scripts that it runs (an array of tasks, and the job that folds
-// their stores together), and its own programs, which are called with argument vectors.
+// The Slurm interface: the scripts that it runs (an array of tasks, and the folding job that merges
+// their stores), and calls of its programs, with argument vectors instead of a shell.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ struct JobOptions {
   std::string partition;
   std::string account;
   std::string time;                 ///< limit of one start of a task, in Slurm's own form
-  std::size_t cpus = 0;             ///< of a task; 0 where it is not chosen yet
+  std::size_t cpus = 0;             ///< of a task; 0 if not chosen yet
   std::size_t threads = 1;          ///< inside each run
   std::size_t warn_seconds = 120;   ///< before the limit
   std::vector<std::string> sbatch;  ///< further options, as "--qos=long"
@@ -26,8 +26,8 @@ struct JobOptions {
 };
 
 struct JobPlaces {
-  std::filesystem::path program;  ///< this one
-  std::filesystem::path store;    ///< that the tasks' stores are folded into
+  std::filesystem::path program;  ///< this program
+  std::filesystem::path store;    ///< main store, into which the stores of the tasks are merged
   std::filesystem::path folder;   ///< of the submission; holds task-1, task-2, ...
 };
 
@@ -41,11 +41,12 @@ std::string unfit_value(std::string_view text);
 /// for anything else.
 std::optional<double> slurm_seconds(std::string_view time);
 
-/// For `sbatch`: task n works on FOLDER/task-n. It ends with the program's exit code, and is
-/// queued again when its time ran out.
+/// Script of the array job: task n works on FOLDER/task-n. It ends with the program's exit code,
+/// and is queued again when its time is over.
 std::string array_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks);
 
-/// Folds every task's store into STORE, each by itself; ends with the last code that was not 0.
+/// Script of the folding job: merges the store of every task into STORE, one after the other. It
+/// ends with the last exit code that was not 0.
 std::string fold_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks);
 
 /// Value of `--output`: patterns in `file` are kept, those in the folder's name are escaped.

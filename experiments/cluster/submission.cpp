@@ -88,19 +88,17 @@ std::vector<Submission> read_submissions(const Store& store) {
 
 std::vector<Submission> unfinished_submissions(const Store& store) {
   std::vector<Submission> open = read_submissions(store);
-  // Those without a folder were merged from other stores.
+  // Submissions without a folder were merged from other stores.
   std::erase_if(open, [&](const Submission& s) { return !fs::exists(s.folder(store.folder())); });
   if (open.empty()) return open;
-  std::map<std::string, RunRecord> runs;  // by id, those that are not found done yet
+  std::map<std::string, RunRecord> runs;
   for (RunRecord& run : store.runs()) runs.emplace(run.id, std::move(run));
-  std::set<std::string> done;
+  std::map<std::string, bool> done;  // by run; has_work_left() reads the log
   const auto is_done = [&](const std::string& id) {
-    const auto run = runs.find(id);
-    if (run != runs.end() && !has_work_left(store, run->second)) {
-      done.insert(id);
-      runs.erase(run);
-    }
-    return done.contains(id);
+    const auto [known, fresh] = done.try_emplace(id, false);
+    const auto run = fresh ? runs.find(id) : runs.end();
+    if (run != runs.end()) known->second = !has_work_left(store, run->second);
+    return known->second;
   };
   std::erase_if(open, [&](const Submission& submission) {
     return std::ranges::all_of(
@@ -141,7 +139,7 @@ std::set<std::string> busy_runs(const Store& store, const std::vector<Submission
     for (const auto& task : submission.tasks) busy.insert(task.begin(), task.end());
   }
   for (const Lease& lease : store.leases()) busy.insert(lease.run);
-  // Their packings as well, while these are still to be settled.
+  // Also their packings that are not settled yet.
   const std::vector<RunRecord> runs = store.runs();
   std::set<std::string> parents;
   for (const RunRecord& run : runs) {

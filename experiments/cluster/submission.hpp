@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Submissions to a cluster, as recorded in the store's log, and their state.
 //
-// CampaignSubmitted is recorded before the jobs are queued and JobQueued after; the jobs have the
-// submission's name, so the queue can be asked about them even if a crash falls in between.
+// CampaignSubmitted is recorded before the jobs are queued, and JobQueued afterwards. The jobs have
+// the submission's name, so they are found in the queue even after a crash between the two events.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +24,7 @@ struct Submission {
   std::vector<std::vector<std::string>> tasks;  ///< runs of task 1, 2, ...
   std::string job;                              ///< "" when it was not queued
   std::string fold_job;
-  std::vector<QueuedTask> queue;  ///< its lines of the queue, once that was asked
+  std::vector<QueuedTask> queue;  ///< its lines of the queue, by ask_queue()
 
   std::string name() const { return "shearcell-" + id; }  ///< of the array job
   std::string fold_name() const { return name() + "-fold"; }
@@ -36,60 +36,61 @@ struct Submission {
   }
 };
 
-/// Oldest first. Throws StoreDamaged when an event does not hold what it must.
+/// Oldest first. Throws StoreDamaged when the payload of an event is invalid.
 std::vector<Submission> read_submissions(const Store& store);
 
-/// Those that are in this store's folder and have runs that are not completed in the store, or lack
-/// checkpoints there.
+/// Submissions with a folder in this store and with runs for which has_work_left().
 std::vector<Submission> unfinished_submissions(const Store& store);
 
-/// Adds what the queue says of each. Asks Slurm only when there are any. Throws ProgramError.
+/// Adds to each its lines of the queue. Asks Slurm only if there are submissions. Throws
+/// ProgramError.
 void ask_queue(std::vector<Submission>& submissions);
 
-/// Runs that somebody computes now, or will: those of submissions in the queue, and those that
-/// programs on this machine hold; and packings that they start from and have yet to settle.
+/// Runs that are queued or being computed: those of submissions in the queue, those that programs
+/// on this machine hold, and the packings of both that are not settled yet.
 std::set<std::string> busy_runs(const Store& store, const std::vector<Submission>& open);
 
-/// Folds in what the tasks of a submission recorded. Task stores that no longer exist are skipped.
+/// Merges the stores of a submission's tasks into the store. Task stores that no longer exist are
+/// skipped.
 std::vector<MergeReport> fold(Store& store, const Submission& submission);
 
-/// Records a submission of these shares and makes a store for each task, holding what is known of
-/// its runs. `facts` joins the event. Throws ConcurrencyConflict when another program submitted
-/// since `seen` such events were read.
+/// Records a submission of these shares and makes a store for each task with copies of all records
+/// of its runs. `facts` is added to the event. Throws ConcurrencyConflict when another program
+/// submitted since `seen` such events were read.
 Submission prepare_submission(Store& store, const std::vector<Share>& shares, nlohmann::json facts,
                               std::size_t seen);
 
-/// The progress of a task is in a small file beside its store. No other machine opens the store
-/// itself while the task runs, because SQLite's locks may not work between machines.
+/// The progress of one run, from a small file beside the store of its task. No other machine opens
+/// that store while the task runs, because SQLite's locks may not work between machines.
 struct ReportedRun {
   RunState state = RunState::declared;
   double cycle = 0;
 };
 
-/// Puts `FOLDER.progress.json` there, whole or not at all, for the task's store FOLDER.
+/// Writes `FOLDER.progress.json`, whole or not at all, for the task's store FOLDER.
 void write_task_report(const std::filesystem::path& folder, const std::vector<RunRecord>& runs);
 
-/// By run id; empty when there is no such file or it cannot be understood.
+/// By run id; empty when the file is missing or invalid.
 std::map<std::string, ReportedRun> read_task_report(const std::filesystem::path& folder);
 
 struct QueuedRun {
-  /// The job is "17_3", task 3 of array job 17, or "" when it was never queued; the state is
-  /// "pending", "running", ..., or "ended" when it left the queue.
+  /// Its job is "17_3" for task 3 of array job 17, or "" if it was never queued. Its state is
+  /// "pending", "running", ..., or "ended" after it left the queue.
   QueuedTask task;
   std::optional<ReportedRun> reported;
 };
 
 struct QueueView {
-  std::map<std::string, QueuedRun> runs;  ///< by id: those of open submissions, and their packings
-  std::vector<Submission> submissions;
-  std::string problem;  ///< why the queue could not be asked; "" when it was
-  bool busy() const;    ///< whether anything is in the queue
+  std::map<std::string, QueuedRun> runs;  ///< by id: runs of open submissions, and their packings
+  std::vector<Submission> submissions;    ///< the open ones
+  std::string problem;                    ///< why the queue could not be asked; "" if it was
+  bool busy() const;                      ///< whether anything is in the queue
 };
 
-/// Asks Slurm only when the store knows submissions with unfinished runs.
+/// Asks Slurm only if the store has unfinished submissions.
 QueueView look_at_queue(const Store& store);
 
-/// "job 17: 2 running, 4 pending; job 18 folds", or what to do when it has ended.
+/// One line for `status`: its jobs and their states, or what to do if they have ended.
 std::string describe(const Submission& submission);
 
 }  // namespace shearcell

@@ -17,6 +17,7 @@
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/progress.hpp"
 #include "experiments/runner/registered.hpp"
+#include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/limits.hpp"
 
@@ -240,7 +241,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   collected.scale = last_scale(selected, manifests);
   std::erase_if(selected,
                 [&](const SelectedRun& s) { return s.membership.scale != collected.scale; });
-  NewestRuns newest = newest_runs(store, std::move(selected), selection.all_versions);
+  NewestRuns newest = newest_runs(std::move(selected), selection.all_versions);
   if (newest.runs.empty()) {
     throw NotFound(
         fmt::format("the runs selected for figure {} are of an older version of the "

@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "analysis/error.hpp"
 #include "analysis/published.hpp"
 #include "core/drive.hpp"
 #include "core/trigonometry.hpp"
@@ -15,7 +14,6 @@
 #include "experiments/manifest/identity.hpp"
 #include "protocols/ledger.hpp"
 #include "protocols/rest.hpp"
-#include "provenance/derived.hpp"
 
 namespace shearcell {
 namespace {
@@ -75,16 +73,6 @@ std::vector<DerivedMeasure> derived_among(std::span<const std::string> names) {
     }
   }
   return measures;
-}
-
-Measures read_kept(std::span<const DerivedMeasure> measures,
-                   std::span<const nlohmann::json> results) {
-  try {
-    return read_results(measures, results);
-  } catch (const AnalysisError& problem) {
-    throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
-                        problem.what() + "); delete it, or measure again with --fresh");
-  }
 }
 
 /// Adds the energy of all grains and the moving wall in the cycle that ends at each checkpoint:
@@ -157,7 +145,7 @@ void add_phi_at_rest(const Store& store, std::span<const CheckpointRecord> recor
   measure.parameters["rest_s"] = kRest;
   add_simulated(store, measure, origins, resting,
                 [&](const CheckpointRecord&, const nlohmann::json& result, Measures& measures) {
-                  measures.phi_at_rest = read_kept({&measure, 1}, {&result, 1}).phi;
+                  measures.phi_at_rest = read_results({&measure, 1}, {&result, 1}).phi;
                 });
 }
 
@@ -172,7 +160,7 @@ MeasuredPackings measures_of(const Store& store, std::span<const CheckpointRecor
   for (std::size_t i = 0; i < records.size(); ++i) {
     std::optional<Measures>& one = made.measures.emplace_back();
     if (found.results[i].front().is_null()) continue;
-    one = read_kept(derived, found.results[i]);
+    one = read_results(derived, found.results[i]);
     found.results[i].clear();  // JSON takes more memory than the measures
     const auto [run, first] = runs.try_emplace(records[i].run);
     if (first) run->second = store.run(records[i].run);

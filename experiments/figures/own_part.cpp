@@ -8,42 +8,11 @@
 #include <vector>
 
 #include "core/drive.hpp"
-#include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/run_end.hpp"
 
 namespace shearcell {
-namespace {
-
-/// The checkpoints by which the run would have ended for this experiment alone.
-std::vector<MeasuredCycle> measured_at(const Store& store, const RunRecord& run, double cadence,
-                                       const MeasureOptions& options) {
-  std::vector<CheckpointRecord> records = store.checkpoints(run.id, Listed::and_pruned);
-  std::erase_if(records, [&](const CheckpointRecord& record) {
-    return std::fmod(record.cycle, cadence) != 0;
-  });
-  const std::string scalars = "scalars";
-  const auto found = measures_of(store, records, {&scalars, 1},
-                                 {.workers = options.workers, .report = options.report});
-  std::vector<MeasuredCycle> measured;
-  for (std::size_t k = 0; k < records.size(); ++k) {
-    if (found.measures[k]) measured.push_back({records[k].cycle, *found.measures[k]});
-  }
-  return measured;
-}
-
-}  // namespace
-
-double own_end(const Store& store, const RunRecord& run, const Membership& membership,
-               const MeasureOptions& options) {
-  const auto target = static_cast<double>(membership.target_cycles);
-  if (run.memberships.size() < 2) return target;  // nobody else can have continued it
-  const RunAsk ask = ask_of(store, run.id, membership);
-  if (!ask.until) return target;
-  const auto cadence = static_cast<double>(ask.checkpoint_every);
-  return asked_end(ask, measured_at(store, run, cadence, options));
-}
 
 std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, double first,
                                        double last) {

@@ -13,13 +13,6 @@
 
 namespace shearcell {
 
-/// The last cycle of the run that counts for this experiment: its number of cycles, or where its
-/// `until` ends the run. Another experiment may have continued it; an experiment's figures and
-/// tables are the same whatever shares its runs. May measure checkpoints, and keeps the results.
-/// Throws StoreDamaged where the run's declarations are not as this program writes them.
-double own_end(const Store& store, const RunRecord& run, const Membership& membership,
-               const MeasureOptions& options);
-
 /// Steps of a shear at which `ask` wants a checkpoint in cycles first to last; none of another
 /// kind of run, or of a record that this program cannot read.
 std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, double first,

@@ -198,7 +198,7 @@ std::vector<Column> columns_for(const std::vector<MeasuredRun>& runs, RowPer per
 
 std::vector<MeasuredRun> select(const Store& store, const RunSelection& selection,
                                 const MeasureOptions& options, RunTable& table) {
-  NewestRuns newest = newest_runs(store, select_runs(store, selection), selection.all_versions);
+  NewestRuns newest = newest_runs(select_runs(store, selection), selection.all_versions);
   table.notes = std::move(newest.notes);
   std::vector<MeasuredRun> runs;
   for (SelectedRun& selected : newest.runs) {

@@ -65,23 +65,6 @@ ExperimentScale experiment_scale(const Membership& m) {
   return {m.experiment, m.scale};
 }
 
-/// Moves the runs of older versions behind the others; how many the others are.
-std::size_t sort_by_version(const Store& store, std::vector<SelectedRun>& runs) {
-  Versions versions = versions_of(store);
-  std::map<ExperimentScale, std::size_t> newest;  // of all runs, selected or not
-  for (const RunRecord& run : store.runs()) {
-    if (run.kind == name_of(Stage::prepare)) continue;
-    for (const Membership& m : run.memberships) {
-      std::size_t& known = newest[experiment_scale(m)];
-      known = std::max(known, versions[m.manifest]);
-    }
-  }
-  const auto older = std::ranges::stable_partition(runs, [&](const SelectedRun& run) {
-    return versions[run.membership.manifest] == newest[experiment_scale(run.membership)];
-  });
-  return runs.size() - older.size();
-}
-
 /// Says where an edited manifest asks for fewer cycles than `run --cycles` gave an older version.
 void note_shortened(const std::vector<SelectedRun>& runs, std::vector<std::string>& notes) {
   struct Shortened {
@@ -89,7 +72,7 @@ void note_shortened(const std::vector<SelectedRun>& runs, std::vector<std::strin
     std::uint64_t asked = 0, had = 0;
   };
   std::map<ExperimentScale, Shortened> shortened;
-  for (const auto& [run, m] : runs) {
+  for (const auto& [run, m, newest] : runs) {
     for (const Membership& older : run.memberships) {
       if (place(older) != place(m) || older.target_cycles <= m.target_cycles) continue;
       Shortened& found = shortened[experiment_scale(m)];
@@ -120,8 +103,12 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
   Filter variant(selection.variants, has_values, keys_of);
   std::vector<SelectedRun> selected;
   Versions versions = versions_of(store);
+  std::map<ExperimentScale, std::size_t> newest;  // version that has runs, selected or not
   for (const RunRecord& run : store.runs()) {
+    const bool packing = run.kind == name_of(Stage::prepare);
     for (const Membership& m : newest_memberships(run, versions)) {
+      std::size_t& known = newest[experiment_scale(m)];
+      if (!packing) known = std::max(known, versions[m.manifest]);
       // Not by &&: each has to see every value.
       bool passes = experiment.passes(m.experiment);
       passes &= scale.passes(scale_name(m.scale));
@@ -136,12 +123,17 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
   require_found("scale", scale);
   require_found("variant", variant);
   require_found("seed", seed);
+  for (SelectedRun& run : selected) {
+    const Membership& m = run.membership;
+    run.of_newest_version = versions[m.manifest] == newest[experiment_scale(m)];
+  }
   return selected;
 }
 
-NewestRuns newest_runs(const Store& store, std::vector<SelectedRun> selected, bool all_versions) {
+NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
   std::erase_if(selected, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
-  const std::size_t newest = sort_by_version(store, selected);
+  const auto older = std::ranges::stable_partition(selected, &SelectedRun::of_newest_version);
+  const std::size_t newest = selected.size() - older.size();
   NewestRuns chosen;
   std::set<std::pair<ExperimentScale, std::string>> taken;  // with the run's id
   using Seed = std::tuple<ExperimentScale, std::string, std::string, std::uint64_t>;

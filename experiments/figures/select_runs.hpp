@@ -26,6 +26,8 @@ struct RunSelection {
 struct SelectedRun {
   RunRecord run;
   Membership membership;  ///< a run of two experiments is selected once for each
+  /// Declared by the newest version of the experiment's manifest that has runs at this scale.
+  bool of_newest_version = true;
 };
 
 /// In the order of declaration. A run that several versions of a manifest declared is that of the
@@ -43,7 +45,7 @@ struct NewestRuns {
 /// there; with `all_versions` those of older versions too. Settled packings are left out.
 /// Each run is listed once, and each seed of a variant once: a run counted twice would make errors
 /// too small.
-NewestRuns newest_runs(const Store& store, std::vector<SelectedRun> selected, bool all_versions);
+NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions);
 
 /// "fluid=still, fluid=cell, fluid=none and 3 more".
 std::string some_of(const std::set<std::string>& names);

@@ -61,7 +61,7 @@ struct ChosenRun {
 std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<SelectedRun>& runs,
                                           const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;
-  for (const auto& [run, member] : runs) {
+  for (const auto& [run, member, newest] : runs) {
     if (member.experiment != experiment) continue;
     std::vector<CheckpointRecord> checkpoints = own_checkpoints(store, run, asks_of(store, run.id));
     std::erase_if(checkpoints,
@@ -89,8 +89,7 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
     return chosen;
   }
   std::set<std::string> known;
-  const std::vector<SelectedRun> runs =
-      newest_runs(store, select_runs(store, selection), false).runs;
+  const std::vector<SelectedRun> runs = newest_runs(select_runs(store, selection), false).runs;
   for (const std::string& experiment : experiments) {
     for (ChosenRun& run : runs_of_experiment(store, runs, experiment, choice.runs_per_experiment)) {
       if (known.insert(run.run.id).second) chosen.push_back(std::move(run));

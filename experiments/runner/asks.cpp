@@ -27,7 +27,7 @@ using nlohmann::json;
 
 constexpr std::size_t kMostListed = 1'000'000;  // of one list; the store is not trusted
 
-using Place = std::array<json, 5>;  // of an experiment, as the store tells memberships apart
+using Place = std::array<json, 5>;  // the members that same_place() compares
 
 std::map<Place, RunAsk> asks_by_place(const Store& store, const std::string& run) {
   std::map<Place, RunAsk> asks;
@@ -69,6 +69,11 @@ RunAsk ask_of(const Store& store, const std::string& run, const Membership& m) {
   const auto asks = asks_by_place(store, run);
   const auto found = asks.find(Place{m.experiment, m.scale, m.variant, m.seed, m.manifest});
   return found == asks.end() ? RunAsk{m.target_cycles} : found->second;
+}
+
+bool may_end_early(const Store& store, const std::string& run) {
+  return std::ranges::any_of(asks_of(store, run),
+                             [](const RunAsk& ask) { return ask.until.has_value(); });
 }
 
 std::vector<std::uint64_t> checkpoint_steps(const RunAsk& ask, const Drive& drive, double first,

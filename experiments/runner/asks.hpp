@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the experiments that share a run ask of it: its length, an early end, and checkpoints. None
-// of this is part of the run's identity; the run has all that any of them asks for.
+// What the experiments that share a run ask for: its length, an early end, and checkpoints. None of
+// this is part of the run's identity; the run gets everything that any of them asks for.
 #pragma once
 
 #include <cstdint>
@@ -15,37 +15,40 @@
 
 namespace shearcell {
 
-/// What one experiment asks of a run.
+/// What one experiment asks for.
 struct RunAsk {
   std::uint64_t target_cycles = 0;
   std::optional<Until> until = {};
   std::uint64_t checkpoint_every = 1;  ///< cycles
-  std::vector<double> phases = {};     ///< of each cycle after one of these, for more checkpoints
+  std::vector<double> phases = {};     ///< more checkpoints in each cycle after one of these
 };
 
-/// One for each membership of the run, from its declarations. Throws StoreDamaged when one is not
-/// as this program writes it.
+/// One for each membership of the run, from its declarations. Throws StoreDamaged when a
+/// declaration is not as this program writes it.
 std::vector<RunAsk> asks_of(const Store& store, const std::string& run);
 
-/// That of one membership of the run.
+/// For one membership of the run.
 RunAsk ask_of(const Store& store, const std::string& run, const Membership& membership);
 
-/// Steps of a shear at which it asks for a checkpoint, from cycle `first` to cycle `last`,
-/// ascending; a million at most.
+/// Whether an experiment states an `until`, so that the run may end before its number of cycles.
+bool may_end_early(const Store& store, const std::string& run);
+
+/// Steps of a shear, from cycle `first` to cycle `last`, at which `ask` asks for a checkpoint;
+/// ascending, at most a million.
 std::vector<std::uint64_t> checkpoint_steps(const RunAsk& ask, const Drive& drive, double first,
                                             double last);
 
-/// The cadence [cycles] that has the checkpoints at whole cycles of every experiment.
+/// The longest interval [cycles] that gives every experiment its checkpoints at whole cycles.
 std::uint64_t checkpoint_cadence(const RunRecord& run);
 
-/// Steps before the run's last one at which an experiment, or one of those `planned`, asks for
-/// a checkpoint that was never recorded, ascending: it asked for a denser cadence later. None for a
-/// run of LAMMPS, which cannot be repeated.
+/// Steps before the run's last one at which an experiment, or one of the `planned` asks, asks for a
+/// checkpoint that was never recorded; ascending. This happens when a denser cadence is asked for
+/// later. Empty for a LAMMPS run, because it cannot be repeated.
 std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunRecord& run,
                                                std::span<const RunAsk> planned = {});
 
-/// Whether the run is not completed or lacks checkpoints. A completed run whose records cannot be
-/// read has none left; `verify` names them.
+/// Whether the run is not completed or lacks checkpoints. False for a completed run whose records
+/// cannot be read; `verify` names those.
 bool has_work_left(const Store& store, const RunRecord& run);
 
 }  // namespace shearcell

@@ -14,8 +14,9 @@
 namespace shearcell {
 namespace {
 
-// Particle-steps/s until the store has measured them: rough cells on one core of an EPYC (Zen 4),
-// from `bench speed`, for LAMMPS of one process (29 Sep 2021) from `bench engines` (SCALING.md).
+// Particle-steps/s assumed until the store has measured them: rough cells on one core of an EPYC
+// (Zen 4), from `bench speed`; LAMMPS 29 Sep 2021 with one process, from `bench engines`
+// (SCALING.md).
 struct MeasuredRate {
   double grains, rate;
 };
@@ -49,14 +50,12 @@ double settling_time(double height) {
 // of B.2: 7e3 to 21e3 measured at N = 600 and 2000.
 constexpr double kMinimization = 15e3;
 
-/// What the places of the run that the store does not know ask of it.
+/// What the run's places ask for that the store does not know yet.
 std::vector<RunAsk> planned_asks(const PlannedRun& run, const RunRecord& known) {
   std::vector<RunAsk> planned;
   for (const Membership& place : run.places) {
-    const bool declared = std::ranges::any_of(known.memberships, [&](const Membership& m) {
-      return m.experiment == place.experiment && m.scale == place.scale &&
-             m.variant == place.variant && m.seed == place.seed && m.manifest == place.manifest;
-    });
+    const bool declared = std::ranges::any_of(
+        known.memberships, [&](const Membership& m) { return same_place(m, place); });
     if (declared) continue;
     planned.push_back({place.target_cycles, {}, place.checkpoint_every, place.checkpoint_phases});
   }
@@ -157,10 +156,23 @@ Rate Rates::of(EngineKind engine, double grains) const {
   return {assumed_rate(kOurRates, grains), false};
 }
 
+void RemainingWork::add(const std::string& id, const std::string& parent, double steps_left,
+                        const Rate& rate) {
+  const double own_seconds = steps_left / rate.particle_steps_per_second;
+  ++stages;
+  particle_steps += steps_left;
+  core_seconds += own_seconds;
+  measured = measured && rate.measured;
+  longest_seconds = std::max(longest_seconds, chain[id] = chain[parent] + own_seconds);
+}
+
+double RemainingWork::seconds(std::size_t at_a_time) const {
+  return std::max(longest_seconds, core_seconds / static_cast<double>(at_a_time));
+}
+
 RemainingWork remaining_work(const Store& store, const std::vector<RunRecord>& stages) {
   RemainingWork work;
   const Rates rates(store.runs());
-  std::map<std::string, double> seconds;  // of a stage and those before it, which come first
   for (const RunRecord& run : stages) {
     if (run.state == RunState::completed || run.state == RunState::failed) continue;
     const StageRecord record = read_stage(run.resolved);
@@ -173,13 +185,7 @@ RemainingWork remaining_work(const Store& store, const std::vector<RunRecord>& s
     const double steps =
         stage_cost(planned, {record.stage, run.id, run.parent, {}}, from).particle_steps;
     const Rate rate = rates.of(record.parameters.engine, static_cast<double>(run.grains));
-    ++work.stages;
-    work.particle_steps += steps;
-    work.core_seconds += steps / rate.particle_steps_per_second;
-    work.measured = work.measured && rate.measured;
-    double& chain = seconds[run.id];
-    chain = seconds[run.parent] + steps / rate.particle_steps_per_second;
-    work.longest_seconds = std::max(work.longest_seconds, chain);
+    work.add(run.id, run.parent, steps, rate);
   }
   return work;
 }

@@ -17,7 +17,7 @@ namespace shearcell {
 /// (`bench engines --settle`).
 inline constexpr double kRunBytesPerGrain = 750;
 
-/// The same of a whole run.
+/// Memory [bytes] that a whole run may need.
 double run_bytes(const Geometry& shape);
 
 /// Size [bytes] of the file of a checkpoint, estimated from its grains and wall grains.
@@ -28,10 +28,11 @@ struct StageCost {
   double bytes = 0;  ///< of checkpoint files
 };
 
-/// Cycle from which the stage is left to compute; nothing when `known`, the record of it in `store`
-/// or null, shows that it is done: it has its length, or an experiment asked for the same `until`
-/// and at least this length, and it ended there; and it has every checkpoint that was asked for and
-/// that the planned run asks for. Where some are missing, the cycle of the last one before them.
+/// The cycle from which the stage must be computed; nothing when it is done. `known` is its record
+/// in `store`, or null. It is done when it has its length, or ended early by the same `until` of an
+/// experiment that asked for at least this length; and when it has every checkpoint that was asked
+/// for and that the planned run asks for. If checkpoints are missing: the cycle of the last one
+/// before them.
 std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& stage,
                                         const RunRecord* known, const Store* store);
 
@@ -44,16 +45,16 @@ double most_particle_steps(const PlannedRun& run, const StageSpec& stage);
 
 struct Rate {
   double particle_steps_per_second;  ///< of one core
-  bool measured;                     ///< in the store's own runs, or assumed
+  bool measured;                     ///< in the store's own runs; else assumed
 };
 
-/// The rates that runs had.
+/// Particle-steps/s of recorded runs.
 class Rates {
  public:
   explicit Rates(const std::vector<RunRecord>& runs);
 
-  /// Of stages of one engine: the mean of the runs, or without any the rate that was measured on
-  /// another machine for this number of grains.
+  /// Mean over the runs of one engine. Without such runs, the rate that was measured on another
+  /// machine for this number of grains.
   Rate of(EngineKind engine, double grains) const;
 
  private:
@@ -63,14 +64,22 @@ class Rates {
   std::map<EngineKind, Sum> sums_;
 };
 
-/// What is left of recorded stages, except those that failed.
+/// What is left of stages.
 struct RemainingWork {
   std::size_t stages = 0;
   double particle_steps = 0;
-  double core_seconds = 0;     ///< at the rates of the store's runs
-  double longest_seconds = 0;  ///< of the longest run, its packing included
-  bool measured = true;        ///< the rates, or assumed
+  double core_seconds = 0;
+  double longest_seconds = 0;                ///< of the longest run, its packing included
+  bool measured = true;                      ///< all rates were measured
+  std::map<std::string, double> chain = {};  ///< seconds of a stage and its parents, by id
+
+  /// Adds a stage, after its parent.
+  void add(const std::string& id, const std::string& parent, double steps_left, const Rate& rate);
+  /// Wall time [s] with so many stages at a time.
+  double seconds(std::size_t at_a_time) const;
 };
+
+/// What is left of recorded stages, except those that failed, at the rates of the store's runs.
 RemainingWork remaining_work(const Store& store, const std::vector<RunRecord>& stages);
 
 }  // namespace shearcell

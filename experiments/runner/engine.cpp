@@ -112,11 +112,6 @@ class LammpsEngine final : public Engine {
 
 }  // namespace
 
-std::optional<LammpsProgram> find_engine(const StagePlan& plan, const Parallel& parallel) {
-  if (plan.stage.parameters.engine != EngineKind::lammps) return std::nullopt;
-  return find_lammps(parallel.ranks);
-}
-
 std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,
                                     const Parallel& parallel,
                                     const std::optional<LammpsProgram>& lammps) {
@@ -134,13 +129,6 @@ std::vector<std::string> lammps_caveats() {
       "These runs have ids of their own. verify --replay, regenerate and prune leave them out.",
       "The watchdog sees their checkpoints, not every 1024th step; a grain whose centre reaches a "
       "wall's plane ends a run."};
-}
-
-nlohmann::json engine_facts(const LammpsProgram& lammps, const Parallel& parallel) {
-  return {{"name", "LAMMPS"},
-          {"version", lammps.version},
-          {"program", lammps.path},
-          {"processes", parallel.ranks}};
 }
 
 }  // namespace shearcell

@@ -16,6 +16,7 @@
 #include "experiments/runner/measure_sources.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -185,20 +186,22 @@ Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkp
 
 Measures read_results(std::span<const DerivedMeasure> measures, std::span<const json> results) {
   Measures found;
-  for (std::size_t m = 0; m < measures.size(); ++m) {
-    if (!results[m].is_null()) measures[m].read(results[m], found);
+  try {
+    for (std::size_t m = 0; m < measures.size(); ++m) {
+      if (!results[m].is_null()) measures[m].read(results[m], found);
+    }
+  } catch (const AnalysisError& problem) {
+    throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
+                        problem.what() + "); delete it, or measure again with --fresh");
   }
   return found;
 }
 
 MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& checkpoint) {
-  const json none = json::object();
-  const auto parameters = run.resolved.find("parameters");
-  const json& known =
-      parameters != run.resolved.end() && parameters->is_object() ? *parameters : none;
+  const json known = member_of(run.resolved, "parameters");
   const auto number = [&](const char* key) {
-    const auto found = known.find(key);
-    return found != known.end() && found->is_number() ? found->get<double>() : std::nan("");
+    const json found = member_of(known, key);
+    return found.is_number() ? found.get<double>() : std::nan("");
   };
   const auto raised = checkpoint.observables.find("stiffness_N_per_m");
   return mechanical_units(

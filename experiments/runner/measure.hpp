@@ -20,7 +20,7 @@ struct MeasureOptions {
   bool fresh = false;  ///< compute all of them again and replace the kept ones
   /// Called as checkpoints are computed; may be empty.
   std::function<void(std::size_t done, std::size_t total)> report;
-  /// Computes the one measure in place of an analysis. May be empty.
+  /// If given, computes the only measure instead of an analysis.
   std::function<nlohmann::json(const CheckpointRecord& record, const Checkpoint& checkpoint)>
       instead = {};
 };
@@ -40,8 +40,8 @@ struct MeasureOutcome : UnreadCheckpoints {
 };
 
 struct MeasuredCheckpoints : MeasureOutcome {
-  /// In the order of the records; for each the results in the order of the measures, null where the
-  /// checkpoint, or an earlier one, had to be read and could not be.
+  /// In the order of the records; for each, results in the order of the measures. A result is null
+  /// if the checkpoint, or an earlier one that it needs, could not be read.
   std::vector<std::vector<nlohmann::json>> results;
 };
 
@@ -53,16 +53,16 @@ MeasuredCheckpoints measure_checkpoints(const Store& store,
                                         const MeasureOptions& options);
 
 /// The analysis of a stored checkpoint. Throws StoreDamaged, which names the checkpoint and its
-/// run, where analyse() throws AnalysisError: this program records no such state.
+/// run, if analyse() throws AnalysisError: this program records no such state.
 Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
-/// All results of one checkpoint, each read by its measure. Throws AnalysisError for a result that
-/// is not what its key says.
+/// All results of one checkpoint, each read by its measure. Throws AnalysisError, with a remedy,
+/// for a result that is not what its key says.
 Measures read_results(std::span<const DerivedMeasure> measures,
                       std::span<const nlohmann::json> results);
 
-/// SI units of the mechanics of a run's checkpoint: by the run's resolved parameters, with the
-/// spring constant that a stiffening records. Not a number where the store does not say them.
+/// SI units of the mechanics of a checkpoint, from the run's resolved parameters; the spring
+/// constant is the checkpoint's own if it records one (stiffening). NaN for what the store lacks.
 MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& checkpoint);
 
 /// Called after each item that succeeded, by one thread at a time; may be empty.

@@ -18,18 +18,19 @@ class MeasureSources {
  public:
   explicit MeasureSources(const Store& store) : store_(store) {}
 
-  /// Under which a result is kept: it names the earlier checkpoints too. Reads the log for those.
+  /// The key under which a result is cached; it also names the earlier checkpoints that the measure
+  /// needs, for which the log is read.
   DerivedKey key(const CheckpointRecord& record, const DerivedMeasure& measure);
 
-  /// The measure of a checkpoint that was read; nothing if an earlier one cannot be read. For a
-  /// measure with earlier checkpoints, key() must have been called. Any number of threads may call
-  /// it then.
+  /// The measure of a loaded checkpoint; nothing if an earlier checkpoint cannot be read. For a
+  /// measure that needs earlier checkpoints, call key() first. Then any number of threads may call
+  /// this.
   std::optional<nlohmann::json> measure(const CheckpointRecord& record,
                                         const Checkpoint& checkpoint, const Analysis& analysis,
                                         const DerivedMeasure& measure) const;
 
-  /// The checkpoint of the same run so many cycles earlier; nothing where there is none or it
-  /// cannot be read. As measure(), after key().
+  /// The checkpoint of the same run so many cycles earlier; nothing if it does not exist or cannot
+  /// be read. Call key() first.
   std::optional<Checkpoint> earlier(const CheckpointRecord& record, std::uint64_t cycles) const;
 
  private:

@@ -56,7 +56,7 @@ json KnownRuns::novelty(const StageSpec& stage) const {
   const json values = values_of(stage.resolved);
   for (const auto& [key, value] : values.items()) {
     const auto with = known.find(text_of(key, value));
-    // What all have does not decide.
+    // A value that all runs have does not distinguish them.
     if (with == known.end() || with->second.size() == runs.size()) continue;
     for (const std::size_t place : with->second) ++hits[place];
   }

@@ -15,7 +15,7 @@
 
 namespace shearcell {
 
-/// The runs of a store, which must outlive this object, prepared for many searches.
+/// An index of the runs of a store for many searches. The runs must outlive this object.
 class KnownRuns {
  public:
   explicit KnownRuns(const std::vector<RunRecord>& runs);
@@ -24,8 +24,8 @@ class KnownRuns {
   const RunRecord* find(const std::string& id) const;
 
   /// {"nearest": ID, "fields": [{"field": KEY, "value": V, "store_has": W}, ...]}: the run of the
-  /// same kind that differs from this stage in the fewest values, and these, the seed last. Null
-  /// when there is no stage of its kind.
+  /// same kind that differs from this stage in the fewest values, and those values, the seed last.
+  /// Null when there is no run of its kind.
   nlohmann::json novelty(const StageSpec& stage) const;
 
  private:

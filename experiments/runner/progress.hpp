@@ -12,8 +12,8 @@
 
 namespace shearcell {
 
-/// On a terminal: one line per running stage, drawn over itself. Elsewhere: a plain line when a
-/// stage begins or ends and, for each, at most one every ten seconds. Thread-safe.
+/// On a terminal: one line per running stage, redrawn in place. Elsewhere: a plain line when a
+/// stage begins or ends, and for each running stage at most one every ten seconds. Thread-safe.
 class Progress {
  public:
   explicit Progress(std::size_t stages, bool quiet = false);
@@ -26,7 +26,7 @@ class Progress {
   void end(const std::string& id, const std::string& name, const std::string& how, bool done);
   /// Counts a stage that was done before among those that are done.
   void count();
-  /// The stage is not computed any more, or left to another program.
+  /// This program no longer computes the stage.
   void drop(const std::string& id);
   /// A permanent line, unless progress is off.
   void note(const std::string& line);

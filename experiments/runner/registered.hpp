@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The manifests that are registered in a store, and names for people of variants and packings.
+// The manifests that are registered in a store, and display names of variants and packings.
 #pragma once
 
 #include <map>
@@ -23,18 +23,18 @@ struct RegisteredManifest {
   std::string text;
 };
 
-/// In the order of registration; a version that was run again after another one comes again. Throws
-/// StoreDamaged for an event that does not hold a manifest.
+/// In the order of registration. A version that was registered again after another one appears
+/// again. Throws StoreDamaged for an event that does not hold a manifest.
 std::vector<RegisteredManifest> registered_manifests(const Store& store);
 
-/// Its labels, plots and claims; nothing if this version of the program cannot read it.
+/// The parsed manifest; nothing if this version of the program cannot read it.
 std::optional<Manifest> read(const RegisteredManifest& manifest);
 
-/// Names for people of settled packings, which no sweep names: "packing", and where an experiment
-/// has others at the same scale, what tells them apart: "packing N=600".
+/// Display names of settled packings, which no sweep names: "packing", or if an experiment has
+/// several at one scale, with the values in which they differ: "packing N=600".
 class PackingNames {
  public:
-  /// `resolved`: of the stage that settles it.
+  /// `resolved`: the parameters of the stage that settles it.
   void add(const Membership& place, const nlohmann::json& resolved);
   std::string of(const Membership& place, const nlohmann::json& resolved) const;
 
@@ -43,15 +43,15 @@ class PackingNames {
   std::map<Group, std::vector<nlohmann::json>> parameters_;  // different ones
 };
 
-/// Names for people of all variants of the runs of a store, from the labels of each manifest and
-/// what varies in it (experiments/manifest/variants.hpp).
+/// Display names of all variants in a store, from the labels of each manifest and the values that
+/// vary in it (experiments/manifest/variants.hpp).
 class VariantNames {
  public:
   explicit VariantNames(const Store& store);
   VariantNames(const std::vector<RegisteredManifest>& manifests,
                const std::vector<RunRecord>& runs);
-  std::string of(const Membership& membership) const;  ///< its variant, if it is unknown
-  /// The same; of a packing its own name.
+  std::string of(const Membership& membership) const;  ///< if unknown, the variant itself
+  /// The same; for a packing, its name by PackingNames.
   std::string of(const RunRecord& run, const Membership& membership) const;
 
  private:

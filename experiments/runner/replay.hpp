@@ -15,9 +15,8 @@ namespace shearcell {
 struct Divergence {
   std::uint64_t same_step = 0;   ///< last step known to be the same: where the replay began
   std::uint64_t first_step = 0;  ///< first step known to differ
-  /// "position", "velocity", "wall_height", "wall_velocity"; "cycle", "time_s", "theta" or the name
-  /// of an observable when the states are equal; "file" when all these are equal and the files are
-  /// not; "" when it is not known.
+  /// "position", "velocity", "wall_height", "wall_velocity"; if the states are equal: "cycle",
+  /// "time_s", "theta" or the name of an observable; if these are equal too: "file"; "" if unknown.
   std::string field;
   std::int64_t grain = -1;
   std::uint64_t ulp = 0;  ///< largest distance in the field [units in the last place]
@@ -27,13 +26,13 @@ struct Divergence {
 struct Replay {
   CheckpointRecord record;
   std::optional<CheckpointRecord> from;  ///< nothing: from the beginning of the stage
-  std::uint64_t steps = 0;               ///< that were computed again
+  std::uint64_t steps = 0;               ///< number of recomputed steps
   std::optional<Divergence> divergence;
-  bool interrupted = false;  ///< by a signal; nothing is known and nothing was recorded
+  bool interrupted = false;  ///< by a signal; there is no result and nothing was recorded
 };
 
-/// Every checkpoint that can be replayed, in the order of their runs and steps. Pruned ones can;
-/// those that another engine made cannot.
+/// Every checkpoint that can be replayed, pruned ones included, in the order of runs and steps.
+/// Checkpoints of another engine cannot.
 std::vector<CheckpointRecord> replayable(const Store& store);
 
 /// Why the checkpoints of a run cannot be recomputed bit for bit; nothing if they can.

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "experiments/runner/measure.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -16,21 +16,44 @@ namespace {
 
 using nlohmann::json;
 
-// Others may have asked for more checkpoints than `ask` has.
-auto first_reached(std::span<const MeasuredCycle> measured, const RunAsk& ask) {
-  const ScalarMeasure* measure = ask.until ? find_measure(name_of(ask.until->measure)) : nullptr;
+/// The first checkpoint on the cadence of `ask` at which its `until` is reached; null without one.
+const MeasuredCycle* first_reached(std::span<const MeasuredCycle> measured, const RunAsk& ask) {
+  if (!ask.until) return nullptr;
+  const ScalarMeasure* measure = find_measure(name_of(ask.until->measure));
   const auto every = static_cast<double>(ask.checkpoint_every);
-  return std::ranges::find_if(measured, [&](const MeasuredCycle& m) {
-    return measure != nullptr && std::fmod(m.cycle, every) == 0 &&
-           measure->of(m.measures) >= ask.until->value;
+  const auto found = std::ranges::find_if(measured, [&](const MeasuredCycle& m) {
+    return std::fmod(m.cycle, every) == 0 && measure->of(m.measures) >= ask.until->value;
   });
+  return found == measured.end() ? nullptr : &*found;
 }
 
-// Whether every `until` is reached; then only numbers of cycles decide.
+/// The cycle at which the run ends for this experiment alone: its number of cycles, or the first
+/// checkpoint at or after the end that its `until` gives when that is reached at `reached`.
+double asked_end(const RunAsk& ask, const MeasuredCycle* reached) {
+  const auto target = static_cast<double>(ask.target_cycles);
+  if (reached == nullptr) return target;
+  const auto every = static_cast<double>(ask.checkpoint_every);
+  const double end = reached->cycle + static_cast<double>(ask.until->extra_cycles);
+  return std::min(target, std::ceil(end / every) * every);
+}
+
+/// Whether every `until` is reached; then only numbers of cycles decide.
 bool all_reached(std::span<const RunAsk> asks, std::span<const MeasuredCycle> measured) {
-  return std::ranges::all_of(asks, [&](const RunAsk& ask) {
-    return !ask.until || first_reached(measured, ask) != measured.end();
-  });
+  return std::ranges::all_of(
+      asks, [&](const RunAsk& ask) { return !ask.until || first_reached(measured, ask); });
+}
+
+/// The measures of those checkpoints that can be read.
+std::vector<MeasuredCycle> measure(const Store& store, std::span<const CheckpointRecord> records,
+                                   std::span<const DerivedMeasure> measures,
+                                   const MeasureOptions& options) {
+  const auto results = measure_checkpoints(store, records, measures, options).results;
+  std::vector<MeasuredCycle> measured;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    if (results[k].front().is_null()) continue;
+    measured.push_back({records[k].cycle, read_results(measures, results[k])});
+  }
+  return measured;
 }
 
 /// Whether it is what ended_early() gives.
@@ -58,35 +81,41 @@ double longest_length(const Store& store, const RunRecord& run, const json& ende
 
 }  // namespace
 
-double asked_end(const RunAsk& ask, std::span<const MeasuredCycle> measured) {
-  const auto target = static_cast<double>(ask.target_cycles);
-  const auto reached = first_reached(measured, ask);
-  if (reached == measured.end()) return target;
-  const auto every = static_cast<double>(ask.checkpoint_every);
-  const double end = reached->cycle + static_cast<double>(ask.until->extra_cycles);
-  return std::min(target, std::ceil(end / every) * every);
-}
-
 std::optional<json> ended_early(std::span<const RunAsk> asks,
                                 std::span<const MeasuredCycle> measured, double now) {
   double end = -1;
   json why;
   for (const RunAsk& ask : asks) {
-    const auto& until = ask.until;
-    const auto reached = first_reached(measured, ask);
-    const double own = asked_end(ask, measured);
+    const MeasuredCycle* reached = first_reached(measured, ask);
+    const double own = asked_end(ask, reached);
     if (now < own) return std::nullopt;
-    if (own <= end || reached == measured.end()) continue;
+    if (own <= end || reached == nullptr) continue;
     end = own;
     why = {{"by", "until"},
-           {"measure", name_of(until->measure)},
-           {"value", until->value},
-           {"extra_cycles", until->extra_cycles},
+           {"measure", name_of(ask.until->measure)},
+           {"value", ask.until->value},
+           {"extra_cycles", ask.until->extra_cycles},
            {"reached_at_cycle", reached->cycle},
            {"memberships", asks.size()}};
   }
   if (why.is_null()) return std::nullopt;
   return why;
+}
+
+double own_end(const Store& store, const RunRecord& run, const Membership& membership,
+               const MeasureOptions& options) {
+  const auto target = static_cast<double>(membership.target_cycles);
+  if (run.memberships.size() < 2) return target;  // no other experiment can have continued it
+  const RunAsk ask = ask_of(store, run.id, membership);
+  if (!ask.until) return target;
+  std::vector<CheckpointRecord> records = store.checkpoints(run.id, Listed::and_pruned);
+  std::erase_if(records, [&](const CheckpointRecord& record) {
+    return std::fmod(record.cycle, static_cast<double>(ask.checkpoint_every)) != 0;
+  });
+  const DerivedMeasure scalars = derived_measure("scalars");
+  const auto measured = measure(store, records, {&scalars, 1},
+                                {.workers = options.workers, .report = options.report});
+  return asked_end(ask, first_reached(measured, ask));
 }
 
 json recorded_end(const Store& store, const std::string& run) {
@@ -156,11 +185,8 @@ std::optional<json> RunEnd::ended() {
   // The crystallites come from the same analysis, and figures need them.
   static const std::array measures = {derived_measure("scalars"), derived_measure("crystallites")};
   for (; next_ < records_.size() && !all_reached(asks, measured_); ++next_) {
-    const CheckpointRecord& record = records_[next_];
-    const auto found = measure_checkpoints(store_, std::span(&record, 1), measures, {});
-    const std::vector<json>& results = found.results.front();
-    if (results.front().is_null()) continue;  // it cannot be read
-    measured_.push_back({record.cycle, read_results(measures, results)});
+    std::ranges::move(measure(store_, {&records_[next_], 1}, measures, {}),
+                      std::back_inserter(measured_));
   }
   return ended_early(asks, measured_, records_.back().cycle);
 }

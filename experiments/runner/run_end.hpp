@@ -13,8 +13,8 @@
 #include <span>
 #include <vector>
 
-#include "analysis/measures.hpp"
 #include "experiments/runner/asks.hpp"
+#include "experiments/runner/measure.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -24,17 +24,19 @@ struct MeasuredCycle {
   Measures measures;
 };
 
-/// The cycle at which the run ends for this experiment alone, by those checkpoints of `measured`
-/// that are on its own cadence: its number of cycles, or the first checkpoint at or after the end
-/// that its `until` gives.
-double asked_end(const RunAsk& ask, std::span<const MeasuredCycle> measured);
-
 /// Why the run ends at cycle `now`, that of its last checkpoint: every experiment that shares it
 /// has reached the end that it asks for, by `measured`, its checkpoints on the cadence in order.
 /// Nothing while the run continues.
 /// {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle", "memberships"}.
 std::optional<nlohmann::json> ended_early(std::span<const RunAsk> asks,
                                           std::span<const MeasuredCycle> measured, double now);
+
+/// The last cycle of the run that counts for this experiment: its number of cycles, or where its
+/// `until` ends the run. Another experiment may have continued it; an experiment's figures and
+/// tables are the same whatever shares its runs. May measure checkpoints, and keeps the results.
+/// Throws StoreDamaged where the run's declarations are not as this program writes them.
+double own_end(const Store& store, const RunRecord& run, const Membership& membership,
+               const MeasureOptions& options);
 
 /// What the last completion of the run records of its end; null where there is none.
 nlohmann::json recorded_end(const Store& store, const std::string& run);

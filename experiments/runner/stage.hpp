@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One stage of a run, made from its record and ready to be stepped: the same for a first
-// computation, a continuation and a replay.
+// One stage of a run, made from its record and ready to be stepped. A first computation, a
+// continuation and a replay all use it.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@
 
 namespace shearcell {
 
-/// How much of the machine one stage takes.
+/// Threads and processes of one stage.
 struct Parallel {
-  std::size_t threads = 1;  ///< of our own simulation; it changes no bit
+  std::size_t threads = 1;  ///< of our own simulation; results do not depend on it
   std::size_t ranks = 1;    ///< processes of LAMMPS, under mpirun when more than one
 };
 
@@ -31,7 +31,7 @@ struct StagePlan {
   std::uint64_t checkpoint_every = 1;  ///< whole cycles
 };
 
-/// The watchdog's largest overlap is the largest that a manifest of the run states. Throws
+/// The watchdog's overlap limit is the largest that a manifest of the run states. Throws
 /// StoreDamaged when the recorded parameters do not give the run's id.
 StagePlan plan_stage(const Store& store, RunRecord run);
 
@@ -43,9 +43,10 @@ struct Beginning {
   std::string parent_checkpoint;         ///< that the stage begins from, or ""
 };
 
-/// The newest checkpoint before a step that verifies, or else where the stage begins: the state at
+/// The newest valid checkpoint before a step. Without one, the beginning of the stage: the state at
 /// which its parent was completed, or a fresh filling. Throws StoreDamaged when the parent's state
-/// cannot be read or the parent is not completed, and Interrupted when the filling is given up.
+/// cannot be read or the parent is not completed, and Interrupted when a stop is requested during
+/// the filling.
 /// `damage` as in Store::newest_valid_checkpoint.
 Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage,
                          std::uint64_t before_step = UINT64_MAX);
@@ -56,11 +57,11 @@ Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::si
 /// Steps between two checks for signals and leases: about 50 ms of work.
 std::uint64_t chunk_steps(std::size_t grains);
 
-/// What is recorded of the present state: a function of the state alone. Throws NumericalFailure
-/// instead of recording an invalid state.
+/// The checkpoint of the present state; it depends on the state alone. Throws NumericalFailure for
+/// an invalid state.
 Checkpoint make_checkpoint(const StagePlan& plan, const Simulation& simulation, double cycle);
 
-/// The same of a state from elsewhere; `scene` is what acts on it now.
+/// The same for a state that another engine computed; `scene` acts on it now.
 Checkpoint make_checkpoint(const StagePlan& plan, const Cell& cell, const Scene& scene,
                            const State& state, double cycle);
 

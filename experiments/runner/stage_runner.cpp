@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/stage_runner.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -31,11 +30,18 @@ class StageAttempt {
     }
     const bool fresh = !beginning.from;
     nlohmann::json facts = host_facts();
-    const auto lammps = find_engine(plan_, options_.parallel);
-    if (lammps) facts["engine"] = engine_facts(*lammps, options_.parallel);
+    std::optional<LammpsProgram> lammps;
+    if (plan_.stage.parameters.engine == EngineKind::lammps) {
+      lammps = find_lammps(options_.parallel.ranks);
+      facts["engine"] = {{"name", "LAMMPS"},
+                         {"version", lammps->version},
+                         {"program", lammps->path},
+                         {"processes", options_.parallel.ranks}};
+    }
     start(beginning, facts);
     if (options_.begun) options_.begun();
-    if (asks_for_early_end()) end_.emplace(store_, plan_.run, fresh ? 0 : beginning.from->step);
+    if (may_end_early(store_, id()))
+      end_.emplace(store_, plan_.run, fresh ? 0 : beginning.from->step);
     if (ends_early()) return StageOutcome::completed;
     return guarded([&] {
       const auto engine = make_engine(plan_, std::move(beginning), options_.parallel, lammps);
@@ -51,7 +57,8 @@ class StageAttempt {
   StageOutcome fill(const std::vector<std::uint64_t>& steps) {
     Beginning beginning = continue_stage(store_, plan_, nullptr, steps.front());
     const bool fresh = !beginning.from;
-    const nlohmann::json ended = last_end();
+    nlohmann::json ended = recorded_end(store_, id());
+    if (ended.is_null()) ended = {{"by", "cycles"}};
     start(beginning, host_facts(), true);
     return guarded([&] {
       const auto engine = make_engine(plan_, std::move(beginning), options_.parallel);
@@ -104,12 +111,6 @@ class StageAttempt {
     store_.start_run(id(), facts, from, beginning.parent_checkpoint, filling);
   }
 
-  // Why the run ended when it was completed.
-  nlohmann::json last_end() const {
-    const nlohmann::json ended = recorded_end(store_, id());
-    return ended.is_null() ? nlohmann::json({{"by", "cycles"}}) : ended;
-  }
-
   StageOutcome advance(Engine& engine) {
     for (;;) {
       StageProgress progress = engine.advance();
@@ -132,11 +133,6 @@ class StageAttempt {
   StageOutcome interrupted() {
     store_.interrupt_run(id(), "stopped by a signal");
     return StageOutcome::interrupted;
-  }
-
-  bool asks_for_early_end() const {
-    return std::ranges::any_of(asks_of(store_, id()),
-                               [](const RunAsk& ask) { return ask.until.has_value(); });
   }
 
   // Completes the run when what is recorded is all that the experiments ask for.

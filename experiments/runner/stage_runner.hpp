@@ -10,10 +10,9 @@
 
 namespace shearcell {
 
-/// How a stage ended in this process. `already`: it is completed, and nothing was left to compute,
-/// since the experiment asks for no more than what is there. `held`: another program holds it, and
-/// nothing was begun. `lost`: another program took its lease, completed it or recorded a later
-/// state meanwhile.
+/// How a stage ended in this process. `already`: it was completed and nothing was left to compute.
+/// `held`: another program holds it; nothing was started. `lost`: another program took its lease,
+/// completed it or recorded a later state meanwhile.
 enum class StageOutcome : std::uint8_t { completed, already, interrupted, failed, held, lost };
 
 /// The progress of a running stage.
@@ -33,17 +32,16 @@ struct StageOptions {
   std::function<void(const StageStatus&)> report;   ///< called a few times a second
 };
 
-/// Computes the stage `id` until its target, then the checkpoints that it lacks: continues from its
-/// newest checkpoint that verifies, or else begins from its parent's last state, or from a fresh
-/// filling. Checks for stop_requested(), and whether the store still holds the run, between chunks
-/// of steps of about 50 ms. Throws StoreDamaged when the parent's last state cannot be read,
-/// GeometryError for a cell that cannot be filled, and ProgramError when the stage's engine is not
-/// installed, all before an attempt is recorded. A stage that is interrupted while its cell is
-/// filled records nothing.
+/// Computes the stage `id` until its target, then the checkpoints that it lacks. Starts as
+/// continue_stage() does. Between chunks of steps of about 50 ms it checks stop_requested() and
+/// whether the store still holds the run. Throws StoreDamaged when the parent's last state cannot
+/// be read, GeometryError for a cell that cannot be filled, and ProgramError when the stage's
+/// engine is not installed, all before an attempt is recorded. A stage that is interrupted while
+/// its cell is filled records nothing.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
-/// Whether the stage is completed, its last state can be read, and it lacks no checkpoint that an
-/// experiment asks for; else there is work left.
+/// Whether the stage is completed, its last state can be read, and it has every checkpoint that an
+/// experiment asks for.
 bool stage_done(const Store& store, const RunRecord& run);
 
 }  // namespace shearcell

@@ -18,7 +18,7 @@ void catch_batch_signals();
 /// Whether one of them arrived.
 bool stop_requested();
 
-/// Work ended because of such a request, before there was a state to record.
+/// Thrown when a stop is requested before there is a state to record.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}

@@ -24,9 +24,8 @@ bool moves_cursor(std::FILE* stream);
 /// (https://no-color.org) is not set to anything.
 bool shows_colours(std::FILE* stream);
 
-/// The text without control sequences: bytes that are not UTF-8 and control characters
-/// other than a line's end, also those that change the direction of a text, are shown as \x1b or
-/// \u202e.
+/// The text without control sequences: bytes that are not UTF-8, control characters other than a
+/// line feed, and characters that change the direction of text are shown as \x1b or \u202e.
 std::string for_terminal(std::string_view text);
 
 /// Characters of a UTF-8 text: each code point counts as one column.
@@ -52,8 +51,8 @@ void tell_stderr(fmt::format_string<Arguments...> format, Arguments&&... argumen
   write_stderr(for_terminal(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
-/// A function that shows "WHAT done of total" on one line of standard error; none when that is not
-/// a terminal.
+/// A function that shows "WHAT done of total" on one line of standard error; empty if that is not a
+/// terminal.
 std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what);
 
 }  // namespace shearcell

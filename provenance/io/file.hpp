@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files: open ones, whole ones, and those outside of any store (figures, reports, exports). None of
-// the last is written through a link or over a file that this program did not make.
+// Reading and writing files. Output files (figures, reports, exports) are never written through a
+// link or over a file that this program did not make.
 #pragma once
 
 #include <cstddef>

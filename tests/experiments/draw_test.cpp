@@ -89,14 +89,13 @@ TEST_F(DrawFigure, AnEditedManifestThatRanAtOneScaleLeavesTheRunsOfTheOther) {
   compute(store_, tiny_manifest("  pressure_Pa: 700\n", scales), {.scale = "short"});
   EXPECT_EQ(collect_runs(store_, kS2, {}).scale, "short");
   EXPECT_EQ(distinct_runs(collect_runs(store_, kS2, {.scales = {"long"}})).size(), 2U);
-  EXPECT_EQ(newest_runs(store_, select_runs(store_, {}), false).runs.size(), 3U) << "in a table";
+  EXPECT_EQ(newest_runs(select_runs(store_, {}), false).runs.size(), 3U) << "in a table";
 }
 
 TEST_F(DrawFigure, AFilterDoesNotMakeAnOlderVersionTheNewest) {
   compute(store_, tiny_manifest("", kBothFluids), {.cycles = 1});
   compute(store_, tiny_manifest("  pressure_Pa: 700\n"), {.cycles = 1});
-  const NewestRuns cells =
-      newest_runs(store_, select_runs(store_, {.variants = {"fluid=cell"}}), false);
+  const NewestRuns cells = newest_runs(select_runs(store_, {.variants = {"fluid=cell"}}), false);
   EXPECT_TRUE(cells.runs.empty());
   ASSERT_EQ(cells.notes.size(), 1U);
   EXPECT_TRUE(has(cells.notes[0], "left out: 1 run of another version"));
@@ -114,7 +113,7 @@ TEST_F(DrawFigure, ASeedCountsOncePerVariant) {
   ASSERT_EQ(collected.notes.size(), 2U);
   EXPECT_TRUE(has(collected.notes[0], "is left out"));
   EXPECT_TRUE(has(collected.notes[1], "left out: 1 run without a checkpoint yet"));
-  EXPECT_EQ(newest_runs(store_, select_runs(store_, {}), false).runs.size(), 2U) << "in a table";
+  EXPECT_EQ(newest_runs(select_runs(store_, {}), false).runs.size(), 2U) << "in a table";
 }
 
 TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {

@@ -23,7 +23,7 @@ using bench::PackingNumbers;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Three significant digits; `otherwise` for a value that is not finite.
+// Three significant digits; `otherwise` if the value is not finite.
 std::string short_number(double value, const std::string& otherwise = "") {
   return std::isfinite(value) ? fmt::format("{:.3g}", value) : otherwise;
 }
@@ -42,12 +42,12 @@ Parameters small_cell(bool quick) {
   return parameters;
 }
 
-// Seconds of one core that a cycle takes, at so many million particle-steps/s.
+// Seconds that one core takes for a cycle, at `engine_rate` million particle-steps/s.
 double seconds_per_cycle(std::uint64_t grains, double time_step, double engine_rate) {
   return Parameters{}.period_s / time_step * static_cast<double>(grains) / (1e6 * engine_rate);
 }
 
-// NaN when the time step is too large for this scene.
+// NaN if the watchdog stops the run: the time step is too large for this scene.
 double error_of(const ClosedForm& form, const Method& method, double dt) {
   try {
     return form.measure(method, dt);
@@ -102,8 +102,8 @@ Section section_of(const ClosedForm& form, const Scene& scene, const std::vector
   return section;
 }
 
-// From a quarter of the supplement's smallest time step to the stability limit; its own four are
-// among them.
+// From a quarter of the supplement's smallest time step to the stability limit; the supplement's
+// four are included.
 std::vector<Section> closed_form_sections(const Options& options, double engine_rate) {
   std::vector<double> steps = {5.5e-6, 1.1e-5, 2.6e-5, 3.5e-5, 2.0 / 45600, 7.0e-5, 1.0e-4, 1.2e-4};
   if (options.quick) steps = {1.1e-5, 2.0 / 45600, 7.0e-5};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engine's integrator and two others behind one call, for a few grains between smooth walls at
-// rest, and their errors against motions that are known in closed form.
+// The engine's integrator and two others with one interface, for a few grains between smooth walls
+// at rest, and their errors against motions known in closed form.
 #pragma once
 
 #include <cstdint>
@@ -30,12 +30,12 @@ struct Method {
 /// method.
 const std::vector<Method>& methods();
 
-/// Called with the number of steps done and the state then.
+/// Called with the number of steps done and the state after them.
 using Visit = std::function<void(std::uint64_t step, const State& state)>;
 
-/// The state `steps` time steps of `dt` [s] after that of `box`, whose positions and velocities are
-/// of one instant; visits each step. The engine gets its first velocity from a Runge-Kutta step of
-/// -dt/2. Throws NumericalFailure as the engine does.
+/// The state after `steps` time steps of `dt` [s] from that of `box`, whose positions and
+/// velocities are of one instant; visits each step. The engine gets its first velocity from a
+/// Runge-Kutta step of -dt/2. Throws NumericalFailure as the engine does.
 State integrate(const Packing& box, const Method& method, double dt, std::uint64_t steps,
                 const Visit& visit = {});
 
@@ -52,7 +52,7 @@ struct ClosedForm {
   bool irregular = false;
 };
 
-/// With `quick` they are compared less thoroughly: less often, in shorter motions.
+/// With `quick`: fewer starts and shorter motions.
 std::vector<ClosedForm> closed_forms(const Scene& scene, bool quick);
 
 /// Order of convergence: the slope of log(error) against log(step), over time steps from `largest`

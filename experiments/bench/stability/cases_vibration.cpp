@@ -191,8 +191,8 @@ Answer rattlers() {
                                 largest_difference(end, advanced(without, 20000, drive)), 0)});
 }
 
-// Drag alone takes the speed of a free grain below the normal numbers after ten seconds. The cost
-// of a step is told, not judged: other programs share the machine.
+// After ten seconds of drag the speed of a free grain is a subnormal number. The time of a step is
+// reported but not judged, because other programs share the machine.
 Answer subnormal(bool quick) {
   Scene scene = only_springs();
   scene.drag_rate = 64;

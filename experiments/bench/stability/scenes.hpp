@@ -33,8 +33,8 @@ Packing crystal(int layers, double overlap, int along = 5, bool vacancy = false)
 /// With the drags of Table I on grains and wall.
 Packing in_fluid(Packing packing);
 
-/// Irregular velocities up to `speed` along x, y and z, without momentum along z, where nothing
-/// holds a packing.
+/// Irregular velocities up to `speed` along x, y and z, with no momentum along z, because no wall
+/// stops a motion along z.
 void disturb(State& state, const V& speed);
 
 /// `count` grains side by side, apart, each touching the bottom and the top wall.
@@ -61,7 +61,7 @@ Answer expect_as_all_pairs(const Packing& packing, const State& end, const Drive
 /// Expects no net force over `most` P d^2 on any grain.
 Answer expect_balance(const Packing& packing, const State& state, double most);
 
-/// As expected if all parts are.
+/// As expected if all parts are as expected.
 Answer all_of(const std::vector<Answer>& parts);
 
 /// Adds one case.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cases at and beyond the limits of what the engine can compute. Each has a right answer that is
-// known without the engine, or must be stopped or refused with the numbers that say why. Each runs
-// in a process of its own, so that a crash or a hang is reported as its outcome.
+// Cases at and beyond the limits of the engine. Each has a right answer that is known without the
+// engine, or must be stopped or refused with the numbers that say why. Each runs in a process of
+// its own, so that a crash or a hang is reported as its outcome.
 #pragma once
 
 #include <functional>
