@@ -16,6 +16,8 @@ std::uint64_t next_checkpoint(std::span<const CheckpointCadence> cadences, const
     const std::uint64_t begin = step - step % stride;
     const auto later = std::ranges::upper_bound(cadence.steps, step - begin);
     next = std::min(next, begin + (later == cadence.steps.end() ? stride : *later));
+    const std::uint64_t last = cadence.last_cycle * cycle_steps(drive);
+    if (step < last) next = std::min(next, last);
   }
   return next;
 }

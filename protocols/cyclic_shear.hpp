@@ -9,10 +9,12 @@
 
 namespace shearcell {
 
-/// Checkpoints after every so many cycles, and at these steps of each cycle that follows one.
+/// Checkpoints after every so many cycles, at these steps of each cycle that follows one, and at the
+/// end of the last cycle.
 struct CheckpointCadence {
   std::uint64_t every_cycles = 1;
   std::vector<std::uint64_t> steps = {};  ///< since the cycle began, ascending; see steps_at()
+  std::uint64_t last_cycle = 0;           ///< 0: none
 };
 
 /// The first step after `step` at which one of the cadences has a checkpoint. There must be one.

@@ -180,7 +180,8 @@ FigureTable table_of(const accuracy::Section& section) {
 
 constexpr auto is_chart = [](std::string_view text) { return text.starts_with("{\"lines\":"); };
 
-// A table in it is ours if the chart that is written with it is there.
+// Creates the folder. Throws NotOurs if a file would be overwritten that this program did not
+// write: a table must have its chart file beside it.
 void make_own_folder(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   for (const char* name :
@@ -192,7 +193,7 @@ void make_own_folder(const std::filesystem::path& folder) {
   }
 }
 
-// All data before the first figure, which needs gnuplot.
+// Writes all data before it draws, since drawing needs gnuplot.
 void write(const std::vector<accuracy::Section>& sections, const std::filesystem::path& folder) {
   std::vector<FigureTable> tables;
   for (const accuracy::Section& section : sections) tables.push_back(table_of(section));
@@ -208,7 +209,7 @@ void write(const std::vector<accuracy::Section>& sections, const std::filesystem
 }
 
 void measure(const accuracy::Options& options, const std::string& out, Context& context) {
-  // A folder that cannot be used is an error before minutes of measuring, not after.
+  // Report an unusable folder before minutes of measuring.
   if (!out.empty()) make_own_folder(out);
   nlohmann::json all = nlohmann::json::array();
   const std::vector<accuracy::Section> sections = accuracy::measure_accuracy(options);

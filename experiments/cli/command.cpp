@@ -18,7 +18,7 @@ void fail(Context& context, ExitCode code) {
 }
 
 std::optional<Store> open_if_there(const std::string& folder) {
-  // An empty folder is not a store yet; `run` would create one there.
+  // `run` creates a store in an empty folder.
   std::error_code ignored;
   if (!std::filesystem::exists(folder) ||
       (std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder, ignored))) {
@@ -131,8 +131,8 @@ void add_engine_option(CLI::App& command, ExpandOptions& options) {
 }
 
 void print_json(const nlohmann::json& facts) {
-  // Paths and hostnames may hold any byte; JSON may not. ASCII alone, since some characters beyond
-  // it are commands to a terminal.
+  // Paths and hostnames may hold invalid UTF-8, which is replaced. Characters beyond ASCII are
+  // escaped, since a terminal may take some of them for commands.
   fmt::print("{}\n", facts.dump(2, ' ', true, nlohmann::json::error_handler_t::replace));
 }
 

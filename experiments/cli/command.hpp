@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the subcommands share: where the store is, how to print, and how the program ends.
+// What the subcommands share: common options, output and exit codes.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -30,24 +30,24 @@ enum ExitCode : int {
   kInterrupted = 85,  ///< resumable
 };
 
-/// Filled in by the options, read by the subcommands.
+/// Common options, and the exit code.
 struct Context {
   std::string store = "shearcell-store";
   bool json = false;
   int exit_code = kDone;
 };
 
-/// Sets the exit code unless it is a more serious one: 4, 3, 2, 1, then 85.
+/// Sets the exit code, unless a more serious one is set. Most serious first: 4, 3, 2, 1, 85.
 void fail(Context& context, ExitCode code);
 
-/// The store, for reading; nothing where there is none yet.
+/// Opens the store for reading; nothing if there is no store yet.
 std::optional<Store> open_if_there(const std::string& folder);
 
-/// Prints the problems of measuring, each checkpoint after `left_out`; damage sets the exit code.
+/// Prints the problems of measuring, each checkpoint after the words `left_out`. Damage sets the
+/// exit code.
 void tell_problems(const MeasureOutcome& outcome, const char* left_out, Context& context);
 
-// Each subcommand is in a file of its own, or with its closest relative, and adds itself here.
-// add_run adds `resume` too.
+// Each adds a subcommand to the parser; add_run also adds `resume`.
 using AddCommand = void(CLI::App& app, Context& context);
 AddCommand add_plan, add_run, add_status, add_log, add_show, add_verify, add_rebuild, add_prune,
     add_regenerate, add_submit, add_work, add_merge, add_table, add_figures, add_report, add_export,
@@ -56,15 +56,15 @@ AddCommand add_plan, add_run, add_status, add_log, add_show, add_verify, add_reb
 /// Prints the result of a campaign and sets the exit code.
 void report(const CampaignResult& result, Context& context);
 
-/// The part of `show` for figures: what a figure came from, within 80 columns or as JSON.
+/// Prints the origin of a figure, within 80 columns or as JSON.
 void show_figure(const Store& store, const FigureRecord& record, Context& context);
 
-/// Whether a figure's file is what the store recorded, and whether its inputs still are; then the
-/// same as show_figure. The exit code is kStoreDamaged when one of them is not. Throws NotFound for
-/// a file that the store does not know.
+/// Compares a figure's file and its inputs with the store's records, then prints as show_figure().
+/// The exit code is kStoreDamaged if one of them differs. Throws NotFound for a file that the store
+/// does not know.
 void show_published(const Store& store, const std::filesystem::path& file, Context& context);
 
-/// What is wrong with a path that is empty; "" of others.
+/// An error message if the path is empty; else "".
 std::string unnamed(const std::string& path);
 
 /// --json.
@@ -73,29 +73,29 @@ void add_json_option(CLI::App& command, Context& context);
 /// --store DIR and --json.
 void add_common_options(CLI::App& command, Context& context);
 
-/// --scale, --cycles, --seeds and --variant: which runs of a manifest.
+/// --scale, --cycles, --seeds and --variant, which select runs of a manifest.
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
 struct LoadedManifests {
   std::vector<Manifest> manifests;
-  std::vector<Plan> plans;  ///< one of each
+  std::vector<Plan> plans;  ///< one for each manifest
 };
 
-/// Reads and expands all of them, and prints their warnings.
+/// Reads and expands each manifest once, and prints warnings.
 LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options);
 
-/// --experiment, --scale, --variant and --seed, each as often as wanted; with `states`, --state.
+/// --experiment, --scale, --variant and --seed, and with `states` --state; all can be repeated.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);
 
-/// What is wrong with a number in decimal digits from `low` to `high`; "" when nothing is. A double
-/// may have a fraction and an exponent, a std::uint64_t no leading zeros.
+/// An error message if the text is not a decimal number from `low` to `high`; else "". A double may
+/// have a fraction and an exponent; a std::uint64_t must not have leading zeros.
 template <class Number>
 std::string unfit(const std::string& text, Number low, Number high);
 
 template <class Value>
 using NumberOf = std::conditional_t<std::is_floating_point_v<Value>, double, std::uint64_t>;
 
-/// An option that takes such a number.
+/// Adds an option that takes a number from `low` to `high`.
 template <class Value>
 CLI::Option* add_number(CLI::App& command, const std::string& names, Value& value,
                         const std::string& help, const std::string& type_name = "N",
@@ -117,10 +117,10 @@ void add_threads_option(CLI::App& command, std::size_t& threads, const std::stri
 /// --engine NAME.
 void add_engine_option(CLI::App& command, ExpandOptions& options);
 
-/// Prints facts for programs: one JSON value, indented by two.
+/// Prints one JSON value, indented by two.
 void print_json(const nlohmann::json& facts);
 
-/// A JSON array: what `facts` makes of each item.
+/// A JSON array with facts(item) for each item.
 nlohmann::json json_list(const auto& items, const auto& facts) {
   nlohmann::json list = nlohmann::json::array();
   for (const auto& item : items) list.push_back(facts(item));
@@ -129,11 +129,12 @@ nlohmann::json json_list(const auto& items, const auto& facts) {
 
 using Row = std::vector<std::string>;
 
-/// Prints rows under a header, each column as wide as its longest cell; numbers to the right. On a
-/// terminal words are cut, with ~ at the end, until the table fits, and states have colours.
+/// Prints rows under a header, each column as wide as its longest cell; numbers are right-aligned.
+/// On a terminal, long words are cut with ~ at the end so that the table fits, and states have
+/// colours.
 void print_table(const Row& header, const std::vector<Row>& rows);
 
-/// The same with the row that `row` makes of each item.
+/// The same with row(item) for each item.
 void print_table(const Row& header, const auto& items, const auto& row) {
   std::vector<Row> rows;
   for (const auto& item : items) rows.push_back(row(item));

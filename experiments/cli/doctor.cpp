@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `doctor`: checks the machine for everything that the program can use, and measures its speed.
+// `doctor`: checks what the program needs from the machine, and measures its speed.
 #include <fmt/format.h>
 #include <sys/vfs.h>
 #include <unistd.h>
@@ -29,7 +29,7 @@ struct Check {
   std::string advice;
 };
 
-/// The folder that the store is in or would be made in.
+/// The folder of the store, or the nearest existing folder above it.
 fs::path place_of(const std::string& store) {
   fs::path place = fs::absolute(store);
   while (!fs::is_directory(place) && place.has_relative_path()) place = place.parent_path();

@@ -37,23 +37,15 @@ struct ExportOptions {
   std::string format;
   std::string out;
   std::string licence;
-  std::string cycles;  ///< "A:B" or "A:B:STEP", each may be empty; "" for all
+  std::string cycles;  ///< "A", "A:B" or "A:B:STEP", each part may be empty; "" for all
   bool metres = false;
 };
-
-/// A folder of frames has run.json beside them.
-FrameWriter with_facts(FrameWriter write, const fs::path& out, std::size_t frames) {
-  return [write = std::move(write), facts = facts_writer(out, frames)](const Frame& frame) {
-    write(frame);
-    facts(frame);
-  };
-}
 
 struct ExportFormat {
   const char* name;
   const char* title;
-  const char* ending;  ///< of the file of a run; "" for a folder
-  /// What writes so many frames to `out`; none for a crate, which has no frames.
+  const char* ending;  ///< of the file's name; "" for a folder
+  /// Makes a writer of so many frames to `out`; null for a crate, which has no frames.
   FrameWriter (*writer)(const ExportOptions&, const fs::path& out, std::size_t frames);
 };
 
@@ -69,28 +61,26 @@ const std::array kFormats = {
                  }},
     ExportFormat{"vtk", "VTK PolyData and run.json, a folder: ParaView; SI", "",
                  [](const auto&, const fs::path& out, std::size_t frames) {
-                   return with_facts(vtk_writer(out, frames), out, frames);
+                   return vtk_writer(out, frames);
                  }},
     ExportFormat{"lammps", "LAMMPS data and run.json, a folder: LAMMPS, OVITO; SI", "",
-                 [](const auto&, const fs::path& out, std::size_t frames) {
-                   return with_facts(lammps_writer(out), out, frames);
-                 }},
+                 [](const auto&, const fs::path& out, std::size_t) { return lammps_writer(out); }},
     ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5, and PROV-JSON", "", nullptr},
 };
 
 struct CycleRange {
   double first = 0;
   double last = std::numeric_limits<double>::infinity();
-  double every = 0;  ///< 0 takes all
+  double every = 0;  ///< 0: all checkpoints
 
-  /// `near` [cycles] is half a time step: 3.3 is the step nearest to it.
+  /// `near` is half a time step [cycles], so that 3.3 selects the nearest step.
   bool holds(double cycle, double near) const {
     return cycle >= first - near && cycle <= last + near &&
            (every == 0 || std::abs(std::remainder(cycle - first, every)) <= near);
   }
 };
 
-/// Throws std::invalid_argument.
+/// Reads --cycles. Throws std::invalid_argument.
 CycleRange parse_cycles(const std::string& text) {
   CycleRange range;
   std::istringstream parts(text);
@@ -111,10 +101,10 @@ CycleRange parse_cycles(const std::string& text) {
 }
 
 struct WantedRun : SelectedRun {
-  std::vector<Membership> places = {};  // those selected; none where the run itself was named
+  std::vector<Membership> places = {};  // those selected; empty if the run was named by its id
 };
 
-// What the selected experiments have of the run; without any all that somebody asks for.
+// The checkpoints that the selected experiments ask for; of a named run, those that any asks for.
 std::vector<CheckpointRecord> asked_of(const Store& store, const WantedRun& wanted) {
   const RunRecord& run = wanted.run;
   if (wanted.places.empty()) return own_checkpoints(store, run, asks_of(store, run.id));
@@ -140,7 +130,8 @@ std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& select
              : 0;
   std::vector<CheckpointRecord> records;
   std::size_t pruned = 0;
-  const bool by_name = range.first == range.last;  // also one that an interruption left
+  // A single cycle may also be a checkpoint that an interruption left.
+  const bool by_name = range.first == range.last;
   const std::vector<CheckpointRecord> all =
       by_name ? store.checkpoints(run.id, Listed::and_pruned) : asked_of(store, selected);
   for (const CheckpointRecord& record : all) {
@@ -160,7 +151,7 @@ std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& select
   return records;
 }
 
-/// Free, or an empty folder where a folder is to be written.
+/// Throws unless `out` does not exist, or is an empty folder where a folder will be written.
 void require_new(const fs::path& out, bool folder) {
   const bool usable = folder && fs::is_directory(out) && fs::is_empty(out);
   if (fs::exists(fs::symlink_status(out)) && !usable) {
@@ -168,7 +159,7 @@ void require_new(const fs::path& out, bool folder) {
   }
 }
 
-/// Names of the files below `folder`, or its own when it is one.
+/// The names of the files in the folder `out`, or the name of the file `out`.
 std::vector<std::string> files_of(const fs::path& out) {
   std::vector<std::string> files;
   if (!fs::is_directory(out)) return {out.filename().string()};
@@ -179,25 +170,27 @@ std::vector<std::string> files_of(const fs::path& out) {
   return files;
 }
 
-/// Writes to `out`, which is free, and returns the files, relative to it. Throws
-/// std::invalid_argument when the run cannot be exported.
+/// Writes the run to `out`, which does not exist, and returns the names of the files. Throws
+/// std::invalid_argument if the run cannot be exported.
 std::vector<std::string> write_run(const Store& store, const WantedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out) {
   if (format.writer == nullptr) return write_ro_crate(store, run.run.id, out, options.licence);
   const std::vector<CheckpointRecord> records = chosen(store, run, options);
-  if (*format.ending == '\0') fs::create_directory(out);
-  {
-    const FrameWriter write = format.writer(options, out, records.size());
-    MeasureSources sources(store);
-    for (const CheckpointRecord& record : records) {
-      write(frame_of(store.load_checkpoint(record), record, run, &sources));
-    }
+  const bool folder = *format.ending == '\0';
+  if (folder) fs::create_directory(out);
+  std::vector<FrameWriter> writers = {format.writer(options, out, records.size())};
+  if (folder) writers.push_back(facts_writer(out, records.size()));
+  MeasureSources sources(store);
+  for (const CheckpointRecord& record : records) {
+    const Frame frame = frame_of(store.load_checkpoint(record), record, run, &sources);
+    for (const FrameWriter& write : writers) write(frame);
   }
+  writers.clear();  // closes the files
   return files_of(out);
 }
 
-// Anything else would be read as a file of the crate.
+// Readers of a crate take other texts for the name of a file in it.
 std::string check_uri(const std::string& text) {
   const bool web = text.starts_with("https://") || text.starts_with("http://");
   return web && text.find_first_of(" \"<>\\") == std::string::npos
@@ -205,7 +198,7 @@ std::string check_uri(const std::string& text) {
              : text + " is not an https:// URI";
 }
 
-/// Throws for an option that this format would ignore.
+/// Throws if an option has no effect on this format.
 void require_effect(const ExportOptions& options, const ExportFormat& format) {
   const bool crate = format.writer == nullptr;
   const auto refuse = [&](const char* option) {
@@ -216,9 +209,9 @@ void require_effect(const ExportOptions& options, const ExportFormat& format) {
   if (options.metres && options.format != "extxyz") refuse("--metres");
 }
 
-/// The named runs, or else the newest_runs() of the filters, each once; packings only by name.
+/// The named runs, or else the selected newest_runs(), each once.
 std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) {
-  parse_cycles(options.cycles);  // or throw once, not for each run
+  parse_cycles(options.cycles);  // throws here once, not for each run
   std::vector<WantedRun> runs;
   for (const std::string& prefix : options.runs) {
     RunRecord run = store.find_run(prefix);
@@ -230,7 +223,7 @@ std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) 
     for (const std::string& note : newest.notes) tell_stderr("{}\n", note);
     for (SelectedRun& one : newest.runs) runs.push_back({one, {one.membership}});
   }
-  std::map<std::string, std::size_t> first;  // of each run
+  std::map<std::string, std::size_t> first;  // place in `each`, by run
   std::vector<WantedRun> each;
   for (WantedRun& run : runs) {
     const auto [at, fresh] = first.try_emplace(run.run.id, each.size());
@@ -244,7 +237,7 @@ std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) 
   return each;
 }
 
-/// "drag_fluid=still_seed1_3f9a52c1.xyz": a file of its own in a folder of several runs.
+/// The name of a run's file in a folder of several: "drag_fluid=still_seed1_3f9a52c1.xyz".
 std::string entry_name(const SelectedRun& selected, const ExportFormat& format) {
   const Membership& m = selected.membership;
   std::string name = fmt::format("{}_{}_seed{}_{:.8}{}", m.experiment.substr(0, 64),
@@ -265,16 +258,16 @@ struct Exported {
   std::vector<std::string> files;
 };
 
-/// A `single` run to `out` itself, others into that folder. Written in a folder beside `out` and
-/// renamed when it is complete, so that an export that is killed or meets a full disk leaves
-/// nothing of that name.
+/// Writes a `single` run to `out`, several runs into the folder `out`. Writes into a temporary
+/// folder beside `out` and renames it when complete, so an export that is killed or meets a full
+/// disk leaves no `out`.
 std::vector<Exported> write_all(const Store& store, const std::vector<WantedRun>& runs,
                                 const ExportFormat& format, const ExportOptions& options,
                                 bool single) {
-  // "frames/" has no file name; "frames" is the same folder.
+  // "frames/" has an empty file name.
   const fs::path given = fs::absolute(options.out);
   const fs::path out = given.has_filename() ? given : given.parent_path();
-  if (single && format.writer == nullptr) {  // a crate may add to an earlier one
+  if (single && format.writer == nullptr) {  // a crate may replace an earlier one of the run
     return {{runs.front(), out, write_run(store, runs.front(), format, options, out)}};
   }
   const bool folder = !single || *format.ending == '\0';
@@ -289,7 +282,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<WantedRun>
     try {
       auto files = write_run(store, run, format, options, single ? staged : staged / name);
       done.push_back({run, single ? out : out / name, std::move(files)});
-    } catch (const std::invalid_argument& problem) {  // it has no such checkpoint
+    } catch (const std::invalid_argument& problem) {  // no checkpoint in these cycles
       if (single || (&run == &runs.back() && done.empty())) throw;
       tell_stderr("left out: {}\n", problem.what());
     }

@@ -59,7 +59,7 @@ void print_verdicts(const FigureSummary& result) {
   }
 }
 
-/// Prints one figure's summary or adds it to the list.
+/// Adds the figure's summary to the list, and prints it unless --json is given.
 void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
   if (!result.plot_error.empty() || !result.pruned.empty()) fail(context, kOtherError);
   list.push_back(facts(result));
@@ -80,8 +80,8 @@ void figures(FigureArguments& options, Context& context) {
                                fmt::join(options.names, " or ")));
   }
   if (wanted.figures.empty()) tell_stderr("No manifest of this store lists a figure.\n");
-  std::set<std::string> told;                                 // once for all figures
-  const auto complain_of = [&](const std::string& problem) {  // the others are made all the same
+  std::set<std::string> told;  // each message once, not for each figure
+  const auto complain_of = [&](const std::string& problem) {
     if (told.insert(problem).second) tell_stderr("shearcell: {}\n", problem);
     fail(context, kUsageError);
   };
@@ -104,7 +104,7 @@ void figures(FigureArguments& options, Context& context) {
   if (context.json) print_json({{"figures", list}});
 }
 
-/// Name, title and the keys that it compares, for each figure.
+/// Each figure with its title and the keys that it compares.
 std::string list_of_figures() {
   std::string text;
   for (const Figure& figure : all_figures()) {

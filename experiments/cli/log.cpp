@@ -9,7 +9,7 @@
 namespace shearcell::cli {
 namespace {
 
-// The one fact of an event that a person looks for.
+// The most useful fact of an event.
 std::string gist(const Event& event) {
   const nlohmann::json body = event.body();
   for (const char* key : {"why", "error", "cycle", "attempt", "experiment", "path", "kind"}) {

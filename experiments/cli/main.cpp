@@ -60,7 +60,7 @@ bool is_any(const std::exception& error) {
 ExitCode exit_code_of(const std::exception& error) {
   if (is_any<UsageError, NotOurs, GeometryError>(error)) return kUsageError;
   if (is_any<NumericalFailure>(error)) return kRunFailed;
-  // JSON of manifests and options is checked where it is read; the rest are records of a store.
+  // An exception of the JSON library comes from a record of the store: other JSON is checked first.
   if (is_any<StoreDamaged, nlohmann::json::exception>(error)) return kStoreDamaged;
   return kOtherError;
 }
@@ -70,7 +70,7 @@ int complain(int code, const char* what) {
   return code;
 }
 
-/// The words that no command expects, in their order, and what the first of them may mean.
+/// Names the unexpected arguments, and the known word nearest to the first.
 std::string describe_extras(const CLI::App& app) {
   const CLI::App* at = &app;
   while (at->remaining().empty() && !at->get_subcommands().empty()) {
@@ -93,18 +93,18 @@ std::string describe_extras(const CLI::App& app) {
   return words.empty() ? problem : with_nearest(problem, words.front(), names);
 }
 
-// What the caller left open, closed or ignored must change nothing: a closed standard stream would
-// be the next file that is opened, and with SIGCHLD ignored no child could be waited for.
+// Makes the program independent of what it inherits. A closed standard stream would be reused for
+// the next file that is opened; with SIGCHLD ignored, waiting for a child would fail.
 void make_surroundings_usual() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1) continue;
-    // The lowest free number is that of the stream; using it fails, as it should.
+    // open() takes the lowest free number, that of the stream. The mode makes its use fail.
     (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
   std::signal(SIGCHLD, SIG_DFL);
 }
 
-// The exit code, after a look at what was printed.
+// The exit code; an error if standard output could not be written.
 int after_output(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   return complain(code == kDone ? kOtherError : code,
@@ -113,8 +113,7 @@ int after_output(int code) {
 
 int run(int argc, char** argv) {
   Context context;
-  // Not the option's own envname: CLI11 reads that for every subcommand, and so over what was
-  // parsed.
+  // CLI11's envname would override what was parsed, since CLI11 reads it for every subcommand.
   const char* store = std::getenv("SHEARCELL_STORE");
   if (store != nullptr && *store != '\0') context.store = store;
   CLI::App app{kDescription, "shearcell"};
@@ -143,7 +142,7 @@ int run(int argc, char** argv) {
         context.store, error.what());
     return complain(exit_code_of(error), why.c_str());
   } catch (const std::exception& error) {
-    // What a command found out counts more than that it could not say it.
+    // An exit code that the command has set is more important than this error.
     const bool known = context.exit_code != kDone;
     return complain(known ? context.exit_code : exit_code_of(error), error.what());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `manual` and `completion`: texts made from the parser, so that they always match it.
+// `manual` and `completion`: texts generated from the parser's commands and options.
 //   manual              the manual page, in roff, from the same texts as --help
 //   manual --markdown   the reference, experiments/REFERENCE.md
 //   completion          scripts with which a shell completes commands, options and paths
@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "analysis/figure.hpp"
@@ -24,13 +25,13 @@ namespace {
 // --- Commands and options as data ---
 
 struct OptionEntry {
-  std::vector<std::string> names;  ///< "-j", "--jobs"; none for a positional
-  std::string placeholder;         ///< what stands for its value; empty for a flag
+  std::vector<std::string> names;  ///< "-j", "--jobs"; empty for a positional
+  std::string placeholder;         ///< name of its value, as J; empty for a flag
   std::string meaning;
 };
 
 struct CommandEntry {
-  std::vector<std::string> path;  ///< below the program: {} for itself, {"bench", "speed"}
+  std::vector<std::string> path;  ///< {} for the program, {"bench", "speed"}
   const CLI::App* app;
   std::vector<OptionEntry> options;  ///< positionals first
   std::vector<const CLI::App*> subcommands() const { return app->get_subcommands({}); }
@@ -49,7 +50,7 @@ OptionEntry entry(const CLI::Option& option) {
       one_of.pop_back();
       std::ranges::replace(one_of, ',', '|');
       made.placeholder.erase(choices);
-      if (one_of.size() <= kLongestChoice) made.placeholder = one_of;  // longer: a table has them
+      if (one_of.size() <= kLongestChoice) made.placeholder = one_of;  // longer lists are left out
     }
     if (made.placeholder.empty()) made.placeholder = "VALUE";
   }
@@ -60,24 +61,19 @@ OptionEntry entry(const CLI::Option& option) {
   return made;
 }
 
-void append(const CLI::App& app, std::vector<std::string> path, std::vector<CommandEntry>& tree) {
+/// The command, then each of its subcommands followed by their own, in the order of their
+/// declaration.
+std::vector<CommandEntry> command_tree(const CLI::App& app, std::vector<std::string> path = {}) {
   CommandEntry made{path, &app, {}};
   for (const CLI::Option* option : app.get_options()) made.options.push_back(entry(*option));
   const auto is_positional = [](const OptionEntry& option) { return option.names.empty(); };
   std::ranges::stable_partition(made.options, is_positional);
-  tree.push_back(made);
+  std::vector<CommandEntry> tree = {made};
+  path.emplace_back();
   for (const CLI::App* sub : made.subcommands()) {
-    path.push_back(sub->get_name());
-    append(*sub, path, tree);
-    path.pop_back();
+    path.back() = sub->get_name();
+    std::ranges::move(command_tree(*sub, path), std::back_inserter(tree));
   }
-}
-
-/// The program first, then its subcommands in the order in which they were added, each before its
-/// own.
-std::vector<CommandEntry> command_tree(const CLI::App& app) {
-  std::vector<CommandEntry> tree;
-  append(app, {}, tree);
   return tree;
 }
 
@@ -141,7 +137,7 @@ complete -o filenames -F _shearcell shearcell
 std::string fish(const std::vector<CommandEntry>& tree) {
   std::string all = "# fish completion for shearcell\n";
   for (const CommandEntry& command : tree) {
-    std::string here;  // the condition that this command has been typed, and none of those below it
+    std::string here;  // condition: this command was typed, without a subcommand
     for (const std::string& word : command.path) {
       here += fmt::format("{}__fish_seen_subcommand_from {}", here.empty() ? "" : "; and ", word);
     }
@@ -166,7 +162,7 @@ std::string fish(const std::vector<CommandEntry>& tree) {
   return all;
 }
 
-/// zsh runs the function written for bash.
+/// zsh runs the bash function.
 std::string zsh(const std::vector<CommandEntry>& tree) {
   return "#compdef shearcell\nautoload -U +X bashcompinit && bashcompinit\n" + bash(tree);
 }
@@ -193,7 +189,7 @@ std::string escaped(const std::string& text) {
   return all;
 }
 
-/// "--jobs, -j J"; "manifest" of a positional.
+/// "--jobs, -j J"; for a positional "manifest".
 std::string usage(const OptionEntry& option) {
   const bool spaced = !option.names.empty() && !option.placeholder.empty();
   return fmt::format("{}{}{}", fmt::join(option.names, ", "), spaced ? " " : "",
@@ -234,9 +230,9 @@ std::string manual(const std::vector<CommandEntry>& tree) {
          escaped(program.app->get_footer()) + "\n.fi\n";
 }
 
-// --- The reference, from the tables of manifest keys, measures and figures as well ---
+// --- The reference, which also lists manifest keys, measures and figures ---
 
-/// Text for a cell of a table: '|' would end it, and a line break the table.
+/// Escapes text for a cell of a Markdown table.
 std::string cell(const std::string& text) {
   std::string all;
   for (const char c : text) {
@@ -311,7 +307,7 @@ std::string command_reference(const CommandEntry& command) {
     rows += fmt::format("| `{}` | {} |\n", cell(usage(option)), cell(option.meaning));
   }
   if (!rows.empty()) text += "\n| argument | meaning |\n|---|---|\n" + rows;
-  // The columns and figures, which have tables of their own above, are not listed again.
+  // The help texts of these two list columns and figures, which the reference lists above.
   const bool listed = command.path.back() == "table" || command.path.back() == "figures";
   if (!command.app->get_footer().empty() && !listed) {
     text += fmt::format("\n```text\n{}\n```\n", command.app->get_footer());
@@ -319,7 +315,7 @@ std::string command_reference(const CommandEntry& command) {
   return text;
 }
 
-/// experiments/REFERENCE.md holds it (test docs.reference).
+/// The text of experiments/REFERENCE.md (test docs.reference).
 std::string reference(const std::vector<CommandEntry>& tree) {
   std::string text =
       "# Reference\n\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `new`: writes a commented manifest from the schema, so that every key in it exists.
+// `new`: writes a commented manifest with every key of the schema.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -18,7 +18,7 @@
 namespace shearcell::cli {
 namespace {
 
-/// As comment lines of at most 90 columns.
+/// Wraps the text into comment lines of at most 90 columns.
 std::string commented(const std::string& text) {
   const std::string begin = "  #";
   std::string lines, line = begin;
@@ -33,7 +33,7 @@ std::string commented(const std::string& text) {
   return lines + line + "\n";
 }
 
-/// One key, commented out, with its meaning above it; it shows the default.
+/// A key with its default, commented out, and its meaning above it.
 std::string entry(const Field& field) {
   std::string about(field.doc);
   if (!field.symbol.empty()) about += fmt::format("; {} in the supplement", field.symbol);
@@ -96,7 +96,7 @@ scales:
 )";
 }
 
-/// The file has its name only when it is whole, and never in place of another.
+/// Writes a temporary file and links it, so the file is complete and replaces no other.
 void write_new(const std::filesystem::path& file, const std::string& text) {
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   const std::filesystem::path whole = fmt::format("{}.tmp-{}", file.string(), getpid());
@@ -118,7 +118,7 @@ void write_new(const std::filesystem::path& file, const std::string& text) {
 void make(std::filesystem::path file) {
   if (file.extension() != ".yaml") file += ".yaml";
   const std::string text = text_of(file.stem().string());
-  parse_manifest(text, file.string());  // a name that no experiment may have is refused here
+  parse_manifest(text, file.string());  // refuses a bad name
   write_new(file, text);
   tell("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(), file.string());
 }

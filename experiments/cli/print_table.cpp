@@ -36,7 +36,7 @@ std::vector<Column> measure(const Row& header, const std::vector<Row>& rows) {
   return columns;
 }
 
-/// Takes from the widest column of words until the table fits.
+/// Narrows the widest column of words until the table fits.
 void narrow(std::vector<Column>& columns, std::size_t limit) {
   std::size_t total = kGap * (columns.size() - 1);
   for (const Column& column : columns) total += column.width;
@@ -59,7 +59,7 @@ std::string fitted(const std::string& cell, const Column& column) {
   return column.right ? room + cell : cell + room;
 }
 
-/// States and outcomes that one looks for.
+/// Colours states and outcomes.
 std::string painted(const std::string& word, const std::string& text) {
   using fmt::terminal_color;
   static const std::map<std::string, terminal_color> colours = {

@@ -105,10 +105,6 @@ struct RegenerateWish {
   std::size_t threads = 1;
 };
 
-bool sound(const Store& store, const CheckpointRecord& record) {
-  return record.state == CheckpointState::recorded && store.load_if_readable(record);
-}
-
 nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std::size_t threads,
                               Context& context) {
   nlohmann::json facts = {{"sha256", record.sha256},
@@ -123,7 +119,9 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
     }
     return facts;
   };
-  if (sound(store, record)) return say("kept", "the file is intact");
+  if (record.state == CheckpointState::recorded && store.load_if_readable(record)) {
+    return say("kept", "the file is intact");
+  }
   if (const auto why = why_not_again(store.run(record.run))) {
     fail(context, kOtherError);
     facts["why"] = *why;
@@ -158,7 +156,7 @@ void regenerate(const RegenerateWish& wish, Context& context) {
     }
     records.push_back(*found);
   }
-  // Each from the one before it, where several of a run are asked for.
+  // In order of steps, so that each checkpoint of a run can start from the one before it.
   std::ranges::sort(records, {}, [](const auto& c) { return std::tie(c.run, c.step); });
   catch_stop_signals();
   nlohmann::json list = nlohmann::json::array();

@@ -19,7 +19,7 @@ struct ReportCommand {
   ReportOptions report;
 };
 
-// What every report begins with, and hardly another page (report/page.cpp).
+// Recognizes the beginning of a report (report/page.cpp).
 bool is_report(std::string_view beginning) {
   return beginning.starts_with("<!doctype html>") &&
          beginning.find(

@@ -29,7 +29,7 @@ void require_lammps_for_ranks(const RunOptions& options, bool lammps) {
                              "has no effect: LAMMPS computes none of these runs. Leave it out");
 }
 
-// As many runs at a time as their threads or processes leave cores for.
+// Number of runs at a time, so that their threads or processes fill the cores.
 std::size_t workers(const RunOptions& options) {
   if (options.jobs > 0) return options.jobs;
   const std::size_t each = std::max(options.parallel.threads, options.parallel.ranks);
@@ -44,11 +44,11 @@ void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& 
 }
 
 void run(const RunOptions& options, Context& context) {
-  // All manifests are read before anything is written.
+  // Reads all manifests before it writes anything.
   const auto [manifests, plans] = load_manifests(options.inputs, options.expand);
   const bool lammps = std::ranges::any_of(plans, asks_for_lammps);
   require_lammps_for_ranks(options, lammps);
-  if (lammps) find_lammps(options.parallel.ranks);  // or say what to install
+  if (lammps) find_lammps(options.parallel.ranks);  // throws if it is not installed
   Store store(context.store, Access::create);
   std::vector<StageJob> jobs;
   std::set<std::string> known;

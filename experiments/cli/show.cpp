@@ -35,8 +35,8 @@ nlohmann::json checkpoint_facts(const CheckpointRecord& c) {
           {"observables", c.observables}};
 }
 
-/// `asked_by`: places in the run's memberships of those that have it in their figures and tables;
-/// none where an interruption or a shared cadence left it.
+/// `asked_by`: indices of the memberships whose figures and tables have the checkpoint; empty if
+/// only an interruption or another experiment's cadence left it.
 nlohmann::json facts_of_all(const Store& store, const RunRecord& run,
                             const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
@@ -52,7 +52,7 @@ nlohmann::json facts_of_all(const Store& store, const RunRecord& run,
   });
 }
 
-// The engine of its latest attempt, as that recorded it; null for our own.
+// The engine that the latest attempt recorded; null for our own.
 nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   nlohmann::json engine;
   for (const Event& event : store.events("run/" + run)) {
@@ -65,12 +65,12 @@ nlohmann::json engine_of_run(const Store& store, const std::string& run) {
 
 using CheckpointFacts = std::vector<std::pair<TableColumn, nlohmann::json>>;
 
-/// As `table` has them, measured now if the store does not keep them.
+/// The same values as in `table`; measured now if they are not cached.
 CheckpointFacts facts_at(const Store& store, const CheckpointRecord& record, Context& context) {
   MeasuredPackings found;
   try {
     found = measures_of(store, {&record, 1}, table_measures(), {});
-  } catch (const AnalysisError& problem) {  // as a failed run may leave it
+  } catch (const AnalysisError& problem) {  // a failed run may leave such a state
     tell_stderr("not measured: {}\n", problem.what());
     return facts_of(record, std::nullopt);
   }
@@ -156,7 +156,8 @@ void print_resolved(const nlohmann::json& resolved) {
       continue;
     }
     for (const auto& [name, inner] : value.items()) {
-      const Field* field = find_field(name);  // a constant of the record is not what the run had
+      // A constant of the record (Identity::recorded_as) is not the value that the run had.
+      const Field* field = find_field(name);
       const bool constant = field != nullptr && !field->identity.recorded_as.empty();
       if (!constant) tell("{:<32} {}\n", name, inner.dump());
     }
@@ -185,7 +186,7 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   }
 }
 
-/// `file`: its name, or that it was pruned.
+/// `file`: a description of its file.
 void print_head(const CheckpointRecord& record, const std::string& file) {
   tell("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
        record.run);
@@ -193,7 +194,7 @@ void print_head(const CheckpointRecord& record, const std::string& file) {
   tell("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step, record.time_s);
 }
 
-// What stays on record of a checkpoint whose file was freed.
+// Prints the record of a checkpoint whose file was deleted.
 void show_pruned(const CheckpointRecord& record, Context& context) {
   if (context.json) return print_json(checkpoint_facts(record));
   print_head(record,
@@ -219,7 +220,7 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
   print(facts_at(store, record, context));
 }
 
-// The newest record of "drag/S2", or of "S2" where one experiment has that figure.
+// The newest record of "drag/S2"; also of "S2" if only one experiment has that figure.
 std::optional<FigureRecord> find_record(const Store& store, const std::string& name) {
   std::vector<FigureRecord> found;
   std::string names;
@@ -234,7 +235,7 @@ std::optional<FigureRecord> find_record(const Store& store, const std::string& n
   return std::move(found.front());
 }
 
-// "S4" or "drag/S4" of a figure that the store has no record of.
+// Throws if the name, as "S4" or "drag/S4", is that of a figure without a record.
 void require_not_undrawn(const std::string& name) {
   const std::string figure = std::filesystem::path(name).filename().string();
   if (find_figure(figure) == nullptr || std::filesystem::exists(name)) return;
@@ -242,16 +243,12 @@ void require_not_undrawn(const std::string& name) {
       fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, figure));
 }
 
-// Neither a run nor a checkpoint has a dot or a slash in its name.
-bool is_file_name(const std::string& name) {
-  return name.find_first_of("./") != std::string::npos;
-}
-
 void show(const std::string& name, Context& context) {
   const Store store(context.store, Access::read);
   if (const auto figure = find_record(store, name)) return show_figure(store, *figure, context);
   require_not_undrawn(name);
-  if (is_file_name(name)) return show_published(store, name, context);
+  // Ids of runs and checkpoints have no dot or slash.
+  if (name.find_first_of("./") != std::string::npos) return show_published(store, name, context);
   if (name.size() >= 4) {
     if (const auto checkpoint = store.find_checkpoint(name)) {
       for (const RunRecord& run : store.runs()) {

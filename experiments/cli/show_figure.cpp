@@ -18,7 +18,7 @@
 namespace shearcell::cli {
 namespace {
 
-// A recorded text, fit for a terminal and for what is left of its line; whole in a file or a pipe.
+// Escapes a recorded text and cuts it to the rest of the terminal's line; in a pipe it stays whole.
 std::string cut(const std::string& text, std::size_t used) {
   const std::string shown = printable(text, std::string::npos);
   const std::size_t width = terminal_columns(stdout).value_or(std::string::npos);
@@ -27,14 +27,14 @@ std::string cut(const std::string& text, std::size_t used) {
   return std::string(first_characters(shown, left - 3)) + "...";
 }
 
-// "2026-11-20 21:40:51" of "2026-11-20T21:40:51.123Z".
+// "2026-11-20T21:40:51.123Z" as "2026-11-20 21:40:51".
 std::string moment(const std::string& utc) {
   std::string text = utc.substr(0, 19);
   std::replace(text.begin(), text.end(), 'T', ' ');
   return text;
 }
 
-// Builds and hosts, each named by a number so that a line about an attempt stays short.
+// Numbers builds and hosts, so that the lines of attempts stay short.
 class Machines {
  public:
   std::size_t build(const nlohmann::json& host) {
@@ -75,7 +75,7 @@ class Machines {
       }
     }
   }
-  std::vector<Row> builds_, hosts_;  // what is printed of each
+  std::vector<Row> builds_, hosts_;  // lines to print
 };
 
 void print_manifests(const FigureLineage& lineage) {
@@ -225,7 +225,7 @@ void show_published(const Store& store, const std::filesystem::path& file, Conte
   }
   const FigureLineage lineage = figure_lineage(store, found->record);
   const std::vector<InputFault> faults = check_inputs(store, lineage);
-  // A checkpoint that was pruned on purpose is not damage.
+  // A pruned checkpoint is not damage.
   const bool damaged =
       std::ranges::any_of(faults, [](const InputFault& f) { return f.what != "pruned"; });
   if (damaged || !found->matches()) fail(context, kStoreDamaged);

@@ -8,7 +8,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <thread>
 #include <tuple>
 
@@ -26,7 +25,7 @@
 namespace shearcell::cli {
 namespace {
 
-/// What is known of the selected runs.
+/// The selected runs, with their holders and their places in the queue.
 struct View {
   using Place = std::tuple<std::string, std::string, std::string>;  // experiment, scale, run
   static Place place_of(const SelectedRun& s) {
@@ -34,8 +33,8 @@ struct View {
   }
 
   Store store;
-  std::vector<SelectedRun> places;  // one for each experiment and scale that a run is part of
-  std::vector<SelectedRun> runs;    // each once, in the first place of those selected
+  std::vector<SelectedRun> places;  // each run once for each experiment and scale
+  std::vector<SelectedRun> runs;    // each run once, in its first place
   std::map<std::string, std::vector<std::size_t>> places_of;  // by run: indices of its places
   std::map<Place, Membership> newest;                         // those of newest_runs()
   std::map<std::string, Lease> holders;                       // by run
@@ -44,18 +43,18 @@ struct View {
 
   View(const RunSelection& selection, const Context& context)
       : store(context.store, Access::read), queue(look_at_queue(store)), names(store) {
-    std::set<std::string> seen;
     std::map<Place, std::size_t> known;
     std::vector<SelectedRun> selected = select_runs(store, selection);
     for (const SelectedRun& one : newest_runs(selected, false).runs) {
       newest.emplace(place_of(one), one.membership);
     }
     for (SelectedRun& found : selected) {
-      if (seen.insert(found.run.id).second) runs.push_back(found);
+      std::vector<std::size_t>& own_places = places_of[found.run.id];
+      if (own_places.empty()) runs.push_back(found);
       const auto [at, fresh] = known.try_emplace(place_of(found), places.size());
-      // Another version of the manifest gave the variant another name.
+      // If versions of a manifest named the variant differently, the last one is kept.
       if (fresh) {
-        places_of[found.run.id].push_back(places.size());
+        own_places.push_back(places.size());
         places.push_back(std::move(found));
       } else {
         places[at->second] = std::move(found);
@@ -143,7 +142,8 @@ nlohmann::json facts(const SelectedRun& selected, const View& view) {
       {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)}};
 }
 
-/// What is shown of one run: as the store has it, or further, as the task that computes it reports.
+/// State and progress of a run: as the store has them, or as its task reports them if that is
+/// ahead.
 struct Shown {
   const RunRecord& run;
   const QueuedRun* queued;
@@ -162,11 +162,11 @@ struct Shown {
   }
 };
 
-/// The work that is left, and when it will be done at the present pace.
+/// The work that is left, and the time that it takes at the present speed.
 struct Estimate {
   RemainingWork work;
   std::size_t at_a_time = 1;  ///< stages
-  bool running = false;       ///< else on all cores of this machine, once resumed
+  bool running = false;       ///< false: estimated for all cores of this machine
   bool at_most = false;       ///< `until` may end runs earlier
 
   double seconds() const { return work.seconds(at_a_time); }
@@ -222,7 +222,7 @@ void print(const Estimate& left) {
        left.running ? ": until " + local_time(left.seconds()) : "; no program computes them now");
 }
 
-/// A table for each experiment, and a line that counts the states, each stage once.
+/// Prints a table for each experiment, and a line with the number of stages in each state.
 void print_tables(const View& view) {
   const bool queued = !view.queue.runs.empty();
   std::vector<std::string> experiments;
@@ -259,7 +259,7 @@ void print_tables(const View& view) {
   tell("{}{}\n", counted(view.runs.size(), "stage"), all);
 }
 
-/// The tables, and below them what is to be said of single runs.
+/// Prints the tables, the estimate, and notes on single runs.
 void print(const View& view) {
   print_tables(view);
   if (const auto left = estimate(view)) print(*left);
@@ -295,8 +295,8 @@ void print_facts(const View& view) {
        {"queue_problem", problem.empty() ? nlohmann::json() : nlohmann::json(problem)}});
 }
 
-// Stages are begun within milliseconds of the end of those before them, so a campaign has ended
-// when nobody has held a stage for so long.
+// A stage begins within milliseconds after the one before it. If no program has held a stage for
+// this long, the campaign has ended.
 constexpr std::chrono::seconds kIdle{10};
 
 bool stages_remain(const std::vector<SelectedRun>& runs) {
@@ -305,7 +305,7 @@ bool stages_remain(const std::vector<SelectedRun>& runs) {
   });
 }
 
-/// Sleeps, in short naps. Returns whether a signal ended it.
+/// Sleeps, or returns true as soon as a signal asks to stop.
 bool sleep_or_stop(double seconds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (!stop_requested() && std::chrono::steady_clock::now() < end) {
@@ -329,7 +329,7 @@ void watch(const RunSelection& selection, const Context& context, double interva
     } else if (!stages_remain(view.runs) || now - busy_at > kIdle) {
       return;
     }
-    // Many users share the queue of a cluster: it is asked at most every 10 s.
+    // Many users share the queue of a cluster, so query it at most every 10 s.
     const bool asks = !view.queue.submissions.empty();
     if (sleep_or_stop(asks ? std::max(interval, 10.0) : interval)) return;
   }

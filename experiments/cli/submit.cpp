@@ -21,9 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Slurm's own limit, where a cluster does not state another.
+// Slurm's default limit.
 constexpr std::size_t kMostTasks = 1000;
-// Slurm looks twice a minute, and so the warning may come this much earlier.
+// Slurm checks twice a minute, so its warning may come this much earlier [s].
 constexpr double kWarningResolution = 30;
 
 struct SubmitOptions {
@@ -34,21 +34,17 @@ struct SubmitOptions {
   bool dry_run = false;
 };
 
-nlohmann::json facts(const Proposal& proposal) {
+/// Prints the proposal and `more` as JSON.
+void print_json_of(const Proposal& proposal, const nlohmann::json& more) {
   const auto task = [&](const Share& share) -> nlohmann::json {
     return {{"runs", share.runs},
             {"packings", share.packings.size()},
             {"particle_steps", share.particle_steps},
             {"seconds", seconds_of(share, proposal)}};
   };
-  return {{"tasks", json_list(proposal.shares, task)},
-          {"cpus_per_task", proposal.job.cpus},
-          {"left_out", proposal.left_out}};
-}
-
-/// For programs: the proposal and `more`.
-void print_json_of(const Proposal& proposal, const nlohmann::json& more) {
-  nlohmann::json all = facts(proposal);
+  nlohmann::json all = {{"tasks", json_list(proposal.shares, task)},
+                        {"cpus_per_task", proposal.job.cpus},
+                        {"left_out", proposal.left_out}};
   all.update(more);
   print_json(all);
 }
@@ -80,7 +76,7 @@ void print_nothing(const Proposal& proposal, Context& context) {
   }
 }
 
-/// As the tasks name the store, from wherever they run.
+/// The store's absolute path, which is valid in every task.
 fs::path whole_path(const std::string& store) {
   return fs::weakly_canonical(fs::absolute(store));
 }
@@ -110,7 +106,7 @@ void dry_run(const Proposal& proposal, Context& context) {
              script, folding);
 }
 
-/// Queues the array. Nothing is left of a submission that could not be queued.
+/// Queues the array. Deletes the submission's folder if that fails.
 std::string queue_array(const Submission& submission, const Proposal& proposal,
                         const fs::path& store) {
   const fs::path folder = submission.folder(store);
@@ -127,7 +123,7 @@ std::string queue_array(const Submission& submission, const Proposal& proposal,
   }
 }
 
-/// Queues both jobs. Without the second the stores can be folded by hand.
+/// Queues both jobs. If the second fails, the stores can be folded by hand.
 void queue(const Submission& submission, const Proposal& proposal, Store& store, Context& context) {
   const fs::path folder = submission.folder(store.folder());
   const std::string job = queue_array(submission, proposal, store.folder());
@@ -159,7 +155,7 @@ void queue(const Submission& submission, const Proposal& proposal, Store& store,
   }
 }
 
-/// What earlier submissions computed and no job folded, as after `scancel`.
+/// Folds what earlier submissions computed and no job folded, as after `scancel`.
 void fold_leftovers(Store& store, const std::vector<Submission>& open) {
   for (const Submission& submission : open) {
     if (!submission.queue.empty()) continue;
@@ -192,7 +188,7 @@ nlohmann::json event_facts(const JobOptions& job, const LoadedManifests& loaded)
 void submit_really(const SubmitOptions& options, const LoadedManifests& loaded, Context& context) {
   require_slurm();
   const fs::path folder = whole_path(context.store);
-  places_of(folder, folder);  // or says why it cannot be
+  places_of(folder, folder);  // throws if a path is unfit
   Store store(folder, Access::create);
   const std::size_t seen = store.events(kSubmissions).size();
   std::vector<Submission> open = unfinished_submissions(store);
@@ -278,7 +274,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
       ->capture_default_str();
   command.add_option("--sbatch", job.sbatch, "Further option of sbatch, as --sbatch=--mem=2G")
       ->check(check_sbatch)
-      ->allow_extra_args(false)  // what follows may be a manifest
+      ->allow_extra_args(false)  // the next argument may be a manifest
       ->type_name("OPTION");
   command.add_flag("--dry-run", options.dry_run,
                    "Show the scripts and who would do what; needs no Slurm, writes nothing");

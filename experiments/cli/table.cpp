@@ -34,7 +34,7 @@ void table(const TableOptions& options, Context& context) {
   const bool json = context.json || options.format == "json";
   const std::string text = json ? to_json(made) : to_csv(made);
   if (options.out.empty()) {
-    // A file or a program gets the bytes as they are.
+    // Only a terminal gets escaped text.
     fmt::print("{}", terminal_columns(stdout) ? for_terminal(text) : text);
   } else {
     write_output(options.out, text);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `verify`: checks that the store is unchanged and, on request, that it can be recomputed.
-// `rebuild`: mends its tables.
+// `rebuild`: rebuilds its tables.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -30,7 +30,7 @@ const char* name_of_severity(const Finding& finding) {
   return finding.severity == Finding::Severity::error ? "error" : "note";
 }
 
-// "16 ab12...", as two words or one, or with a colon between.
+// Reads "16 ab12..." (two words or one) or "16:ab12...".
 std::optional<Head> read_head(const std::vector<std::string>& words) {
   if (words.empty()) return std::nullopt;
   const std::string text = fmt::format("{}", fmt::join(words, " "));
@@ -79,7 +79,7 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   Store store(context.store, Access::write);
   const std::uint64_t seed = options.seed.value_or(seed_of(store.head()));
   std::vector<CheckpointRecord> all = replayable(store);
-  // Where a stage begins nothing is computed.
+  // The first checkpoint of a stage takes no steps, so others are preferred.
   const auto is_beginning = [](const CheckpointRecord& record) { return record.step == 0; };
   if (!std::ranges::all_of(all, is_beginning)) std::erase_if(all, is_beginning);
   const std::vector<CheckpointRecord> chosen = sample(all, options.replay, seed);
@@ -124,7 +124,8 @@ nlohmann::json facts(const VerifyReport& report) {
           {"findings", json_list(report.findings, finding_facts)}};
 }
 
-// Only of a sound store: all these read its records and files.
+// Checks runs and cached measures. Reads records and files, so it does nothing if the store is
+// damaged.
 MeasureCheck audit(const VerifyOptions& options, Context& context, VerifyReport& report) {
   MeasureCheck measures;
   if (!report.ok()) return measures;

@@ -29,12 +29,12 @@ struct WorkOptions {
   bool leave_failed = false;
 };
 
-// Intervals of the progress report, and of saving the states on a node's own disk: a node that
-// fails loses what it computed since.
+// Intervals of the progress report, and of saving from a node's own disk. A node that fails loses
+// what it computed since the last save.
 constexpr seconds kReportEvery{10};
 constexpr seconds kSaveEvery{300};
 
-/// For Repeated: prints the error of an action that fails, which is then repeated next time.
+/// For Repeated: an action that prints its error instead of throwing. It is repeated next time.
 std::function<void()> tried(std::function<void()> action, seconds interval) {
   return [interval, action = std::move(action)] {
     try {
@@ -45,7 +45,7 @@ std::function<void()> tried(std::function<void()> action, seconds interval) {
   };
 }
 
-/// The store that is worked on: the task's own, or a copy on the node's disk that is folded back.
+/// The task's store, or a copy on the node's disk that is folded back into it.
 class WorkStore {
  public:
   WorkStore(const fs::path& task, const std::string& scratch) : task_(task) {
@@ -53,8 +53,8 @@ class WorkStore {
       store_.emplace(task, Access::write);
       return;
     }
-    const Store sound(task, Access::write);  // or says what is wrong, before a copy is made
-    // Named after submission and task: a start after a kill finds what was left there.
+    const Store sound(task, Access::write);  // throws if it cannot be used, before it is copied
+    // Named after submission and task, so that a restarted task continues its copy.
     const fs::path whole = fs::absolute(task);
     copy_ =
         fs::path(scratch) / fmt::format("shearcell-{}-{}", whole.parent_path().filename().string(),
@@ -82,11 +82,11 @@ class WorkStore {
 
  private:
   fs::path task_, copy_;
-  std::set<std::string> runs_;  // and nothing else of the copy is folded back
+  std::set<std::string> runs_;  // those of the task, which alone are folded back
   std::optional<Store> store_;
 };
 
-/// Takes out those that failed, and those that start from them. Returns whether there were any.
+/// Removes the jobs that failed and those that depend on them. Returns whether there were any.
 bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
   std::set<std::string> left;
   std::erase_if(jobs, [&](const StageJob& job) {  // parents come first
@@ -99,7 +99,7 @@ bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
 
 void work(const WorkOptions& options, Context& context) {
   catch_batch_signals();
-  // Files beside it have its name: without a slash at the end.
+  // Without a slash at the end, since the names of the files beside it are derived from it.
   const fs::path task = (fs::path(context.store) / "").parent_path();
   WorkStore place(task, options.scratch);
   Store& store = place.store();
@@ -120,7 +120,7 @@ void work(const WorkOptions& options, Context& context) {
   place.finish();
   report(result, context);
   if (stop_requested()) {
-    // With work left the task continues later, whatever else happened to it.
+    // If work is left, the task continues later, whatever else happened.
     const bool work_left = result.interrupted + result.blocked > 0;
     if (work_left || context.exit_code == kInterrupted) {
       context.exit_code = work_left ? kInterrupted : kDone;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/export/frame.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "analysis/common_neighbours.hpp"
@@ -63,7 +62,7 @@ void add_columns(const Checkpoint& c, const WallPose& pose, const GrainMeasures&
   add("crystallite", crystallite, -1);
 }
 
-/// What `table` measures besides an Analysis; only its scalars.
+/// Adds the measures of `table` that analyse_stored() does not give.
 void add_numbers(const Checkpoint& checkpoint, const CheckpointRecord& record,
                  MeasureSources& sources, Analysis& analysis) {
   for (const std::string& name : table_measures()) {
@@ -104,8 +103,8 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
   const nlohmann::json parameters =
       resolved.is_object() ? resolved.value("parameters", nlohmann::json()) : nlohmann::json();
   for (const auto& [key, value] : parameters.items()) {
-    // A key that is no longer part of the identity is recorded as a constant, not as it was; keys
-    // of a forged store could hold anything.
+    // Leaves out a key with a constant record (Identity::recorded_as), and what a forged store may
+    // hold.
     const Field* field = find_field(key);
     if (field == nullptr || !field->identity.recorded_as.empty()) continue;
     if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);

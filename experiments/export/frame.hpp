@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One checkpoint for other programs: every particle with its measures, in SI units.
+// One checkpoint for export: every particle with its measures, in SI units.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,11 +30,11 @@ struct Frame {
   double cycle = 0;
   double theta = 0;  ///< tilt [rad]
 
-  /// What holds for every frame of the run, texts and numbers: id, experiment, scale, variant and
-  /// seed; its parameters by their keys in a manifest, those that distinguish runs.
+  /// Facts of the run, texts and numbers: id, experiment, scale, variant and seed; the parameters
+  /// that distinguish runs, by their keys in a manifest.
   std::vector<std::pair<std::string, nlohmann::json>> run, parameters;
   std::string checkpoint;  ///< SHA-256 of its file
-  /// The measures of the frame, by the names that `table` gives them; NaN where one is unknown.
+  /// The measures of the frame by their names in `table`; NaN if unknown.
   std::vector<std::pair<std::string, double>> scalars;
 
   /// The cell [m]: its lower left corner, and its edges as columns. Only the third is periodic.
@@ -48,12 +48,12 @@ struct Frame {
   Eigen::Matrix3Xd velocity;        ///< [m/s]; of wall grains that of their wall
   std::vector<std::int32_t> image;  ///< periods in z to add for the unwrapped position
   std::vector<std::int32_t> type;   ///< 0 grain; wall grain: 1 left, 2 right, 3 bottom, 4 top
-  /// Everything beside these:
+  /// Further measures of each particle:
   ///   phi_local, q6
   ///   overlap            largest, over the diameter
   ///   grain_pressure_Pa  of each grain's contacts over its cell
-  ///   displacement_d     over the cycle before [d]; NaN without one
-  ///   d2min_d2           D^2_min over the cycle before [d^2]; NaN likewise
+  ///   displacement_d     over the cycle before [d]; NaN if unknown
+  ///   d2min_d2           D^2_min over the cycle before [d^2]; NaN if unknown
   ///   contacts           with grains and wall grains
   ///   structure          0 disordered, 1 FCC, 2 HCP
   ///   lattice            by common neighbours: 0 none, 1 FCC, 2 HCP, 3 BCC
@@ -63,7 +63,7 @@ struct Frame {
   std::size_t particles() const { return type.size(); }
 };
 
-/// Without `sources`, what needs earlier checkpoints is not a number. Throws as analyse_stored().
+/// Without `sources`, measures that need earlier checkpoints are NaN. Throws as analyse_stored().
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
                const SelectedRun& run = {}, MeasureSources* sources = nullptr);
 

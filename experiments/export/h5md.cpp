@@ -18,8 +18,8 @@ using hdf5::put_dataset;
 using hdf5::require;
 using hdf5::Shape;
 
-// MDAnalysis knows no metres and takes units as text of variable length alone. Velocities have the
-// same numbers in nm/ns as in m/s.
+// MDAnalysis does not know metres, and reads units only as text of variable length. Velocities have
+// the same numbers in nm/ns as in m/s.
 constexpr double nm_per_m = 1e9;
 
 void put_unit(const Handle& object, const std::string& unit) {
@@ -30,7 +30,7 @@ void put_unit(const Handle& object, const std::string& unit) {
   put_attribute(object, "unit", type.get(), &text);
 }
 
-/// A trajectory that is filled frame by frame.
+/// A file that is written frame by frame.
 class Trajectory {
  public:
   Trajectory(const std::filesystem::path& path, std::size_t frames)
@@ -48,7 +48,7 @@ class Trajectory {
     put("particles/all/step", H5T_STD_U64LE, {}, &frame.step);
     put("particles/all/time", H5T_IEEE_F64LE, {}, &frame.time_s, "s");
     element("particles/all/box/edges", H5T_IEEE_F64LE, {3, 3}, edges.data(), "nm");
-    // Beside what H5MD asks for.
+    // Not part of H5MD.
     element("particles/all/box/origin", H5T_IEEE_F64LE, {3}, origin.data(), "nm");
     element("particles/all/position", H5T_IEEE_F64LE, {particles_, 3}, position.data(), "nm");
     element("particles/all/velocity", H5T_IEEE_F64LE, {particles_, 3}, frame.velocity.data(),
@@ -79,7 +79,8 @@ class Trajectory {
         H5Fclose};
   }
 
-  /// The frame's row of {step, time, value}, of which step and time are the same for all.
+  /// Writes the frame's value of an H5MD element {step, time, value}. All elements share step and
+  /// time.
   void element(const std::string& path, hid_t type, const Shape& shape, const void* data,
                const std::string& unit = "") {
     if (next_ == 0) {
@@ -98,8 +99,7 @@ class Trajectory {
     hdf5::put_h5md(file_, "1");
     const Handle particles = make_group(file_, "particles");
     const Handle all = make_group(particles, "all", 20);
-    // MDAnalysis counts the particles of a group of this name, and opens the file without a
-    // topology.
+    // MDAnalysis takes the number of particles from a group of this name, and so needs no topology.
     require(
         H5Lcreate_soft("/particles/all", particles.get(), "trajectory", H5P_DEFAULT, H5P_DEFAULT),
         "a link");
@@ -128,7 +128,7 @@ class Trajectory {
     }
   }
 
-  /// The frame's row of a dataset, which the first frame makes.
+  /// Writes the frame's row of a dataset. The first frame creates the dataset.
   void put(const std::string& path, hid_t type, const Shape& shape, const void* data,
            const std::string& unit = "") {
     Shape count = shape, start(shape.size() + 1, 0);
@@ -161,8 +161,8 @@ class Trajectory {
 }  // namespace
 
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames) {
-  // Before any other call: at the end of the process HDF5 would write again what a full disk
-  // refused, and crash.
+  // Must precede other calls. Otherwise HDF5 would repeat a write that a full disk refused when the
+  // process ends, and crash.
   H5dont_atexit();
   return [out = std::make_shared<Trajectory>(file, frames)](const Frame& f) { out->add(f); };
 }

@@ -12,7 +12,8 @@
 namespace shearcell {
 namespace {
 
-// Quoted as ASE and OVITO read it; a text of a damaged store must not end the quotes or the line.
+// Quotes a text as ASE and OVITO read it. Replaces characters that would end the quotes or the
+// line.
 std::string quoted(std::string text) {
   for (char& c : text) {
     if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) c = '_';

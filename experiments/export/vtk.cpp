@@ -4,7 +4,6 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 #include "experiments/export/formats.hpp"
@@ -15,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the files say LittleEndian");
 
-/// Arrays go behind the XML, which points to them.
+/// Collects arrays, which are written after the XML elements that refer to them.
 class PolyData {
  public:
   template <typename Number>

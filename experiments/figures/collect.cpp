@@ -26,16 +26,15 @@ namespace {
 
 constexpr std::array<std::uint64_t, 2> whole_run = {0, StoreLimits::cycles};
 
-/// What the experiment asks of the run as far as the figure sees it: phases of a cycle only where
-/// it names cycles.
+/// What the experiment asks of the run, without phases of a cycle unless the figure names cycles.
 RunAsk ask_for(const Store& store, const Figure& figure, const CollectedRun& run) {
   return figure.within ? ask_of(store, run.run.id, run.membership)
                        : RunAsk{.target_cycles = run.membership.target_cycles,
                                 .checkpoint_every = run.membership.checkpoint_every};
 }
 
-/// Not beyond the run's end for this experiment. A figure that measures nothing gets the last one
-/// only.
+/// The run's checkpoints for the figure, up to the run's end for this experiment. A figure that
+/// measures nothing gets only the last one.
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
                                              const CollectedRun& run) {
   const auto [first, last] = figure.within.value_or(whole_run);
@@ -49,6 +48,8 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
   return found;
 }
 
+/// The number of checkpoints that the figure asks for, up to the end of the run, and that are
+/// missing.
 std::size_t missing_of(const Store& store, const Figure& figure, const CollectedRun& run) {
   const auto [first, last] = figure.within.value_or(whole_run);
   const double end = std::min({run.run.cycle, run.end, static_cast<double>(last)});
@@ -57,14 +58,14 @@ std::size_t missing_of(const Store& store, const Figure& figure, const Collected
   return asked.size();
 }
 
-/// Names the checkpoints that are asked for up to the end of the runs and are missing: a manifest
-/// may state a denser cadence than the runs were made with.
+/// Notes how many checkpoints are missing up to the end of the runs: a manifest may state a denser
+/// cadence than that of the runs.
 void note_never_made(const Store& store, const Figure& figure, CollectedRuns& collected) {
   struct Lack {
     std::size_t checkpoints = 0;
     std::set<std::string> runs;
   };
-  std::map<bool, Lack> lacks;  // by whether the run is of LAMMPS
+  std::map<bool, Lack> lacks;  // of our runs, and of those of LAMMPS
   for (const CollectedRun& run : collected.runs) {
     const std::size_t missing = missing_of(store, figure, run);
     if (missing == 0) continue;
@@ -83,7 +84,7 @@ void note_never_made(const Store& store, const Figure& figure, CollectedRuns& co
   }
 }
 
-/// Leaves out the runs that have no checkpoint yet, and names them and those that are not finished.
+/// Removes the runs without a checkpoint; notes those and the unfinished ones.
 void leave_out_not_begun(CollectedRuns& collected) {
   std::set<std::string> not_begun, going_on;
   for (const CollectedRun& run : collected.runs) {
@@ -123,7 +124,7 @@ std::vector<Figure> own_figures(const RegisteredManifest& manifest) {
   return figures;
 }
 
-/// Names the variants of the figure's runs, which may be of several versions of a manifest.
+/// Names the variants of the runs, which may be of several versions of a manifest.
 void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRuns& collected) {
   for (const RegisteredManifest& manifest : manifests) {
     std::vector<nlohmann::json> variants;
@@ -144,7 +145,8 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRu
   }
 }
 
-/// Runs of any version of the manifest, settled packings not among them. Throws NotFound for none.
+/// The selected runs of any version of the manifest, without packings. Throws NotFound if there are
+/// none.
 std::vector<SelectedRun> runs_of(const Store& store, const WantedFigure& wanted,
                                  const RunSelection& selection) {
   std::vector<SelectedRun> found = select_runs(store, selection);
@@ -161,7 +163,7 @@ std::vector<SelectedRun> runs_of(const Store& store, const WantedFigure& wanted,
   return found;
 }
 
-/// The scale at which the newest manifests declared a run last; of older ones if they have none.
+/// The scale of the last run that a newest manifest declared; else that of the last run.
 std::string last_scale(const std::vector<SelectedRun>& runs,
                        const std::vector<RegisteredManifest>& manifests) {
   const auto is_newest = [&](const SelectedRun& run) {

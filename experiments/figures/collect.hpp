@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which runs and checkpoints of a store belong to a figure.
+// Selects the runs and checkpoints of a store that belong to a figure.
 #pragma once
 
 #include <string>
@@ -12,30 +12,30 @@
 
 namespace shearcell {
 
-/// A figure of one experiment, or of all ("").
+/// A figure of one experiment, or of all experiments ("").
 struct WantedFigure {
   Figure figure;
   std::string experiment;
 
-  /// "drag/S2": names its record, and its files below the folder for figures.
+  /// "drag/S2": the name of its record, and the path of its files in the folder for figures.
   std::string path() const;
 };
 
 /// The figures that registered manifests list.
 struct WantedFigures {
-  /// By experiment; in each those of the supplement in its order, then plots and claims.
+  /// By experiment; for each, figures of the supplement in its order, then plots and claims.
   std::vector<WantedFigure> figures;
-  std::vector<std::string> unknown;  ///< a message for each name that is not a figure's
+  std::vector<std::string> unknown;  ///< a message for each unknown name
 };
 
-/// The figures, plots and claims that the newest manifests state: all, or those with one of
-/// `names`; of all experiments, or of `experiments`, which then need not list them. Throws
-/// NotFound, with the nearest name, for a name that is not a figure's or an experiment's.
+/// The figures, plots and claims that the newest manifests state: all, or those in `names`; of all
+/// experiments, or of `experiments`, which need not list the figures in `names`. Throws NotFound,
+/// with the nearest name, for an unknown figure or experiment.
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});
 
-/// Figures that need more of a checkpoint first: its one analysis then gives what the others need
-/// as well. Otherwise in the order given.
+/// Moves figures that need more measures of a checkpoint to the front, so that one analysis serves
+/// all figures. Keeps the order otherwise.
 std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures);
 
 /// One run of a figure.
@@ -53,10 +53,10 @@ struct CollectedRuns {
   std::vector<std::string> notes;
 };
 
-/// The newest_runs() of the experiment among those selected, at the scale declared last. (A figure
-/// of every experiment has a run once per experiment.) Those of older versions of the manifest have
-/// a variant of their own, "fluid=cell,manifest=1f2e3d4c". Each has its checkpoints up to
-/// own_end(). Throws NotFound if there is no such run.
+/// The selected newest_runs() of the experiment, at the scale declared last, with their checkpoints
+/// up to own_end(). A figure of all experiments has a run once per experiment. Runs of older
+/// versions of a manifest have their own variants, as "fluid=cell,manifest=1f2e3d4c". Throws
+/// NotFound if there is no such run.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring = {});
 

@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/more_measures.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/host.hpp"
@@ -22,24 +22,7 @@
 namespace shearcell {
 namespace {
 
-/// The parameters of the run's record, and those that it leaves out at the value of all older runs.
-nlohmann::json parameters_of(const RunRecord& run) {
-  nlohmann::json values = run.resolved.value("parameters", nlohmann::json::object());
-  const std::optional<Stage> stage = value_of<Stage>(run.kind);
-  if (!values.is_object() || !stage) return values;
-  const nlohmann::json protocol = values.value("protocol", nlohmann::json());
-  const auto known =
-      protocol.is_string() ? value_of<ProtocolKind>(protocol.get<std::string>()) : std::nullopt;
-  for (const Field& field : schema()) {
-    const std::string_view omitted = field.identity.omitted_at;
-    if (omitted.empty() || values.contains(field.name)) continue;
-    if (!enters(field.identity, *stage, known, nullptr)) continue;
-    values[std::string(field.name)] = std::get<nlohmann::json>(read_value(field, omitted, false));
-  }
-  return values;
-}
-
-/// The runs with the measures of their checkpoints.
+/// Measures the checkpoints of the runs.
 std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
                                    const std::vector<CollectedRun>& inputs,
                                    const MeasureOptions& options, MeasureOutcome& outcome) {
@@ -66,7 +49,7 @@ std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
                   input.name,
                   input.named,
                   input.membership.labels,
-                  parameters_of(input.run),
+                  recorded_parameters(input.run.resolved),
                   input.membership.seed,
                   {}};
     for (const CheckpointRecord& record : input.checkpoints) {
@@ -84,7 +67,7 @@ std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
   return runs;
 }
 
-/// The figure's inputs, without anything that depends on the time or the host.
+/// The figure's record, without facts that depend on the time or the host.
 nlohmann::json lineage_of(const Store& store, const FigureSummary& result,
                           const std::vector<CollectedRun>& inputs,
                           const std::vector<FigureRun>& runs) {
@@ -113,7 +96,7 @@ nlohmann::json lineage_of(const Store& store, const FigureSummary& result,
   return facts;
 }
 
-/// Unless the newest record of the figure says the same, from whatever host.
+/// Records the figure, unless its newest record says the same (host and build aside).
 void record(Store& store, const std::string& name, nlohmann::json facts) {
   for (const FigureRecord& known : store.figures()) {
     if (known.name == name && lineage_text(known.provenance) == lineage_text(facts)) return;
@@ -122,8 +105,8 @@ void record(Store& store, const std::string& name, nlohmann::json facts) {
   store.record_figure(name, facts);
 }
 
-/// A figure that averages over variants would mix what another parameter changes. Parameters that
-/// advance with the figure's own are not mixed.
+/// Throws UsageError if the figure would average over values of a parameter other than its keys.
+/// Parameters that change together with its keys are allowed.
 void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>& runs) {
   if (wanted.figure.form != FigureForm::groups) return;
   std::map<std::vector<nlohmann::json>, nlohmann::json> groups;  // swept values of the first run
@@ -150,7 +133,7 @@ void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>
   }
 }
 
-/// The experiment's folder. The name comes from the store, which is not trusted.
+/// The experiment's folder. Checks the name, since the store is not trusted.
 std::filesystem::path folder_of(const WantedFigure& wanted, const FigureOptions& options) {
   if (wanted.experiment.empty()) return options.folder;
   if (!is_name(wanted.experiment)) {
@@ -160,7 +143,7 @@ std::filesystem::path folder_of(const WantedFigure& wanted, const FigureOptions&
   return options.folder / wanted.experiment;
 }
 
-/// Panels of one figure get letters.
+/// Gives the panels of a figure letters.
 void lay_out(std::vector<FigureTable>& tables, bool wide) {
   char letter = 'a';
   for (FigureTable& table : tables) {
@@ -170,7 +153,8 @@ void lay_out(std::vector<FigureTable>& tables, bool wide) {
   }
 }
 
-/// Nothing to draw; points that are neither of the table nor traces of runs are those of others.
+/// Whether the runs have no value in the table. Series that are neither traces nor columns of the
+/// table hold published points.
 bool has_no_value(const FigureTable& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   return std::ranges::all_of(table.chart.series, [&](const Series& series) {
@@ -198,7 +182,7 @@ std::string verdict_text(const ComputedFigure& computed) {
   return verdict.dump(1) + "\n";
 }
 
-/// Names what the runs differ in where the figure's title is about other parameters.
+/// The figure's title; if it is about other parameters than the runs differ in, it names those too.
 std::string title_of(const Figure& figure, const std::vector<FigureRun>& runs) {
   const std::vector<std::string> varied = varied_keys(runs);
   const bool of_its_keys = std::ranges::any_of(
@@ -254,7 +238,7 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
   require(".caption.txt", "Figure " + result.name + ". ", "");
   require(".lineage.json", "{\n \"analysis_version\": ", "\n \"figure\": \"" + result.name + "\"");
   const auto write = [&](const char* ending, const std::string& text) {
-    if (text.empty()) {  // that of an older figure is deleted
+    if (text.empty()) {  // delete that of an older figure
       std::filesystem::remove(base + ending);
       return;
     }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
@@ -29,10 +28,10 @@ FigureInput read_input(const json& input) {
   return result;
 }
 
-// The swept values of the run in the membership that the figure used.
+// The swept values of the run, by the membership that the figure used.
 json labels_of(const RunRecord& run, const FigureInput& input) {
   for (const Membership& member : run.memberships) {
-    // The variant of an older version has the version added (collect.hpp).
+    // The variant of an older version ends in that version (collect.hpp).
     if (member.manifest == input.manifest && input.variant.starts_with(member.variant))
       return member.labels;
   }
@@ -88,7 +87,7 @@ json stage_json(const RunLineage& stage) {
       {"grains", stage.run.grains}, {"resolved", stage.run.resolved}, {"attempts", attempts}};
 }
 
-// File name -> SHA-256. The JSON is not trusted.
+// File name -> SHA-256, from JSON that is not trusted.
 std::map<std::string, std::string> outputs_of(const json& provenance) {
   std::map<std::string, std::string> outputs;
   const json found = provenance.is_object() ? provenance.value("outputs", json()) : json();
@@ -99,14 +98,14 @@ std::map<std::string, std::string> outputs_of(const json& provenance) {
   return outputs;
 }
 
-// The hash of the file in a lineage file beside it, or "".
+// The SHA-256 of the file in the lineage file beside it, or "".
 std::string hash_in_lineage_beside(const std::filesystem::path& file, const std::string& figure) {
   const auto text =
       read_plain(file.parent_path() / (figure + ".lineage.json"), StoreLimits::value_bytes);
   return text ? outputs_of(parse_json(*text))[file.filename().string()] : "";
 }
 
-// The outputs and the lineage file, which is the record without the host and build.
+// The SHA-256 of each output and of the lineage file.
 std::map<std::string, std::string> files_of(const FigureRecord& record) {
   std::map<std::string, std::string> files = outputs_of(record.provenance);
   files[figure_name(record) + ".lineage.json"] = sha256_hex(lineage_text(record.provenance));
@@ -220,7 +219,7 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
   const std::string sha256 = sha256_hex_of_file(file);
   const std::string name = file.filename().string();
   std::vector<FigureRecord> records = figure_records(store);
-  std::reverse(records.begin(), records.end());  // the newest that fits
+  std::reverse(records.begin(), records.end());  // the newest first
   for (const FigureRecord& record : records) {
     for (const auto& [output, hash] : files_of(record)) {
       if (hash == sha256) return PublishedFile{sha256, hash, record};

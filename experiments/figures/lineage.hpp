@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// One run of the figure.
+/// A run of the figure.
 struct FigureInput {
   std::string run;
   std::string experiment;
@@ -25,7 +25,7 @@ struct FigureInput {
   std::string manifest;                  ///< SHA-256
   std::vector<ManifestLine> lines;       ///< of that manifest
   nlohmann::json overrides;              ///< key -> {"run", "manifest"}; null without any
-  std::vector<std::string> checkpoints;  ///< SHA-256 of those that entered the figure
+  std::vector<std::string> checkpoints;  ///< SHA-256 of those in the figure
 };
 
 struct FigureLineage {
@@ -36,46 +36,46 @@ struct FigureLineage {
   std::map<std::string, RunLineage> runs;      ///< of the inputs and of the stages before them
 };
 
-/// Values of the command line in place of the manifest's: {"cycles": {"run": 8, "manifest": 5}};
-/// null without any.
+/// Values that the command line gave in place of the manifest's, as {"cycles": {"run": 8,
+/// "manifest": 5}}; null if there are none.
 nlohmann::json overrides_of(const Store& store, const RunRecord& run, const Membership& membership);
-/// "S2" of a record that is called "drag/S2". Older records are called "S2".
+/// "S2" for a record named "drag/S2", or "S2" as in older stores.
 std::string figure_name(const FigureRecord& record);
 
-/// The text of a figure's lineage file, from the payload of its record.
+/// The text of a figure's lineage file: the payload of its record without host and build.
 std::string lineage_text(nlohmann::json provenance);
 
 /// Every record of every figure, oldest first.
 std::vector<FigureRecord> figure_records(const Store& store);
 
-/// Collects it from the log. Throws StoreDamaged if the record is malformed or names a run that the
-/// store does not have.
+/// Collects the lineage from the log. Throws StoreDamaged if the record is malformed or names an
+/// unknown run.
 FigureLineage figure_lineage(const Store& store, const FigureRecord& record);
 
 nlohmann::json to_json(const FigureLineage& lineage);
 
-/// Whether a file on disk is one that a figure's record names.
+/// A file on disk that a figure's record names.
 struct PublishedFile {
   std::string sha256;    ///< of its bytes
-  std::string recorded;  ///< what it should be
+  std::string recorded;  ///< SHA-256 in the record
   FigureRecord record;
 
   bool matches() const { return sha256 == recorded; }
 };
 
-/// Finds the record by the SHA-256 of the file's bytes, else by the lineage file beside it, else by
-/// its name. Nothing if the store never made such a file. Throws NotFound if there is no such
+/// Finds the record of a file by the SHA-256 of its bytes, else by the lineage file beside it, else
+/// by its name. Nothing if the store has no such record. Throws NotFound if there is no such
 /// regular file.
 std::optional<PublishedFile> find_published(const Store& store, const std::filesystem::path& file);
 
-/// An input that cannot be read as it was.
+/// An input that is missing or damaged.
 struct InputFault {
   std::string run;
   std::string checkpoint;
   std::string what;  ///< "missing ...", "pruned", "the log does not have it"
 };
 
-/// Reads and hashes every input checkpoint.
+/// Reads and hashes every input checkpoint; returns those that are not as recorded.
 std::vector<InputFault> check_inputs(const Store& store, const FigureLineage& lineage);
 
 }  // namespace shearcell

@@ -2,7 +2,6 @@
 #include "experiments/figures/more_measures.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
@@ -20,15 +19,15 @@ namespace {
 
 constexpr double kTurn = 6.28318530717958647692;
 constexpr double kRest = 0.1;  // [s]
-/// Steps between two samples of an energy ledger: a period of the fastest vibration at Table I's
-/// time step.
+/// Steps between samples of an energy ledger: a period of the fastest vibration at Table I's time
+/// step.
 constexpr std::uint64_t kLedgerStride = 8;
 
-// A run that shears, and its checkpoints that may begin a cycle.
+// A shear, with its checkpoints at whole cycles.
 struct Shear {
   Scene scene;
   Drive drive;
-  double unit_J = 0;                                      // m d^2/s^2
+  double unit_J = 0;                                      // m d^2/s^2 [J]
   std::map<std::uint64_t, CheckpointRecord> begins = {};  // by step
 };
 
@@ -45,13 +44,13 @@ Shear shear_of(const Store& store, const std::string& run) {
   return shear;
 }
 
-/// Checkpoints to simulate from, and which measures each result is added to.
+/// Checkpoints to simulate from, and the measures to which each result is added.
 struct Origins {
   std::vector<CheckpointRecord> from = {};
   std::vector<std::optional<Measures>*> to = {};
 };
 
-/// Computes the measure by options.instead, and calls read(record, result, measures) for each
+/// Computes the measure with options.instead. Calls read(record, result, measures) for each
 /// checkpoint that could be read.
 template <class Read>
 void add_simulated(const Store& store, const DerivedMeasure& measure, const Origins& origins,
@@ -75,10 +74,10 @@ std::vector<DerivedMeasure> derived_among(std::span<const std::string> names) {
   return measures;
 }
 
-/// Adds the energy of all grains and the moving wall in the cycle that ends at each checkpoint:
-/// simulated again from the checkpoint one cycle earlier, which takes three to four times as long
-/// as the cycle did (protocols/ledger.hpp), and kept like other measures. None within a cycle, and
-/// where that earlier checkpoint was never made or cannot be read.
+/// Adds the energies of all grains and the moving wall in the cycle that ends at each checkpoint.
+/// The cycle is simulated again from the checkpoint one cycle earlier, which takes three to four
+/// times as long as the run did (protocols/ledger.hpp). The result is cached. Adds nothing to a
+/// checkpoint within a cycle, or if the earlier checkpoint does not exist or cannot be read.
 void add_cycle_energies(const Store& store, std::span<const CheckpointRecord> records,
                         const MeasureOptions& options, MeasuredPackings& made) {
   std::map<std::string, Shear> shears;  // by run; threads must not read the log
@@ -119,9 +118,9 @@ void add_cycle_energies(const Store& store, std::span<const CheckpointRecord> re
       });
 }
 
-/// Adds phi (Eq. S4) after 0.1 s between held walls (protocols/rest.hpp), for protocols whose
-/// checkpoints are recorded at different shear rates; only in cycles 1 to early_cycles. Kept like
-/// other measures.
+/// Adds phi (Eq. S4) after 0.1 s between held walls (protocols/rest.hpp), to compare protocols
+/// whose checkpoints are recorded at different shear rates. Only in cycles 1 to early_cycles. The
+/// result is cached.
 void add_phi_at_rest(const Store& store, std::span<const CheckpointRecord> records,
                      const MeasureOptions& options, MeasuredPackings& made) {
   Origins origins;
@@ -183,12 +182,12 @@ void add_drive(const RunRecord& run, const CheckpointRecord& checkpoint, Measure
     const Drive motion = drive(parameters);
     const auto [theta, rate] = tilt(motion, checkpoint.step);
     const SineCosine sc = sine_cosine(theta);
-    // Adding 0 makes -0 a 0.
+    // Adding 0 turns -0 into 0.
     measures.numbers["shear_strain"] = sc.sine / sc.cosine + 0.0;
     measures.numbers["shear_rate_per_s"] =
         kTurn / parameters.period_s * rate / (sc.cosine * sc.cosine) + 0.0;
   } catch (const std::runtime_error&) {
-    // Not a run of this program.
+    // This program cannot read the record.
   }
 }
 

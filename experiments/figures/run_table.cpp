@@ -20,12 +20,12 @@ namespace {
 
 using nlohmann::json;
 
-/// What the cells of a row come from.
+/// The source of the cells of a row.
 struct Row {
   const SelectedRun* selected = nullptr;
-  const CheckpointRecord* checkpoint = nullptr;  // none of a run that was not begun
+  const CheckpointRecord* checkpoint = nullptr;  // null for a run that was not begun
   std::optional<Measures> measures = {};
-  const FigureRun* history = nullptr;  // for the onset; none of a run that is not a shear
+  const FigureRun* history = nullptr;  // for onsets; null for a run that is not a shear
 };
 
 /// A run with its checkpoints and the measures of each.
@@ -54,7 +54,7 @@ Column of_checkpoint(const char* name, const char* meaning, Value value) {
           }};
 }
 
-// `recorded` is the name in the checkpoint where it differs from the column's.
+// `recorded`: the name in the checkpoint if it differs from the column's.
 Column observable(const char* name, const char* meaning, const char* recorded = nullptr) {
   return of_checkpoint(name, meaning, [key = recorded == nullptr ? name : recorded](const auto& c) {
     const auto found = c.observables.find(key);
@@ -158,8 +158,8 @@ std::vector<Column> ends() {
   return columns;
 }
 
-/// A swept parameter: as the variant states it, or as a run of another experiment resolved it;
-/// null where the run does not feel it.
+/// The value of a parameter that some variants sweep: from the variant's labels, or from the run's
+/// record; null if it does not affect the run.
 json swept_value(const Field& field, const SelectedRun& selected) {
   const auto label = selected.membership.labels.find(field.name);
   if (label != selected.membership.labels.end()) return *label;
@@ -168,10 +168,10 @@ json swept_value(const Field& field, const SelectedRun& selected) {
   return felt ? get_value(field, record.parameters) : json();
 }
 
-/// The columns that tell runs apart.
+/// The columns that distinguish runs.
 std::vector<Column> columns_of_runs(const std::vector<MeasuredRun>& runs,
                                     const VariantNames& variants, bool all_versions) {
-  std::set<std::string> swept = {"grains"};  // of every table
+  std::set<std::string> swept = {"grains"};  // a column of every table
   for (const MeasuredRun& run : runs) {
     for (const auto& [key, value] : run.membership.labels.items()) swept.insert(key);
   }
@@ -209,8 +209,8 @@ std::vector<MeasuredRun> select(const Store& store, const RunSelection& selectio
   return runs;
 }
 
-/// Measures the checkpoints of all runs for which `wanted(run, place)` holds, and adds what could
-/// not be measured to the table's list.
+/// Measures the checkpoints of all runs for which `wanted(run, place)` holds. Adds the problems to
+/// the table.
 template <class Wanted>
 void measure_where(const Store& store, std::span<const std::string> names,
                    const MeasureOptions& options, std::vector<MeasuredRun>& runs,
@@ -263,7 +263,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     return per == RowPer::checkpoint || k + 1 == run.records.size();
   };
   measure_where(store, names, options, runs, has_row, table);
-  // An onset needs no more of the others than their scalars.
+  // Onsets need only the scalars of the other checkpoints.
   measure_where(store, table_measures().first(1), options, runs, std::not_fn(has_row), table);
   const std::vector<Column> columns =
       columns_for(runs, per, VariantNames(store), ledger, selection.all_versions);

@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// A column and what it holds. Names end in their unit, except counts and pure numbers.
+/// A column. Its name ends in the unit, except for counts and pure numbers.
 struct TableColumn {
   std::string name;
   std::string meaning;
@@ -28,37 +28,35 @@ inline constexpr auto kNames<RowPer> = names_in_order<RowPer>("checkpoint", "run
 
 struct RunTable : MeasureOutcome {
   std::vector<TableColumn> columns;
-  std::vector<std::vector<nlohmann::json>> rows;  ///< null: it does not apply or is not known
+  std::vector<std::vector<nlohmann::json>> rows;  ///< null: not applicable or unknown
   std::vector<std::string> notes;                 ///< of newest_runs()
 
-  /// Of a column; their number if there is none of that name.
+  /// The index of a column; the number of columns if there is none of that name.
   std::size_t place(std::string_view name) const {
     return static_cast<std::size_t>(std::ranges::find(columns, name, &TableColumn::name) -
                                     columns.begin());
   }
 };
 
-/// Rows in the order of declaration, then by cycle. The runs are newest_runs().
-/// Checkpoints count up to own_end(); rejected ones do not. Onsets
-/// come from the checkpoints at whole cycles, as in the figures. Throws NotFound as select_runs().
-/// With `ledger` it also has the energy of each cycle, which is simulated again for that.
+/// The table of the selected newest_runs(), in the order of declaration, then by cycle. It has
+/// their own_checkpoints() up to own_end(). Onsets come from the checkpoints at whole cycles, as in
+/// the figures. `ledger` adds the energies of each cycle, which is simulated again for that. Throws
+/// NotFound as select_runs().
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, bool ledger = false);
 
-/// A row for each value of a measured curve at each checkpoint: the run's columns, the cycle, the
-/// checkpoint, x and y. Otherwise as run_table().
+/// The same with a row for each value of a measured curve at each checkpoint: the run's columns,
+/// the cycle, the checkpoint, x and y.
 RunTable curve_table(const Store& store, const RunSelection& selection, const CurveMeasure& measure,
                      const MeasureOptions& options);
 
-/// Names for measures_of() of what the columns show of a checkpoint; those of the first alone are
-/// its scalars.
+/// The names for measures_of() that give all columns of a checkpoint. The first is "scalars".
 std::span<const std::string> table_measures();
 
-/// Every column, those of a ledger included, except those of swept parameters, which are named as
-/// in a manifest.
+/// Every column, including those of a ledger, except those of swept parameters.
 std::vector<TableColumn> table_columns();
 
-/// Names and values of what is known of one checkpoint, in the order of the columns.
+/// The columns of one checkpoint and their values.
 std::vector<std::pair<TableColumn, nlohmann::json>> facts_of(
     const CheckpointRecord& record, const std::optional<Measures>& measures);
 
@@ -67,7 +65,7 @@ std::string to_csv(const RunTable& table);
 /// An array of objects, one for each row, keys in the order of the columns.
 std::string to_json(const RunTable& table);
 
-/// Whether a file begins like one of the two.
+/// Whether a file begins like the CSV or the JSON.
 bool is_table(std::string_view beginning);
 
 }  // namespace shearcell

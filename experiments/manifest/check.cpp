@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks whether the values of a variant can be simulated together, and plots and claims be made.
+// Checks whether a variant can be simulated, and whether its plots and claims can be made.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -26,7 +25,7 @@ namespace {
 using std::string;
 using std::string_view;
 
-// Of one variant at one scale, which states everything.
+// Checks one variant at one scale. The scale is complete (whole_scale()).
 struct VariantCheck {
   const Manifest& manifest;
   const Scale& scale;
@@ -40,7 +39,7 @@ struct VariantCheck {
     check_settle_steps();
     check_pause();
     check_cell();
-    if (asks_lammps_to_stiffen(p)) {
+    if (p.engine == EngineKind::lammps && p.protocol == ProtocolKind::stiffen) {
       report("engine", "LAMMPS cannot do the protocol stiffen", "Leave the engine out, or shear.");
     }
     check_density();
@@ -50,7 +49,7 @@ struct VariantCheck {
   struct Place {
     Position at;
     string got;
-    bool stated = true;  // rather than a default
+    bool stated = true;  // false: a default
   };
 
   Place find(string_view key) const {
@@ -73,7 +72,7 @@ struct VariantCheck {
     problems.add(place.at, string(key), std::move(problem), place.got, std::move(remedy));
   }
 
-  // Whether what `auto` came to may be used.
+  // Whether the values that `auto` resolved to are in range.
   bool autos_are_in_range() {
     bool sound = true;
     for (const auto& [key, setting] : scale.settings) {
@@ -94,7 +93,7 @@ struct VariantCheck {
     if (shear_time_step_s(p) < limit) return;
     const double enough = std::floor(p.period_s / limit) + 1;
     Place place = find("steps_per_cycle");
-    // Left at its default, it was made wrong by one of these.
+    // If steps_per_cycle is a default, blame the key that the manifest states.
     for (const char* cause : {"period_s", "stiffness_N_per_m", "mass_kg"}) {
       if (const Place other = find(cause); !place.stated && other.stated) {
         place = {other.at, place.got};
@@ -139,7 +138,7 @@ struct VariantCheck {
   }
 
   void check_cell() {
-    // Below, a grain could meet another one through both ends of the period.
+    // In a shallower cell a grain could touch another one across both periodic boundaries.
     constexpr double smallest_depth = 3;
     const Geometry shape = geometry(p);
     if (cell_width(shape) < smallest_depth) {
@@ -197,7 +196,7 @@ void check_scale_against_sweep(const Scale& scale, const Sweep& sweep, ProblemLi
   }
 }
 
-/// Every label names a variant of some scale, and no two variants of a scale have one name.
+/// Each label must name a variant of some scale; variants of one scale must have different names.
 void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                   ProblemList& problems) {
   std::set<const VariantLabel*> used;
@@ -243,7 +242,7 @@ std::size_t count_of(const nlohmann::json& where, const std::vector<Variant>& va
   }));
 }
 
-/// A swept key over which the plot would average: two variants have the same curve and x.
+/// A swept key over which the plot would average, since two variants share a curve and x; or "".
 std::string averaged_over(const PlotSpec& plot, const std::vector<Variant>& variants) {
   if (plot.by.empty()) return "";
   std::map<std::array<nlohmann::json, 2>, nlohmann::json> curves;  // labels of the first variant

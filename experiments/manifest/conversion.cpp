@@ -20,11 +20,11 @@ double auto_steps(double duration, const Parameters& p) {
   const Parameters table1;
   const double part = shear_time_step_s(table1) / stability_limit_s(table1);
   const double steps = std::nearbyint(duration / (part * stability_limit_s(p)));
-  constexpr double most = 1e15;  // exact, and far beyond what a manifest may state
+  constexpr double most = 1e15;  // an exact double, beyond the range of the parameter
   return steps >= 1 ? std::min(steps, most) : 1;
 }
 
-// Of grains that fill the cell to its nominal height, 1.2 of them in d^3, per area [m/(d s^2)].
+// Weight per area of grains that fill the nominal height with 1.2 grains per d^3 [m/(d s^2)].
 double column_weight(const Parameters& p) {
   constexpr double grains_per_d3 = 1.2;
   const double height = p.height_over_width * cell_width(geometry(p));
@@ -101,10 +101,6 @@ double stability_limit_s(const Parameters& p) {
   return 2 / std::sqrt(8 * p.stiffness_N_per_m / p.mass_kg);
 }
 
-bool asks_lammps_to_stiffen(const Parameters& p) {
-  return p.engine == EngineKind::lammps && p.protocol == ProtocolKind::stiffen;
-}
-
 bool feels_pressure_at(const Parameters& p) {
   return p.gravity_m_per_s2 != 0 && p.moving_wall == MovingWall::bottom;
 }
@@ -145,12 +141,14 @@ double expected_overlap(const Parameters& p) {
 }
 
 std::optional<std::string> time_step_advice(const TimeStep& step, const std::string& key) {
-  const bool large = step.over_stability_limit > kTooLargeStep;
-  if (!large && step.over_stability_limit >= kNeedlesslySmallStep) return std::nullopt;
-  const double wanted = large ? kTooLargeStep : kNeedlesslySmallStep;
+  // Parts of the stability limit (core/ACCURACY.md).
+  constexpr double too_small = 0.15, too_large = 0.7;
+  const bool large = step.over_stability_limit > too_large;
+  if (!large && step.over_stability_limit >= too_small) return std::nullopt;
   return fmt::format(
       "{}: the time step of {:.3g} s is {:.3g} of the stability limit, {} {:g}: {}", key,
-      step.seconds, step.over_stability_limit, large ? "above" : "below", wanted,
+      step.seconds, step.over_stability_limit, large ? "above" : "below",
+      large ? too_large : too_small,
       large
           ? "the fastest vibrations are wrong by more than 10 %"
           : "it costs time and changes the measures by less than runs of different seeds scatter");

@@ -31,7 +31,8 @@ struct Character {
   char32_t code_point = 0;
 };
 
-// At the start of `text`. Overlong forms, surrogates and code points beyond U+10FFFF are not UTF-8.
+// Decodes the first character of `text`. Overlong forms, surrogates and code points beyond U+10FFFF
+// are not UTF-8.
 Character decode(string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);
@@ -48,14 +49,14 @@ Character decode(string_view text) {
   return c < smallest[length] || surrogate || c > 0x10FFFF ? Character{} : Character{length, c};
 }
 
-// Control characters, ends of lines, and those that change the direction of the text around them
-// (Bidi_Control in Unicode).
+// Control characters, line ends, and characters that change the direction of text (Bidi_Control in
+// Unicode).
 bool is_control(char32_t c) {
   return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x61C || c == 0x200E || c == 0x200F ||
          (c >= 0x2028 && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
 }
 
-// yaml-cpp replaces bad bytes silently and takes U+0004 for the end of the text.
+// yaml-cpp silently replaces bad bytes and stops reading at U+0004.
 void check_characters(string_view text, string_view file) {
   Position at{1, 1};
   while (!text.empty()) {
@@ -113,7 +114,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
-  // A list or map whose end has not been seen yet.
+  // A list or map that is being read.
   struct Open {
     Node node;
     std::set<std::string> keys;
@@ -126,7 +127,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void check_tag(const YAML::Mark& mark, const std::string& tag) {
-    if (tag == "?" || tag == "!" || tag.empty()) return;  // none written; plain or quoted
+    if (tag == "?" || tag == "!" || tag.empty()) return;  // no tag was written
     refuse(file_, position(mark), fmt::format("the tag {} is not read", printable(tag)),
            "Remove the tag; the key decides the type.");
   }
@@ -196,8 +197,8 @@ class TreeBuilder : public YAML::EventHandler {
   Node root_;
 };
 
-// The first line up to `last` that is indented with a tab; 0 when there is none. The parser's own
-// message for it varies.
+// The first line up to `last` that is indented with a tab, or 0. The parser's own messages for it
+// vary.
 int tab_indented_line(string_view text, int last) {
   for (int line = 1; line <= last && !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());

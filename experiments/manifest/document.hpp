@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An untrusted YAML text as a small tree of nodes that know where they were written. Built from the
-// parser's events, so that nothing is expanded before it is counted.
+// An untrusted YAML text as a tree of nodes with their positions. It is built from the parser's
+// events, so that the limits apply before anything is expanded.
 #pragma once
 
 #include <cstddef>
@@ -20,15 +20,15 @@ struct Node {
   std::string text = {};                            ///< of a scalar
   bool quoted = false;                              ///< written in quotes or as a block
   std::vector<Node> items = {};                     ///< of a list
-  std::vector<std::pair<Node, Node>> entries = {};  ///< of a map; keys are scalars, none twice
+  std::vector<std::pair<Node, Node>> entries = {};  ///< of a map; keys are different scalars
 };
 
 /// One YAML document without anchors, aliases, tags or repeated keys, within ManifestLimits.
 /// Throws ManifestError.
 Node read_document(std::string_view text, std::string_view file);
 
-/// A text fit for a one-line message: control characters, also those that change the direction of
-/// a text, and bytes that are not UTF-8 escaped as \x1b or \u202e; cut to a readable length.
+/// Makes a text fit for a one-line message. Escapes control characters, characters that change the
+/// direction of text, and bytes that are not UTF-8, as \x1b or \u202e. Cuts it to `longest` bytes.
 std::string printable(std::string_view text, std::size_t longest = 60);
 
 }  // namespace shearcell

@@ -45,7 +45,7 @@ Scale choose_scale(const Manifest& manifest, const std::optional<std::string>& w
   refuse(manifest, "scale", with_nearest("is unknown", name, names), printable(name), known);
 }
 
-// Of a parameter.
+// Checks an option that replaces a parameter.
 void check_option(const Manifest& manifest, const char* key, const nlohmann::json& value) {
   if (const auto wrong = check_value(*find_field(key), value)) {
     refuse(manifest, key, wrong->problem, printable(value_text(value)), wrong->remedy);
@@ -72,7 +72,7 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
   return {stated.values.begin(), stated.values.begin() + static_cast<std::ptrdiff_t>(*wanted)};
 }
 
-// As one more swept key, so that runs of two engines are never taken for one curve.
+// Adds the engine as a swept key, so that figures never average runs of two engines.
 void set_engine(const Manifest& manifest, const std::string& engine, Scale& scale) {
   check_option(manifest, "engine", engine);
   if (find_axis(*scale.sweep, "engine") != nullptr) {
@@ -84,15 +84,15 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
-// Of a variant whose engine an option may have changed.
+// The option --engine may ask LAMMPS for what it cannot do.
 void check_engine(const Manifest& manifest, const Scale& scale, const Parameters& p) {
-  const std::string engine(name_of(p.engine));
-  if (asks_lammps_to_stiffen(p)) {
-    refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", engine,
+  if (p.engine != EngineKind::lammps) return;
+  if (p.protocol == ProtocolKind::stiffen) {
+    refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", "lammps",
            "Leave the option out.");
   }
-  if (p.engine == EngineKind::lammps && !scale.checkpoints->phases.empty()) {
-    refuse(manifest, "engine", "LAMMPS makes no checkpoints within a cycle", engine,
+  if (!scale.checkpoints->phases.empty()) {
+    refuse(manifest, "engine", "LAMMPS makes no checkpoints within a cycle", "lammps",
            "Leave the option out, or checkpoints.phases.");
   }
 }
@@ -123,7 +123,7 @@ void warn_of_variant(const std::string& file, const Variant& variant, Plan& plan
   }
 }
 
-// Of stated keys that no variant feels, with the line where each was written.
+// Warns of each stated key that has no effect on any variant.
 void warn_of_unfelt(const Manifest& manifest, const Scale& scale,
                     const std::vector<Variant>& variants, Plan& plan) {
   std::map<std::string, Position> stated;
@@ -145,7 +145,7 @@ void warn_of_unfelt(const Manifest& manifest, const Scale& scale,
   }
 }
 
-// `common`: what all runs of the scale have.
+// `common`: the facts that all runs of the scale share.
 PlannedRun planned_run(const Membership& common, const Scale& scale, const Variant& variant,
                        std::uint64_t seed) {
   PlannedRun run;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a manifest at one scale to its runs, in the manifest's own order.
+// Expands a manifest at one scale into its runs, in the order of the manifest.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace shearcell {
 struct ExpandOptions {
   std::optional<std::string> scale = {};     ///< default: `desk`, or `base` without scales
   std::optional<std::uint64_t> cycles = {};  ///< instead of the manifest's
-  std::optional<std::uint64_t> seeds = {};   ///< how many; of a listed set the first ones
+  std::optional<std::uint64_t> seeds = {};   ///< how many; of listed seeds the first ones
   std::vector<std::string> variants = {};  ///< only those with these swept values, as "fluid=cell"
   std::optional<std::string> engine = {};  ///< instead of the manifest's; named in the variant
 };
@@ -27,10 +27,10 @@ struct ExpandOptions {
 struct PlannedRun : Membership {
   std::string name;  ///< of the variant, for people (variants.hpp)
   StageSpec prepare;
-  StageSpec last;                   ///< what is done to the packing: shear, or stiffening
+  StageSpec last;                   ///< shear or stiffening of the packing
   std::optional<Until> ends_early;  ///< `until`, read
   Parameters parameters;
-  std::vector<Membership> places;  ///< what each of the joined plans asks of it; its own first
+  std::vector<Membership> places;  ///< of each of the joined plans; its own first
 };
 
 struct Plan {
@@ -43,8 +43,8 @@ struct Plan {
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
 
-/// The runs of several manifests, one or more, each once: as long as the experiment that asks for
-/// most of it, with the checkpoints of all, and with an early end only if all have one.
+/// The runs of one or more manifests, each once: with the largest number of cycles, the checkpoints
+/// of all, and an early end only if all have one.
 Plan joined(std::span<const Plan> plans);
 
 /// Whether LAMMPS computes any of its runs.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Selection by values that the command line names.
+// Selects by values named on the command line.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace shearcell {
 
-/// Passes the values that fit one of those wanted of each kind, or all when none is wanted;
-/// remembers what it has seen.
+/// Passes a value that, for each kind of wanted values, fits at least one; passes all values if
+/// none are wanted. Remembers the values that it has seen.
 class Filter {
  public:
   using Fits = bool (*)(const std::string& wanted, const std::string& value);
@@ -32,7 +32,7 @@ class Filter {
     return std::ranges::all_of(fits, [](const auto& kind) { return kind.second; });
   }
 
-  /// The first of those wanted that no value fitted, or null.
+  /// The first wanted value that no seen value fitted, or null.
   const std::string* unfound() const {
     const auto found = [&](const std::string& one) {
       return std::ranges::any_of(seen_, [&](const auto& value) { return fits_(one, value); });
@@ -41,7 +41,7 @@ class Filter {
     return missing == wanted_.end() ? nullptr : &*missing;
   }
 
-  /// Each once, in order.
+  /// The values seen, each once, in order.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:

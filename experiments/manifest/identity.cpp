@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -18,10 +18,10 @@ namespace {
 
 using nlohmann::json;
 
-// Changes with the meaning of a key, so that keys of different meanings never meet.
+// Must change if the meaning of a key changes, so that keys of different meanings never collide.
 constexpr std::string_view kDomain = "shearcell stage 1\n";
 
-// What has no effect gets one value, so that equal runs have equal records.
+// Gives a parameter without effect one fixed value, so that equal runs have equal records.
 Parameters without_what_is_not_felt(Parameters parameters) {
   if (!feels_pressure_at(parameters)) parameters.pressure_at = PressureAt::moving_wall;
   return parameters;
@@ -87,6 +87,12 @@ std::string text_member(const json& object, const char* key) {
   return value.get<std::string>();
 }
 
+// An empty object if the record has none.
+json stated_parameters(const json& resolved) {
+  json values = member_of(resolved, "parameters");
+  return values.is_object() ? values : json::object();
+}
+
 std::optional<ProtocolKind> protocol_in(const json& values) {
   const auto found = values.find("protocol");
   if (found == values.end() || !found->is_string()) return std::nullopt;
@@ -100,8 +106,8 @@ void read_parameter(const Field& field, const json& value, Parameters& parameter
   set_value(field, value, parameters);
 }
 
-// What the stage does not feel keeps its default; what it feels and the record leaves out has the
-// value at which it is left out.
+// A parameter that does not affect the stage keeps its default. One that affects it and is missing
+// from the record has the value at which it is omitted.
 Parameters read_parameters(Stage stage, const json& values) {
   if (!values.is_object()) throw damaged("parameters", "is not a JSON object");
   const auto protocol = protocol_in(values);
@@ -162,7 +168,7 @@ StageRecord read_stage(const json& resolved) {
     throw damaged("pressure_at", "has no effect on such a run, so it cannot be part of its record");
   }
   if (record.stage == Stage::stiffen) record.parameters.protocol = ProtocolKind::stiffen;
-  // A record of a shear that says it stiffens is one that this program never wrote.
+  // This program never writes such a record.
   if (record.stage == Stage::shear &&
       stage_after_settling(record.parameters.protocol) != Stage::shear) {
     throw damaged("protocol", "is not one that shears");
@@ -175,21 +181,29 @@ StageRecord read_stage(const json& resolved) {
   return record;
 }
 
-json felt_parameters(const json& resolved) {
-  json values =
-      resolved.is_object() ? resolved.value("parameters", json::object()) : json::object();
-  if (!values.is_object()) return json::object();
-  try {
-    const auto [stage, parent, seed, parameters] = read_stage(resolved);
-    for (const Field& field : schema()) {
-      const bool felt = field.name != "pressure_at" || feels_pressure_at(parameters);
-      if (felt && enters(field.identity, stage, parameters.protocol, nullptr)) {
-        values.emplace(field.name, get_value(field, parameters));  // unless the record states it
-      }
-    }
-  } catch (const std::runtime_error&) {  // damaged
+json recorded_parameters(const json& resolved) {
+  json values = resolved.value("parameters", json::object());
+  const json name = member_of(resolved, "stage");
+  const auto stage = name.is_string() ? value_of<Stage>(name.get<std::string>()) : std::nullopt;
+  if (!stage) return values;
+  const auto protocol = protocol_in(values);
+  for (const Field& field : schema()) {
+    const std::string_view omitted = field.identity.omitted_at;
+    if (omitted.empty() || values.contains(field.name)) continue;
+    if (!enters(field.identity, *stage, protocol, nullptr)) continue;
+    values[std::string(field.name)] = as_json(field, omitted);
   }
   return values;
+}
+
+json felt_parameters(const json& resolved) {
+  try {
+    json values = recorded_parameters(resolved);
+    if (!feels_pressure_at(read_stage(resolved).parameters)) values.erase("pressure_at");
+    return values;
+  } catch (const std::exception&) {  // damaged
+    return stated_parameters(resolved);
+  }
 }
 
 EngineKind engine_of(const json& resolved) {

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 
 #include "experiments/manifest/parameters.hpp"
 
@@ -19,8 +18,8 @@ struct StageSpec {
   nlohmann::json resolved;  ///< exactly what `key` is the hash of; `read_stage` reads it back
 };
 
-/// What a stage is, as its `resolved` record says. Parameters that it does not feel, and lengths,
-/// are at their defaults; the protocol of a stiffening is `stiffen`.
+/// A stage, as read from its `resolved` record. Parameters that do not affect it, and lengths, have
+/// their defaults; the protocol of a stiffening is `stiffen`.
 struct StageRecord {
   Stage stage = Stage::prepare;
   std::string parent;
@@ -28,25 +27,28 @@ struct StageRecord {
   Parameters parameters;
 };
 
-/// Seeded preparation: everything that settling feels.
+/// The preparation: fill and settle.
 StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed);
 
-/// Shear or stiffening, as the protocol asks for, of the packing that `parent` prepared.
+/// Shear or stiffening, by the protocol, of the packing that `parent` prepares.
 StageSpec last_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent);
 
 /// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. A reader recomputes it to
-/// check that a recorded run is what it is called.
+/// check a recorded run against its id.
 std::string stage_key(const nlohmann::json& resolved);
 
 /// The record is not trusted: throws std::runtime_error that names the key when something is
 /// missing, unknown or out of range. Compare stage_key(resolved) with the run's id as well.
 StageRecord read_stage(const nlohmann::json& resolved);
 
-/// The parameters that a stage of this record feels, with those that the record leaves out; of a
-/// damaged record those that it states.
+/// The parameters that the record states, and those that it omits at the value of all older runs.
+/// Throws nlohmann::json::exception if the record or its parameters are not a JSON object.
+nlohmann::json recorded_parameters(const nlohmann::json& resolved);
+
+/// The same without those that do not affect the stage; of a damaged record, those that it states.
 nlohmann::json felt_parameters(const nlohmann::json& resolved);
 
-/// The engine that a record names, whatever else is wrong with it.
+/// The engine that a record names, even if the record is damaged otherwise.
 EngineKind engine_of(const nlohmann::json& resolved);
 
 /// JSON without whitespace, keys sorted by their bytes, doubles as the shortest digits that read

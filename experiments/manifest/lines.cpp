@@ -66,7 +66,7 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
       add("seeds", manifest.base.seeds->at);
     }
   } catch (const ManifestError&) {
-    found.clear();  // written for another version of the schema
+    found.clear();  // a manifest of another version of the schema
   }
   return found;
 }

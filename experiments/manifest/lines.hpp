@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which lines of a manifest define a run, and which values the command line replaced.
+// Finds the lines of a manifest that define a run, and the values that the command line replaced.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -17,15 +17,14 @@ struct ManifestLine {
   std::string text;  ///< the line, without surrounding blanks, fit for a message
 };
 
-/// Where a manifest states its experiment, the scale, the value of each swept key in `labels`, and
-/// the seeds that the scale uses. Empty when the text is not a manifest that this program reads.
+/// Where a manifest states its experiment, the scale, the value of each swept key in `labels`, the
+/// cycles and the seeds. Empty if this program cannot read the manifest.
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& labels);
 
-/// How a run of the manifest that shears differs from what its text asks for, since the command
-/// line gave --cycles, --seeds or --engine: {"cycles", "seed" or "engine": {"run", "manifest"}}, of
-/// "seed" with the list of the manifest's seeds. Null where nothing differs, or like
-/// manifest_lines().
+/// Where a shear run differs from its manifest, since the command line gave --cycles, --seeds or
+/// --engine: {"cycles", "seed" or "engine": {"run": VALUE, "manifest": VALUE}}; for "seed", the
+/// manifest's value is its list of seeds. Null if nothing differs or the manifest cannot be read.
 nlohmann::json overrides(std::string_view text, const Membership& membership);
 
 }  // namespace shearcell

@@ -42,7 +42,7 @@ std::string read_file(const std::filesystem::path& path, const std::string& name
   if (std::filesystem::is_directory(status)) {
     refuse_file(name, "is a directory", "Name a manifest file in it.");
   }
-  // A pipe or a device might never end.
+  // Reading a pipe or a device might never end.
   if (!std::filesystem::is_regular_file(status)) refuse_file(name, "is not a regular file", "");
   std::ifstream stream(path, std::ios::binary);
   std::string text(ManifestLimits::bytes + 1, '\0');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A manifest: one experiment as a YAML text, read and checked as a whole. For any bytes, reading
-// ends in a Manifest or in a ManifestError that names the place and the remedy.
+// A manifest: one experiment as a YAML text. For any bytes, reading gives a Manifest, or throws a
+// ManifestError that names the place and the remedy of each problem.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,7 +29,7 @@ struct ManifestLimits {
   static constexpr std::uint64_t runs = 10'000;  ///< of all scales together
 };
 
-/// Place in the manifest's text, counted from 1; line 0 means the file as a whole.
+/// Place in the manifest's text, counted from 1; line 0 means the whole file.
 struct Position {
   int line = 0;
   int column = 0;
@@ -92,8 +91,8 @@ inline constexpr auto kNames<StopMeasure> = names_in_order<StopMeasure>("crystal
                                                                         "largest_crystallite",
                                                                         "phi");
 
-/// `until`: a run ends `extra_cycles` after the first checkpoint where the measure is at least
-/// `value`. Like `cycles`, it is not part of the identity of a run.
+/// `until`: a run ends `extra_cycles` after the first checkpoint at which the measure is at least
+/// `value`. It is not part of a run's identity.
 struct Until {
   StopMeasure measure = StopMeasure::crystalline_percent;
   double value = 0;
@@ -124,7 +123,7 @@ struct Checkpoints {
   Position at = {};
 };
 
-/// A name of `labels` for the variants that have these values.
+/// An entry of `labels`: a name for the variants with these values.
 struct VariantLabel {
   nlohmann::json where;  ///< parameters and their values, an object
   std::string name;
@@ -137,7 +136,7 @@ struct Placed : Spec {
   Position at;
 };
 
-/// A named size of the experiment, or what the manifest states for all of them.
+/// An entry of `scales`, or what the manifest states for all scales.
 struct Scale {
   std::string name = {};  ///< "" for the manifest itself
   Position at = {};
@@ -160,22 +159,22 @@ struct Manifest {
   std::vector<Placed<ClaimSpec>> claims;
   Scale base = {
       .sweep = Sweep(), .seeds = Seeds(), .checkpoints = Checkpoints(), .until = StatedUntil()};
-  std::vector<Scale> scales;  ///< in the order of the text; what one does not state is as in `base`
+  std::vector<Scale> scales;  ///< in the order of the text; whole_scale() completes them
 };
 
-/// Letters, digits, '-' and '_', at most 64 of them and no '-' first: such a text can name an
-/// experiment, its folder and its figures.
+/// Whether the text can name an experiment, its folder and its figures: 1 to 64 letters, digits,
+/// '-' and '_', the first not a '-'.
 bool is_name(std::string_view text);
 
 /// Reads a file. Throws ManifestError.
 Manifest load_manifest(const std::filesystem::path& path);
 
-/// Reads a text; `file` is its name in messages. Every scale is checked through to the time step of
-/// every variant. Throws ManifestError.
+/// Reads a text and checks every variant of every scale; `file` is its name in messages. Throws
+/// ManifestError.
 Manifest parse_manifest(std::string_view text, std::string_view file);
 
-/// The same without the checks of the variants: every key is known, every value of its type and in
-/// its range. Throws ManifestError with everything that is wrong.
+/// The same without the checks of the variants: only keys, types and ranges. Throws ManifestError
+/// with all problems.
 Manifest read_manifest(std::string_view text, std::string_view file);
 
 }  // namespace shearcell

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The resolved parameters of one run, in SI units: every key of a manifest's `base`, typed, with
-// its default. The schema (schema.hpp) says what each one means and which values it may take.
+// The parameters of one run in SI units: every key of a manifest's `base` with its type and
+// default. The schema (schema.hpp) states meanings and ranges.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ enum class Stage : std::uint8_t { prepare, shear, stiffen };
 template <>
 inline constexpr auto kNames<Stage> = names_in_order<Stage>("prepare", "shear", "stiffen");
 
-/// What is done to the settled packing: shear without or with pauses (B.5), or stiffening (B.2).
+/// Treatment of the settled packing: shear without or with pauses (B.5), or stiffening (B.2).
 enum class ProtocolKind : std::uint8_t { continuous, paused, stiffen };
 template <>
 inline constexpr auto kNames<ProtocolKind> = names_in_order<ProtocolKind>("continuous", "paused",
@@ -79,7 +79,7 @@ struct Parameters {
   std::uint64_t stiffness_steps_per_decade = 4;
   double minimize_force_tolerance = 1e-4;
 
-  // How far to go; a longer run is the same run, extended.
+  // Lengths. A longer run is the same run, extended.
   std::uint64_t cycles = 200;
   std::uint64_t stiffness_decades = 2;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collects every problem of a manifest, so that all are reported at once.
+// Collects the problems of a manifest, so that all are reported at once.
 #pragma once
 
 #include <cstddef>
@@ -18,12 +18,12 @@ class ProblemList {
  public:
   explicit ProblemList(std::string_view file) : file_(file) {}
 
-  /// Many variants share one cause: what was reported already is not repeated.
+  /// Adds a problem, unless it was added before: many variants may share one.
   void add(Position at, std::string key, std::string problem, std::string got, std::string remedy);
 
   std::size_t size() const { return problems_.size(); }
 
-  /// Throws ManifestError, in the order of the text, when there are any.
+  /// Throws ManifestError, with the problems in the order of the text, if there are any.
   void raise();
 
  private:
@@ -34,7 +34,7 @@ class ProblemList {
 
 /// A value of the document while it is read.
 struct Entry {
-  const Node& key;   ///< of an item, that of its list; of the document, the document
+  const Node& key;   ///< for an item, the key of its list; for the document, the document
   const Node& node;  ///< the value
   std::string path;  ///< to the key, as in "scales.smoke.grains"
   ProblemList& problems;
@@ -46,18 +46,18 @@ struct Entry {
   std::vector<Entry> entries() const;  ///< of a map
   std::vector<Entry> items() const;    ///< of a list
 
-  /// Something is wrong with the value, which the message quotes.
+  /// Reports a problem with the value, and quotes it.
   void reject_value(std::string problem, std::string remedy) const;
-  /// The value is not what is `wanted`, as in "a list".
+  /// Reports that the value is not `wanted`, as in "a list".
   void reject_type(std::string_view wanted, std::string remedy) const;
-  /// Something is wrong with a part of the value, or with its place.
+  /// Reports a problem at the value, or at the key, without a quotation.
   void reject(std::string problem, std::string remedy) const;
   void reject_key(std::string problem, std::string remedy) const;
-  /// The key is not one of those `allowed` in its map; says which name is meant.
+  /// Reports that the key is not one of those `allowed` in its map, with the nearest of them.
   void reject_unknown(std::span<const std::string_view> allowed) const;
 };
 
-/// A node as it is quoted in a message.
+/// A node as messages quote it.
 std::string shown(const Node& node);
 
 }  // namespace shearcell

@@ -23,7 +23,7 @@ constexpr std::size_t kShownNames = 20;
 constexpr std::size_t kLongestLabel = 60;  // [bytes]
 constexpr std::uint64_t kLastCycle = 1'000'000;
 
-/// The parameters that tell runs apart; the record of a run does not hold the others.
+/// The parameters that distinguish runs. The record of a run does not hold the others.
 std::vector<string_view> parameters() {
   std::vector<string_view> names;
   for (const Field& field : schema()) {
@@ -32,7 +32,7 @@ std::vector<string_view> parameters() {
   return names;
 }
 
-/// One parameter and its value.
+/// Reads a parameter and its value into `where`.
 void read_where(const Entry& in, json& where) {
   const Field* field = find_field(in.key.text);
   if (field == nullptr) return in.reject_unknown(parameters());
@@ -43,7 +43,7 @@ void read_where(const Entry& in, json& where) {
   if (auto read = read_parameter(*field, in)) where[in.key.text] = std::move(*read);
 }
 
-/// The key "fluid=still,amplitude_rad=0.05" as the map that it stands for.
+/// Reads the key "fluid=still,amplitude_rad=0.05" as a map.
 json read_selector(const Entry& in) {
   Node map{Node::Kind::map, in.key.at};
   string_view rest = in.key.text;
@@ -67,8 +67,8 @@ json read_selector(const Entry& in) {
   return where;
 }
 
-/// Reads a map with these keys. False, with a problem, if it is none or lacks one of the first
-/// `required` keys.
+/// Reads a map with these keys, of which the first `required` ones must be stated. Returns false
+/// after a problem.
 bool read_whole(const Entry& in, std::span<const Key> keys, std::size_t required,
                 const string& example) {
   const string remedy = fmt::format("It takes `{}`.", example);
@@ -85,7 +85,7 @@ bool read_whole(const Entry& in, std::span<const Key> keys, std::size_t required
   return true;
 }
 
-/// The value, if it is one of `known`; else a problem with the nearest of them.
+/// Reads a value that must be one of `known`; "" after a problem.
 string read_one_of(const Entry& in, const std::vector<string_view>& known) {
   const string text = in.is_scalar() ? in.node.text : "";
   if (in.is_scalar() && std::ranges::find(known, text) != known.end()) return text;
@@ -102,12 +102,8 @@ std::vector<string_view> joined(std::vector<string_view> names,
   return names;
 }
 
-std::vector<string_view> run_measures() {
-  return names_of(all_run_measures());
-}
-
-/// A name for files, different from those of the supplement's figures and their panels, and of
-/// other plots and claims.
+/// Reads a name that differs from those of the supplement's figures and panels, and of other plots
+/// and claims.
 string read_own_name(const Entry& in, const Manifest& manifest) {
   const string name = read_name(in);
   if (name.empty()) return name;
@@ -127,7 +123,7 @@ string read_own_name(const Entry& in, const Manifest& manifest) {
   return name;
 }
 
-/// A first and a last cycle.
+/// Reads a first and a last cycle.
 std::array<std::uint64_t, 2> read_interval(const Entry& in, const string& example) {
   const std::vector<Entry> ends = read_list(in, example);
   std::array<std::uint64_t, 2> interval = {1, 1};
@@ -146,7 +142,8 @@ PlotSpec read_plot(const Entry& in, const Manifest& manifest) {
   std::optional<Entry> x, cycles;
   const auto measures = names_of(all_scalar_measures());
   const auto can_be_x = joined(joined({"cycle"}, measures), parameters());
-  const auto can_be_y = joined(joined(measures, names_of(all_curve_measures())), run_measures());
+  const auto can_be_y =
+      joined(joined(measures, names_of(all_curve_measures())), names_of(all_run_measures()));
   const Key keys[] = {
       {"name", [&](auto& of) { plot.name = read_own_name(of, manifest); }},
       {"y", [&](auto& of) { plot.y = read_one_of(of, can_be_y); }},
@@ -209,7 +206,8 @@ ClaimSpec read_claim(const Entry& in, const Manifest& manifest) {
       real_number("margin", "1", {0, std::numeric_limits<double>::infinity(), true});
   ClaimSpec claim;
   std::optional<Entry> when;
-  const auto can_be_compared = joined(names_of(all_scalar_measures()), run_measures());
+  const auto can_be_compared =
+      joined(names_of(all_scalar_measures()), names_of(all_run_measures()));
   const Key keys[] = {
       {"name", [&](auto& of) { claim.name = read_own_name(of, manifest); }},
       {"compare", [&](auto& of) { claim.compare = read_one_of(of, can_be_compared); }},

@@ -20,7 +20,7 @@ using std::string;
 using std::string_view;
 
 constexpr std::uint64_t kLargestCadence = 1'000'000;  // cycles
-// Counts that a reader of the store in any language holds exactly.
+// A double holds it exactly, so readers in any language can.
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
 std::vector<double> read_phases(const Entry& in) {
@@ -214,7 +214,7 @@ Checkpoints read_checkpoints(const Entry& in) {
 }
 
 StatedUntil read_until(const Entry& in) {
-  // Read like parameters, which they are not.
+  // Read like parameters.
   static const std::array<Field, 4> fields = {
       real_number("crystalline_percent", "%", {0, 100, true}),
       whole_number("largest_crystallite", {1, 1e8}), real_number("phi", "1", {0, 1, true}),

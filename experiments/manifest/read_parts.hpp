@@ -24,28 +24,28 @@ struct ManifestKey {
   std::string_view example;  ///< a value, as YAML
   std::string_view meaning;
   void (*read)(const Entry& in, Manifest& manifest);
-  void (*read_in_scale)(const Entry& in,
-                        Scale& scale) = nullptr;  ///< null: a scale has no such key
+  /// Null if a scale has no such key.
+  void (*read_in_scale)(const Entry& in, Scale& scale) = nullptr;
 };
 std::span<const ManifestKey> manifest_keys();
 
-/// The value of a parameter, of its type and in its range.
+/// Reads the value of a parameter; nothing after a problem with its type or range.
 std::optional<nlohmann::json> read_parameter(const Field& field, const Entry& in);
 
-/// Whether the node is the word `auto` where the parameter takes it.
+/// Whether the node is the word `auto` and the parameter takes it.
 bool is_auto(const Field& field, const Node& node);
 
-/// A whole number from 1 to `largest`, which a double holds exactly.
+/// Reads a whole number from 1 to `largest`, which must be an exact double.
 std::optional<std::uint64_t> read_count(const Entry& in, std::uint64_t largest);
 
-/// A text that is_name(); else "", with a problem.
+/// Reads a text that is_name(); "" after a problem.
 std::string read_name(const Entry& in);
 
-/// Whether the node is one text of at most so many bytes without control characters, except ends
-/// of lines if `lines`.
+/// Whether the node is a text of at most `longest` bytes without control characters; line ends are
+/// allowed if `lines`.
 bool is_text(const Node& node, std::size_t longest, bool lines);
 
-/// The items of a list that is neither empty nor over-long; none when it is.
+/// The items of a list; empty after a problem, as with an empty or too long list.
 std::vector<Entry> read_list(const Entry& in, std::string_view example);
 
 struct Key {
@@ -53,7 +53,7 @@ struct Key {
   std::function<void(const Entry&)> read;
 };
 
-/// Reads the entries of a map; a key that is not listed is a problem. Returns the others.
+/// Reads the entries of a map; an unlisted key is a problem. Returns the keys that were read.
 std::set<std::string_view> read_keys(const Entry& map, std::span<const Key> keys);
 
 Sweep read_sweep(const Entry& in);
@@ -61,7 +61,7 @@ Seeds read_seeds(const Entry& in);
 Checkpoints read_checkpoints(const Entry& in);
 StatedUntil read_until(const Entry& in);
 
-/// Set or add to what the manifest has; names of plots and claims are all different.
+/// Add to the manifest. Names of plots and claims must all differ.
 void read_labels(const Entry& in, Manifest& manifest);
 void read_plots(const Entry& in, Manifest& manifest);
 void read_claims(const Entry& in, Manifest& manifest);

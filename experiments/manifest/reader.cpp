@@ -43,7 +43,7 @@ void read_figures(const Entry& in, Manifest& manifest) {
   }
 }
 
-// The parameters of `base`, or of a scale, which may have sections of its own.
+// Reads the parameters of `base` or of a scale; a scale may also have sections.
 void read_settings(const Entry& in, Scale& scale, bool with_sections) {
   if (in.node.kind != Node::Kind::map) {
     in.reject_type("a map of parameters", "Indent `key: value` lines under it.");
@@ -89,7 +89,7 @@ void read_scales(const Entry& in, Manifest& manifest) {
   }
 }
 
-// Of a key that a scale may have as well.
+// A key that a scale may also have.
 template <auto Member, auto Read>
 constexpr ManifestKey part(string_view name, string_view example, string_view meaning) {
   return {name, example, meaning,

@@ -34,7 +34,7 @@ constexpr Range from(double min, double max) {
   return {min, max};
 }
 
-// Of the parameters whose quotients are values in units of d, m and s, so that these stay in range.
+// Lower limit of parameters whose quotients are values in units of d, m and s: keeps these finite.
 constexpr double kSmallest = 1e-30;
 
 constexpr Range above(double min, double max) {
@@ -46,7 +46,7 @@ Field row(string_view name, string_view symbol, string_view unit, decltype(Field
   return {name, symbol, unit, member, range, identity, doc};
 }
 
-// A number too large or too small for a double is infinite; nothing when the text is not a number.
+// The number that the text is, infinite if it is too large or too small for a double; else nothing.
 std::optional<double> parse_real(string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
@@ -57,7 +57,7 @@ std::optional<double> parse_real(string_view text) {
   return error == std::errc() ? std::optional(value) : std::nullopt;
 }
 
-// Something like .inf, -.Inf, .nan, inf or NaN.
+// Whether the text is like .inf, -.Inf, .nan, inf or NaN.
 bool names_no_number(string_view text) {
   std::string lower;
   for (const char c : text) {
@@ -70,7 +70,7 @@ std::string takes(const Field& field) {
   return fmt::format("It takes {}.", expected_values(field));
 }
 
-// Of a text that is no unsigned integer.
+// The problem with a text that is not an unsigned integer.
 ValueProblem not_an_integer(const Field& field, string_view text) {
   const std::optional<double> number = parse_real(text);
   if (number && !field.range.contains(*number)) return {"is out of range", takes(field)};
@@ -296,7 +296,7 @@ std::optional<ValueProblem> check_value(const Field& field, const json& value) {
     return ValueProblem{with_nearest("is unknown", name, member->names), takes(field)};
   }
   const bool whole = field.is_whole();
-  // JSON written by others may hold a real number without a fraction as an integer.
+  // Other JSON writers may write a real number without a fraction as an integer.
   if (whole ? !value.is_number_integer() : !value.is_number()) {
     return ValueProblem{whole ? "is not a whole number" : "is not a number", takes(field)};
   }

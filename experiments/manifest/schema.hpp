@@ -3,7 +3,6 @@
 // Validation, suggestions, identity and experiments/REFERENCE.md use it.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,16 +15,16 @@
 
 namespace shearcell {
 
-/// Where a parameter enters the identity of a run. Settling comes first, so a parameter of
-/// `prepare` enters the records of all stages; the others enter the record of their own stage only.
+/// How a parameter enters the identity of a run. A parameter of `prepare` enters the records of all
+/// stages, since settling comes first; another one enters the record of its own stage only.
 struct Identity {
-  std::optional<Stage> stage = {};         ///< first stage that feels it; nothing: part of no key
+  std::optional<Stage> stage = {};         ///< first stage that it affects; nothing: in no key
   std::optional<ProtocolKind> under = {};  ///< only under this protocol
-  /// The record leaves the parameter out at this value (as in a manifest): for a parameter younger
-  /// than the stores, the value that all older runs have. It may differ from the default.
+  /// The record omits the parameter at this value (as in a manifest). For a parameter that is
+  /// younger than the stores: the value of all older runs, which may differ from the default.
   std::string_view omitted_at = {};
-  /// Every record holds this value, whatever the parameter is: for one that was part of the
-  /// identity of older runs and no longer is. Their records may hold other values.
+  /// Every record holds this value, whatever the parameter is. For a parameter that is no longer
+  /// part of the identity; the records of older runs may hold other values.
   std::string_view recorded_as = {};
 
   /// Whether another value makes another run.
@@ -72,8 +71,8 @@ std::span<const Field> schema();
 /// The parameter of that name, or nullptr.
 const Field* find_field(std::string_view name);
 
-/// Whether the parameter is the length of a run: it makes no other run, but a zip may give each
-/// variant its own.
+/// Whether the parameter is the length of a run. It does not distinguish runs, but a zip may give
+/// each variant its own.
 inline bool is_length(std::string_view key) {
   return key == "cycles";
 }
@@ -84,19 +83,19 @@ struct ValueProblem {
   std::string remedy;
 };
 
-/// Reads and checks one value from its text in a manifest; a real number is always a JSON float and
-/// an integer always unsigned, so that 1 and 1.0 are the same value.
+/// Reads and checks a value from its text in a manifest. A real number becomes a JSON float, an
+/// integer an unsigned one, so that 1 and 1.0 are the same value.
 std::variant<nlohmann::json, ValueProblem> read_value(const Field& field, std::string_view text,
                                                       bool quoted);
 
-/// Type and range. nullopt when the value may be used.
+/// Checks type and range. nullopt if the value may be used.
 std::optional<ValueProblem> check_value(const Field& field, const nlohmann::json& value);
 
 /// One parameter as JSON, and back. `value` must have passed check_value.
 nlohmann::json get_value(const Field& field, const Parameters& parameters);
 void set_value(const Field& field, const nlohmann::json& value, Parameters& parameters);
 
-/// Whether the record of a stage holds the parameter at that value.
+/// Whether the record of a stage holds the parameter when it has that value.
 bool enters(const Identity& identity, Stage stage, std::optional<ProtocolKind> protocol,
             const nlohmann::json& value);
 

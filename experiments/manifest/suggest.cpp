@@ -58,8 +58,8 @@ Suggestion suggest_name(string_view unknown, std::span<const string_view> candid
     if (field != nullptr && field->symbol == unknown) return {std::string(candidate), false};
     if (lower(candidate).starts_with(written + "_")) with_unit.push_back(candidate);
   }
-  // `stiffness` begins several names, of which one lacks just its unit; `settle` begins several
-  // too.
+  // `stiffness` begins several names, but only stiffness_N_per_m ends in a unit. `settle` begins
+  // several with a unit, so none is suggested.
   if (with_unit.size() > 1) std::erase_if(with_unit, has_no_unit);
   if (with_unit.size() == 1) return {std::string(with_unit.front()), true};
 
@@ -68,7 +68,7 @@ Suggestion suggest_name(string_view unknown, std::span<const string_view> candid
   Suggestion best;
   for (const string_view candidate : candidates) {
     const std::size_t distance = edit_distance(written, lower(candidate));
-    // Three letters wrong in a name of three is another name, not a slip.
+    // A name with every letter wrong is not meant.
     if (distance < nearest && distance < candidate.size()) {
       nearest = distance;
       best.name = candidate;

@@ -20,8 +20,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Swept keys: those of the schema in its order, then others.
-std::vector<std::string> keys_of(const std::vector<json>& variants) {
+/// The swept keys: those of the schema in its order, then others.
+std::vector<std::string> swept_keys(const std::vector<json>& variants) {
   std::set<std::string> present;
   for (const json& variant : variants) {
     if (!variant.is_object()) continue;
@@ -35,7 +35,7 @@ std::vector<std::string> keys_of(const std::vector<json>& variants) {
   return keys;
 }
 
-/// The keys whose values four digits distinguish.
+/// The keys whose values still differ when rounded to four digits.
 std::set<std::string> keys_in_brief(const std::vector<std::string>& keys,
                                     const std::vector<json>& variants) {
   std::set<std::string> found;
@@ -53,9 +53,9 @@ std::set<std::string> keys_in_brief(const std::vector<std::string>& keys,
   return found;
 }
 
-/// "A=0.05 rad", "fluid=cell". Empty for a key that the variant does not have.
+/// "A=0.05 rad", "fluid=cell"; "" for a key that the variant does not have.
 std::string setting_text(const std::string& key, const json& variant, bool brief) {
-  if (!variant.contains(key)) {  // the program adds these keys to some of the runs
+  if (!variant.contains(key)) {  // the program adds these two keys to some runs
     return key == "engine" ? "engine=shearcell" : key == "manifest" ? "newest manifest" : "";
   }
   const Field* field = find_field(key);
@@ -88,8 +88,9 @@ std::string name_of_variant(const json& variant, const std::vector<std::string>&
   return parts.empty() ? "base" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// "key=value" without spaces around it, a number as this program writes it: "0.0128" of "1.28e-2".
-/// Also of the symbol and unit of variant_names(): "pressure_Pa=954" of "P=954 Pa".
+/// Normalizes "key=value": no spaces, numbers as this program writes them ("1.28e-2" gives
+/// "0.0128"), and the symbols and units of variant_names() replaced ("P=954 Pa" gives
+/// "pressure_Pa=954").
 std::string same_spelling(std::string_view part) {
   const auto trimmed = [](std::string_view text) {
     const auto first = text.find_first_not_of(' ');
@@ -111,7 +112,7 @@ std::string same_spelling(std::string_view part) {
   return fmt::format("{}={}", key, number ? fmt::format("{}", *number) : value);
 }
 
-/// "a=1" and "b=2" of "b=2,a=1.0".
+/// The normalized parts of a list: "a=1" and "b=2" for "b=2,a=1.0".
 std::set<std::string> parts_of(const std::string& list) {
   std::set<std::string> parts;
   std::istringstream text(list);
@@ -211,8 +212,8 @@ std::vector<Variant> variants_of(const Scale& scale) {
   std::vector<Variant> variants(variant_count(*scale.sweep), Variant{{}, base});
   for (std::uint64_t index = 0; index < variants.size(); ++index) {
     auto& [swept, parameters] = variants[index];
-    std::uint64_t block =
-        variants.size() / rows;  // of the grid, with equal values before this axis
+    // Number of grid points that have equal values on the axes before this one.
+    std::uint64_t block = variants.size() / rows;
     for (const SweepAxis& axis : grid) {
       const std::uint64_t place = index / rows % block;
       block /= axis.values.size();
@@ -244,7 +245,7 @@ bool selects(const VariantLabel& label, const json& variant) {
 
 std::map<json, std::string> variant_names(const std::vector<json>& variants,
                                           std::span<const VariantLabel> labels) {
-  std::vector<std::string> all = keys_of(variants);
+  std::vector<std::string> all = swept_keys(variants);
   std::ranges::stable_partition(all, [&](const std::string& key) {
     return std::ranges::all_of(variants, [&](const json& v) { return v.contains(key); });
   });

@@ -28,8 +28,9 @@ std::optional<std::string> read_beside(const std::filesystem::path& csv, const c
   return text;
 }
 
-/// Like this example: an object has its keys; a list of one element stands for any number of them,
-/// a longer one for as many; null for a number or null, an integer for integers.
+/// Whether `value` has the structure of the example `like`. An object must have the example's keys.
+/// A list of one element stands for any number of such elements, a longer list for that number.
+/// Null stands for a number or null, an integer for integers.
 bool fits(const json& value, const json& like) {
   if (like.is_null()) return value.is_null() || value.is_number();
   if (like.is_number())
@@ -47,7 +48,7 @@ bool fits(const json& value, const json& like) {
   });
 }
 
-/// As chart_json() writes it. The front end cannot draw anything else.
+/// A chart as chart_json() writes it; the front end cannot draw others.
 json example_chart() {
   const json text = json::parse(R"([["", ""]])");
   const json axis = {{"label", text}, {"unit", text},   {"log", true},    {"whole", true},

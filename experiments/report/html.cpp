@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
 
-/// Any bytes as valid UTF-8, by JSON's writer.
+/// Replaces invalid UTF-8, by means of the JSON library.
 std::string valid_utf8(std::string_view text) {
   const std::string dumped =
       nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -85,7 +85,7 @@ std::string scroll_box(std::string_view label, const std::string& html,
 }
 
 std::string script_json(const nlohmann::json& value) {
-  // JSON has these only within strings, where an escape means the same.
+  // In JSON these characters occur only within strings, where an escape means the same.
   static const Escapes escapes = {{'<', "\\u003c"}, {'>', "\\u003e"}, {'&', "\\u0026"}};
   return escaped(value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), escapes);
 }

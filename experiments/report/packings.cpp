@@ -45,19 +45,19 @@ std::byte byte_of(const GrainField& field, double value) {
   return static_cast<std::byte>(std::lround(most * std::clamp(share, 0.0, 1.0)));
 }
 
-constexpr std::size_t kFields = 6;          // of make_fields()
-constexpr std::size_t kFactsInPage = 2500;  // [bytes]: facts, profiles and braces
+constexpr std::size_t kFields = 6;          // those of make_fields()
+constexpr std::size_t kFactsInPage = 2500;  // facts, profiles and braces of a frame [bytes]
 
 struct ChosenRun {
   RunRecord run;
   Membership membership;
-  std::vector<CheckpointRecord> checkpoints;  // that can be read; then those to show
-  std::size_t bytes = 0;                      // of one of them in the page
+  std::vector<CheckpointRecord> checkpoints;  // fit() reduces them to those to show
+  std::size_t bytes = 0;                      // of one checkpoint in the page
   std::size_t grains = 0;
   std::size_t wall_grains = 0;
 };
 
-/// The last run of each variant, evenly thinned to `limit` variants.
+/// The last run of each variant, of at most `limit` variants that are evenly chosen.
 std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<SelectedRun>& runs,
                                           const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;
@@ -98,7 +98,7 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
   return chosen;
 }
 
-/// Sizes of the checkpoints of each run, from its newest readable one; drops runs without one.
+/// Sets the sizes of each run from its newest readable checkpoint; removes runs without one.
 void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings) {
   for (ChosenRun& run : runs) {
     while (!run.checkpoints.empty() && run.bytes == 0) {
@@ -160,7 +160,7 @@ json facts_of(const Measures& measures, double theta) {
   return facts;
 }
 
-/// Ranges are the same for all packings of a run, so that colours can be compared.
+/// Ranges are the same for all packings of a run, so that their colours are comparable.
 std::vector<GrainField> make_fields(const Checkpoint& checkpoint, const WallPose& pose,
                                     const GrainMeasures& grains,
                                     const std::optional<Checkpoint>& earlier,
@@ -312,7 +312,7 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
       of_run.push_back(&run.run);
     }
   }
-  std::vector<PageFrame> frames(records.size());  // null where a checkpoint cannot be read
+  std::vector<PageFrame> frames(records.size());  // null if a checkpoint cannot be read
   const UnreadCheckpoints unread = read_in_parallel(
       records.size(), workers,
       [&](std::size_t k) { frames[k] = make_frame(store, *of_run[k], records[k], sources); },

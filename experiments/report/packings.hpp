@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which checkpoints a report shows as packings, and how it packs them: positions and measures of
-// each grain in 16 bits.
+// Selects the checkpoints that a report shows as packings, and packs positions and measures of each
+// grain into 8 or 16 bits.
 #pragma once
 
 #include <cstddef>
@@ -18,11 +18,10 @@
 namespace shearcell {
 
 struct PackingChoice {
-  std::vector<std::string> runs;  ///< ids of those to show; none for the default
-  std::size_t runs_per_experiment =
-      6;                           ///< by default the last run of each variant, so many of them
-  std::size_t frames = 40;         ///< checkpoints of a run, at most
-  std::size_t budget = 9'000'000;  ///< bytes of all packings in the page
+  std::vector<std::string> runs;  ///< ids of the runs to show; empty: the last of each variant
+  std::size_t runs_per_experiment = 6;  ///< largest number of runs if `runs` is empty
+  std::size_t frames = 40;              ///< largest number of checkpoints of a run
+  std::size_t budget = 9'000'000;       ///< bytes of all packings in the page
 };
 
 struct Packings {
@@ -30,45 +29,44 @@ struct Packings {
   /// profiles, origin, step, data}]}]; the front end reads it (web/src/viewer.js).
   nlohmann::json runs = nlohmann::json::array();
   std::size_t frames = 0;
-  double largest_step = 0;         ///< to which coordinates are rounded [d]
+  double largest_step = 0;         ///< coordinates are rounded to multiples of this [d]
   std::vector<std::string> notes;  ///< what was left out, one line each
 };
 
-/// `experiments` in the order of the report. Where all chosen checkpoints would not fit the budget
-/// each run shows fewer, evenly over its length, the first and the last
-/// among them; where not even the last ones fit, the last runs are left out. The same store gives
-/// the same value.
+/// Packs checkpoints of the experiments, in their order. If the chosen checkpoints exceed the
+/// budget, each run shows fewer, evenly spaced, including the first and the last. If not even the
+/// last ones fit, the last runs are left out. The same store gives the same value.
 Packings collect_packings(const Store& store, const std::vector<std::string>& experiments,
                           const RunSelection& selection, const PackingChoice& choice,
                           std::size_t workers,
                           const std::function<void(std::size_t, std::size_t)>& report);
 
-/// `count` of 0 .. size - 1, evenly, the first and the last among them (the last one alone for 1).
+/// `count` evenly spaced indices of 0 .. size - 1, including the first and the last; for 1, the
+/// last.
 std::vector<std::size_t> evenly(std::size_t size, std::size_t count);
 
-/// `bytes` holds little-endian 16-bit words unless said otherwise, one array after the other, for N
-/// grains and M wall grains:
+/// `bytes` holds arrays of little-endian 16-bit words, or of bytes, for N grains and M wall grains:
 ///
 ///     x, y, z       N + M each: coordinate = origin + step * word [d]; z within the period
 ///     phi_local     N: word / 65535
 ///     q6            N: word / 65535
-///     crystallite   N: its number from 1 on, 0 for none; 65535 for all beyond
+///     crystallite   N: its number from 1 on, at most 65535; 0 for none
 ///     structure     N bytes: 0 disordered, 1 FCC, 2 HCP; 4 is added for interior grains
 ///     each field    N bytes, see GrainField
 struct PackedFrame {
   Eigen::Vector3d origin;
-  Eigen::Vector3d step;  ///< a coordinate is off by no more than half of it [d]
+  Eigen::Vector3d step;  ///< the error of a coordinate is at most half of it [d]
   std::vector<std::byte> bytes;
 };
 
-/// A further measure of each grain, by which a packing can be coloured. A byte is a class, or
-/// 254 (value - low) / (high - low), of logarithms where `logarithmic`; 255 where it is unknown.
+/// A further measure of each grain, by which a packing can be coloured. Its byte is a class, or
+/// 254 (value - low) / (high - low), with logarithms if `logarithmic`; 255 if it is unknown.
 struct GrainField {
   std::string key;
   std::string unit = {};
   double low = 0, high = 0;
   bool logarithmic = false;
-  std::vector<std::string> classes = {};  ///< names of classes 0, 1, ...; none for a quantity
+  std::vector<std::string> classes = {};  ///< names of classes 0, 1, ...; empty for a quantity
   std::vector<double> value;              ///< of each grain
 };
 
@@ -78,7 +76,7 @@ nlohmann::json to_json(const GrainField& field);
 PackedFrame pack_frame(const Checkpoint& checkpoint, const WallPose& pose,
                        const GrainMeasures& grains, std::span<const GrainField> fields = {});
 
-/// Bytes of a packed frame in the page, where they are written in base64.
+/// Size of a packed frame in the page, in base64 [bytes].
 std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains, std::size_t fields);
 
 }  // namespace shearcell

@@ -14,7 +14,7 @@
 // Files of the front end (web_assets.S).
 extern "C" {
 extern const char shearcell_style[], shearcell_style_end[];
-extern const char shearcell_script[], shearcell_script_end[];  // none when built without Node
+extern const char shearcell_script[], shearcell_script_end[];  // empty if built without Node
 extern const char shearcell_licences[], shearcell_licences_end[];
 }
 
@@ -27,7 +27,7 @@ std::string_view front_end_script() {
   return {shearcell_script, shearcell_script_end};
 }
 
-/// For a Content-Security-Policy that allows this script only.
+/// The hash of the script for a Content-Security-Policy that allows no other script.
 std::string script_hash(std::string_view script) {
   const std::string hex = sha256_hex(script);
   std::vector<std::byte> digest;
@@ -46,7 +46,7 @@ std::string head_html(const ReportData& data) {
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n"
-      // Nothing is fetched, and no script but ours runs.
+      // The browser fetches nothing and runs only our script.
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; {}"
       "style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'\">\n"
       "<title>{} · shearcell report</title>\n<style>\n{}</style>\n</head>\n",
@@ -105,7 +105,7 @@ std::string packings_html(const ReportData& data) {
       data.packings.largest_step);
 }
 
-/// The front end fills it.
+/// A section that the front end fills.
 std::string compare_html(const ReportData& data) {
   if (!data.interactive) return "";
   return "<section id=\"compare\" hidden>\n<h2>Two variants side by side</h2>\n<div "
@@ -154,7 +154,7 @@ std::string about_html(const ReportData& data) {
 
 std::string data_html(const ReportData& data) {
   if (!data.interactive) return "";
-  json charts = json::object();
+  json charts = json::object(), experiments = json::array();
   const auto add = [&](const std::vector<ReportPanel>& panels) {
     for (const ReportPanel& panel : panels) {
       if (!panel.chart.is_null()) charts[panel.id] = panel.chart;
@@ -162,11 +162,15 @@ std::string data_html(const ReportData& data) {
   };
   for (const ReportFigure& figure : data.figures) add(figure.panels);
   add(data.accuracy);
+  for (const ReportExperiment& experiment : data.experiments) {
+    experiments.push_back(
+        {{"experiment", experiment.manifest.experiment}, {"runs", experiment.traces}});
+  }
   return fmt::format(
       "<script type=\"application/json\" id=\"report-data\">{}</script>\n<script>{}</script>\n",
       script_json({{"charts", charts},
                    {"packings", data.packings.runs},
-                   {"experiments", run_traces(data)}}),
+                   {"experiments", std::move(experiments)}}),
       front_end_script());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of the report as HTML. Every text that comes from a store or a file is escaped here.
+// Parts of the report as HTML. Texts from a store or a file are escaped here.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace shearcell {
 
-/// The whole page: markup, style, data and, when it is interactive, the front end. The same store
-/// and options give the same bytes with the same program (drawings: with the same gnuplot).
+/// The whole page: markup, style, data and, if it is interactive, the front end. The same store and
+/// options give the same bytes with the same program (drawings also need the same gnuplot).
 std::string report_page(const ReportData& data);
 
 /// The experiment's question, verdict, figures and runs.
@@ -22,23 +22,22 @@ std::string run_table_html(const ReportData& data, const ReportExperiment& exper
 std::string figure_html(const ReportData& data, const ReportFigure& figure);
 std::string figure_link(const ReportFigure& figure);
 
-/// A plot (a place for one, when the page is interactive) and its numbers.
+/// A plot (or its placeholder, if the page is interactive) and its numbers.
 std::string panel_html(const ReportData& data, const ReportPanel& panel);
 
-/// What a figure came from, folded away.
+/// The lineage of a figure, collapsed.
 std::string lineage_html(const ReportData& data, const ReportFigure& figure);
 
-/// Every run: how it was made, by which build, and its checkpoints.
+/// Every run with its attempts, builds and checkpoints, and the manifests.
 std::string runs_html(const ReportData& data);
 
-/// The experiment's question, or its name where the manifest asks none.
+/// The experiment's question, or its name if the manifest has no question.
 std::string question_html(const ReportExperiment& experiment);
 
-/// "agrees", "differs" or "undecided", as a mark that can be read without colour; "" without
-/// claims.
+/// "agrees", "differs" or "undecided" with a mark that needs no colour; "" for nothing.
 std::string ruling_html(std::optional<Ruling> ruling);
 
-/// The verdict on all figures of the experiment; none if they have no claims.
+/// The verdict on all figures of the experiment; nothing if they have no claims.
 std::optional<Ruling> ruling_of(const ReportData& data, const ReportExperiment& experiment);
 
 }  // namespace shearcell

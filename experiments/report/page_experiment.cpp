@@ -43,7 +43,7 @@ struct Count {
   std::size_t number;
 };
 
-/// A bar with a part for each state, and the counts as text below it.
+/// A bar with a part for each state, and the counts below it.
 std::string counts_html(const std::vector<Count>& counts) {
   std::string bar, list;
   for (const Count& count : counts) {
@@ -115,8 +115,8 @@ std::string manifest_html(const ReportExperiment& experiment) {
                      escape_html(experiment.manifest_path));
 }
 
-/// What the experiment is made of, from its manifest to its figures, with the states of each: a
-/// picture of boxes, which the style sheet puts in a row or, on a narrow page, in a column.
+/// Boxes from the manifest to the figures of the experiment, with the states of each. The style
+/// sheet arranges them in a row or, on a narrow page, in a column.
 std::string workflow_html(const ReportData& data, const ReportExperiment& experiment) {
   return fmt::format("<ol class=\"workflow\" aria-label=\"Workflow of {}\">\n",
                      escape_html(experiment.manifest.experiment)) +

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <set>
-#include <span>
 
 #include "experiments/report/html.hpp"
 #include "experiments/report/page.hpp"
@@ -23,7 +22,7 @@ std::string code(const std::string& text) {
   return "<code>" + escape_html(text) + "</code>";
 }
 
-/// The beginning of an id. Cut first: an escape must not be.
+/// The beginning of an id. It is cut before it is escaped, since an escape must stay whole.
 std::string brief(const std::string& id) {
   return escape_html(id.substr(0, 12));
 }
@@ -97,7 +96,7 @@ std::string span_of_cycles(const FigureInput& input, const RunLineage& run) {
   return cycles.empty() ? "?" : fmt::format("{:g} to {:g}", cycles.front(), cycles.back());
 }
 
-/// Lines may break after its commas.
+/// Lets lines break after the commas of the variant.
 std::string breakable(const std::string& variant) {
   std::string html;
   for (const char c : escape_html(variant)) html += c == ',' ? ",<wbr>" : std::string(1, c);

@@ -16,11 +16,11 @@ namespace {
 using nlohmann::json;
 using CellText = std::function<std::string(const json& value)>;
 
-/// A column of the page, made from one of the table.
+/// A column of the page.
 struct ShownColumn {
-  std::size_t at = 0;
-  std::string head;  ///< HTML
-  CellText text;     ///< HTML
+  std::size_t at = 0;  ///< column of RunTable
+  std::string head;    ///< HTML
+  CellText text;       ///< HTML
   bool number = true;
 };
 
@@ -50,7 +50,7 @@ std::string duration(const json& seconds) {
   return seconds.get<double>() > 0 ? format_duration(seconds.get<double>()) : "";
 }
 
-/// "<i>A</i> [rad]" of "amplitude_rad"; "fluid".
+/// A heading: "<i>A</i> [rad]" for amplitude_rad, "fluid" for fluid.
 std::string head_of(const std::string& key) {
   const Field* field = find_field(key);
   if (field == nullptr || field->symbol.empty()) {
@@ -72,7 +72,7 @@ std::vector<ShownColumn> columns_of(const ReportExperiment& experiment) {
   };
   std::vector<std::string> swept;  // between the seed and the cycle
   for (std::size_t c = place("seed") + 1; c < place("cycle"); ++c) {
-    if (all[c].name != "grains") swept.push_back(all[c].name);  // has a column in every table
+    if (all[c].name != "grains") swept.push_back(all[c].name);  // has a column of its own below
   }
 
   std::vector<ShownColumn> shown = {{place("run"), "run", record_link, false}};
@@ -101,7 +101,7 @@ std::vector<ShownColumn> columns_of(const ReportExperiment& experiment) {
   return shown;
 }
 
-/// What the browser sorts and filters by.
+/// The value by which the browser sorts and filters.
 std::string value_attribute(const json& value) {
   if (value.is_null()) return "";
   return fmt::format(" data-value=\"{}\"",

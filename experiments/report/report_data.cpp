@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -12,7 +11,6 @@
 #include <map>
 #include <set>
 #include <stdexcept>
-#include <string_view>
 #include <tuple>
 
 #include "analysis/error.hpp"
@@ -27,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-/// All or those named, in the order in which they were first registered, with the question of the
+/// The experiments named, or all, in the order in which they were first registered, each with its
 /// newest manifest.
 std::vector<ReportExperiment> experiments_of(const Store& store,
                                              const std::vector<std::string>& names) {
@@ -56,7 +54,7 @@ std::string draw(const FigureTable& table, const TemporaryFolder& folder) {
   return {std::istreambuf_iterator<char>(svg), {}};
 }
 
-/// The newest record of the figure that came from the same checkpoints in the same way.
+/// The newest record of the figure with the same scale, inputs and analysis version.
 std::optional<FigureRecord> record_of(const std::vector<FigureRecord>& records,
                                       const std::string& name, const json& lineage) {
   for (auto record = records.rbegin(); record != records.rend(); ++record) {
@@ -156,7 +154,9 @@ json rounded(const json& value) {
   return std::strtod(fmt::format("{:.6g}", value.get<double>()).c_str(), nullptr);
 }
 
-std::map<RowKey, json> traces_of(const RunTable& checkpoints) {
+/// ReportExperiment::traces.
+json traces_of(const RunTable& runs, const RunTable& checkpoints,
+               const std::map<std::string, RunLineage>& lineages) {
   std::map<RowKey, json> traces;
   for (const std::vector<json>& row : checkpoints.rows) {
     json& trace = traces[key_of(checkpoints, row)];
@@ -164,33 +164,30 @@ std::map<RowKey, json> traces_of(const RunTable& checkpoints) {
     trace["phi"].push_back(rounded(row[checkpoints.place("phi")]));
     trace["percent"].push_back(rounded(row[checkpoints.place("crystalline_percent")]));
   }
-  return traces;
+  json all = json::array();
+  for (const std::vector<json>& row : runs.rows) {
+    json& run = all.emplace_back(traces[key_of(runs, row)]);
+    for (const char* key : {"scale", "variant", "seed"}) run[key] = row[runs.place(key)];
+    run["id"] = row[runs.place("run")];
+    run["kind"] = lineages.at(run["id"].get<std::string>()).run.kind;
+  }
+  return all;
 }
 
-void add_run_table(const Store& store, const RunSelection& selection,
-                   const MeasureOptions& measuring, ReportExperiment& experiment,
-                   std::vector<std::string>& damage) {
-  experiment.table = run_table(store, selection, RowPer::run, measuring);
-  const RunTable checkpoints = run_table(store, selection, RowPer::checkpoint, measuring);
-  const std::map<RowKey, json> traces = traces_of(checkpoints);
-  for (const std::vector<json>& row : experiment.table.rows) {
-    const auto found = traces.find(key_of(experiment.table, row));
-    experiment.traces.push_back(found == traces.end() ? json::object() : found->second);
-  }
-  for (const std::string& line : experiment.table.damage) {
-    if (std::ranges::find(damage, line) == damage.end()) damage.push_back(line);
-  }
-}
-
-/// The runs of each experiment with their results, and how those came about over the cycles. What
-/// keeps an experiment from having them goes to data.notes.
+/// Adds the results and traces of each experiment's runs. An experiment without them is named in
+/// data.notes.
 void add_run_tables(const Store& store, const ReportOptions& options, ReportData& data) {
+  const MeasureOptions measuring{options.workers, false, options.measured};
   for (ReportExperiment& experiment : data.experiments) {
     RunSelection selection = options.runs;
     selection.experiments = {experiment.manifest.experiment};
     try {
-      add_run_table(store, selection, {options.workers, false, options.measured}, experiment,
-                    data.damage);
+      experiment.table = run_table(store, selection, RowPer::run, measuring);
+      const RunTable checkpoints = run_table(store, selection, RowPer::checkpoint, measuring);
+      experiment.traces = traces_of(experiment.table, checkpoints, data.runs);
+      for (const std::string& line : experiment.table.damage) {
+        if (std::ranges::count(data.damage, line) == 0) data.damage.push_back(line);
+      }
     } catch (const std::runtime_error& problem) {
       // No run at this scale, or a record that this version of the program cannot read.
       data.notes.push_back(
@@ -227,24 +224,6 @@ ReportData collect_report(const Store& store, const ReportOptions& options) {
   }
   if (!data.drawing_trouble.empty()) data.notes.push_back(data.drawing_trouble);
   return data;
-}
-
-json run_traces(const ReportData& data) {
-  json all = json::array();
-  for (const ReportExperiment& experiment : data.experiments) {
-    json runs = json::array();
-    for (std::size_t r = 0; r < experiment.table.rows.size(); ++r) {
-      const std::vector<json>& row = experiment.table.rows[r];
-      json& run = runs.emplace_back(experiment.traces[r]);
-      for (const char* key : {"scale", "variant", "seed"}) {
-        run[key] = row[experiment.table.place(key)];
-      }
-      run["id"] = row[experiment.table.place("run")];
-      run["kind"] = data.runs.at(run["id"].get<std::string>()).run.kind;
-    }
-    all.push_back({{"experiment", experiment.manifest.experiment}, {"runs", std::move(runs)}});
-  }
-  return all;
 }
 
 }  // namespace shearcell

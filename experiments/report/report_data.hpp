@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a report shows, before any of it is HTML.
+// The data of a report.
 #pragma once
 
 #include <filesystem>
@@ -20,17 +20,17 @@
 namespace shearcell {
 
 struct ReportOptions {
-  RunSelection runs;  ///< in figures, tables and packings; figures are of one scale
-  /// Folder with the CSV files of `bench accuracy --out`; no such section without it.
+  RunSelection runs;  ///< for figures, tables and packings; a figure has one scale
+  /// Folder that `bench accuracy --out` wrote; adds a section.
   std::optional<std::filesystem::path> accuracy;
   PackingChoice packings;
-  bool interactive = true;  ///< false: figures as drawings, as in a build without Node
+  bool interactive = true;  ///< false: drawings only, as in a build without Node
   std::size_t workers = 1;
   std::function<void(std::size_t done, std::size_t total)> measured;  ///< may be empty
   std::function<void(std::size_t done, std::size_t total)> packed;    ///< may be empty
 };
 
-/// Whether this build holds the front end, which needs Node to be built.
+/// Whether this build holds the front end. Building that needs Node.
 bool has_front_end();
 
 struct ReportPanel {
@@ -47,27 +47,28 @@ struct ReportFigure {
   FigureSummary summary;
   std::vector<ReportPanel> panels;
   FigureLineage lineage;
-  std::optional<FigureRecord> recorded;  ///< the newest record that says the same
+  std::optional<FigureRecord> recorded;  ///< the newest record with the same inputs
 };
 
 struct ReportExperiment {
   RegisteredManifest manifest;  ///< its newest version
   std::string manifest_path = {};
-  bool labelled = false;                  ///< that version has names for variants
+  bool labelled = false;                  ///< the manifest names variants
   std::vector<std::size_t> figures = {};  ///< of ReportData::figures
-  std::vector<std::string> unmade = {};   ///< figures that its runs do not allow
+  std::vector<std::string> unmade = {};   ///< figures that cannot be made of its runs
   std::vector<RunRecord> runs = {};
-  RunTable table = {};  ///< a row for each run but those that settle packings
-  std::vector<nlohmann::json> traces =
-      {};  ///< of each row: {"cycle": [], "phi": [], "percent": []}
+  RunTable table = {};  ///< a row for each run, without those that settle packings
+  /// For the front end: [{id, kind, scale, variant, seed, cycle, phi, percent}] in the order of the
+  /// rows; the last three are arrays over the checkpoints, null where a value is unknown.
+  nlohmann::json traces = nlohmann::json::array();
 };
 
 struct ReportData {
   std::string store;  ///< name of its folder
   Head head;
-  nlohmann::json program;  ///< build of the program that makes the report
+  nlohmann::json program;  ///< build of this program
   std::vector<ReportExperiment> experiments;
-  std::vector<ReportFigure> figures;       ///< those of `experiments`, and those about all of them
+  std::vector<ReportFigure> figures;       ///< of `experiments`, and of all experiments together
   std::map<std::string, RunLineage> runs;  ///< by id
   std::map<std::string, ManifestText> manifests;
   std::vector<ReportPanel> accuracy;
@@ -75,23 +76,17 @@ struct ReportData {
   bool interactive = false;
   std::string drawing_trouble;      ///< why a figure has no drawing
   std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each
-  std::vector<std::string> notes;   ///< what else was left out, likewise
+  std::vector<std::string> notes;   ///< what else was left out, one line each
 };
 
-/// Reads the store and writes nothing but measures into its derived.sqlite. Throws NotFound when
-/// the store has no experiment or a run of `packings.runs` is unknown, and UsageError when the
-/// folder of `accuracy` holds no CSV file that this program can read.
+/// Collects the data. Writes nothing but measures into derived.sqlite. Throws NotFound if the store
+/// has no experiment or a run of `packings.runs` is unknown, and as read_accuracy_charts().
 ReportData collect_report(const Store& store, const ReportOptions& options);
 
-/// For the front end: [{experiment, runs: [{id, kind, scale, variant, seed, cycle, phi,
-/// percent}]}], the runs in the order of the rows of the table; the last three are arrays with null
-/// for no value.
-nlohmann::json run_traces(const ReportData& data);
-
-/// A panel for each CSV file that `bench accuracy --out` wrote, by name: the numbers, the chart of
-/// NAME.chart.json and the drawing of NAME.svg, if there are such files. Files are not trusted.
-/// Throws UsageError for a file that is unreadable or too large, a chart that is malformed, and a
-/// folder without a CSV file.
+/// A panel for each CSV file that `bench accuracy --out` wrote, by name, with the chart
+/// NAME.chart.json and the drawing NAME.svg if they exist. Files are not trusted. Throws UsageError
+/// for a file that is unreadable or too large, a malformed chart, and a folder without CSV files or
+/// with too many.
 std::vector<ReportPanel> read_accuracy_charts(const std::filesystem::path& folder);
 
 }  // namespace shearcell

@@ -76,9 +76,13 @@ bool may_end_early(const Store& store, const std::string& run) {
                              [](const RunAsk& ask) { return ask.until.has_value(); });
 }
 
+CheckpointCadence cadence_of(const RunAsk& ask, const Drive& drive) {
+  return {ask.checkpoint_every, steps_at(ask.phases, drive), ask.target_cycles};
+}
+
 std::vector<std::uint64_t> checkpoint_steps(const RunAsk& ask, const Drive& drive, double first,
                                             double last) {
-  const CheckpointCadence cadence{ask.checkpoint_every, steps_at(ask.phases, drive)};
+  const CheckpointCadence cadence = cadence_of(ask, drive);
   const auto whole = static_cast<double>(cycle_steps(drive));
   std::vector<std::uint64_t> steps;
   if (!(first >= 0 && last <= static_cast<double>(StoreLimits::cycles))) return steps;
@@ -110,7 +114,7 @@ std::vector<std::uint64_t> missing_checkpoints(const Store& store, const RunReco
   for (const RunAsk& ask : asks) {
     const double end = std::min(run.cycle, static_cast<double>(ask.target_cycles));
     for (const std::uint64_t step : checkpoint_steps(ask, motion, 0, end)) {
-      if (static_cast<double>(step) < end * static_cast<double>(cycle_steps(motion))) {
+      if (static_cast<double>(step) < run.cycle * static_cast<double>(cycle_steps(motion))) {
         steps.insert(step);
       }
     }

@@ -11,6 +11,7 @@
 
 #include "core/scene.hpp"
 #include "experiments/manifest/manifest.hpp"
+#include "protocols/cyclic_shear.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -32,6 +33,9 @@ RunAsk ask_of(const Store& store, const std::string& run, const Membership& memb
 
 /// Whether an experiment states an `until`, so that the run may end before its number of cycles.
 bool may_end_early(const Store& store, const std::string& run);
+
+/// The same as the shear takes it.
+CheckpointCadence cadence_of(const RunAsk& ask, const Drive& drive);
 
 /// Steps of a shear, from cycle `first` to cycle `last`, at which `ask` asks for a checkpoint;
 /// ascending, at most a million.

@@ -58,12 +58,9 @@ std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t 
     stiffen.minimize.force_tolerance = p.minimize_force_tolerance;
     return std::make_unique<Stiffen>(stiffen, stiffen_scene(p));
   }
-  std::vector<CheckpointCadence> within;
-  for (const RunAsk& ask : asks) {
-    if (!ask.phases.empty())
-      within.push_back({ask.checkpoint_every, steps_at(ask.phases, drive(p))});
-  }
-  return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every, std::move(within));
+  std::vector<CheckpointCadence> asked;
+  for (const RunAsk& ask : asks) asked.push_back(cadence_of(ask, drive(p)));
+  return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every, std::move(asked));
 }
 
 // The limit is not part of a run's identity. Limits other than the default are recorded with the

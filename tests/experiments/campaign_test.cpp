@@ -179,6 +179,27 @@ TEST_F(CampaignTest, ADenserCadenceAddsTheCheckpointsInBetween) {
   EXPECT_TRUE(missing_checkpoints(both, both.run(run)).empty());
 }
 
+// An experiment whose last cycle is no multiple of its cadence has a checkpoint there, whichever of
+// the experiments that share the run comes first.
+TEST_F(CampaignTest, EachExperimentHasACheckpointAtItsLastCycle) {
+  const std::string every = "checkpoints: {every_cycles: 2}\n";
+  const std::string brief = tiny_manifest("  cycles: 3\n") + every;
+  const std::string full = "# full\n" + tiny_manifest("  cycles: 6\n") + every;
+  const std::vector<double> cycles = {0, 2, 3, 4, 6};
+  Store together(folder_.path() / "together", Access::create);
+  declared(together, brief);
+  compute(together, full);
+  const std::string run = sheared(together).id;
+  EXPECT_EQ(cycles_of(together, run), cycles);
+
+  Store later(folder_.path() / "later", Access::create);
+  compute(later, full);
+  EXPECT_EQ(cycles_of(later, run), (std::vector<double>{0, 2, 4, 6}));
+  EXPECT_EQ(compute(later, brief).completed, 1U);
+  EXPECT_EQ(cycles_of(later, run), cycles);
+  EXPECT_EQ(compute(later, brief).completed, 0U) << "nothing is left to do";
+}
+
 // Stores that computed parts of one campaign, merged, are the store that computed all of it.
 TEST_F(CampaignTest, OfThreeMachinesIsWholeOnceMergedAndGoesOn) {
   const std::string text = tiny_manifest("", kBothFluids);
