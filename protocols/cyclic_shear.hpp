@@ -9,8 +9,8 @@
 
 namespace shearcell {
 
-/// Checkpoints after every so many cycles, at these steps of each cycle that follows one, and at the
-/// end of the last cycle.
+/// Checkpoints after every so many cycles, at these steps of each cycle that follows one, and at
+/// the end of the last cycle.
 struct CheckpointCadence {
   std::uint64_t every_cycles = 1;
   std::vector<std::uint64_t> steps = {};  ///< since the cycle began, ascending; see steps_at()
