@@ -127,9 +127,8 @@ std::span<const ManifestKey> manifest_keys() {
       part<&Scale::seeds, read_seeds>("seeds", "6", "seeds 1 to 6, or a list; default 1"),
       part<&Scale::checkpoints, read_checkpoints>(
           "checkpoints", "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
-          "cycles between checkpoints, default 1, and always one after the last cycle; `phases` "
-          "adds "
-          "fractions of each cycle that follows one, pause included, default none"),
+          "cycles between checkpoints, default 1, and always one after the last cycle; "
+          "`phases` adds fractions of each cycle that follows one, pause included, default none"),
       part<&Scale::until, read_until>(
           "until", "{crystalline_percent: 10, extra_cycles: 15}",
           "ends a run `extra_cycles` after the measure reaches the value; default: at `cycles`"),
