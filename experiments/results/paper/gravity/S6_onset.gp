@@ -23,9 +23,11 @@ set offsets 0, 0, graph 0.05, graph 0.05
 set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '#888888'
 set arrow from graph 0, first 0.647 to graph 1, first 0.647 nohead dt 2 lc rgb '#888888'
 $series0 << EOD
+0.04,0.645015439,,0.00121821809
 0.05,0.645129441,,0.000874644227
 EOD
 $series1 << EOD
+0.04,0.645695894,,0.000890166877
 0.05,0.64561933,,0.000771970091
 EOD
 plot keyentry with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'gravity', \
