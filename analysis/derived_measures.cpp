@@ -148,6 +148,15 @@ json profiles_of(const MeasureInput& input) {
           {"crystalline_profile_percent", against_height(found.crystalline_percent)}};
 }
 
+json depth_of(const MeasureInput& input) {
+  return {{"phi_by_depth", to_json(phi_by_depth(*input.checkpoint, input.analysis.grains))}};
+}
+
+json core_of(const MeasureInput& input) {
+  const Core found = core(*input.checkpoint, input.analysis.grains);
+  return {{"core_grains", found.grains}, {"core_phi", found.phi}};
+}
+
 json sensitivity_of(const MeasureInput& input) {
   const GrainMeasures& grains = input.analysis.grains;
   return {{"crystalline_by_q6_window_percent", to_json(crystalline_by_window(grains))},
@@ -195,6 +204,10 @@ json interior() {
   return {{"interior_distance_d", interior_distance}, {"rough_wall_surface_d", rough_wall_surface}};
 }
 
+json surface() {
+  return {{"rough_wall_surface_d", rough_wall_surface}};
+}
+
 json with(json parameters, const json& more) {
   parameters.update(more);
   return parameters;
@@ -228,6 +241,9 @@ std::span<const DerivedMeasure> all_derived_measures() {
        with(interior(), {{"bin_per_d", wave_bin_per_d}, {"largest_per_d", largest_wave_per_d}}),
        structure_factor_of, checked<read_curves>},
       {"profiles", criteria(), profiles_of, checked<read_curves>},
+      {"depth", surface(), depth_of, checked<read_curves>},
+      {"core", with(surface(), {{"core_distance_d", core_distance}}), core_of,
+       checked<read_numbers>},
       {"sensitivity", criteria(), sensitivity_of, checked<read_curves>}};
   return all;
 }

@@ -96,6 +96,8 @@ std::span<const Figure> all_figures() {
                 {"crystallites"}),
       of_groups("nucleation", "Runs without an onset, and the rate of nucleation",
                 figure_nucleation, {"amplitude_rad", "grains"}),
+      of_groups("nucleation_core", "The rate of nucleation at least 4 d from the walls",
+                figure_nucleation_core, {"amplitude_rad", "grains"}, {"core"}),
       of_curves("B5", "Continuous and periodically paused shear", figure_b5, {"protocol"},
                 {"at_rest"}),
       of_curves("walls", "Rough and smooth walls", figure_walls, {"walls"}),

@@ -71,6 +71,14 @@ Motion motion(const Checkpoint& earlier, const Checkpoint& later) {
   return found;
 }
 
+Motion motion_since(const std::optional<Checkpoint>& earlier, const Checkpoint& now) {
+  if (earlier) return motion(*earlier, now);
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const Eigen::Index grains = now.state.position.cols();
+  return {Eigen::Matrix3Xd::Constant(3, grains, unknown),
+          std::vector<double>(static_cast<std::size_t>(grains), unknown)};
+}
+
 std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
                                            std::span<const std::uint8_t> crystalline) {
   std::vector<std::uint8_t> boundary(crystalline.size(), 0);

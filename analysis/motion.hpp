@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct Motion {
 
 /// Throws AnalysisError when they do not have the same grains.
 Motion motion(const Checkpoint& earlier, const Checkpoint& later);
+/// The same; not a number for each grain of `now` if there is no earlier checkpoint.
+Motion motion_since(const std::optional<Checkpoint>& earlier, const Checkpoint& now);
 
 /// Of each of the `crystalline` grains (1 or 0): 1 if a neighbour, at most motion_neighbour_d away,
 /// is not.

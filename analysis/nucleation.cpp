@@ -51,7 +51,7 @@ struct Stay {
 };
 using Stays = std::map<std::int64_t, Stay>;  ///< by the bin's number
 
-Stays stays_of(const FigureRun& run) {
+Stays stays_of(const FigureRun& run, Region region) {
   const RunOnset onset = onset_by_size(run, critical_size_for(run));
   Stays stays;
   if (onset.observed == Observed::before_start) return stays;
@@ -59,10 +59,10 @@ Stays stays_of(const FigureRun& run) {
     const CheckpointMeasures &from = run.checkpoints[k - 1], &to = run.checkpoints[k];
     const bool here = onset.observed == Observed::yes && onset.cycle <= to.cycle;
     const double cycles = (here ? onset.cycle : to.cycle) - from.cycle;
-    if (std::isfinite(from.measures.phi)) {
-      Stay& stay = stays[std::llround(std::floor(from.measures.phi / phi_bin))];
+    if (const double phi = phi_in(region, from.measures); std::isfinite(phi)) {
+      Stay& stay = stays[std::llround(std::floor(phi / phi_bin))];
       stay.cycles += cycles;
-      stay.grain_cycles += cycles * static_cast<double>(from.measures.interior_grains);
+      stay.grain_cycles += cycles * grains_in(region, from.measures);
       stay.events += here ? 1 : 0;
     }
     if (here) break;
@@ -183,10 +183,20 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> runs, std::
   return result;
 }
 
-std::vector<NucleationRate> nucleation_rates(RunGroup runs) {
+double grains_in(Region region, const Measures& measures) {
+  static const ScalarMeasure& core = *find_measure("core_grains");
+  return region == Region::core ? core.of(measures) : static_cast<double>(measures.interior_grains);
+}
+
+double phi_in(Region region, const Measures& measures) {
+  static const ScalarMeasure& core = *find_measure("core_phi");
+  return region == Region::core ? core.of(measures) : measures.phi;
+}
+
+std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region) {
   Stays sums;
   for (const FigureRun* run : runs) {
-    for (const auto& [bin, stay] : stays_of(*run)) {
+    for (const auto& [bin, stay] : stays_of(*run, region)) {
       sums[bin].grain_cycles += stay.grain_cycles;
       sums[bin].events += stay.events;
     }
@@ -206,11 +216,11 @@ std::vector<NucleationRate> nucleation_rates(RunGroup runs) {
   return rates;
 }
 
-std::optional<Estimate> size_exponent(RunGroup runs) {
+std::optional<Estimate> size_exponent(RunGroup runs, Region region) {
   Strata strata;
   std::size_t counted = 0;
   for (const FigureRun* run : runs) {
-    const Stays stays = stays_of(*run);
+    const Stays stays = stays_of(*run, region);
     counted += stays.empty() ? 0 : 1;
     for (const auto& [bin, stay] : stays) {
       if (!(stay.grain_cycles > 0)) continue;

@@ -40,12 +40,18 @@ struct DensityBin {
 /// Of the places of all runs together; empty when there are none.
 std::vector<DensityBin> density(std::span<const std::vector<double>> runs, std::size_t bins);
 
+/// The grains whose number and phi a rate is taken with: at least 1.5 d (interior) or 4 d (core)
+/// from the wall surfaces (packing_fraction.hpp). The onset is the same for both.
+enum class Region { interior, core };
+double grains_in(Region region, const Measures& measures);
+double phi_in(Region region, const Measures& measures);
+
 /// A bin of phi (binning.hpp) before the onset of crystallization (onset.hpp, method 1).
 struct NucleationRate {
   double phi_low = 0;
   double phi_high = 0;
   std::size_t events = 0;   ///< onsets that began in the bin
-  double grain_cycles = 0;  ///< interior grains times cycles without an onset, over all runs
+  double grain_cycles = 0;  ///< grains of the region times cycles without an onset, over all runs
   double rate = 0;          ///< events per grain and cycle
   Interval interval;  ///< of the rate; of a Poisson count, F. Garwood, Biometrika 28, 437 (1936)
 };
@@ -53,13 +59,14 @@ struct NucleationRate {
 /// Ascending; only bins in which some run spent time. The phi of an interval between two
 /// checkpoints is that of its beginning, so that a growing crystallite does not raise it. Runs that
 /// begin with a critical crystallite do not count.
-std::vector<NucleationRate> nucleation_rates(RunGroup runs);
+std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region);
 
-/// The exponent a of rate = c(amplitude, phi) N_inves^a, by maximum likelihood: onsets are a
-/// Poisson process with a constant c in each bin of phi at each amplitude. Interval of the profile
-/// likelihood, since a run has one event at most (D. R. Cox and D. Oakes, Analysis of Survival
-/// Data, 1984). None if no bin with an event has runs of two sizes, if all events are
-/// in the largest or the smallest cells that they could be in, or for fewer than least_runs runs.
-std::optional<Estimate> size_exponent(RunGroup runs);
+/// The exponent a of rate = c(amplitude, phi) n^a, n the grains of the region, by maximum
+/// likelihood: onsets are a Poisson process with a constant c in each bin of phi at each amplitude.
+/// Interval of the profile likelihood, since a run has one event at most (D. R. Cox and D. Oakes,
+/// Analysis of Survival Data, 1984). None if no bin with an event has runs of two sizes, if all
+/// events are in the largest or the smallest cells that they could be in, or for fewer than
+/// least_runs runs.
+std::optional<Estimate> size_exponent(RunGroup runs, Region region);
 
 }  // namespace shearcell

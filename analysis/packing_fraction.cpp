@@ -40,6 +40,15 @@ Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd
   return result;
 }
 
+std::vector<double> depths(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains) {
+  const double surface = interior_margin(cell) - interior_distance;
+  std::vector<double> found;
+  for (const auto& centre : grains.colwise()) {
+    found.push_back(wall_distances(cell, pose, centre).minCoeff() - surface);
+  }
+  return found;
+}
+
 std::vector<std::uint8_t> interior_grains(const Cell& cell, const WallPose& pose,
                                           const Eigen::Matrix3Xd& grains) {
   const double least = interior_margin(cell);

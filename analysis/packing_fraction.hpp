@@ -15,7 +15,10 @@ namespace shearcell {
 inline constexpr double rough_wall_surface = 0.375;
 /// Interior grains are at least this far from the wall surfaces [d]. Supplement C.
 inline constexpr double interior_distance = 1.5;
-/// The same from the planes of the walls [d].
+/// Core grains are at least this far from the wall surfaces [d]. Closer to rough walls phi is lower
+/// and hardly any crystallite nucleates (experiments/results/README.md). [choice]
+inline constexpr double core_distance = 4;
+/// The least distance of interior grains from the planes of the walls [d].
 inline double interior_margin(const Cell& cell) {
   return interior_distance + (cell.wall_grains.empty() ? 0.0 : rough_wall_surface);
 }
@@ -31,9 +34,12 @@ struct Overlaps {
 /// Contacts of `grains` (3 x n [d], z unwrapped).
 Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains);
 
-/// 1 for grains whose centre is at least `interior_distance` from every wall surface in x and y,
-/// the distance from a tilted wall measured along its normal. The surface is `rough_wall_surface`
-/// inside the plane when the cell has wall grains, else the plane itself.
+/// Distance of each grain's centre from the nearest wall surface in x and y [d], from a tilted wall
+/// along its normal. The surface is `rough_wall_surface` inside the plane when the cell has wall
+/// grains, else the plane itself.
+std::vector<double> depths(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains);
+
+/// 1 for grains whose depth is at least `interior_distance`.
 std::vector<std::uint8_t> interior_grains(const Cell& cell, const WallPose& pose,
                                           const Eigen::Matrix3Xd& grains);
 

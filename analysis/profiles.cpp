@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <span>
 
 #include "analysis/packing_fraction.hpp"
 #include "analysis/voronoi.hpp"
@@ -24,6 +26,14 @@ std::vector<std::size_t> layers_of(const Checkpoint& checkpoint, const WallPose&
     found.push_back(inside ? std::min(static_cast<std::size_t>(height), layers - 1) : layers);
   }
   return found;
+}
+
+/// phi of the grains whose depth is in [low, high).
+double phi_between(const GrainMeasures& grains, std::span<const double> depth, double low,
+                   double high) {
+  std::vector<std::uint8_t> inside;
+  for (const double d : depth) inside.push_back(d >= low && d < high ? 1 : 0);
+  return packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi;
 }
 
 double crystalline_percent(const GrainMeasures& grains, double least_phi_local, double window) {
@@ -60,6 +70,27 @@ Profiles profiles(const Checkpoint& checkpoint, const GrainMeasures& grains) {
     found.crystalline_percent.push_back(100 * crystalline / count);
   }
   return found;
+}
+
+MeasuredCurve phi_by_depth(const Checkpoint& checkpoint, const GrainMeasures& grains) {
+  constexpr double layer = 0.5;
+  const std::vector<double> depth =
+      depths(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
+  const double deepest = depth.empty() ? 0 : std::ranges::max(depth);
+  MeasuredCurve found;
+  for (double low = 0; low <= deepest; low += layer) {
+    found.x.push_back(low + layer / 2);
+    found.y.push_back(phi_between(grains, depth, low, low + layer));
+  }
+  return found;
+}
+
+Core core(const Checkpoint& checkpoint, const GrainMeasures& grains) {
+  const std::vector<double> depth =
+      depths(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
+  const auto count = std::ranges::count_if(depth, [](double d) { return d >= core_distance; });
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  return {static_cast<double>(count), phi_between(grains, depth, core_distance, infinite)};
 }
 
 MeasuredCurve crystalline_by_window(const GrainMeasures& grains) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures against the height above the bottom wall, and against the criteria of supplement A.
+// Measures against the height above the bottom wall and the distance from the nearest wall, and
+// against the criteria of supplement A.
 #pragma once
 
 #include <vector>
@@ -20,6 +21,17 @@ struct Profiles {
 };
 
 Profiles profiles(const Checkpoint& checkpoint, const GrainMeasures& grains);
+
+/// phi (Eq. S4) of layers of half a diameter against the depth of their middle [d]: the distance
+/// from the nearest wall surface. Not a number for a layer without grains.
+MeasuredCurve phi_by_depth(const Checkpoint& checkpoint, const GrainMeasures& grains);
+
+/// The grains at least core_distance deep.
+struct Core {
+  double grains = 0;
+  double phi = 0;  ///< Eq. S4; not a number without any
+};
+Core core(const Checkpoint& checkpoint, const GrainMeasures& grains);
 
 /// How the crystalline grains and crystallites depend on the criteria: results (y) against one
 /// criterion (x) while the others stay. Crystalline grains among interior grains [%] against the

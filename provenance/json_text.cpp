@@ -69,14 +69,18 @@ StoreDamaged damaged_payload(const Event& event, const json::exception& problem)
                                   event.type, event.stream, problem.what()));
 }
 
+std::string short_text(const json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  return value.is_number_float() ? fmt::format("{:.6g}", value.get<double>()) : value.dump();
+}
+
 json member_of(const json& object, const char* key) {
   return object.is_object() ? object.value(key, json()) : json();
 }
 
 std::string text_at(const json& object, const char* key) {
   const json found = member_of(object, key);
-  if (found.is_null()) return "unknown";
-  return found.is_string() ? found.get<std::string>() : found.dump();
+  return found.is_null() ? "unknown" : short_text(found);
 }
 
 }  // namespace shearcell

@@ -28,9 +28,12 @@ StoreDamaged damaged_payload(const Event& event, const nlohmann::json::exception
 /// something else; the library's `get` would convert 1e300.
 std::uint64_t count_at(const nlohmann::json& object, const char* key);
 
+/// For messages: a text without quotes, a fraction with six significant digits, else as JSON.
+std::string short_text(const nlohmann::json& value);
+
 /// Null when `object` has no such member or is not an object.
 nlohmann::json member_of(const nlohmann::json& object, const char* key);
-/// The same as text; "unknown" for null.
+/// Its short_text(); "unknown" for null.
 std::string text_at(const nlohmann::json& object, const char* key);
 
 }  // namespace shearcell

@@ -32,5 +32,7 @@ FigureResult figure_s6(std::span<const FigureRun> runs);
 FigureResult figure_s7(std::span<const FigureRun> runs);
 // Onsets as survival data: share of runs without one, and rate of nucleation against phi.
 FigureResult figure_nucleation(std::span<const FigureRun> runs);
+// That rate for the grains at least 4 d from the walls.
+FigureResult figure_nucleation_core(std::span<const FigureRun> runs);
 
 }  // namespace shearcell

@@ -27,13 +27,12 @@ std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRu
   return groups;
 }
 
-double interior_grains(RunGroup runs) {
-  std::vector<double> counts;
+double at_start(RunGroup runs, const Quantity& quantity) {
+  std::vector<double> values;
   for (const FigureRun* run : runs) {
-    if (run->checkpoints.empty()) continue;
-    counts.push_back(static_cast<double>(run->checkpoints.front().measures.interior_grains));
+    if (!run->checkpoints.empty()) values.push_back(quantity(run->checkpoints.front().measures));
   }
-  return over_runs(counts).mean.value_or(std::numeric_limits<double>::quiet_NaN());
+  return over_runs(values).mean.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 std::optional<double> published_interior(double grains) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figure nucleation: the onset as survival data. The share of runs without one against the cycle,
-// and the rate of nucleation against phi. Not in the supplement.
+// Figures nucleation and nucleation_core: the onset as survival data. The share of runs without one
+// against the cycle, and the rate of nucleation against phi. Not in the supplement.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -83,13 +83,13 @@ TableValue error_of(const NucleationRate& bin) {
   return bin.rate / std::sqrt(static_cast<double>(bin.events));
 }
 
-FigureTable rate_table(const Groups& groups) {
-  FigureTable table{.name = "nucleation_b",
+FigureTable rate_table(const Groups& groups, Region region, const std::string& name) {
+  FigureTable table{.name = name,
                     .columns = {"group", "amplitude_rad", "grains", "phi_low", "phi_high", "onsets",
                                 "grain_cycles", "rate_per_grain_cycle", "rate_standard_error",
                                 "rate_low", "rate_high"}};
   for (const auto& [group, runs] : groups) {
-    for (const NucleationRate& bin : nucleation_rates(runs)) {
+    for (const NucleationRate& bin : nucleation_rates(runs, region)) {
       table.rows.push_back({name_of(group), group.first, group.second, bin.phi_low, bin.phi_high,
                             bin.events, bin.grain_cycles,
                             bin.events > 0 ? TableValue(bin.rate) : TableValue(), error_of(bin),
@@ -108,42 +108,53 @@ FigureTable rate_table(const Groups& groups) {
   return table;
 }
 
-/// The exponent a of N_inves^a for a rate proportional to the area of the walls, N^(2/3), between
-/// the smallest and the largest cells. It is less than 2/3, since the share N_inves / N grows with
-/// N. Not a number where those cells have no interior grains.
-double exponent_of_walls(std::span<const FigureRun> runs) {
+/// The exponent a of n^a, n the grains of the region, for a rate proportional to the area of the
+/// walls, N^(2/3), between the smallest and the largest cells. It is less than 2/3, since the share
+/// n / N grows with N. Not a number where those cells have no such grains.
+double exponent_of_walls(std::span<const FigureRun> runs, Region region) {
   const auto sizes = runs_by(runs, "grains");
   const auto& [smallest, in_smallest] = *sizes.begin();
   const auto& [largest, in_largest] = *sizes.rbegin();
-  const double few = interior_grains(in_smallest), many = interior_grains(in_largest);
+  const auto grains = [region](const Measures& m) { return grains_in(region, m); };
+  const double few = at_start(in_smallest, grains), many = at_start(in_largest, grains);
   if (!(few > 0 && many > few)) return std::nan("");
   return 2.0 / 3 * std::log(largest / smallest) / std::log(many / few);
 }
 
-/// `walls` is the exponent for the area of the walls. The margin is half of its distance from 1,
-/// the exponent for the volume.
-Verdict rate_follows_volume(std::span<const FigureRun> runs, double walls) {
+/// The claim that the exponent is 1. The margin is half of the distance from 1 of the exponent for
+/// the area of the walls. None with cells of one size.
+std::vector<Verdict> rate_follows_volume(std::span<const FigureRun> runs, Region region,
+                                         const std::string& claim, const std::string& grains) {
+  if (runs_by(runs, "grains").size() < 2) return {};
+  const double walls = exponent_of_walls(runs, region);
+  if (!(walls < 1)) return {};
   const std::vector<const FigureRun*> all = pointers(runs);
-  std::optional<Estimate> excess = size_exponent(all);
+  std::optional<Estimate> excess = size_exponent(all, region);
   if (excess) excess = mapped(*excess, [](double exponent) { return exponent - 1; });
-  return decide(
-      {"title: the rate of nucleation is proportional to the volume, not to the area of "
-       "the walls",
-       (1 - walls) / 2},
-      "exponent of the rate against N_inves less 1", excess, all.size(),
+  return {decide(
+      {claim, (1 - walls) / 2}, "exponent of the rate against " + grains + " less 1", excess,
+      all.size(),
       excess ? fmt::format("maximum likelihood in bins of phi; walls would give {:.2f}", walls - 1)
-             : "runs of two sizes with onsets at the same phi are needed");
+             : "runs of two sizes with onsets at the same phi are needed")};
 }
 
 }  // namespace
 
 FigureResult figure_nucleation(std::span<const FigureRun> runs) {
   const Groups groups = grouped(runs);
-  FigureResult result{{survival_table(groups), rate_table(groups)}, {}};
-  if (runs_by(runs, "grains").size() < 2) return result;
-  const double walls = exponent_of_walls(runs);
-  if (walls < 1) result.verdicts.push_back(rate_follows_volume(runs, walls));
-  return result;
+  return {{survival_table(groups), rate_table(groups, Region::interior, "nucleation_b")},
+          rate_follows_volume(runs, Region::interior,
+                              "title: the rate of nucleation is proportional to the volume, not to "
+                              "the area of the walls",
+                              "N_inves")};
+}
+
+FigureResult figure_nucleation_core(std::span<const FigureRun> runs) {
+  return {{rate_table(grouped(runs), Region::core, "nucleation_core")},
+          rate_follows_volume(runs, Region::core,
+                              "title: at least 4 d from the walls the rate of nucleation is "
+                              "proportional to the volume",
+                              "core_grains")};
 }
 
 }  // namespace shearcell

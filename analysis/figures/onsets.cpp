@@ -236,7 +236,7 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
   bool converged = false;
   const auto groups = runs_by(runs, "grains");
   for (const auto& [grains, members] : groups) {
-    const double interior = interior_grains(members);
+    const double interior = at_start(members, &Measures::interior_grains);
     table.rows.push_back(
         onset_row({grains, interior, published_interior(grains)}, onset(members, onset_by_size)));
     if (published_interior(grains)) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "experiments/cli/command.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -13,12 +14,7 @@ namespace {
 std::string gist(const Event& event) {
   const nlohmann::json body = event.body();
   for (const char* key : {"why", "error", "cycle", "attempt", "experiment", "path", "kind"}) {
-    if (!body.contains(key)) continue;
-    const nlohmann::json& value = body[key];
-    const std::string text = value.is_string()         ? value.get<std::string>()
-                             : value.is_number_float() ? fmt::format("{:.6g}", value.get<double>())
-                                                       : value.dump();
-    return fmt::format("{} {:.60}", key, text);
+    if (body.contains(key)) return fmt::format("{} {:.60}", key, short_text(body[key]));
   }
   return "";
 }

@@ -31,13 +31,6 @@ void add_grains(const Checkpoint& c, const Eigen::Matrix3Xd& sites, Frame& frame
   }
 }
 
-Motion motion_since(const std::optional<Checkpoint>& earlier, const Checkpoint& now) {
-  if (earlier) return motion(*earlier, now);
-  const Eigen::Index grains = now.state.position.cols();
-  return {Eigen::Matrix3Xd::Constant(3, grains, std::nan("")),
-          std::vector<double>(static_cast<std::size_t>(grains), std::nan(""))};
-}
-
 void add_columns(const Checkpoint& c, const WallPose& pose, const GrainMeasures& measures,
                  const Motion& moved, Frame& frame) {
   const auto add = [&](const char* name, const auto& of_grains, auto of_wall_grains) {

@@ -249,7 +249,8 @@ FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
 }  // namespace
 
 std::span<const std::string> table_measures() {
-  static const std::array<std::string, 4> names = {"scalars", "mechanics", "lattices", "motion"};
+  static const std::array<std::string, 5> names = {"scalars", "mechanics", "lattices", "motion",
+                                                   "core"};
   return names;
 }
 

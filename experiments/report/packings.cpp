@@ -162,8 +162,7 @@ json facts_of(const Measures& measures, double theta) {
 
 /// Ranges are the same for all packings of a run, so that their colours are comparable.
 std::vector<GrainField> make_fields(const Checkpoint& checkpoint, const WallPose& pose,
-                                    const GrainMeasures& grains,
-                                    const std::optional<Checkpoint>& earlier,
+                                    const GrainMeasures& grains, Motion motion,
                                     const MechanicalUnits& units, double pressure_Pa) {
   GrainField lattice{"lattice", "", 0, 0, false, {"none", "FCC", "HCP", "BCC"}, {}};
   for (const Lattice of :
@@ -177,15 +176,8 @@ std::vector<GrainField> make_fields(const Checkpoint& checkpoint, const WallPose
   contacts.value.assign(grains.contacts.begin(), grains.contacts.end());
   GrainField overlap{"overlap", "d", 0, 0.02, false, {}, grains.largest_overlap};
   GrainField moved{"displacement", "d", 1e-3, 1, true, {}, {}};
-  GrainField nonaffine{"d2min", "d\u00b2", 1e-6, 1, true, {}, {}};
-  if (earlier) {
-    Motion motion = shearcell::motion(*earlier, checkpoint);
-    for (const auto& way : motion.displacement.colwise()) moved.value.push_back(way.norm());
-    nonaffine.value = std::move(motion.nonaffine);
-  } else {
-    moved.value.assign(grains.q6.size(), std::nan(""));
-    nonaffine.value = moved.value;
-  }
+  for (const auto& way : motion.displacement.colwise()) moved.value.push_back(way.norm());
+  GrainField nonaffine{"d2min", "d\u00b2", 1e-6, 1, true, {}, std::move(motion.nonaffine)};
   return {std::move(lattice), std::move(pressure), std::move(contacts),
           std::move(overlap), std::move(moved),    std::move(nonaffine)};
 }
@@ -221,8 +213,9 @@ PageFrame make_frame(const Store& store, const RunRecord& run, const CheckpointR
   const WallPose pose = pose_of(checkpoint);
   const MechanicalUnits units = mechanical_units(run, record);
   const double pressure_Pa = run.resolved.value("/parameters/pressure_Pa"_json_pointer, 0.0);
-  const std::vector<GrainField> fields = make_fields(
-      checkpoint, pose, analysis.grains, sources.earlier(record, 1), units, pressure_Pa);
+  const std::vector<GrainField> fields =
+      make_fields(checkpoint, pose, analysis.grains,
+                  motion_since(sources.earlier(record, 1), checkpoint), units, pressure_Pa);
   const PackedFrame packed = pack_frame(checkpoint, pose, analysis.grains, fields);
   json described = json::array();
   for (const GrainField& field : fields) described.push_back(to_json(field));

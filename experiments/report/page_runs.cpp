@@ -9,6 +9,7 @@
 #include "experiments/report/html.hpp"
 #include "experiments/report/page.hpp"
 #include "experiments/runner/progress.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -25,9 +26,7 @@ struct ShownColumn {
 };
 
 std::string as_text(const json& value) {
-  return escape_html(value.is_string()         ? value.get<std::string>()
-                     : value.is_number_float() ? fmt::format("{:.6g}", value.get<double>())
-                                               : value.dump());
+  return escape_html(short_text(value));
 }
 
 CellText decimals(int count, double factor = 1) {

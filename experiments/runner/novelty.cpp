@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "provenance/json_text.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -17,12 +19,6 @@ json values_of(const json& resolved) {
   json values = felt_parameters(resolved);
   if (resolved.is_object()) values["seed"] = resolved.value("seed", json());
   return values;
-}
-
-std::string short_text(const json& value) {
-  return value.is_null()           ? "none"
-         : value.is_number_float() ? fmt::format("{:.6g}", value.get<double>())
-                                   : value.dump();
 }
 
 std::string text_of(const std::string& key, const json& value) {
@@ -78,7 +74,7 @@ std::string describe_novelty(const json& novelty) {
   for (const json& field : novelty.at("fields")) {
     if (parts.size() == most) break;
     const json &value = field["value"], &other = field["store_has"];
-    std::string planned = short_text(value), known = short_text(other);
+    std::string planned = short_text(value), known = other.is_null() ? "none" : short_text(other);
     if (planned == known) planned = value.dump(), known = other.dump();
     const std::string name = field["field"];
     parts.push_back(fmt::format("{} {} (store has {})", name, planned, known));

@@ -130,7 +130,7 @@ FigureRun waiting(int grains, std::uint64_t seed, int onset, int cycles, double 
 TEST(NucleationRate, IsEventsOverGrainCycles) {
   const std::vector<FigureRun> runs = {waiting(1000, 1, 10, 30), waiting(1000, 2, 20, 30),
                                        waiting(1000, 3, 0, 30), waiting(1000, 4, 0, 30, 0.6401)};
-  const auto rates = nucleation_rates(pointers(runs));
+  const auto rates = nucleation_rates(pointers(runs), Region::interior);
   ASSERT_EQ(rates.size(), 2U);
   EXPECT_DOUBLE_EQ(rates[0].phi_low, 0.64);
   EXPECT_EQ(rates[0].events, 0U);
@@ -148,7 +148,7 @@ TEST(NucleationRate, IsEventsOverGrainCycles) {
 TEST(NucleationRate, LeavesOutRunsThatBeginWithACriticalCrystallite) {
   std::vector<FigureRun> runs = {waiting(1000, 1, 10, 30)};
   for (CheckpointMeasures& c : runs[0].checkpoints) c.measures.largest_crystallite = 16;
-  EXPECT_TRUE(nucleation_rates(pointers(runs)).empty());
+  EXPECT_TRUE(nucleation_rates(pointers(runs), Region::interior).empty());
 }
 
 // With one stratum and two sizes the maximum is where each size has its own rate.
@@ -165,7 +165,7 @@ TEST(SizeExponent, OfTwoSizesIsTheSlopeBetweenTheirRates) {
       events[size] += seen ? 1 : 0;
     }
   }
-  const auto found = size_exponent(pointers(runs));
+  const auto found = size_exponent(pointers(runs), Region::interior);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->value,
               std::log(events[1] / cycles[1] / (events[0] / cycles[0])) / std::log(6.0), 1e-6);
@@ -194,7 +194,7 @@ TEST(SizeExponent, IsThatOfRunsMadeWithIt) {
         }
       }
     }
-    const auto found = size_exponent(pointers(runs));
+    const auto found = size_exponent(pointers(runs), Region::interior);
     ASSERT_TRUE(found);
     EXPECT_LT(found->interval.low, exponent);
     EXPECT_GT(found->interval.high, exponent);
@@ -205,10 +205,10 @@ TEST(SizeExponent, IsThatOfRunsMadeWithIt) {
 TEST(SizeExponent, NeedsTwoSizesAtOnePhi) {
   const std::vector<FigureRun> one = {waiting(1000, 1, 5, 30), waiting(1000, 2, 6, 30),
                                       waiting(1000, 3, 7, 30)};
-  EXPECT_FALSE(size_exponent(pointers(one)));
+  EXPECT_FALSE(size_exponent(pointers(one), Region::interior));
   const std::vector<FigureRun> apart = {waiting(1000, 1, 5, 30), waiting(1000, 2, 6, 30),
                                         waiting(3000, 3, 7, 30, 0.6501)};
-  EXPECT_FALSE(size_exponent(pointers(apart)));
+  EXPECT_FALSE(size_exponent(pointers(apart), Region::interior));
 }
 
 // By one onset of six small runs, and none.
@@ -218,13 +218,13 @@ TEST(SizeExponent, OnsetsInLargeCellsAloneGiveNone) {
     runs.push_back(waiting(1000, seed, seed == 1 ? 9 : 0, 30));
     runs.push_back(waiting(3000, seed, static_cast<int>(3 + seed), 30));
   }
-  const auto found = size_exponent(pointers(runs));
+  const auto found = size_exponent(pointers(runs), Region::interior);
   ASSERT_TRUE(found);
   EXPECT_GT(found->interval.low, 0);
   EXPECT_GT(found->interval.high - found->value, found->value - found->interval.low)
       << "one onset says less of how rare they are in small cells than of how frequent";
   runs[0] = waiting(1000, 1, 0, 30);
-  EXPECT_FALSE(size_exponent(pointers(runs))) << "none in the small ones";
+  EXPECT_FALSE(size_exponent(pointers(runs), Region::interior)) << "none in the small ones";
 }
 
 TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
@@ -253,6 +253,41 @@ TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
       << "a rate at the walls would rise faster with N_inves than one in the bulk";
   set_interior_of_small(0);
   EXPECT_TRUE(find_figure("nucleation")->make(runs).verdicts.empty()) << "nothing to compare with";
+}
+
+// In the core the small cells are denser and have a smaller share of the grains.
+TEST(FigureNucleationCore, CountsTheGrainsOfTheCoreAtTheirPhi) {
+  std::vector<FigureRun> runs;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const int onset = static_cast<int>(1 + seed * 7 % 60);
+    runs.push_back(waiting(1000, seed, onset, 60, 0.6401));
+    runs.push_back(waiting(3000, seed, onset / 9 + 1, 60, 0.6421));
+  }
+  for (FigureRun& run : runs) {
+    for (CheckpointMeasures& c : run.checkpoints) {
+      c.measures.numbers["core_phi"] = 0.6451;
+      c.measures.numbers["core_grains"] = number_of(run, "grains") > 1000 ? 1800 : 200;
+    }
+  }
+  EXPECT_FALSE(size_exponent(pointers(runs), Region::interior)) << "they never have the same phi";
+  const FigureResult result = find_figure("nucleation_core")->make(runs);
+  ASSERT_EQ(result.tables.size(), 1U);
+  ASSERT_EQ(result.tables[0].rows.size(), 2U);
+  EXPECT_TRUE(has(to_csv(result.tables[0]), "A=0.0833 N=1000,0.0833,1000,0.644,0.646,30,"));
+  ASSERT_EQ(result.verdicts.size(), 1U);
+  EXPECT_NEAR(result.verdicts[0].estimate.value(), 0, 0.1);
+  EXPECT_NEAR(result.verdicts[0].margin, 0.5 - std::log(3.0) / std::log(9.0) / 3, 1e-12);
+}
+
+// A cell of 1000 grains has next to no core.
+TEST(NucleationRate, LeavesOutTimeWithoutAPhi) {
+  std::vector<FigureRun> runs = {waiting(1000, 1, 10, 30)};
+  EXPECT_TRUE(nucleation_rates(pointers(runs), Region::core).empty()) << "it was not measured";
+  for (CheckpointMeasures& c : runs[0].checkpoints) {
+    c.measures.numbers["core_grains"] = 0;
+    c.measures.numbers["core_phi"] = std::nan("");
+  }
+  EXPECT_TRUE(nucleation_rates(pointers(runs), Region::core).empty());
 }
 
 }  // namespace

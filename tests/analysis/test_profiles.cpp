@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "analysis/packing_fraction.hpp"
@@ -52,6 +53,55 @@ TEST(Profiles, ALatticeIsTheSameInEveryLayer) {
     EXPECT_NEAR(found.phi[l], std::numbers::pi / std::sqrt(18), 0.02);
     EXPECT_EQ(found.crystalline_percent[l], 100);
   }
+}
+
+// Volumes of grains and cells by the distance from the nearest of the four planes, by hand.
+TEST(Depth, LayersAndCoreAreSumsOverGrains) {
+  const Checkpoint checkpoint = checkpoint_of(jammed(3000, true, 0.05, 1));
+  const GrainMeasures grains = analyse(checkpoint).grains;
+  const WallPose pose = pose_of(checkpoint);
+  struct Sums {
+    double count = 0, hard = 0, cells = 0;
+  };
+  std::map<int, Sums> layers;
+  Sums inner;
+  for (Eigen::Index i = 0; i < checkpoint.state.position.cols(); ++i) {
+    const Eigen::Vector3d r = checkpoint.state.position.col(i);
+    const double left = (r.y() - pose.top) * pose.tan_theta;
+    const double side = std::min(r.x() - left, left + checkpoint.cell.width - r.x());
+    const double depth =
+        std::min({side * pose.cos_theta, r.y() - pose.bottom, pose.top - r.y()}) - 0.375;
+    const auto k = static_cast<std::size_t>(i);
+    const auto add = [&](Sums& sums) {
+      ++sums.count;
+      sums.hard += std::numbers::pi / 6 * std::pow(1 - grains.largest_overlap[k], 3);
+      sums.cells += grains.cell_volume[k];
+    };
+    add(layers[static_cast<int>(std::floor(2 * depth))]);
+    if (depth >= 4) add(inner);
+  }
+  const MeasuredCurve found = phi_by_depth(checkpoint, grains);
+  ASSERT_GT(found.x.size(), 8U);
+  for (std::size_t l = 0; l < found.x.size(); ++l) {
+    EXPECT_EQ(found.x[l], 0.25 + 0.5 * static_cast<double>(l));
+    const Sums& sums = layers[static_cast<int>(l)];
+    if (sums.count > 0) {
+      EXPECT_NEAR(found.y[l], sums.hard / sums.cells, 1e-12);
+    } else {
+      EXPECT_TRUE(std::isnan(found.y[l]));
+    }
+  }
+  const Core measured = core(checkpoint, grains);
+  ASSERT_GT(inner.count, 50);
+  EXPECT_EQ(measured.grains, inner.count);
+  EXPECT_NEAR(measured.phi, inner.hard / inner.cells, 1e-12);
+}
+
+TEST(Depth, ASmallCellHasNoCore) {
+  const Checkpoint checkpoint = checkpoint_of(jammed(300, true, 0, 1));
+  const Core none = core(checkpoint, analyse(checkpoint).grains);
+  EXPECT_EQ(none.grains, 0);
+  EXPECT_TRUE(std::isnan(none.phi));
 }
 
 TEST(Sensitivity, AtTheChosenCriteriaIsWhatIsMeasured) {

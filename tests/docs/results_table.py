@@ -36,12 +36,14 @@ HEADLINES = [
     ("S5b", "C: the onset at N = 11400", "phi at the onset, N = 11400, A = 0.05", "0.646 +- 0.001"),
     ("S5b", "C: the onset at N = 18200", "phi at the onset, N = 18200, A = 0.05", "0.646 +- 0.001"),
     ("nucleation", "title: the rate", "exponent of the nucleation rate against N_inves, minus 1", "homogeneous: 0"),
+    ("nucleation_core", "title: at least 4 d", "the same at least 4 d from the walls, against the grains there, minus 1", "homogeneous: 0"),
     ("S7", "E: crystallites are equally probable", "nuclei in the inner minus the outer half of the width", "equal"),
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper minus the lower third", "more near the top"),
 ]
 # Where README.md takes them from: the first of these where the claim was measured, and there the one with the most runs.
 SOURCES = ("volume", "paper", "decide", "desk")
-FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "walls", "choices")
+FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "nucleation_core",
+           "walls", "choices")
 
 # How a quantity of a verdict is shown: the pattern of its name, what converts its value, and a unit.
 SHOWN = [
