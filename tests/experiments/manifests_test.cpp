@@ -67,6 +67,19 @@ TEST(Manifests, EachExpandsAtEveryScale) {
                                    "spring_constant", "system_size", "timestep", "walls"}));
 }
 
+TEST(Manifests, OfPublishedResultsStillExpand) {
+  std::size_t found = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(kFolder / "results")) {
+    if (entry.path().extension() != ".yaml") continue;
+    const Manifest manifest = load_manifest(entry.path());
+    for (const Scale& scale : manifest.scales) {
+      EXPECT_FALSE(expand(manifest, {.scale = scale.name}).runs.empty()) << entry.path();
+    }
+    ++found;
+  }
+  EXPECT_GE(found, 3U);
+}
+
 // Still fluid, bottom wall moving, continuous shear, A = 0.0833, time step of Table I, first seed.
 TEST(Manifests, ShareTheRunThatTheyHaveInCommon) {
   for (const std::string& scale : kScales) {
