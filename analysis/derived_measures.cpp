@@ -200,17 +200,17 @@ void checked(const json& result, Measures& measures) {
   }
 }
 
-json interior() {
-  return {{"interior_distance_d", interior_distance}, {"rough_wall_surface_d", rough_wall_surface}};
+json with(json parameters, const json& more) {
+  parameters.update(more);
+  return parameters;
 }
 
 json surface() {
   return {{"rough_wall_surface_d", rough_wall_surface}};
 }
 
-json with(json parameters, const json& more) {
-  parameters.update(more);
-  return parameters;
+json interior() {
+  return with(surface(), {{"interior_distance_d", interior_distance}});
 }
 
 json criteria() {

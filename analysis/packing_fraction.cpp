@@ -41,10 +41,9 @@ Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd
 }
 
 std::vector<double> depths(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains) {
-  const double surface = interior_margin(cell) - interior_distance;
   std::vector<double> found;
   for (const auto& centre : grains.colwise()) {
-    found.push_back(wall_distances(cell, pose, centre).minCoeff() - surface);
+    found.push_back(wall_distances(cell, pose, centre).minCoeff() - wall_surface(cell));
   }
   return found;
 }

@@ -18,9 +18,13 @@ inline constexpr double interior_distance = 1.5;
 /// Core grains are at least this far from the wall surfaces [d]. Closer to rough walls phi is lower
 /// and hardly any crystallite nucleates (experiments/results/README.md). [choice]
 inline constexpr double core_distance = 4;
+/// How far the surface of the walls lies inside their planes [d].
+inline double wall_surface(const Cell& cell) {
+  return cell.wall_grains.empty() ? 0.0 : rough_wall_surface;
+}
 /// The least distance of interior grains from the planes of the walls [d].
 inline double interior_margin(const Cell& cell) {
-  return interior_distance + (cell.wall_grains.empty() ? 0.0 : rough_wall_surface);
+  return interior_distance + wall_surface(cell);
 }
 
 /// Overlaps delta = 1 - r_ij of grains with grains and wall grains; the plane behind a wall has no
