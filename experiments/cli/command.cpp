@@ -29,13 +29,14 @@ std::optional<Store> open_if_there(const std::string& folder) {
 
 void tell_problems(const MeasureOutcome& outcome, const char* left_out, Context& context) {
   for (const auto* lines : {&outcome.damage, &outcome.pruned}) {
-    for (const std::string& line : *lines) tell_stderr("{}: {}\n", left_out, line);
+    for (const std::string& line : *lines) print_escaped_stderr("{}: {}\n", left_out, line);
   }
   for (const std::string& sha256 : outcome.changed) {
-    tell_stderr("checkpoint {:.12}: the cached measures differed and were replaced\n", sha256);
+    print_escaped_stderr("checkpoint {:.12}: the cached measures differed and were replaced\n",
+                         sha256);
   }
   if (!outcome.cache_trouble.empty()) {
-    tell_stderr("measures cannot be cached: {}\n", outcome.cache_trouble);
+    print_escaped_stderr("measures cannot be cached: {}\n", outcome.cache_trouble);
   }
   if (!outcome.damage.empty()) fail(context, kStoreDamaged);
 }
@@ -100,7 +101,7 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths,
     loaded.manifests.push_back(load_manifest(path));
     loaded.plans.push_back(expand(loaded.manifests.back(), options));
     for (const std::string& warning : loaded.plans.back().warnings) {
-      tell_stderr("warning: {}\n", warning);
+      print_escaped_stderr("warning: {}\n", warning);
     }
   }
   return loaded;

@@ -55,7 +55,7 @@ Check memory() {
     return {"memory", format_bytes(kib * 1024) + " free", "ok",
             fmt::format("enough for {:.1e} grains at once", kib * 1024 / kRunBytesPerGrain)};
   }
-  return {"memory", "not told", "ok", ""};
+  return {"memory", "unknown", "ok", ""};
 }
 
 Check disk(const fs::path& place) {
@@ -70,7 +70,7 @@ Check disk(const fs::path& place) {
 
 Check filesystem(const fs::path& place) {
   struct statfs facts {};
-  if (statfs(place.c_str(), &facts) != 0) return {"file system", "not told", "ok", ""};
+  if (statfs(place.c_str(), &facts) != 0) return {"file system", "unknown", "ok", ""};
   constexpr unsigned long network[] = {0x6969, 0xFF534D42, 0x0BD00BD0,
                                        0x517B, 0x47504653, 0xFE534D42};
   const auto type = static_cast<unsigned long>(facts.f_type);

@@ -120,7 +120,8 @@ void make(std::filesystem::path file) {
   const std::string text = text_of(file.stem().string());
   parse_manifest(text, file.string());  // refuses a bad name
   write_new(file, text);
-  tell("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(), file.string());
+  print_escaped("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(),
+                file.string());
 }
 
 }  // namespace

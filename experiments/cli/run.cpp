@@ -93,7 +93,7 @@ void report(const CampaignResult& result, Context& context) {
              0) {
     fmt::print("nothing is left to compute\n");
   } else {
-    fmt::print("{} computed, {} done already, {} failed, {} interrupted, {} not begun\n",
+    fmt::print("{} computed, {} done already, {} failed, {} interrupted, {} not started\n",
                counted(result.completed, "stage"), result.already, result.failed,
                result.interrupted, result.blocked);
     if (result.elsewhere > 0) {
@@ -104,7 +104,8 @@ void report(const CampaignResult& result, Context& context) {
     }
   }
   if (context.exit_code == kInterrupted) {
-    tell_stderr("Interrupted. Continue with: shearcell resume --store {}\n", context.store);
+    print_escaped_stderr("Interrupted. Continue with: shearcell resume --store {}\n",
+                         context.store);
   }
 }
 

@@ -71,7 +71,7 @@ class Machines {
     for (std::size_t k = 0; k < all.size(); ++k) {
       std::string name = fmt::format("{} {}", what, k + 1);
       for (const std::string& line : all[k]) {
-        tell("{:<9} {}\n", std::exchange(name, ""), cut(line, 10));
+        print_escaped("{:<9} {}\n", std::exchange(name, ""), cut(line, 10));
       }
     }
   }
@@ -80,35 +80,38 @@ class Machines {
 
 void print_manifests(const FigureLineage& lineage) {
   for (const ManifestText& manifest : lineage.manifests) {
-    tell("\nmanifest  {}\n  sha256  {}\n", cut(manifest.path, 10), manifest.sha256);
+    print_escaped("\nmanifest  {}\n  sha256  {}\n", cut(manifest.path, 10), manifest.sha256);
     std::map<int, std::string> lines;
     for (const FigureInput& input : lineage.inputs) {
       if (input.manifest != manifest.sha256) continue;
       for (const ManifestLine& line : input.lines) lines.emplace(line.line, line.text);
     }
-    for (const auto& [number, text] : lines) tell("  line {:>4}  {}\n", number, cut(text, 13));
+    for (const auto& [number, text] : lines)
+      print_escaped("  line {:>4}  {}\n", number, cut(text, 13));
   }
 }
 
 void print_attempts(const RunLineage& stage, Machines& machines) {
   for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
     const Attempt& attempt = stage.attempts[a];
-    tell("  attempt {:<3} {}  {}, build {}, host {}\n", a + 1, moment(attempt.started_at),
-         name_of(attempt.outcome), machines.build(attempt.host), machines.host(attempt.host));
-    if (!attempt.why.empty()) tell("              {}\n", cut(attempt.why, 14));
+    print_escaped("  attempt {:<3} {}  {}, build {}, host {}\n", a + 1, moment(attempt.started_at),
+                  name_of(attempt.outcome), machines.build(attempt.host),
+                  machines.host(attempt.host));
+    if (!attempt.why.empty()) print_escaped("              {}\n", cut(attempt.why, 14));
     if (!attempt.from_checkpoint.empty()) {
-      tell("  from        {}\n", attempt.from_checkpoint);
+      print_escaped("  from        {}\n", attempt.from_checkpoint);
     }
   }
 }
 
 void print_checkpoints(const std::vector<std::string>& checkpoints, const RunLineage& run) {
-  tell("  {:>6}  {:>2}  checkpoint\n", "cycle", "at");
+  print_escaped("  {:>6}  {:>2}  checkpoint\n", "cycle", "at");
   for (const std::string& sha256 : checkpoints) {
     const CheckpointHistory* known = run.find(sha256);
     const bool has_attempt = known != nullptr && known->attempt;
-    tell("  {:>6}  {:>2}  {}\n", known != nullptr ? fmt::format("{:g}", known->record.cycle) : "?",
-         has_attempt ? std::to_string(*known->attempt + 1) : "?", sha256);
+    print_escaped("  {:>6}  {:>2}  {}\n",
+                  known != nullptr ? fmt::format("{:g}", known->record.cycle) : "?",
+                  has_attempt ? std::to_string(*known->attempt + 1) : "?", sha256);
   }
 }
 
@@ -116,16 +119,17 @@ void print_input(const FigureInput& input, const RunLineage& run, Machines& mach
   std::set<int> numbers;
   for (const ManifestLine& line : input.lines) numbers.insert(line.line);
   const std::string lines = numbers.empty() ? "?" : fmt::format("{}", fmt::join(numbers, ", "));
-  tell("\nrun       {}\n", input.run);
-  tell("  {}\n",
-       cut(fmt::format("{} {}, seed {}, {} grains; manifest {:.8}, lines {}", input.experiment,
-                       input.variant, input.seed, run.run.grains, input.manifest, lines),
-           2));
+  print_escaped("\nrun       {}\n", input.run);
+  print_escaped("  {}\n", cut(fmt::format("{} {}, seed {}, {} grains; manifest {:.8}, lines {}",
+                                          input.experiment, input.variant, input.seed,
+                                          run.run.grains, input.manifest, lines),
+                              2));
   if (input.overrides.is_object()) {
     for (const auto& [key, values] : input.overrides.items()) {
-      tell("  {}\n", cut(fmt::format("given at the command line: {} {} (manifest: {})", key,
-                                     text_at(values, "run"), text_at(values, "manifest")),
-                         2));
+      print_escaped("  {}\n",
+                    cut(fmt::format("given at the command line: {} {} (manifest: {})", key,
+                                    text_at(values, "run"), text_at(values, "manifest")),
+                        2));
     }
   }
   print_attempts(run, machines);
@@ -133,8 +137,8 @@ void print_input(const FigureInput& input, const RunLineage& run, Machines& mach
 }
 
 void print_stage_before(const RunLineage& stage, Machines& machines) {
-  tell("\nbefore    {}\n  {}, seed {}, {} grains\n", stage.run.id, cut(stage.run.kind, 50),
-       text_at(stage.run.resolved, "seed"), stage.run.grains);
+  print_escaped("\nbefore    {}\n  {}, seed {}, {} grains\n", stage.run.id, cut(stage.run.kind, 50),
+                text_at(stage.run.resolved, "seed"), stage.run.grains);
   print_attempts(stage, machines);
   std::vector<std::string> checkpoints;
   for (const CheckpointHistory& c : stage.checkpoints) {
@@ -152,16 +156,16 @@ void print(const FigureLineage& lineage) {
     by = fmt::format(", build {}, host {}", machines.build(made), machines.host(made));
   }
   const std::string scale = text_at(facts, "scale");
-  tell("figure    {}, {} scale, analysis version {}\n", cut(lineage.record.name, 40),
-       cut(scale_name(scale), 50), text_at(facts, "analysis_version"));
-  tell("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at), lineage.record.seq,
-       by);
+  print_escaped("figure    {}, {} scale, analysis version {}\n", cut(lineage.record.name, 40),
+                cut(scale_name(scale), 50), text_at(facts, "analysis_version"));
+  print_escaped("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at),
+                lineage.record.seq, by);
   std::size_t widest = 0;
   for (const auto& [name, sha256] : lineage.outputs) {
     widest = std::max(widest, cut(name, 66).size());
   }
   for (const auto& [name, sha256] : lineage.outputs) {
-    tell("  {:<{}}  {}\n", cut(name, 66), widest, sha256);
+    print_escaped("  {:<{}}  {}\n", cut(name, 66), widest, sha256);
   }
   print_manifests(lineage);
   for (const FigureInput& input : lineage.inputs) {
@@ -172,7 +176,7 @@ void print(const FigureLineage& lineage) {
       print_stage_before(stage, machines);
     }
   }
-  tell("\n");
+  print_escaped("\n");
   machines.print();
 }
 
@@ -191,20 +195,23 @@ nlohmann::json check_json(const std::filesystem::path& file, const PublishedFile
 
 void print_check(const std::filesystem::path& file, const PublishedFile& found,
                  const std::vector<InputFault>& faults, std::size_t inputs) {
-  tell("file      {}\n", cut(file.string(), 10));
+  print_escaped("file      {}\n", cut(file.string(), 10));
   if (found.matches()) {
-    tell("verdict   matches what event {} recorded\n", found.record.seq);
+    print_escaped("verdict   matches what event {} recorded\n", found.record.seq);
   } else {
-    tell("verdict   WAS CHANGED since event {}, or another store made it\n", found.record.seq);
-    tell("  is      {}\n  was     {}\n", found.sha256, found.recorded);
+    print_escaped("verdict   WAS CHANGED since event {}, or another store made it\n",
+                  found.record.seq);
+    print_escaped("  is      {}\n  was     {}\n", found.sha256, found.recorded);
   }
   if (faults.empty()) {
-    tell("inputs    {}, all present and right\n\n", counted(inputs, "checkpoint"));
+    print_escaped("inputs    {}, all present and right\n\n", counted(inputs, "checkpoint"));
     return;
   }
-  tell("inputs    {}, {} of them not as they were\n", counted(inputs, "checkpoint"), faults.size());
-  for (const InputFault& fault : faults) tell("  {}\n  {}\n", fault.checkpoint, fault.what);
-  tell("\n");
+  print_escaped("inputs    {}, {} of them not as they were\n", counted(inputs, "checkpoint"),
+                faults.size());
+  for (const InputFault& fault : faults)
+    print_escaped("  {}\n  {}\n", fault.checkpoint, fault.what);
+  print_escaped("\n");
 }
 
 }  // namespace

@@ -216,10 +216,11 @@ nlohmann::json facts(const std::optional<Estimate>& estimate) {
 }
 
 void print(const Estimate& left) {
-  tell("left: {}, {:.3g} particle-steps, {} {} with {} at a time{}\n",
-       counted(left.work.stages, "stage"), left.work.particle_steps,
-       left.at_most ? "at most" : "about", format_duration(left.seconds()), left.at_a_time,
-       left.running ? ": until " + local_time(left.seconds()) : "; no program computes them now");
+  print_escaped(
+      "left: {}, {:.3g} particle-steps, {} {} with {} at a time{}\n",
+      counted(left.work.stages, "stage"), left.work.particle_steps,
+      left.at_most ? "at most" : "about", format_duration(left.seconds()), left.at_a_time,
+      left.running ? ": until " + local_time(left.seconds()) : "; no program computes them now");
 }
 
 /// Prints a table for each experiment, and a line with the number of stages in each state.
@@ -248,15 +249,15 @@ void print_tables(const View& view) {
   Row header = {"run", "variant", "seed", "N", "state", "cycle", "M/s", "time"};
   if (queued) header.emplace_back("queue");
   for (const std::string& name : experiments) {
-    tell("{}\n", name);
+    print_escaped("{}\n", name);
     print_table(header, tables[name]);
-    tell("\n");
+    print_escaped("\n");
   }
   std::string all;
   for (const auto& [state, runs_in_it] : count) {
     all += fmt::format("{}{} {}", all.empty() ? ": " : ", ", runs_in_it, name_of(state));
   }
-  tell("{}{}\n", counted(view.runs.size(), "stage"), all);
+  print_escaped("{}{}\n", counted(view.runs.size(), "stage"), all);
 }
 
 /// Prints the tables, the estimate, and notes on single runs.
@@ -264,17 +265,18 @@ void print(const View& view) {
   print_tables(view);
   if (const auto left = estimate(view)) print(*left);
   for (const auto& [run, lease] : view.holders) {
-    tell("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
+    print_escaped("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
   }
   const std::string& problem = view.queue.problem;
   for (const Submission& submission : view.queue.submissions) {
-    if (problem.empty()) tell("{}\n", describe(submission));
+    if (problem.empty()) print_escaped("{}\n", describe(submission));
   }
-  if (!problem.empty()) tell("The queue is not known: {}\n", problem);
+  if (!problem.empty()) print_escaped("The queue is not known: {}\n", problem);
   for (const auto& [run, membership, newest] : view.runs) {
-    if (!run.error.empty()) tell("{}: {}\n", run.id.substr(0, 8), run.error);
+    if (!run.error.empty()) print_escaped("{}: {}\n", run.id.substr(0, 8), run.error);
     if (const nlohmann::json ended = end_of(view.store, run); !ended.is_null()) {
-      tell("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle, describe_end(ended));
+      print_escaped("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle,
+                    describe_end(ended));
     }
   }
 }

@@ -38,10 +38,10 @@ void table(const TableOptions& options, Context& context) {
     fmt::print("{}", terminal_columns(stdout) ? for_terminal(text) : text);
   } else {
     write_output(options.out, text);
-    tell_stderr("{} rows of {} columns in {}\n", made.rows.size(), made.columns.size(),
-                options.out);
+    print_escaped_stderr("{} rows of {} columns in {}\n", made.rows.size(), made.columns.size(),
+                         options.out);
   }
-  for (const std::string& note : made.notes) tell_stderr("{}\n", note);
+  for (const std::string& note : made.notes) print_escaped_stderr("{}\n", note);
   tell_problems(made, "not measured", context);
 }
 

@@ -40,7 +40,8 @@ std::function<void()> tried(std::function<void()> action, seconds interval) {
     try {
       action();
     } catch (const std::exception& problem) {
-      tell_stderr("shearcell: {}; tried again in {} s\n", problem.what(), interval.count());
+      print_escaped_stderr("shearcell: {}; tried again in {} s\n", problem.what(),
+                           interval.count());
     }
   };
 }
@@ -103,12 +104,12 @@ void work(const WorkOptions& options, Context& context) {
   const fs::path task = (fs::path(context.store) / "").parent_path();
   WorkStore place(task, options.scratch);
   Store& store = place.store();
-  const auto tell = [&] { write_task_report(task, store.runs()); };
+  const auto report_task = [&] { write_task_report(task, store.runs()); };
   CampaignResult result;
   bool failed_before = false;
   {
-    tell();
-    const Repeated reports(kReportEvery, tried(tell, kReportEvery));
+    report_task();
+    const Repeated reports(kReportEvery, tried(report_task, kReportEvery));
     std::optional<Repeated> saves;
     if (place.is_copy()) saves.emplace(kSaveEvery, tried([&] { place.save(); }, kSaveEvery));
     std::vector<StageJob> jobs = unfinished(store, {});
@@ -116,7 +117,7 @@ void work(const WorkOptions& options, Context& context) {
     Progress progress(jobs.size());
     result = run_campaign(store, jobs, options.jobs, progress, {options.threads, 1});
   }
-  tell();
+  report_task();
   place.finish();
   report(result, context);
   if (stop_requested()) {

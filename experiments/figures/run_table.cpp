@@ -23,7 +23,7 @@ using nlohmann::json;
 /// The source of the cells of a row.
 struct Row {
   const SelectedRun* selected = nullptr;
-  const CheckpointRecord* checkpoint = nullptr;  // null for a run that was not begun
+  const CheckpointRecord* checkpoint = nullptr;  // null for a run that was not started
   std::optional<Measures> measures = {};
   const FigureRun* history = nullptr;  // for onsets; null for a run that is not a shear
 };

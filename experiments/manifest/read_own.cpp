@@ -37,7 +37,7 @@ void read_where(const Entry& in, json& where) {
   const Field* field = find_field(in.key.text);
   if (field == nullptr) return in.reject_unknown(parameters());
   if (!field->identity.distinguishes_runs()) {
-    return in.reject_key("does not tell runs apart", "Name a parameter that does.");
+    return in.reject_key("does not distinguish runs", "Name a parameter that does.");
   }
   if (where.contains(in.key.text)) return in.reject_key("is stated twice", "State it once.");
   if (auto read = read_parameter(*field, in)) where[in.key.text] = std::move(*read);

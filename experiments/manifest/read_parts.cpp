@@ -188,7 +188,7 @@ Sweep read_sweep(const Entry& in) {
     } else if (entry.key.text == "zip") {
       sweep.zip = read_axes(entry, true);
     } else if (find_field(entry.key.text) != nullptr) {
-      entry.reject_key("must stand under `grid` or `zip`", remedy);
+      entry.reject_key("must be under `grid` or `zip`", remedy);
     } else {
       entry.reject_unknown(kinds);
     }

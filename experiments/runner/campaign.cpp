@@ -123,7 +123,7 @@ class Campaign {
         const std::size_t held = count(JobState::held);
         if (held == 0 && (count(JobState::waiting) == 0 || count(JobState::running) == 0)) break;
         if (held > 0) {
-          tell_waiting(held);
+          show_waiting(held);
           changed_.wait_for(lock, kLook);
         } else {
           changed_.wait(lock);
@@ -141,9 +141,9 @@ class Campaign {
     changed_.notify_all();
   }
 
-  void tell_waiting(std::size_t held) {
-    if (count(JobState::running) > 0 || held == told_held_) return;
-    told_held_ = held;
+  void show_waiting(std::size_t held) {
+    if (count(JobState::running) > 0 || held == shown_held_) return;
+    shown_held_ = held;
     std::set<std::string> holders;
     for (const Lease& lease : store_.leases()) holders.insert(describe(lease.holder));
     progress_.note(
@@ -222,7 +222,7 @@ class Campaign {
         progress_.drop(job.id);
         if (++states_[j].losses > kMostLosses && !held_by_another(job.id)) {
           note(job, &CampaignResult::blocked,
-               "it cannot be begun; `shearcell verify` may tell why");
+               "it cannot be started; `shearcell verify` may show why");
           return JobState::ended;
         }
         return put_off(j);
@@ -269,7 +269,7 @@ class Campaign {
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   std::vector<Job> states_;
-  std::size_t told_held_ = 0;
+  std::size_t shown_held_ = 0;
   CampaignResult result_;
   std::exception_ptr error_;
 };

@@ -36,7 +36,7 @@ std::string_view first_characters(std::string_view text, std::size_t count);
 
 /// fmt::print of untrusted texts.
 template <typename... Arguments>
-void tell(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+void print_escaped(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   const std::string text = fmt::format(format, std::forward<Arguments>(arguments)...);
   fmt::print("{}", for_terminal(text));
 }
@@ -45,9 +45,9 @@ void tell(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
 /// or a full disk must not end a campaign.
 void write_stderr(std::string_view text) noexcept;
 
-/// `tell` on standard error, by write_stderr.
+/// `print_escaped` on standard error, by write_stderr.
 template <typename... Arguments>
-void tell_stderr(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+void print_escaped_stderr(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   write_stderr(for_terminal(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Made-up numbers and runs, for figures and statistics with known results.
+// Synthetic numbers and runs, for figures and statistics with known results.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains at any places of a cell of any shape, as a property draws them (tests/property.hpp).
+// Random grains in random cells, for properties (tests/property.hpp).
 #pragma once
 
 #include <cmath>

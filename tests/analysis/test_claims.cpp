@@ -43,14 +43,14 @@ Runs group(std::size_t runs, double gain, double excess = 0, std::uint64_t first
 
 const Claim equal = {"equal", 0.001};
 
-TEST(Scalars, AtACycleOrOverSeveral) {
+TEST(Scalars, AtOneCycleOrOverSeveral) {
   const FigureRun run = rising(1, 0.62);
   EXPECT_NEAR(over_cycles("phi", &Measures::phi, 10, 10).of(run).value, 0.63, 1e-12);
   EXPECT_NEAR(early_phi().of(run).value, 0.628, 1e-12);
   EXPECT_EQ(over_cycles("phi", &Measures::phi, 10, 10).name, "phi at cycle 10");
 }
 
-TEST(Scalars, SayWhyARunHasNone) {
+TEST(Scalars, ReportWhyARunHasNone) {
   FigureRun run = rising(1, 0.62, 0, 0, 14);
   EXPECT_EQ(early_phi().of(run).missing, Missing::too_short);
   run = rising(1, 0.62, 0, 0, 16);
@@ -108,7 +108,7 @@ TEST(Compare, RelativeDifferences) {
               0.05, 1e-12);
 }
 
-TEST(Compare, MissingCheckpointsShortRunsAndFewRunsAreThreeSentences) {
+TEST(Compare, ReportsMissingCheckpointsShortRunsAndTooFewRuns) {
   const Runs b = group(8, 0, 0, 11);
   Runs a = group(8, 0);
   a[0].checkpoints.resize(10);
@@ -132,7 +132,7 @@ TEST(Compare, MissingCheckpointsShortRunsAndFewRunsAreThreeSentences) {
             "there are no such runs, or they differ in another swept parameter too");
 }
 
-TEST(Compare, PairsMustHoldMostRuns) {
+TEST(Compare, PairsMustIncludeMostRuns) {
   const Runs a = group(8, 0);
   Runs b = group(8, 0);
   for (std::size_t k = 5; k < 8; ++k) b[k] = group(8, 0, 0, 11)[k];

@@ -46,7 +46,7 @@ TEST(ConvexCell, NothingLeft) {
   EXPECT_EQ(cell.measure(areas), 0);
 }
 
-TEST(ConvexCell, RefusesMorePlanesThanItsTablesHold) {
+TEST(ConvexCell, RejectsMorePlanesThanItCanHold) {
   ConvexCell cell;
   cell.reset(cube(2));
   std::mt19937_64 random(1);

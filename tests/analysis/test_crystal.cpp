@@ -162,7 +162,7 @@ double share(const Packing& p, shearcell::Lattice wanted) {
   return of_lattice / count;
 }
 
-TEST(CommonNeighbours, PerfectAndShakenLatticesAreClassifiedAsKnown) {
+TEST(CommonNeighbours, PerfectAndShakenLatticesAreClassifiedCorrectly) {
   const std::pair<test::Lattice, shearcell::Lattice> known[] = {
       {Lattice::fcc, shearcell::Lattice::fcc},
       {Lattice::hcp, shearcell::Lattice::hcp},
@@ -176,7 +176,7 @@ TEST(CommonNeighbours, PerfectAndShakenLatticesAreClassifiedAsKnown) {
   }
 }
 
-TEST(CommonNeighbours, APackingWithoutOrderHasHardlyAny) {
+TEST(CommonNeighbours, ADisorderedPackingHasHardlyAny) {
   const Packing p = jammed(2000, true, 0.05, 3);
   EXPECT_GT(share(p, shearcell::Lattice::none), 0.97);
 }

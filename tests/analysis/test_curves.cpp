@@ -148,7 +148,7 @@ TEST(OwnPlot, AgainstAParameterComparesTheLastCycleThatAllRunsHave) {
       has(caption_of("A title", result.tables), "At cycle 2, the last that all runs have."));
 }
 
-TEST(OwnPlot, AgainstOneOfSeveralKeysThatAdvanceTogetherIsOneCurve) {
+TEST(OwnPlot, AgainstOneKeyOfAZipIsOneCurve) {
   std::vector<FigureRun> runs;
   for (const double drag : {0.001, 0.002}) {
     runs.push_back(rising_run("still", 1, 3, drag));
@@ -169,7 +169,7 @@ FigureRun crystallizing(double drag, std::uint64_t seed, int first, int cycles) 
   return run;
 }
 
-TEST(OwnPlot, AndClaimOfTheOnsetOfEachRun) {
+TEST(OwnPlot, OfTheOnsetOfEachRunWithAClaim) {
   std::vector<FigureRun> runs;  // the critical size is 16 grains
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     runs.push_back(crystallizing(0.001, seed, 2 * static_cast<int>(seed), 60));
@@ -219,7 +219,7 @@ TEST(OwnPlot, OfRunsThatEndBeforeItsCycleIsEmpty) {
   }
 }
 
-TEST(OwnClaim, IsDecidedAsThoseOfTheSupplement) {
+TEST(OwnClaim, IsDecidedLikeThoseOfTheSupplement) {
   ClaimSpec claim{
       .name = "own", .compare = "phi", .first = 1, .last = 2, .between = {}, .margin = 0.5};
   const nlohmann::json soft = {{"fluid", "still"}, {"drag_kg_per_s", 0.001}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results come back from what is kept bit by bit, and change only together with analysis_version.
+// Cached results are restored bit by bit, and change only together with analysis_version.
 #include "analysis/derived_measures.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ Measures read_scalars(const nlohmann::json& result) {
   return measures;
 }
 
-TEST(DerivedMeasures, EveryScalarComesBackBitByBit) {
+TEST(DerivedMeasures, EveryScalarIsRestoredBitByBit) {
   const Analysis analysis = pinned_analysis();
   const Measures& m = analysis.measures;
   const nlohmann::json kept = derived_measure("scalars").from({analysis});
@@ -65,7 +65,7 @@ TEST(DerivedMeasures, EveryScalarComesBackBitByBit) {
       << "a scalar has no entry";
 }
 
-TEST(DerivedMeasures, EveryKindOfNumberComesBack) {
+TEST(DerivedMeasures, EveryKindOfNumberIsRestored) {
   for (const double x : {0.1, -0.0, 1e-320, 1.7976931348623157e308, 1.0 / 3, 65504.0,
                          std::numeric_limits<double>::infinity()}) {
     const auto back = decode_result(encode_result(nlohmann::json(x))).get<double>();
@@ -74,7 +74,7 @@ TEST(DerivedMeasures, EveryKindOfNumberComesBack) {
   EXPECT_TRUE(std::isnan(decode_result(encode_result(nlohmann::json(std::nan("")))).get<double>()));
 }
 
-TEST(DerivedMeasures, CrystallitesComeBackBitByBit) {
+TEST(DerivedMeasures, CrystallitesAreRestoredBitByBit) {
   const Analysis analysis = pinned_analysis();
   const CrystalliteMap& map = analysis.crystallites;
   ASSERT_FALSE(map.grain.empty());
@@ -92,7 +92,7 @@ TEST(DerivedMeasures, CrystallitesComeBackBitByBit) {
   }
 }
 
-TEST(DerivedMeasures, CrystallitesThatDoNotFitTogetherAreRefused) {
+TEST(DerivedMeasures, InconsistentCrystallitesAreRejected) {
   const nlohmann::json good = derived_measure("crystallites").from({pinned_analysis()});
   for (const char* key : {"grain", "label", "size", "centre_d", "width_d"}) {
     nlohmann::json bad = good;
@@ -121,7 +121,7 @@ TEST(DerivedMeasures, CrystallitesThatDoNotFitTogetherAreRefused) {
   EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a cell without width";
 }
 
-TEST(DerivedMeasures, OtherBytesAreRefused) {
+TEST(DerivedMeasures, OtherBytesAreRejected) {
   EXPECT_THROW(decode_result({}), AnalysisError);
   const std::vector<std::byte> broken(3, std::byte{0xff});
   EXPECT_THROW(decode_result(broken), AnalysisError);

@@ -214,7 +214,7 @@ TEST_F(Plot, SameTableSameSvgAndPdf) {
 }
 
 // Names of variants may hold what is special in gnuplot, and a comma where two parameters vary.
-TEST_F(Plot, EveryFigureIsDrawnWithFewRunsAndWithNone) {
+TEST_F(Plot, EveryFigureIsDrawnWithFewRunsAndWithoutRuns) {
   std::vector<FigureRun> few = two_variants();
   few[0].variant = "it's_{odd}^`echo`";
   few[1].variant = few[2].variant = "gravity_m_per_s2=0,amplitude_rad=0.04";
@@ -230,13 +230,13 @@ TEST_F(Plot, EveryFigureIsDrawnWithFewRunsAndWithNone) {
   }
 }
 
-TEST_F(Plot, ABadScriptSaysWhatGnuplotSaid) {
+TEST_F(Plot, ReportsTheErrorOfGnuplot) {
   FigureTable table = s2(two_variants())[0];
   table.chart.series[0].colour = "'no such colour";
   EXPECT_TRUE(has(trouble_with(table), "could not draw S2a"));
 }
 
-TEST_F(Plot, MissingGnuplotNamesThePackageAndKeepsTheDataAndNoOlderDrawing) {
+TEST_F(Plot, WithoutGnuplotNamesThePackageKeepsDataAndDeletesOldDrawings) {
   const fs::path svg = draw(s2(two_variants())[0]);
   convert_to_pdf(svg);
   const Variable nowhere("PATH", "/nonexistent");
@@ -245,7 +245,7 @@ TEST_F(Plot, MissingGnuplotNamesThePackageAndKeepsTheDataAndNoOlderDrawing) {
   EXPECT_FALSE(fs::exists(fs::path(svg).replace_extension(".pdf")));
 }
 
-TEST_F(Plot, NamesThatAreNoFileNamesAreRefused) {
+TEST_F(Plot, RejectsNamesThatAreNotFileNames) {
   FigureTable table;
   for (const char* name : {"", "../x", "a b", "a'b", "-d"}) {
     table.name = name;

@@ -99,7 +99,7 @@ TEST(GrowthFit, FindsTheCurveThatMadeTheCounts) {
   }
 }
 
-TEST(GrowthFit, NoneWithoutATurn) {
+TEST(GrowthFit, IsMissingWithoutATurn) {
   const auto fit = [](const GrowthBySize& counts) { return fit_growth(std::vector{counts}); };
   EXPECT_FALSE(fit({{3, {0, 9, 0}}}).has_value()) << "all shrink";
   EXPECT_FALSE(fit({{3, {4, 9, 0}}}).has_value()) << "one size";
@@ -135,7 +135,7 @@ TEST(CriticalSize, IntervalComesFromTheRuns) {
 }
 
 // An unbounded end would leave the whole band out of the drawing.
-TEST(FittedDeltaRho, IsUnknownWhereManySelectionsHaveNoFit) {
+TEST(FittedDeltaRho, IsUnknownIfManySelectionsHaveNoFit) {
   std::vector<GrowthBySize> runs(5, GrowthBySize{{3, {0, 9, 0}}, {9, {0, 4, 0}}});
   runs[0] = logistic_growth(15, 2);
   const Estimate band = fitted_delta_rho(runs, 15).value();
@@ -157,7 +157,7 @@ TEST(MonotoneCriticalSize, IsWhereTheShareThatGrowsPassesAHalf) {
   EXPECT_NEAR(monotone_critical_size(runs)->value, 15, 1.1);
 }
 
-TEST(GrowthRates, OfBinsLeaveOutWhatIsRarelySeen) {
+TEST(GrowthRates, OfBinsLeaveOutRareSizes) {
   const GrowthBySize counts = {{1, {1, 9, 0}}, {2, {2, 4, 0}}, {8, {4, 2, 0}}, {50, {1, 0, 0}}};
   const std::vector<GrowthRate> bins = growth_rates(std::vector{counts}, 10);
   ASSERT_EQ(bins.size(), 2U);

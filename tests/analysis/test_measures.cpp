@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All measures of one packing together, and what none may depend on: where the periodic seam is,
-// and which way a crystal is turned.
+// All measures of one packing. None depends on where the periodic seam is or on the orientation of
+// a crystal.
 #include "analysis/measures.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ TEST(Measures, PerfectCrystal) {
   EXPECT_EQ(a.measures.largest_crystallite, a.measures.interior_grains);
 }
 
-TEST(Measures, RefuseACellInWhichAGrainWouldTouchItsImage) {
+TEST(Measures, RejectACellInWhichAGrainTouchesItsImage) {
   Packing p = lattice(Lattice::fcc, 3);
   for (const double depth : {1e-6, 0.9, std::nan("")}) {
     p.cell.depth = depth;
@@ -53,7 +53,7 @@ void move_along_z(Packing& p) {
   }
 }
 
-PROPERTY(Measures, DoNotSeeThePeriodicSeam, 250) {
+PROPERTY(Measures, DoNotDependOnThePeriodicSeam, 250) {
   Packing p = any_points();
   const Analysis a = analyse(p.cell, p.pose, p.grains);
   for (std::size_t i = 0; i < a.grains.interior.size(); ++i) {

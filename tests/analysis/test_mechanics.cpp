@@ -100,7 +100,7 @@ TEST(Mechanics, TheTemperatureIsThatOfTheFluctuations) {
               1e-12);
 }
 
-TEST(Mechanics, AGrainThatNothingHoldsIsARattler) {
+TEST(Mechanics, AGrainWithoutSupportIsARattler) {
   constexpr int n = 7;
   Checkpoint checkpoint = squeezed_lattice(n, 0.01);
   const Eigen::Matrix3Xd all = checkpoint.state.position;
@@ -228,7 +228,7 @@ TEST(Mechanics, EqualsSumsOverAllPairs) {
   }
 }
 
-TEST(Mechanics, ComesBackBitByBitAndInSIUnits) {
+TEST(Mechanics, IsRestoredBitByBitAndInSIUnits) {
   const Analysis found = analyse(checkpoint_of(jammed(300, true, 0, 5)));
   const nlohmann::json kept = derived_measure("mechanics").from({found});
   EXPECT_EQ(kept.size() * sizeof(double), sizeof(Mechanics)) << "a member is not kept";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Displacements and D^2_min of motions that are known.
+// Displacements and D^2_min of known motions.
 #include "analysis/motion.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace shearcell::test {
 namespace {
 
-TEST(Motion, ACellThatIsOnlyShearedMovesNoGrain) {
+TEST(Motion, IsZeroInACellThatIsOnlySheared) {
   const Packing p = jammed(400, false, 0, 1);
   const Checkpoint upright = checkpoint_of(p);
   Checkpoint tilted = upright;

@@ -48,7 +48,7 @@ TEST(NucleusPlaces, AreSharesOfTheCell) {
   EXPECT_EQ(nucleus_places(run, CellAxis::y), (std::vector<double>{0.25, 1}));
 }
 
-TEST(NucleusBirths, OneThatIsFollowedCountsOnce) {
+TEST(NucleusBirths, CountAFollowedNucleusOnce) {
   // 20 grains that were seen, and 15 others.
   const CrystalliteMap two = map_with({grain_ids(0, 20), grain_ids(30, 15)}, {0, 20, 0});
   const FigureRun run =
@@ -101,7 +101,7 @@ std::vector<Ruling> rulings(std::span<const FigureRun> runs) {
   return all;
 }
 
-TEST(FigureS7, JudgesPlacesWhoseTruthIsKnown) {
+TEST(FigureS7, DecidesCorrectlyForKnownPlaces) {
   const auto even = [](double u) { return u; };
   const auto in_one_spot = [](double u) { return 0.45 + 0.1 * u; };
   const auto near_the_top = [](double u) { return std::sqrt(u); };
@@ -174,7 +174,7 @@ TEST(SizeExponent, OfTwoSizesIsTheSlopeBetweenTheirRates) {
 }
 
 // phi rises to 0.648 over 40 cycles and the rate with it; the interval holds the true exponent.
-TEST(SizeExponent, IsThatOfRunsMadeWithIt) {
+TEST(SizeExponent, IsRecoveredFromSimulatedRuns) {
   for (const double exponent : {1.0, 2.0 / 3}) {
     std::vector<FigureRun> runs;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -212,7 +212,7 @@ TEST(SizeExponent, NeedsTwoSizesAtOnePhi) {
 }
 
 // By one onset of six small runs, and none.
-TEST(SizeExponent, OnsetsInLargeCellsAloneGiveNone) {
+TEST(SizeExponent, IsMissingWithOnsetsInLargeCellsAlone) {
   std::vector<FigureRun> runs;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     runs.push_back(waiting(1000, seed, seed == 1 ? 9 : 0, 30));
@@ -256,7 +256,7 @@ TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
 }
 
 // In the core the small cells are denser and have a smaller share of the grains.
-TEST(FigureNucleationCore, CountsTheGrainsOfTheCoreAtTheirPhi) {
+TEST(FigureNucleationCore, UsesTheGrainsAndThePhiOfTheCore) {
   std::vector<FigureRun> runs;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     const int onset = static_cast<int>(1 + seed * 7 % 60);
@@ -280,7 +280,7 @@ TEST(FigureNucleationCore, CountsTheGrainsOfTheCoreAtTheirPhi) {
 }
 
 // A cell of 1000 grains has next to no core.
-TEST(NucleationRate, LeavesOutTimeWithoutAPhi) {
+TEST(NucleationRate, LeavesOutTimeWithoutPhi) {
   std::vector<FigureRun> runs = {waiting(1000, 1, 10, 30)};
   EXPECT_TRUE(nucleation_rates(pointers(runs), Region::core).empty()) << "it was not measured";
   for (CheckpointMeasures& c : runs[0].checkpoints) {

@@ -61,7 +61,7 @@ TEST(OnsetBySlope, IsTheSteepestPoint) {
 }
 
 // Two checkpoints are too few for a slope, though the largest crystallite is critical in one.
-TEST(OnsetBySlope, UnclearWithoutAWindow) {
+TEST(OnsetBySlope, IsUnclearWithoutAWindow) {
   FigureRun run = logistic(0.646);
   run.checkpoints = {run.checkpoints[0], run.checkpoints[60]};
   const RunOnset found = onset_by_slope(run, 16);

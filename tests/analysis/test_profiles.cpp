@@ -104,7 +104,7 @@ TEST(Depth, ASmallCellHasNoCore) {
   EXPECT_TRUE(std::isnan(none.phi));
 }
 
-TEST(Sensitivity, AtTheChosenCriteriaIsWhatIsMeasured) {
+TEST(Sensitivity, AtTheChosenCriteriaEqualsTheMeasure) {
   Packing p = lattice(Lattice::fcc, 5);
   jitter(p, 0.012, 3);
   const Checkpoint checkpoint = checkpoint_of(p);

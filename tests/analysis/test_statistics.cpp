@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Errors, intervals and numbers of runs compared with closed forms and tables. Survival: the
 // remission times of Freireich et al., Blood 21, 699 (1963), whose Kaplan-Meier estimate and
-// log-rank statistic are in every textbook of survival analysis; scaled copies.
+// log-rank statistic are in every textbook of survival analysis; and scaled copies of these times.
 #include "analysis/statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST(Bootstrap, OfAMeanIsItsStandardError) {
   EXPECT_EQ(bootstrap_of_mean(values), bootstrap_of_mean(values));
 }
 
-TEST(Bootstrap, CoversTheTrueMeanAsOftenAsItSays) {
+TEST(Bootstrap, CoversTheTrueMeanAsOftenAsStated) {
   constexpr std::uint32_t samples = 400;
   constexpr std::size_t runs = 8;
   const double limit = student_quantile(0.97725, runs - 1);
@@ -65,7 +65,7 @@ double half_length(const Estimate& estimate) {
   return (estimate.interval.high - estimate.interval.low) / 2;
 }
 
-TEST(Quantiles, AreThoseOfTheTables) {
+TEST(Quantiles, AgreeWithTables) {
   EXPECT_NEAR(student_quantile(0.95, 3), 2.353363, 1e-6);
   EXPECT_NEAR(student_quantile(0.95, 5), 2.015048, 1e-6);
   EXPECT_NEAR(normal_quantile(0.95), 1.644854, 1e-6);
@@ -103,7 +103,7 @@ TEST(Bootstrapped, HasTheLengthOfStudentsIntervalForAMean) {
   }
 }
 
-TEST(Bootstrapped, InfiniteValuesMoveTheirEndAlone) {
+TEST(Bootstrapped, InfiniteValuesMoveOneEndOnly) {
   const std::vector<double> values = {0, 0, 0, 1, 1, 1};
   const auto half = [&](std::span<const std::size_t> selection) -> std::optional<double> {
     const auto mean = mean_over(values)(selection);
@@ -138,7 +138,7 @@ double coverage_of_bootstrap(std::size_t runs) {
   return static_cast<double>(covered) / samples;
 }
 
-TEST(Bootstrapped, CoversTheTrueMeanAsOftenAsItSaysOrHasNoInterval) {
+TEST(Bootstrapped, CoversTheTrueMeanAsOftenAsStatedOrHasNoInterval) {
   for (const std::size_t runs : {2U, 3U, 4U}) EXPECT_TRUE(std::isnan(coverage_of_bootstrap(runs)));
   for (const std::size_t runs : {5U, 6U, 8U}) {
     const double share = coverage_of_bootstrap(runs);

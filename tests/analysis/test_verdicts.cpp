@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Verdicts at their thresholds, and those of figures whose truth is known.
+// Verdicts at their thresholds, and verdicts of figures from synthetic runs with a known answer.
 #include "analysis/verdict.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(Verdict, IsDecidedByIntervalAndMargin) {
   EXPECT_EQ(decide({"c", 2}, "q", std::nullopt, 0, "").ruling, undecided);
 }
 
-TEST(Verdict, SaysHowManyRunsWouldDecide) {
+TEST(Verdict, StatesHowManyRunsWouldDecide) {
   const auto needed = [](const Estimate& estimate) {
     return decide({"c", 2}, "q", estimate, estimate.runs, "").runs_needed;
   };
@@ -56,7 +56,7 @@ TEST(Verdict, SaysHowManyRunsWouldDecide) {
 }
 
 // Both sides together would say 36 runs, the longer one alone says more than there are.
-TEST(Verdict, NeedsMoreRunsThanItHasWhereOneSideOfTheIntervalIsLong) {
+TEST(Verdict, NeedsMoreRunsIfOneSideOfTheIntervalIsLong) {
   Estimate skewed = between(0.98, 2.05, 40, 2);
   skewed.value = 1;
   EXPECT_LE(runs_to_resolve(skewed, 1, false).value(), 40U);
@@ -128,7 +128,7 @@ Rulings rulings(const char* figure, std::span<const FigureRun> runs) {
   return found;
 }
 
-TEST(Comparisons, FindWhatDiffersAndNothingElse) {
+TEST(Comparisons, FindOnlyRealDifferences) {
   const auto fluids = [](double speed) {
     return rulings("S2", two_groups("fluid", "still", "cell", 6, speed, 0));
   };
@@ -207,7 +207,7 @@ TEST(FigureWalls, RoughOnesDelayCrystallization) {
   EXPECT_EQ(rulings("walls", walls(8, 60, 80, 0.651)), (Rulings{agrees, differs, agrees}));
 }
 
-TEST(FigureChoices, OneThatShowsIsFound) {
+TEST(FigureChoices, FindsAChoiceThatMatters) {
   std::vector<FigureRun> runs;
   const auto add = [&](double mass, double drag, int draw, double speed) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
@@ -247,7 +247,7 @@ void expect_rows(std::span<const FigureRun> runs, std::initializer_list<const ch
   for (const char* row : rows) EXPECT_TRUE(has(csv, row));
 }
 
-TEST(FigureTable1, WhatIsSweptMayDifferAndNothingElse) {
+TEST(FigureTable1, OnlySweptParametersMayDiffer) {
   std::vector<FigureRun> runs = {of_table_1("gravity", "gravity_m_per_s2", 9.81),
                                  of_table_1("gravity", "gravity_m_per_s2", 0.0),
                                  of_table_1("other", "pressure_Pa", 955.0),
@@ -261,7 +261,7 @@ TEST(FigureTable1, WhatIsSweptMayDifferAndNothingElse) {
                "timestep,time_step_s,4.38596491e-05,3.49999125e-05,3.49999125e-05,1,varied\n"});
 }
 
-TEST(FigureTable1, AStiffeningVariesTheSpringsAndHasNoTime) {
+TEST(FigureTable1, AStiffeningVariesTheSpringsAndHasNoTimeStep) {
   FigureRun run = of_table_1("spring_constant", "protocol", "stiffen");
   for (const char* key : {"period_s", "steps_per_cycle"}) run.parameters.erase(key);
   run.checkpoints.back().stiffness_N_per_m = 65400;
@@ -291,7 +291,7 @@ std::vector<FigureRun> stiffened(std::size_t systems, double fall, double drift)
   return runs;
 }
 
-TEST(FigureS1, PhiStaysWherePhiUFalls) {
+TEST(FigureS1, PhiIsConstantWhilePhiUFalls) {
   EXPECT_EQ(rulings("S1", stiffened(3, 0.012, 0.0015)), (Rulings{agrees, agrees}));
   EXPECT_EQ(rulings("S1", stiffened(3, 0.035, 0.0025)), (Rulings{differs, differs}));
   EXPECT_EQ(rulings("S1", stiffened(2, 0.02, 0)), (Rulings{undecided, undecided}));

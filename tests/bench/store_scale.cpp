@@ -70,7 +70,7 @@ void sync_one_page(const fs::path& path) {
   close(file);
 }
 
-void tell(const char* what, double value, const char* unit, double limit) {
+void print_time(const char* what, double value, const char* unit, double limit) {
   fmt::print("{:<52} {:9.3f} {:<3} (limit {:g}{})\n", what, value, unit, limit,
              value < limit ? "" : ": OVER");
 }
@@ -78,8 +78,9 @@ void tell(const char* what, double value, const char* unit, double limit) {
 void measure(const fs::path& folder, int runs, int checkpoints) {
   std::vector<double> took = fill(folder, runs, checkpoints);
   std::sort(took.begin(), took.end());
-  tell("recording a checkpoint, file and syncs, median", 1e3 * took[took.size() / 2], "ms", 20);
-  tell("the same, 99th percentile", 1e3 * took[took.size() * 99 / 100], "ms", 20);
+  print_time("recording a checkpoint, file and syncs, median", 1e3 * took[took.size() / 2], "ms",
+             20);
+  print_time("the same, 99th percentile", 1e3 * took[took.size() * 99 / 100], "ms", 20);
 
   std::vector<double> each, plain;
   {
@@ -93,23 +94,23 @@ void measure(const fs::path& folder, int runs, int checkpoints) {
   }
   std::sort(each.begin(), each.end());
   std::sort(plain.begin(), plain.end());
-  tell("appending an event, with its syncs, median", 1e3 * each[150], "ms", 20);
-  tell("the same, 99th percentile", 1e3 * each[297], "ms", 20);
+  print_time("appending an event, with its syncs, median", 1e3 * each[150], "ms", 20);
+  print_time("the same, 99th percentile", 1e3 * each[297], "ms", 20);
   fmt::print("{:<52} {:9.3f} ms\n", "  one write and fsync of 4 kB at the same time, median",
              1e3 * plain[150]);
 
-  tell("status: open, all runs, who holds them", slowest_of_three([&] {
-         const Store store(folder, Access::read);
-         require(store.runs().size() == static_cast<std::size_t>(runs), "the runs");
-         require(store.leases().empty(), "no leases");
-       }),
-       "s", 0.5);
+  print_time("status: open, all runs, who holds them", slowest_of_three([&] {
+               const Store store(folder, Access::read);
+               require(store.runs().size() == static_cast<std::size_t>(runs), "the runs");
+               require(store.leases().empty(), "no leases");
+             }),
+             "s", 0.5);
 
-  tell("verify: the chain alone", slowest_of_three([&] {
-         sqlite::Database database = open_database(folder / "store.sqlite", Access::read);
-         require(!EventLog(database).verify_chain(), "the chain");
-       }),
-       "s", 2);
+  print_time("verify: the chain alone", slowest_of_three([&] {
+               sqlite::Database database = open_database(folder / "store.sqlite", Access::read);
+               require(!EventLog(database).verify_chain(), "the chain");
+             }),
+             "s", 2);
 
   VerifyReport report;
   const double all = slowest_of_three([&] { report = Store(folder, Access::read).verify(); });
@@ -119,10 +120,10 @@ void measure(const fs::path& folder, int runs, int checkpoints) {
       if (entry.is_regular_file()) sha256_hex(test::read_bytes(entry.path()));
     }
   });
-  tell("verify: chain, tables and every file hashed", all, "s", 2 + reading);
+  print_time("verify: chain, tables and every file hashed", all, "s", 2 + reading);
   fmt::print("{:<52} {:9.3f} s\n", "  of which reading and hashing the files alone takes", reading);
 
-  tell("rebuild", slowest_of_three([&] { Store(folder, Access::write).rebuild(); }), "s", 5);
+  print_time("rebuild", slowest_of_three([&] { Store(folder, Access::write).rebuild(); }), "s", 5);
   require(Store(folder, Access::read).verify().ok(), "the store after rebuild");
   fmt::print("{} events, {} checkpoints ({:.0f} MB), log {:.1f} MB\n", report.events,
              report.checkpoints, static_cast<double>(report.bytes) * 1e-6,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `submit` and `work` as a user meets them where there is no Slurm, or one that refuses.
+// `submit` and `work` without Slurm, and with a Slurm that rejects jobs.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -43,7 +43,7 @@ echo $((99 + $(/usr/bin/wc -l < jobs)))
   const Variable path_{"PATH", programs_.path()};
 };
 
-TEST_F(Submit, ShowsAllWithoutSlurmAndWritesNothing) {
+TEST_F(Submit, ADryRunNeedsNoSlurmAndWritesNothing) {
   const auto before = listing();
   expect(
       0, {"submit", manifest_, "--seeds", "3", "--time", "2:00:00", "--dry-run"},
@@ -58,7 +58,7 @@ TEST_F(Submit, ShowsAllWithoutSlurmAndWritesNothing) {
   EXPECT_EQ(listing(), before);
 }
 
-TEST_F(Submit, RefusesAFolderThatIsNoStoreAsPlanDoes) {
+TEST_F(Submit, RejectsAFolderThatIsNotAStoreAsPlanDoes) {
   std::filesystem::create_directory(path("papers"));
   write("papers/draft.txt", "");
   const Outcome plan = run({"plan", manifest_, "--store", "papers"});
@@ -68,13 +68,13 @@ TEST_F(Submit, RefusesAFolderThatIsNoStoreAsPlanDoes) {
   EXPECT_EQ(submit.err, plan.err);
 }
 
-TEST_F(Submit, SaysWhatToDoWithoutSlurm) {
+TEST_F(Submit, NamesARemedyWithoutSlurm) {
   const auto before = listing();
   expect(1, {"submit", manifest_}, {"sbatch is not installed here", "--dry-run"});
   EXPECT_EQ(listing(), before) << "something was written";
 }
 
-TEST_F(Submit, RefusesWhatSlurmWouldMisread) {
+TEST_F(Submit, RejectsPathsThatSlurmWouldMisread) {
   for (const Arguments& words :
        {Arguments{"--partition", "a b"}, Arguments{"--account", "x\n#SBATCH --uid=0"},
         Arguments{"--time", "soon"}, Arguments{"--time", "2", "--warn", "90"},
@@ -86,7 +86,7 @@ TEST_F(Submit, RefusesWhatSlurmWouldMisread) {
   expect(2, {"submit", manifest_, "--dry-run", "--time", "2"}, {"120 s leave no time"});
 }
 
-TEST_F(Submit, QueuesBothJobsOnceAndKnowsThemAfterwards) {
+TEST_F(Submit, QueuesBothJobsOnceAndRecordsThem) {
   slurm_that_works();
   const auto said = json({"submit", manifest_, "--seeds", "2", "--json"});
   const std::string id = said.at("submission");
@@ -111,7 +111,7 @@ TEST_F(Submit, QueuesBothJobsOnceAndKnowsThemAfterwards) {
   EXPECT_EQ(more.at("left_out"), 4);
 }
 
-TEST_F(Submit, LeavesNothingOfASubmissionThatSlurmRefused) {
+TEST_F(Submit, LeavesNothingOfARejectedSubmission) {
   slurm_that_works();
   program(
       "sbatch",
@@ -122,7 +122,7 @@ TEST_F(Submit, LeavesNothingOfASubmissionThatSlurmRefused) {
   EXPECT_FALSE(json({"submit", manifest_, "--json"}).at("submission").is_null()) << "and goes on";
 }
 
-TEST_F(Submit, FoldsWhatNoJobFoldedAndSubmitsTheRest) {
+TEST_F(Submit, FoldsUnfoldedTasksAndSubmitsTheRest) {
   slurm_that_works();
   const auto said = json({"submit", manifest_, "--seeds", "2", "--json"});
   const std::string folder = said.at("folder");
@@ -144,7 +144,7 @@ TEST_F(Submit, TasksRunWhatWasSubmitted) {
   expect(0, {"work", "--store", folder + "/task-1", "-j", "2"});
 }
 
-TEST_F(Submit, ASlashBehindTheStoreOfATaskChangesNothing) {
+TEST_F(Submit, ATrailingSlashChangesNothing) {
   const std::string folder = submitted();
   fs::create_directory(path("scratch"));
   expect(0, {"work", "--store", folder + "/task-1/", "--scratch", path("scratch").string()});
@@ -152,7 +152,7 @@ TEST_F(Submit, ASlashBehindTheStoreOfATaskChangesNothing) {
   EXPECT_FALSE(fs::exists(folder + "/task-1/.progress.json"));
 }
 
-TEST_F(Submit, WorkStopsWhenItIsWarnedHoweverOftenAndGoesOn) {
+TEST_F(Submit, WorkStopsAfterAnyNumberOfWarningsAndContinues) {
   const std::string task = submitted({"--cycles", "16"}) + "/task-1";
   const Running worker = start_beside({"work", "--store", task, "-j", "2"}, "worker");
   wait_for_objects(4, task);
@@ -165,7 +165,7 @@ TEST_F(Submit, WorkStopsWhenItIsWarnedHoweverOftenAndGoesOn) {
   EXPECT_EQ(hashes(task), hashes("here"));
 }
 
-TEST_F(Submit, WorkOnScratchBringsEverythingBack) {
+TEST_F(Submit, WorkOnScratchCopiesEverythingBack) {
   const std::string folder = submitted({"--cycles", "16"});
   const std::string task = folder + "/task-1";
   fs::create_directory(path("scratch"));
@@ -189,7 +189,7 @@ TEST_F(Submit, WorkOnScratchBringsEverythingBack) {
   EXPECT_EQ(hashes(task), hashes("here"));
 }
 
-TEST_F(Submit, WorkLeavesFailedRunsAlone) {
+TEST_F(Submit, WorkDoesNotRepeatFailedRuns) {
   // No contact may overlap by this little: each run fails as soon as it is looked at.
   manifest_ = write("f.yaml", tiny_manifest("  max_overlap_diameters: 1.0e-6\n"));
   const std::string task = submitted() + "/task-1";
@@ -197,8 +197,8 @@ TEST_F(Submit, WorkLeavesFailedRunsAlone) {
   expect(3, {"work", "--store", task, "--leave-failed"}, {"nothing is left to compute"});
 }
 
-// Beside a task's store lies what others put there.
-TEST_F(Submit, ProgressFilesAreNeitherWaitedForNorFollowed) {
+// Others may have put files beside a task's store.
+TEST_F(Submit, IgnoresPipesAndLinksInPlaceOfProgressFiles) {
   const fs::path task = submitted() + "/task-1";
   const fs::path progress = task.string() + ".progress.json";
   ASSERT_EQ(mkfifo(progress.c_str(), 0600), 0);
@@ -212,7 +212,7 @@ TEST_F(Submit, ProgressFilesAreNeitherWaitedForNorFollowed) {
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(progress)));
 }
 
-TEST_F(Submit, AQueueThatDoesNotAnswerIsNotWaitedForLong) {
+TEST_F(Submit, GivesUpOnAQueueThatDoesNotAnswer) {
   submitted();
   program("squeue", "exec /bin/sleep 600\n");
   expect(0, {"status"}, {"squeue did not answer within 15 s"});
@@ -220,7 +220,7 @@ TEST_F(Submit, AQueueThatDoesNotAnswerIsNotWaitedForLong) {
 
 // What the tasks measured is not measured again; the checkpoint at the last cycle asked for ends a
 // run without being measured.
-TEST_F(Submit, KeptMeasuresComeAlong) {
+TEST_F(Submit, CopiesCachedMeasuresToo) {
   manifest_ = write("u.yaml", tiny_manifest("", "until: {phi: 0.9, extra_cycles: 0}\n"));
   const std::string task = submitted() + "/task-1";
   expect(0, {"work", "--store", task});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scripts, run by bash with stand-ins for the program and for Slurm: what they make of signals
-// and exit codes, and of paths that a shell could misread.
+// The job scripts, run by bash with stand-ins for the program and for Slurm: signals, exit codes,
+// and paths that a shell could misread.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -34,7 +34,7 @@ const std::vector<std::string> kHostileNames = {"plain",
                                                 "{a,b}",
                                                 "~"};
 
-TEST(Quoting, MeansTheTextItselfToAShell) {
+TEST(Quoting, GivesTheTextItselfInAShell) {
   for (const std::string& text : kHostileNames) {
     for (const char* shell : {"sh", "bash"}) {
       const auto said =
@@ -45,7 +45,7 @@ TEST(Quoting, MeansTheTextItselfToAShell) {
   }
 }
 
-TEST(Paths, ThatSlurmWouldMisreadAreRefused) {
+TEST(Paths, ThatSlurmWouldMisreadAreRejected) {
   for (const std::string& text : kHostileNames) EXPECT_EQ(unfit_path("/" + text), "");
   for (const char* text : {"/a\nb", "/a\\b", "/a\tb", "/a\x7f", "/\x1b[31m"}) {
     EXPECT_NE(unfit_path(text), "") << text;
@@ -53,7 +53,7 @@ TEST(Paths, ThatSlurmWouldMisreadAreRefused) {
   EXPECT_EQ(output_pattern("/100%j/%", "task-%a.log"), "/100%%j/%%/task-%a.log");
 }
 
-TEST(Values, HoldNothingThatEndsADirective) {
+TEST(Values, CannotEndADirective) {
   for (const char* text : {"long", "a,b", "gpu:2", "--mem=4G", "user@host.org", "2-12:00:00"}) {
     EXPECT_EQ(unfit_value(text), "");
   }
@@ -62,7 +62,7 @@ TEST(Values, HoldNothingThatEndsADirective) {
   }
 }
 
-TEST(TimeLimit, IsReadAsSlurmReadsIt) {
+TEST(TimeLimit, IsReadAsBySlurm) {
   EXPECT_EQ(slurm_seconds("90"), 5400);
   EXPECT_EQ(slurm_seconds("1:30"), 90);
   EXPECT_EQ(slurm_seconds("1:02:03"), 3723);
@@ -137,7 +137,7 @@ TEST_F(JobScript, EndsWithTheProgramsCode) {
   }
 }
 
-TEST_F(JobScript, QueuesItsOwnTaskAgainOnlyWhenItsTimeIsOverAndWorkIsLeft) {
+TEST_F(JobScript, RequeuesItsTaskOnlyAfterATimeoutWithWorkLeft) {
   const std::string wait = "while :; do sleep 0.05; done";
   struct Case {
     std::string program;
@@ -155,7 +155,7 @@ TEST_F(JobScript, QueuesItsOwnTaskAgainOnlyWhenItsTimeIsOverAndWorkIsLeft) {
   }
 }
 
-TEST_F(JobScript, PassesOnASignalThatComesWhileTheProgramStarts) {
+TEST_F(JobScript, ForwardsASignalWhileTheProgramStarts) {
   for (const char* signal : {"USR1", "TERM"}) {
     std::string script = task_of("trap 'exit 85' USR1 TERM; while :; do sleep 0.05; done");
     const std::string start = "  program=$!\n";
@@ -169,14 +169,14 @@ TEST_F(JobScript, PassesOnASignalThatComesWhileTheProgramStarts) {
   }
 }
 
-TEST_F(JobScript, BeginsAKilledProgramAgainAFewTimes) {
+TEST_F(JobScript, RestartsAKilledProgramAFewTimes) {
   EXPECT_EQ(run_task("[ \"$(grep -c work \"$SAID\")\" -ge 3 ] && exit 0; kill -KILL $$"), 0);
   EXPECT_EQ(calls(), work() + work(" --leave-failed") + work(" --leave-failed")) << messages_;
   EXPECT_EQ(run_task("kill -KILL $$"), 137);
   EXPECT_EQ(calls().size(), 4 * work().size() + 3 * std::string(" --leave-failed").size());
 }
 
-TEST_F(JobScript, LeavesFailedRunsAloneWhenItWasQueuedAgain) {
+TEST_F(JobScript, DoesNotRepeatFailedRunsAfterARequeue) {
   EXPECT_EQ(run_task("exit 0", "2"), 0);
   EXPECT_EQ(calls(), work(" --leave-failed"));
 }
@@ -190,7 +190,7 @@ TEST_F(JobScript, WorksOnScratch) {
   EXPECT_TRUE(has(calls(), "--scratch\n" + options.scratch + "\n"));
 }
 
-TEST_F(JobScript, FoldsEveryTaskEvenWhenOneCannotBe) {
+TEST_F(JobScript, FoldsTheOtherTasksIfOneCannotBeFolded) {
   executable("shearcell", "echo \"shearcell $*\" >> \"$SAID\"\n[[ $2 != *task-2 ]] || exit 4\n");
   EXPECT_EQ(run_script(fold_script({}, places(), 3)), 4);
   std::string expected;
@@ -201,7 +201,7 @@ TEST_F(JobScript, FoldsEveryTaskEvenWhenOneCannotBe) {
   EXPECT_EQ(calls(), expected);
 }
 
-TEST(Directives, SayWhatWasAskedFor) {
+TEST(Directives, HaveTheRequestedValues) {
   JobOptions options;
   options.partition = "long";
   options.account = "group";

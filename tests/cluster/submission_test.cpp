@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sharing out: every run once, packings settled once, the same every time, nobody much busier.
-// Stores for tasks, folding them, and the events that record it; without Slurm.
+// Runs are distributed over tasks: each run once, each packing once, always the same way, with
+// about equal work. Stores of tasks, folding them, and the events that record this; without Slurm.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TEST_F(Submitted, TasksComputeTheirSharesAndTheirStoresFoldIntoTheWhole) {
   EXPECT_TRUE(unfinished_submissions(store_).empty());
 }
 
-TEST_F(Submitted, ATaskGoesOnFromWhatTheStoreHolds) {
+TEST_F(Submitted, ATaskContinuesFromTheStore) {
   const Submission first = submit(shares(1));
   for (std::size_t task = 1; task <= 2; ++task) {
     Store own = store_of(first, task);
@@ -84,7 +84,7 @@ TEST_F(Submitted, ATaskGoesOnFromWhatTheStoreHolds) {
   }
 }
 
-TEST_F(Submitted, AreOpenWhileACompletedRunLacksCheckpoints) {
+TEST_F(Submitted, HaveWorkLeftWhileACompletedRunLacksCheckpoints) {
   const std::string text = tiny_manifest("  cycles: 4\n");
   compute(store_, text + "checkpoints: {every_cycles: 2}\n");
   const Manifest manifest = parse_manifest(text, "tiny.yaml");
@@ -99,7 +99,7 @@ TEST_F(Submitted, AreOpenWhileACompletedRunLacksCheckpoints) {
   EXPECT_EQ(store_.checkpoints(sheared(store_).id).size(), 5U);
 }
 
-TEST_F(Submitted, TasksEndRunsWhereUntilSays) {
+TEST_F(Submitted, TasksEndRunsByUntil) {
   const std::string text = tiny_manifest("", "until: {phi: 0.1, extra_cycles: 1}\n");
   const Manifest manifest = parse_manifest(text, "tiny.yaml");
   const Plan plan = expand(manifest);
@@ -154,7 +154,7 @@ TEST(Proposed, LeavesOutBundlesThatAreBusyAndGivesACoreToEachRun) {
   EXPECT_EQ(few.job.cpus, 1U);
 }
 
-TEST_F(Submitted, TwoAtOnceAreToldApart) {
+TEST_F(Submitted, TwoAtOnceAreDistinguished) {
   const auto parts = shares();
   const std::size_t seen = store_.events(kSubmissions).size();
   const Submission one = prepare_submission(store_, parts, nlohmann::json::object(), seen);
@@ -165,7 +165,7 @@ TEST_F(Submitted, TwoAtOnceAreToldApart) {
   EXPECT_TRUE(fs::exists(one.folder(store_.folder())));
 }
 
-TEST_F(Submitted, IsReadBackFromTheLog) {
+TEST_F(Submitted, CanBeReadFromTheLog) {
   const Submission made = submit(shares());
   store_.record_submission("JobQueued",
                            {{"submission", made.id}, {"job", "17"}, {"fold_job", "18"}});
@@ -180,7 +180,7 @@ TEST_F(Submitted, IsReadBackFromTheLog) {
   EXPECT_TRUE(unfinished_submissions(store_).empty()) << "it is not of this folder";
 }
 
-TEST_F(Submitted, RefusesAnEventThatNamesAPathOrHasNoTasks) {
+TEST_F(Submitted, RejectsAnEventThatNamesAPathOrHasNoTasks) {
   for (const char* id : {"../../../x", "0123456789ab"}) {
     Store store(folder_.path() / std::to_string(id[0]), Access::create);
     store.record_submission("CampaignSubmitted", {{"submission", id}});
@@ -220,7 +220,7 @@ TEST(Described, NamesTheArrayWhileOnlyTheFoldingJobWaits) {
   EXPECT_TRUE(describe(made).starts_with("submission 0123456789ab: job 17, 1 running of 4"));
 }
 
-TEST(TaskReport, ComesBackAndIsNotTrusted) {
+TEST(TaskReport, IsReturnedAndValidated) {
   const TemporaryFolder folder;
   const fs::path task = folder.path() / "task-1";
   EXPECT_TRUE(read_task_report(task).empty());
@@ -259,7 +259,7 @@ TEST(WorkLeft, BundlesRunsByTheirPacking) {
   }
 }
 
-TEST(WorkLeft, TakesARunOfTwoManifestsOnceAndAtItsLongerLength) {
+TEST(WorkLeft, HasARunOfTwoManifestsOnceAtItsLongerLength) {
   const std::string both = tiny_manifest("", kBothFluids);
   std::vector<Plan> two = plans(both, of(2));
   const auto shorter = work_left(two, nullptr);
@@ -285,7 +285,7 @@ TEST(WorkLeft, HasTheCheckpointsOfEveryManifestThatSharesARun) {
   EXPECT_TRUE(work_left(both, &store).empty());
 }
 
-TEST(WorkLeft, LeavesOutWhatTheStoreHolds) {
+TEST(WorkLeft, LeavesOutFinishedWork) {
   const TemporaryFolder folder;
   Store store(folder.path() / "store", Access::create);
   const std::string text = tiny_manifest("", kBothFluids);
@@ -300,7 +300,7 @@ TEST(WorkLeft, LeavesOutWhatTheStoreHolds) {
   EXPECT_NEAR(longer[0].particle_steps, 2 * 3.0 * kStepsPerCycle * kGrains, 1);
 }
 
-TEST(Proposed, TakesTheRateOfTheEngineOfEachStage) {
+TEST(Proposed, UsesTheRateOfEachStagesEngine) {
   const auto seconds = [](const std::string& engine) {
     const auto made =
         propose(plans(tiny_manifest("  engine: " + engine + "\n"), of(1)), nullptr, {}, 1, {});
@@ -339,7 +339,7 @@ TEST(SharingOut, GivesEveryRunToOneTaskWithItsPacking) {
   }
 }
 
-TEST(SharingOut, GoesRoundWhenAllCostTheSame) {
+TEST(SharingOut, TakesTurnsIfAllCostTheSame) {
   const std::vector<Share> bundles = {bundle("p", 3), bundle("q", 3), bundle("r", 3),
                                       bundle("s", 3)};
   const auto shares = share_out(bundles, 2);
@@ -353,7 +353,7 @@ TEST(SharingOut, BalancesTimeNotSteps) {
   EXPECT_EQ(shares[1].packings, (std::vector<std::string>{"fast", "q"}));
 }
 
-TEST(SharingOut, LeavesNoTaskEmptyWhenNothingCostsAnything) {
+TEST(SharingOut, LeavesNoTaskEmptyIfNothingCosts) {
   const auto shares = share_out({bundle("p", 0), bundle("q", 0), bundle("r", 0)}, 3);
   for (const Share& share : shares) EXPECT_EQ(share.packings.size(), 1U);
   EXPECT_TRUE(share_out({}, 5).empty());

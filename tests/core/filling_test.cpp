@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cell and the loose grains that every run begins with.
+// The cell and the loose grains that every run starts from.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -125,7 +125,7 @@ TEST(Filling, CellsOfAnyShapeHoldTheGrainsAtTheNominalFraction) {
   }
 }
 
-TEST(Filling, RefusesWhatCannotBe) {
+TEST(Filling, RejectsImpossibleCells) {
   Geometry sparse = of(600);
   sparse.fill_packing_fraction = 1e-300;
   EXPECT_THROW(make_cell(sparse, 1), GeometryError);  // and not an endless placement
@@ -139,7 +139,7 @@ TEST(Filling, RefusesWhatCannotBe) {
   test::expect_refused<GeometryError>([&] { fill_cell(low, flat, 1); }, {"height_over_width"});
 }
 
-TEST(Filling, IsGivenUpWhenTheCallerAsks) {
+TEST(Filling, StopsIfTheCallerAsks) {
   struct GivenUp {};
   int looks = 0;
   const auto third = [&] {

@@ -182,7 +182,7 @@ TEST(NeighbourLists, OfACollapsedCellAreTheSameInAllKernels) {
   }
 }
 
-TEST(Reference, AnAffineShearAloneMovesNothing) {
+TEST(Reference, AnAffineShearIsNoMotion) {
   Cell cell;
   cell.width = cell.depth = cell.top = 10;
   const Points points = random_points(64, cell, wall_pose(cell, 0, 0), 3);

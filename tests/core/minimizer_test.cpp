@@ -123,7 +123,7 @@ TEST(Minimizer, APackingEndsAtALocalMinimumOfTheEnthalpy) {
   }
 }
 
-TEST(Minimizer, FailsWhenTheToleranceIsOutOfReach) {
+TEST(Minimizer, FailsIfTheToleranceIsUnreachable) {
   const auto& [cell, start] = small_packing();
   const Scene scene = table_1();
   Simulation simulation(cell, scene, start);
@@ -135,13 +135,13 @@ TEST(Minimizer, FailsWhenTheToleranceIsOutOfReach) {
 }
 
 // The forces of grains at one place are not numbers, and no other force is over the tolerance.
-TEST(Minimizer, FailsWhenGrainsAreAtOnePlace) {
+TEST(Minimizer, FailsIfGrainsAreAtOnePlace) {
   const Cell cell = open_cell();
   EXPECT_THROW(minimized(cell, only_contacts(), at_rest({{9, 9, 9}, {9, 9, 9}}, cell)),
                NumericalFailure);
 }
 
-TEST(Simulation, GoesOnFromAStateThatWasSet) {
+TEST(Simulation, ContinuesFromASetState) {
   const auto& [cell, start] = small_packing();
   const Scene scene = table_1();
   Simulation straight(cell, scene, start);
@@ -159,7 +159,7 @@ TEST(Simulation, GoesOnFromAStateThatWasSet) {
 }
 
 // With a drag of 2/dt a step keeps nothing of the velocity: v' = dt F / 2.
-TEST(Simulation, ForcesAreThoseThatAStepFeels) {
+TEST(Simulation, ForcesAreThoseOfAStep) {
   const auto& [cell, rest] = small_packing();
   const Scene scene = table_1();
   const State start = shaken(rest, 1e-2, 0);

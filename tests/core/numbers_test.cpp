@@ -92,7 +92,7 @@ TEST(ContactLaw, FactorIsAccurateToAFewUnitsInTheLastPlace) {
   EXPECT_LT(worst, 17) << "in units of 2^-53";
 }
 
-TEST(ContactLaw, SeriesMeetsTheClosedForm) {
+TEST(ContactLaw, SeriesJoinsTheClosedForm) {
   const double below = contact_factor(kSeriesEnd);
   const double above = contact_factor(std::nextafter(kSeriesEnd, 1));
   EXPECT_NEAR(below, above, 1e-14 * below);

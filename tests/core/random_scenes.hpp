@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small cells, forces, drives and engines as a property draws them (tests/property.hpp).
+// Random small cells, forces, drives and engines, for properties (tests/property.hpp).
 #pragma once
 
 #include "tests/core/scenes.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The same bits whatever the instructions, the lists, the threads and the compiler.
+// The same bits with any instructions, lists, threads and compiler.
 #include <gtest/gtest.h>
 
 #include "tests/core/golden.hpp"

@@ -31,7 +31,7 @@ TEST(FreeFall, ReachesTheTerminalVelocityOfStokesDrag) {
   EXPECT_NEAR(simulation.state().velocity(1, 0), -scene.gravity / scene.drag_rate, 1e-9);
 }
 
-TEST(Fluid, CarriesALoneGrainAlong) {
+TEST(Fluid, CarriesASingleGrain) {
   // m v' = -b (v - U cos(w t)): amplitude U b / sqrt(b^2 + w^2), and the phase lags.
   Scene scene = only_contacts();
   scene.drag_rate = 64;

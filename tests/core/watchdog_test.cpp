@@ -27,7 +27,7 @@ TEST(Watchdog, StopsNotANumber) {
 }
 
 // A wall whose height is NaN touches nothing, so no other check fails.
-TEST(Watchdog, StopsAWallThatIsNowhere) {
+TEST(Watchdog, StopsAWallWithoutAFinitePosition) {
   for (const bool height : {true, false}) {
     State state = at_rest({{20, 20, 20}}, open_cell());
     (height ? state.wall_height : state.wall_velocity) = std::nan("");
@@ -83,7 +83,7 @@ TEST(Watchdog, StopsOverlapsOverTheLimitBeforeTheFirstStep) {
 
 // Drag hides the instability: at 1.3 times 2/sqrt(8 k/m) the grains vibrate without end, with
 // plausible overlaps and speeds.
-TEST(Watchdog, StopsATimeStepThatDragKeepsFromBlowingUp) {
+TEST(Watchdog, StopsAnUnstableTimeStepThatDragHides) {
   const auto& [cell, start] = pressed(300, 9000);
   Scene scene = table_1();
   scene.time_step = 1.3 * 2 / std::sqrt(8 * scene.stiffness);
@@ -124,7 +124,7 @@ TEST(Watchdog, BoundsAPairByItsOwnFrequency) {
   EXPECT_NEAR(failure_of(open_cell(), scene, state).limit, limit, 1e-12 * limit);
 }
 
-TEST(Simulation, StopsGrainsSlowerThanAnyPositionCanTell) {
+TEST(Simulation, ZeroesVelocitiesTooSmallToMoveAGrain) {
   Scene scene = only_contacts();
   State state = at_rest({{10, 20, 20}, {20, 20, 20}, {30, 20, 20}}, open_cell());
   state.velocity.col(0) << 1e-310, -1e-320, 0;
@@ -140,7 +140,7 @@ TEST(Simulation, StopsGrainsSlowerThanAnyPositionCanTell) {
   EXPECT_EQ(simulation.state().velocity, state.velocity);
 }
 
-TEST(Simulation, RefusesStatesThatMakeNoSense) {
+TEST(Simulation, RejectsInvalidStates) {
   State state = at_rest({{20, 20, 20}}, open_cell());
   state.velocity.resize(3, 2);
   EXPECT_THROW(Simulation(open_cell(), table_1(), state), std::invalid_argument);

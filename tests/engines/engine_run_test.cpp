@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stages that LAMMPS computes, through the program: recorded like ours, named apart from ours,
+// Stages that LAMMPS computes, through the program: recorded like ours, under other ids, and
 // continued after an interruption.
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ class EngineRun : public ProgramTest {
   }
 };
 
-TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
+TEST_F(EngineRun, IsRecordedBesideOursAndStartsFromTheSamePacking) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   const std::string manifest =
       write("m.yaml", tiny_manifest("", "sweep: {grid: {engine: [shearcell, lammps]}}\n"));
@@ -86,7 +86,7 @@ TEST_F(EngineRun, IsRecordedBesideOursAndFromTheSamePacking) {
   expect(1, {"regenerate", b["checkpoints"][1]["sha256"]}, {"LAMMPS made it"});
 }
 
-TEST_F(EngineRun, EndsWhereUntilSays) {
+TEST_F(EngineRun, EndsByUntil) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   write("m.yaml", tiny_manifest("  cycles: 4\n", "until: {phi: 0.1, extra_cycles: 1}\n"));
   expect(0, {"run", "m.yaml", "--engine", "lammps", "-q"});
@@ -97,7 +97,7 @@ TEST_F(EngineRun, EndsWhereUntilSays) {
   expect(0, {"status"}, {"ended at cycle 1: phi >= 0.1 at cycle 0"});
 }
 
-TEST_F(EngineRun, GoesOnWhereASignalStoppedIt) {
+TEST_F(EngineRun, ContinuesAfterASignal) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   const std::string manifest = write("m.yaml", tiny_manifest("  cycles: 6\n"));
   expect(0, {"run", manifest, "--cycles", "0", "-q"});
@@ -119,7 +119,7 @@ TEST_F(EngineRun, GoesOnWhereASignalStoppedIt) {
   expect(0, {"verify"});
 }
 
-TEST_F(EngineRun, GoesOnAfterAKill) {
+TEST_F(EngineRun, ContinuesAfterAKill) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   const std::string manifest = write("m.yaml", tiny_manifest("  cycles: 4\n"));
   expect(0, {"run", manifest, "--cycles", "0", "-q"});
@@ -140,7 +140,7 @@ TEST_F(EngineRun, GoesOnAfterAKill) {
   expect(0, {"verify"});
 }
 
-TEST_F(EngineRun, SaysThatLammpsIsMissing) {
+TEST_F(EngineRun, ReportsThatLammpsIsMissing) {
   const Variable nowhere("SHEARCELL_LAMMPS", "/no/such/lmp");
   const std::string manifest = write("m.yaml", tiny_manifest());
   expect(1, {"run", manifest, "--engine", "lammps"}, {"Debian package lammps"});
@@ -148,7 +148,7 @@ TEST_F(EngineRun, SaysThatLammpsIsMissing) {
   EXPECT_TRUE(has(run({"plan", manifest, "--engine", "lammps"}).out, "Debian package lammps"));
 }
 
-TEST_F(EngineRun, ThatIsResumedWithoutLammpsIsNotBegun) {
+TEST_F(EngineRun, IsNotResumedWithoutLammps) {
   const Variable nowhere("SHEARCELL_LAMMPS", "/no/such/lmp");
   {
     Store store(path("shearcell-store"), Access::create);
@@ -159,7 +159,7 @@ TEST_F(EngineRun, ThatIsResumedWithoutLammpsIsNotBegun) {
   EXPECT_EQ(sheared(store).state, RunState::declared);
 }
 
-TEST_F(EngineRun, TellsWhatLammpsSaidWhenItFails) {
+TEST_F(EngineRun, ReportsTheErrorOfLammps) {
   const std::string manifest = write("m.yaml", tiny_manifest());
   for (const auto& [body, says] : std::vector<std::pair<std::string, std::string>>{
            {"echo 'ERROR: Lost atoms'; exit 1", "ERROR: Lost atoms"},
@@ -175,7 +175,7 @@ TEST_F(EngineRun, TellsWhatLammpsSaidWhenItFails) {
   expect(0, {"verify"});
 }
 
-TEST_F(EngineRun, RefusesWhatLammpsCannotDo) {
+TEST_F(EngineRun, RejectsWhatLammpsCannotDo) {
   const std::string stiffen = write("s.yaml", tiny_manifest("  protocol: stiffen\n"));
   expect(2, {"plan", stiffen, "--engine", "lammps"},
          {"engine: LAMMPS cannot do the protocol stiffen"});

@@ -51,7 +51,7 @@ TEST(LammpsDeck, RaisesMassesByTheDragAndKeepsWeight) {
                    task.scene.pressure * area + 100 * task.scene.gravity);
 }
 
-TEST(LammpsDeck, HoldsNothingThatTheSceneLacks) {
+TEST(LammpsDeck, LeavesOutWhatTheSceneDoesNotHave) {
   Parameters p = small();
   p.gravity_m_per_s2 = 0;
   p.drag_kg_per_s = 0;
@@ -78,7 +78,7 @@ TEST(LammpsDeck, FollowsTheMovingWall) {
   EXPECT_LT(number_after(top, "variable push equal "), 0) << "the pressure points inwards";
 }
 
-TEST(LammpsDeck, WritesEveryAtomOnceWithAVelocity) {
+TEST(LammpsDeck, WritesEachAtomOnceWithItsVelocity) {
   const LammpsTask task = loose_task(small());
   const std::size_t atoms = 101 + task.cell.wall_grains.size();
   std::istringstream data(lammps_data(task));
@@ -115,7 +115,7 @@ class LammpsFrame : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(LammpsFrame, IsReadInAnyOrder) {
+TEST_F(LammpsFrame, CanBeReadInAnyOrder) {
   const State state = read(frame("3 0 2.5 0 0 -1 0\n2 4 5 -6e-1 7 8 9\n1 1 2 3 4 5 6\n"));
   EXPECT_EQ(state.step, 7U);
   EXPECT_EQ(state.wall_height, 2.5);
@@ -124,7 +124,7 @@ TEST_F(LammpsFrame, IsReadInAnyOrder) {
   EXPECT_EQ(state.velocity.col(0), Eigen::Vector3d(4, 5, 6));
 }
 
-TEST_F(LammpsFrame, IsRefusedWhenItIsNotWhole) {
+TEST_F(LammpsFrame, IsRejectedIfIncomplete) {
   const std::string good = "1 1 2 3 4 5 6\n2 4 5 6 7 8 9\n3 0 2.5 0 0 -1 0\n";
   for (const std::string& text :
        {std::string(), frame(good.substr(0, 20)), frame(good, 4), frame("ITEM: ATOMS\n"),

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a killed run left in the folder for temporary files is deleted at the next start, and
-// nothing else.
+// The temporary files of a killed run are deleted at the next start, and no other files.
 #include "experiments/runner/lammps/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +31,7 @@ class Scratch : public testing::Test {
   const Variable tmpdir_{"TMPDIR", place_.path()};
 };
 
-TEST_F(Scratch, GoesWithItsOwner) {
+TEST_F(Scratch, IsRemovedWithItsOwner) {
   fs::path path;
   {
     const ScratchFolder folder;
@@ -56,7 +55,7 @@ TEST_F(Scratch, OfALivingOwnerStays) {
   EXPECT_TRUE(fs::exists(living.path() / "deck.in"));
 }
 
-TEST_F(Scratch, NothingElseIsTouched) {
+TEST_F(Scratch, NothingElseIsRemoved) {
   const fs::path elsewhere = left_behind("elsewhere");
   const fs::path file = place_.path() / "shearcell-lammps-a_file";
   std::ofstream(file) << "not a folder";

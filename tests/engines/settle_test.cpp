@@ -28,7 +28,7 @@ class LammpsSettling : public testing::Test {
   static Parameters small() { return {.grains = 300}; }
 };
 
-TEST_F(LammpsSettling, TakesOurStepsAtFirst) {
+TEST_F(LammpsSettling, FollowsOurFirstSteps) {
   const bench::Packing loose = bench::loose_packing(small(), 1);
   const LammpsTask task{.cell = loose.cell,
                         .scene = settle_scene(loose.parameters),
@@ -49,7 +49,7 @@ TEST_F(LammpsSettling, TakesOurStepsAtFirst) {
   EXPECT_LT(std::fabs(ours.wall_height - theirs.wall_height), 1e-9);
 }
 
-TEST_F(LammpsSettling, EndsAtAPackingOfTheSameKind) {
+TEST_F(LammpsSettling, GivesASimilarPacking) {
   const bench::Packing loose = bench::loose_packing(small(), 1);
   const Settling ours = settle_by(kOurs, find_lammps(), loose, {});
   const Settling theirs = settle_by(kLammps, find_lammps(), loose, {});
@@ -75,7 +75,7 @@ TEST_F(LammpsSettling, EndsAtAPackingOfTheSameKind) {
 
 // Grains heavier than the pressure on them push the wall down for ever, where no rough side wall
 // holds them.
-TEST_F(LammpsSettling, EndsAtTheTimeLimitWhereAWallNeverRests) {
+TEST_F(LammpsSettling, StopsAtTheTimeLimitIfAWallNeverRests) {
   Parameters heavy = small();
   heavy.gravity_m_per_s2 *= 5;
   heavy.pressure_at = PressureAt::moving_wall;
@@ -121,7 +121,7 @@ TEST_F(SettleCommand, ReportsBoth) {
   }
 }
 
-TEST_F(SettleCommand, SaysWhenThereWasNoTimeToSettle) {
+TEST_F(SettleCommand, ReportsThatTheTimeLimitWasReached) {
   if (!find_program("lmp")) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   expect(3, {"bench", "engines", "--size", "200", "--settle", "--settle-time-limit", "0.2"},
          {"takes to settle"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One packing in our engine and in LAMMPS: after 200 steps under shear every grain and the moving
-// wall are at the same place, whatever the scene. Rounding alone would leave 1e-12 d.
+// wall are at the same place, in every scene. Rounding alone gives 1e-12 d.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +51,7 @@ class LammpsTrajectory : public testing::TestWithParam<Case> {
   }
 };
 
-TEST_P(LammpsTrajectory, IsOurs) {
+TEST_P(LammpsTrajectory, AgreesWithOurs) {
   const LammpsTask task = task_of(GetParam());
   const State theirs = run_lammps(find_lammps(), task, GetParam().ranks).state;
   Simulation simulation(task.cell, task.scene, task.state);
@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"TwoProcesses", [](Parameters& p) { p.fluid = Fluid::cell; }, 2}),
     [](const auto& scene) { return std::string(scene.param.name); });
 
-TEST(LammpsDrag, ExplicitlyErrsByOrderDt) {
+TEST(LammpsDrag, ExplicitDragHasAnErrorOfOrderDt) {
   if (!find_program("lmp")) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   LammpsTask task = task_of({"", [](Parameters&) {}});
   task.added_mass = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `bench` measures: convergence of integrators on closed forms, speed beside the limits of the
-// machine, and outcomes of hard cases; and the overlap that `plan` expects.
+// Results of `bench`: convergence of integrators on closed forms, speed compared with the limits of
+// the machine, and outcomes of hard cases; and the overlap that `plan` predicts.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -28,7 +28,7 @@ const double kStep = kScene.time_step;  // Table I's
 
 // A contact that opens or closes bends the force, and a step over that bend has an error of dt^2 in
 // the velocity: every method is then of second order.
-TEST(Accuracy, OrderIsThatOfTheoryOnEveryClosedForm) {
+TEST(Accuracy, OrderIsThatOfTheoryForEveryClosedForm) {
   for (const ClosedForm& form : closed_forms(kScene, true)) {
     for (const Method& m : methods()) {
       const double order = fitted_order(form, m, kStep);
@@ -77,7 +77,7 @@ TEST(Accuracy, EngineHasTheDispersionOfTheLeapfrog) {
   }
 }
 
-TEST(Overlap, IsWhatAPlanExpects) {
+TEST(Overlap, IsAsAPlanPredicts) {
   struct Case {
     std::uint64_t grains;
     double pressure, stiffness;
@@ -133,7 +133,7 @@ TEST(Speed, NoKernelIsFasterThanTheMachine) {
 }
 
 // A prime number of grains beyond those that the pressure can lift: two packings side by side.
-TEST(Speed, OfAnyNumberOfGrainsBeyondOneColumn) {
+TEST(Speed, OfAPackingRepeatedAlongTheDepth) {
   const bench::SpeedResult result = bench::measure_speed({.sizes = {18211},
                                                           .threads = {1},
                                                           .repeats = 1,
@@ -152,7 +152,7 @@ TEST(HardCases, HaveUniqueNamesAndExpectations) {
   }
 }
 
-TEST(HardCases, AreReportedWhateverTheyEndIn) {
+TEST(HardCases, AreReportedHoweverTheyEnd) {
   using stability::Answer;
   const auto outcome_of = [](std::function<Answer()> run, double seconds = 60) {
     return stability::compute_apart({"", "", "", std::move(run)}, seconds);
@@ -182,7 +182,7 @@ TEST(HardCases, AreReportedWhateverTheyEndIn) {
   }
 }
 
-TEST(HardCases, RefuseAnUnknownName) {
+TEST(HardCases, RejectAnUnknownName) {
   using stability::unknown_case;
   EXPECT_EQ(unknown_case("vacancy"), "");
   EXPECT_EQ(unknown_case("limit"), "") << "four begin so";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A campaign computes every stage once, in any order and with any number of workers, and what is
-// asked for later is added to what is there.
+// A campaign computes every stage once, in any order and with any number of workers. Later requests
+// add to what is stored.
 #include "experiments/runner/campaign.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST_F(CampaignTest, DeclaresParentsFirstAndEachStageOnce) {
   EXPECT_EQ(store_.head().hash, head.hash) << "declaring again recorded something";
 }
 
-TEST_F(CampaignTest, NamesWhatTellsPackingsApart) {
+TEST_F(CampaignTest, NamesPackingsByTheirDifferences) {
   const auto names = [](const std::vector<StageJob>& jobs) {
     std::set<std::string> found;
     for (const StageJob& job : jobs) found.insert(job.name);
@@ -116,7 +116,7 @@ TEST_F(CampaignTest, ExtendsARunWithoutRepeatingAStep) {
   EXPECT_EQ(compute(store_, tiny_manifest(), {.cycles = 2}).already, 2U);
 }
 
-TEST_F(CampaignTest, ResumesWhatIsAskedForWithItsPacking) {
+TEST_F(CampaignTest, ResumesARequestedRunWithItsPacking) {
   const std::vector<StageJob> all = declared(store_, tiny_manifest("", "seeds: 2\n"));
   ASSERT_EQ(all.size(), 4U);
   const StageJob& wanted = all[3];
@@ -133,7 +133,7 @@ TEST_F(CampaignTest, ResumesWhatIsAskedForWithItsPacking) {
   EXPECT_THROW(unfinished(store_, {""}), NotFound) << "an empty prefix fits every run";
 }
 
-TEST_F(CampaignTest, TakesZeroCyclesAsThePackingAlone) {
+TEST_F(CampaignTest, ZeroCyclesGiveThePackingAlone) {
   compute(store_, tiny_manifest(), {.cycles = 0});
   const RunRecord run = sheared(store_);
   EXPECT_EQ(run.state, RunState::completed);
@@ -179,8 +179,8 @@ TEST_F(CampaignTest, ADenserCadenceAddsTheCheckpointsInBetween) {
   EXPECT_TRUE(missing_checkpoints(both, both.run(run)).empty());
 }
 
-// An experiment whose last cycle is no multiple of its cadence has a checkpoint there, whichever of
-// the experiments that share the run comes first.
+// An experiment whose last cycle is not a multiple of its cadence has a checkpoint there, whichever
+// of the experiments that share the run comes first.
 TEST_F(CampaignTest, EachExperimentHasACheckpointAtItsLastCycle) {
   const std::string every = "checkpoints: {every_cycles: 2}\n";
   const std::string brief = tiny_manifest("  cycles: 3\n") + every;
@@ -201,7 +201,7 @@ TEST_F(CampaignTest, EachExperimentHasACheckpointAtItsLastCycle) {
 }
 
 // Stores that computed parts of one campaign, merged, are the store that computed all of it.
-TEST_F(CampaignTest, OfThreeMachinesIsWholeOnceMergedAndGoesOn) {
+TEST_F(CampaignTest, MergedFromThreeMachinesIsCompleteAndContinues) {
   const std::string text = tiny_manifest("", kBothFluids);
   const auto store_at = [&](const char* name) { return folder_.path() / name; };
   ExpandOptions two_seeds{.seeds = 2};

@@ -15,7 +15,7 @@ class CommandLineLineage : public ProgramTest {
   }
 };
 
-TEST_F(CommandLineLineage, ShowsAFigureWithoutCuttingItInAPipe) {
+TEST_F(CommandLineLineage, ShowsAFigureUncutInAPipe) {
   // The manifest's 2 cycles were overridden.
   const Outcome shown = expect(0, {"show", "tiny/S2"},
                                {"m.yaml", "experiment: tiny", "  cycles: 2",
@@ -44,7 +44,7 @@ TEST_F(CommandLineLineage, ShowsAFigureWithoutCuttingItInAPipe) {
 }
 
 // As a store from elsewhere may hold them.
-TEST_F(CommandLineLineage, ShowsNamesOfTheLogEscaped) {
+TEST_F(CommandLineLineage, EscapesNamesFromTheLog) {
   const std::string name = "S2\x1b[2J\u202e";
   {
     Store store(path("shearcell-store"), Access::write);
@@ -59,7 +59,7 @@ TEST_F(CommandLineLineage, ShowsNamesOfTheLogEscaped) {
   EXPECT_FALSE(has(shown.out, "\u202e"));
 }
 
-TEST_F(CommandLineLineage, JudgesAPublishedFile) {
+TEST_F(CommandLineLineage, ChecksAPublishedFile) {
   expect(0, {"show", "out/tiny/S2a.csv"}, {"matches", "4 checkpoints, all present and right"});
   const nlohmann::json all = json({"show", "out/tiny/S2a.csv", "--json"});
   EXPECT_EQ(all.at("check").at("verdict"), "matches");

@@ -70,7 +70,7 @@ TEST_F(CommandLineTable, HasARowForEachValueOfACurve) {
   expect_refused({"table", "--curve", "structure_factor", "--per", "run"}, {});
 }
 
-TEST_F(CommandLineTable, KnowsTheMotionOverTheCycleBefore) {
+TEST_F(CommandLineTable, HasTheMotionOverThePreviousCycle) {
   const nlohmann::json rows = table({"--variant", "fluid=cell"});
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_TRUE(rows[0].at("msd_1_cycle_d2").is_null()) << "cycle 0 has none before it";
@@ -80,7 +80,7 @@ TEST_F(CommandLineTable, KnowsTheMotionOverTheCycleBefore) {
   EXPECT_GE(rows[1].at("cna_crystalline_percent"), 0);
 }
 
-TEST_F(CommandLineTable, LosesNothingThatWasMeasuredBeforeAPrune) {
+TEST_F(CommandLineTable, KeepsValuesMeasuredBeforeAPrune) {
   fs::remove_all(path("shearcell-store"));
   campaign(tiny_manifest("", kBothFluids), {"--cycles", "4"});
   const nlohmann::json before = table({});
@@ -97,7 +97,7 @@ TEST_F(CommandLineTable, LosesNothingThatWasMeasuredBeforeAPrune) {
   }
 }
 
-TEST_F(CommandLineTable, HasRowsAtPhasesWhichExportFinds) {
+TEST_F(CommandLineTable, AndExportHaveThePhases) {
   fs::remove_all(path("shearcell-store"));
   campaign(tiny_manifest("", "checkpoints: {phases: [0.333333]}\n"), {"--cycles", "1"});
   const nlohmann::json rows = table({});
@@ -111,7 +111,7 @@ TEST_F(CommandLineTable, HasRowsAtPhasesWhichExportFinds) {
   expect(2, {"export", id, "--cycles", "0.3", "--to", "extxyz", "--out", "other"});
 }
 
-TEST_F(CommandLineTable, CallsVariantsByTheLabelsOfTheNewestManifest) {
+TEST_F(CommandLineTable, UsesTheLabelsOfTheNewestManifest) {
   write("labelled.yaml",
         tiny_manifest("", kBothFluids + "labels: {\"fluid=still\": \"water at rest\"}\n"));
   expect(0, {"run", "labelled.yaml", "--cycles", "1"});
@@ -130,7 +130,7 @@ TEST_F(CommandLineTable, CallsVariantsByTheLabelsOfTheNewestManifest) {
   EXPECT_TRUE(in_table.contains("water at rest"));
 }
 
-TEST_F(CommandLineTable, SaysWhereAnEditedManifestHasFewerCyclesThanTheStore) {
+TEST_F(CommandLineTable, ReportsThatAnEditedManifestHasFewerCyclesThanTheStore) {
   expect(0, {"run", "m.yaml", "--cycles", "2", "-q"});
   write("m.yaml", read_bytes(path("m.yaml")) + "# edited\n");
   expect(0, {"run", "m.yaml", "--cycles", "1", "-q"});
@@ -175,7 +175,7 @@ TEST_F(CommandLineTable, ANumberOfGrainsIsAParameter) {
   }
 }
 
-TEST_F(CommandLineTable, WritesTheSameAsCsvOverItsOwnFilesOnly) {
+TEST_F(CommandLineTable, OverwritesOnlyItsOwnCsvFiles) {
   const Outcome printed = expect(0, {"table", "--per", "run"}, {"\ntiny,,fluid=cell,"});
   EXPECT_TRUE(
       printed.out.starts_with("experiment,scale,variant,run,seed,grains,fluid,cycle,checkpoint,"))
@@ -209,7 +209,7 @@ TEST_F(CommandLineTable, SelectsRuns) {
   expect_refused({"status", "--state", "lost"}, {"lost"});
 }
 
-TEST_F(CommandLineTable, EstimatesWhatIsLeft) {
+TEST_F(CommandLineTable, EstimatesTheRemainingWork) {
   EXPECT_TRUE(json({"status", "--json"}).at("estimate").is_null());
   write("longer.yaml", tiny_manifest("  cycles: 4000\n", kBothFluids));
   const Outcome stopped = run_until({"run", "longer.yaml", "-q"}, 8, SIGINT);
@@ -226,7 +226,7 @@ TEST_F(CommandLineTable, EstimatesWhatIsLeft) {
   }
 }
 
-TEST_F(CommandLineTable, ExportsSelectedRunsWholeOrNotAtAll) {
+TEST_F(CommandLineTable, ExportsSelectedRunsCompletelyOrNotAtAll) {
   const std::set<std::string> before = listing();
   const nlohmann::json done =
       json({"export", "--experiment", "tiny", "--to", "extxyz", "--out", "all", "--json"});
@@ -244,7 +244,7 @@ TEST_F(CommandLineTable, ExportsSelectedRunsWholeOrNotAtAll) {
   expect_refused({"export", id, "--to", "extxyz", "--out", ""}, {"--out: names no file or folder"});
   expect_refused({"report", "--out", ""}, {"--out: names no file or folder"});
 
-  // Killed by the limit on files' sizes, and told by write() as if the disk were full.
+  // The limit on file sizes kills it, or makes write() fail as on a full disk.
   for (const std::string trap : {"", "trap '' XFSZ; "}) {
     for (const std::string format : {"extxyz", "h5md", "vtk", "lammps"}) {
       const Outcome cut =

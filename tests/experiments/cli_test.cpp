@@ -29,7 +29,7 @@ TEST_F(CommandLine, EverySubcommandHasHelpWithAnExample) {
   EXPECT_TRUE(listing().empty());
 }
 
-TEST_F(CommandLine, RefusesWhatItDoesNotKnow) {
+TEST_F(CommandLine, RejectsUnknownOptions) {
   expect_refused({}, {"subcommand"});
   expect_refused({"shake"}, {"shake"});
   expect_refused({"plam", kDrag}, {"not expected: plam ", "the nearest is plan"});
@@ -50,7 +50,7 @@ TEST_F(CommandLine, RefusesWhatItDoesNotKnow) {
 }
 
 // The messages are tested with the manifests; here, that the program prints them.
-TEST_F(CommandLine, RefusesABadManifestBeforeItWritesAnything) {
+TEST_F(CommandLine, RejectsABadManifestBeforeItWritesAnything) {
   const auto manifests = bad_manifests(SHEARCELL_TEST_DATA);
   for (const char* name : {"several", "terminal_escape", "alias_bomb"}) {
     const auto& [text, message] = manifests.at(name);
@@ -65,14 +65,14 @@ TEST_F(CommandLine, RefusesABadManifestBeforeItWritesAnything) {
   expect_refused({"run", write("good.yaml", tiny_manifest()), "bad.yaml"}, {"is out of range"});
 }
 
-TEST_F(CommandLine, TakesTheStoreThatIsNamedElseThatOfTheEnvironment) {
+TEST_F(CommandLine, UsesTheNamedStoreOrThatOfTheEnvironment) {
   name_store("from-environment");
   expect_refused({"status"}, {"from-environment"});
   const Outcome named = expect(2, {"status", "--store", "named"}, {"named"});
   EXPECT_FALSE(has(named.err, "from-environment"));
 }
 
-TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {
+TEST_F(CommandLine, RejectsAnUnknownFigureOrRun) {
   campaign(tiny_manifest(), {"--cycles", "0"});
   expect_refused({"figures", "S99"}, {"there is no figure S99"});
   const std::string no_scale = "no run of the store has scale paper";
@@ -84,11 +84,11 @@ TEST_F(CommandLine, RefusesAnUnknownFigureOrRun) {
   expect_refused({"resume", "zzz"}, {"no run"});
 }
 
-TEST_F(CommandLine, FindsARunByAUniqueBeginning) {
+TEST_F(CommandLine, FindsARunByAUniquePrefix) {
   campaign(tiny_manifest(), {"--cycles", "0", "--seeds", "9"});
   std::vector<std::string> ids;
   for (const auto& [id, hash] : hashes()) ids.push_back(id);  // sorted
-  ASSERT_EQ(ids.size(), 18U);  // more than there are hexadecimal digits: two begin alike
+  ASSERT_EQ(ids.size(), 18U);  // more than hexadecimal digits, so two have the same first digit
   const auto twin = std::adjacent_find(ids.begin(), ids.end(),
                                        [](const auto& a, const auto& b) { return a[0] == b[0]; });
   ASSERT_NE(twin, ids.end());

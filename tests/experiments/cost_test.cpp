@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `plan` says a campaign will cost against what it then costs.
+// The cost of a campaign by `plan`, compared with its real cost.
 #include "experiments/runner/cost.hpp"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ TEST(Cost, CountsCheckpoints) {
   EXPECT_NEAR(stage_cost(loops, loops.last, 1).bytes, 3 * file, 1e-6 * file);
 }
 
-TEST(Cost, OfStiffeningIsThatOfTheSpringConstantsLeft) {
+TEST(Cost, OfStiffeningCountsTheRemainingSpringConstants) {
   const PlannedRun run = only_run(tiny_manifest("  protocol: stiffen\n"));
   const StageCost all = stage_cost(run, run.last, 0);
   EXPECT_GT(all.particle_steps, 0);
@@ -120,7 +120,7 @@ void expect_bounded(const std::string& text) {
   }
 }
 
-TEST(Cost, OfEveryValueInItsRangeIsBoundedOrRefused) {
+TEST(Cost, OfEveryAllowedValueIsFiniteOrRejected) {
   const std::vector<std::string> others = {"walls: rough",        "walls: smooth",
                                            "protocol: paused",    "protocol: stiffen",
                                            "gravity_m_per_s2: 0", "grains: 100"};
@@ -146,7 +146,7 @@ TEST(Cost, ADurationIsAlwaysReadable) {
 
 using CostOfARun = StoreTest;
 
-TEST_F(CostOfARun, IsNearWhatDiskAndSettlingTurnOutToBe) {
+TEST_F(CostOfARun, IsNearTheMeasuredDiskSpaceAndSettlingTime) {
   for (const char* texture : {"rough", "smooth"}) {
     const std::string text =
         tiny_manifest("  grains: 600\n  walls: " + std::string(texture) + "\n");
@@ -165,7 +165,7 @@ TEST_F(CostOfARun, IsNearWhatDiskAndSettlingTurnOutToBe) {
   }
 }
 
-TEST(Cost, TakesTheRateFromTheStoreOnceItHasOne) {
+TEST(Cost, UsesTheRateMeasuredInTheStore) {
   RunRecord run;
   run.particle_steps = 3e8;
   run.wall_seconds = 10;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A figure is a pure function of the checkpoints: made again it has the same bytes, and nothing is
+// A figure is a pure function of the checkpoints: drawn twice it has the same bytes, and nothing is
 // simulated for it.
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ class DrawFigure : public DrawingTest {
   }
 };
 
-TEST_F(DrawFigure, RunsOfAnotherExperimentNeverEnter) {
+TEST_F(DrawFigure, LeavesOutRunsOfOtherExperiments) {
   const std::string text = tiny_manifest("", kBothFluids);
   compute(store_, text);  // 2 cycles
   draw("before");
@@ -48,7 +48,7 @@ TEST_F(DrawFigure, RunsOfAnotherExperimentNeverEnter) {
   EXPECT_EQ(names, (std::vector<std::string>{"other/S2", "tiny/S2"}));
 }
 
-// Variant and seed of the runs of tiny/S2; none of them twice.
+// Variant and seed of the runs of tiny/S2, each once.
 std::set<std::pair<std::string, std::uint64_t>> distinct_runs(const CollectedRuns& collected) {
   std::set<std::pair<std::string, std::uint64_t>> found;
   for (const CollectedRun& run : collected.runs) {
@@ -58,7 +58,7 @@ std::set<std::pair<std::string, std::uint64_t>> distinct_runs(const CollectedRun
   return found;
 }
 
-TEST_F(DrawFigure, TakesTheNewestVersionOfTheManifest) {
+TEST_F(DrawFigure, UsesTheNewestVersionOfTheManifest) {
   const std::string text = tiny_manifest("", kBothFluids);
   compute(store_, text);
   const std::string other = tiny_manifest("  pressure_Pa: 700\n", kBothFluids + "seeds: 2\n");
@@ -83,7 +83,7 @@ TEST_F(DrawFigure, TakesTheNewestVersionOfTheManifest) {
       << "no run comes twice";
 }
 
-TEST_F(DrawFigure, AnEditedManifestThatRanAtOneScaleLeavesTheRunsOfTheOther) {
+TEST_F(DrawFigure, EditingAManifestForOneScaleKeepsTheRunsOfOtherScales) {
   const std::string scales = "scales: {short: {cycles: 1}, long: {cycles: 2}}\n";
   compute(store_, tiny_manifest("", kBothFluids + scales), {.scale = "long"});
   compute(store_, tiny_manifest("  pressure_Pa: 700\n", scales), {.scale = "short"});
@@ -92,7 +92,7 @@ TEST_F(DrawFigure, AnEditedManifestThatRanAtOneScaleLeavesTheRunsOfTheOther) {
   EXPECT_EQ(newest_runs(select_runs(store_, {}), false).runs.size(), 3U) << "in a table";
 }
 
-TEST_F(DrawFigure, AFilterDoesNotMakeAnOlderVersionTheNewest) {
+TEST_F(DrawFigure, AFilterDoesNotSelectAnOlderVersion) {
   compute(store_, tiny_manifest("", kBothFluids), {.cycles = 1});
   compute(store_, tiny_manifest("  pressure_Pa: 700\n"), {.cycles = 1});
   const NewestRuns cells = newest_runs(select_runs(store_, {.variants = {"fluid=cell"}}), false);
@@ -138,7 +138,7 @@ TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {
 }
 
 // Records leave these keys out at the values of older runs.
-TEST_F(DrawFigure, AClaimMayNameWhatTheRecordLeavesOut) {
+TEST_F(DrawFigure, AClaimMayNameAValueThatTheRecordLeavesOut) {
   compute(store_,
           tiny_manifest("",
                         "sweep: {grid: {pressure_at: [top, moving_wall]}}\n"
@@ -152,7 +152,7 @@ TEST_F(DrawFigure, AClaimMayNameWhatTheRecordLeavesOut) {
 }
 
 // Two variants share a curve, which the label of neither names.
-TEST_F(DrawFigure, ACurveByAKeyHasTheLabelOfThatKeyAndAveragesOverNoOther) {
+TEST_F(DrawFigure, CurvesByAKeyHaveItsLabelsAndPoolNoOtherKey) {
   compute(store_,
           tiny_manifest("",
                         "sweep: {grid: {fluid: [still, cell], amplitude_rad: [0.05, 0.08]}}\n"
@@ -175,7 +175,7 @@ TEST_F(DrawFigure, ACurveByAKeyHasTheLabelOfThatKeyAndAveragesOverNoOther) {
   EXPECT_TRUE(has(files.at("each.csv"), "\nfluid=still,0.05,"));
 }
 
-TEST_F(DrawFigure, AGroupedFigureAveragesOverNoVersions) {
+TEST_F(DrawFigure, AGroupedFigureDoesNotPoolVersions) {
   const std::string sweep = "sweep: {grid: {amplitude_rad: [0.05, 0.08]}}\n";
   for (const char* base : {"  pressure_Pa: 700\n", ""}) {
     compute(store_, tiny_manifest(base, sweep), {.cycles = 1});
@@ -186,7 +186,7 @@ TEST_F(DrawFigure, AGroupedFigureAveragesOverNoVersions) {
                              {"leave out --all-versions"});
 }
 
-TEST_F(DrawFigure, TheNoteOnMissingCheckpointsSaysWhichRunsCannotMakeThem) {
+TEST_F(DrawFigure, NamesRunsWhoseMissingCheckpointsCannotBeComputed) {
   compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 2}\n"));
   compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 1}\n"));
   EXPECT_TRUE(collect_runs(store_, kS2, {}).notes.empty()) << "made in the second run";
@@ -237,7 +237,7 @@ TEST_F(DrawFigure, PhiAtRestIsThatOfTheRestedPacking) {
   }
 }
 
-TEST_F(DrawFigure, TwiceGivesTheSameBytesAndSimulatesNothing) {
+TEST_F(DrawFigure, GivesTheSameBytesTwiceAndSimulatesNothing) {
   compute(store_, tiny_manifest("", kBothFluids + "seeds: 2\n"));
   const double steps = particle_steps();
   ASSERT_GT(steps, 0);
@@ -290,7 +290,7 @@ TEST_F(DrawFigure, VerdictsAndLineageAreWrittenAndRecorded) {
   }
 }
 
-TEST_F(DrawFigure, LeavesNoVerdictOrCaptionOfAnOlderFigure) {
+TEST_F(DrawFigure, DeletesVerdictAndCaptionOfAnOlderFigure) {
   compute(store_, tiny_manifest("", kBothFluids), {.cycles = 1});
   draw("out");
   ASSERT_TRUE(contents("out").contains("S2.verdict.json"));
@@ -302,7 +302,7 @@ TEST_F(DrawFigure, LeavesNoVerdictOrCaptionOfAnOlderFigure) {
   EXPECT_FALSE(contents("out").contains("S2.caption.txt"));
 }
 
-TEST_F(DrawFigure, NamesTablesWithoutAValue) {
+TEST_F(DrawFigure, NamesTablesWithoutValues) {
   compute(store_, tiny_manifest(), {.cycles = 1});
   WantedFigure made_up = kS2;
   made_up.figure.make = [](std::span<const FigureRun>) {
@@ -334,7 +334,7 @@ TEST_F(DrawFigure, LeavesOutADamagedCheckpointAndNamesIt) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 3 - 1);
 }
 
-TEST_F(DrawFigure, TakesTheScaleThatIsAskedFor) {
+TEST_F(DrawFigure, UsesTheRequestedScale) {
   const std::string text = tiny_manifest(
       "", kBothFluids + "scales: {desk: {cycles: 1}, smoke: {grains: 250, cycles: 2}}\n");
   compute(store_, text, {.scale = "smoke"});
@@ -346,7 +346,7 @@ TEST_F(DrawFigure, TakesTheScaleThatIsAskedFor) {
   EXPECT_THROW(draw("paper", kS2, RunSelection{.scales = {"paper"}}), NotFound);
 }
 
-TEST_F(DrawFigure, TakesTheRunsThatAreSelected) {
+TEST_F(DrawFigure, UsesTheSelectedRuns) {
   compute(store_, tiny_manifest("", kBothFluids + "seeds: 3\n"));
   RunSelection runs{.variants = {"fluid=cell"}, .seeds = {1, 3}};
   EXPECT_EQ(draw("part", kS2, runs).runs, 2U);
@@ -355,7 +355,7 @@ TEST_F(DrawFigure, TakesTheRunsThatAreSelected) {
   EXPECT_THROW(draw("none", kS2, runs), NotFound);
 }
 
-TEST_F(DrawFigure, KnowsWhichFiguresTheStoreCanMake) {
+TEST_F(DrawFigure, ListsTheFiguresThatTheStoreCanMake) {
   EXPECT_TRUE(wanted_figures(store_).figures.empty());
   EXPECT_THROW(draw("none"), NotFound);
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "none")) << "a folder for no figure";
@@ -371,7 +371,7 @@ TEST_F(DrawFigure, KnowsWhichFiguresTheStoreCanMake) {
 }
 
 // Registered by a program that knew other figures.
-TEST_F(DrawFigure, NamesTheNearestFigureOfAnUnknownOne) {
+TEST_F(DrawFigure, SuggestsTheNearestFigureName) {
   store_.register_manifest(
       "text", "x.yaml",
       {{"experiment", "x"}, {"question", ""}, {"figures", {"walss", "S2", "nothing like it"}}});

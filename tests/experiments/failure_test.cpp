@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run that fails, or whose files were damaged, is named, keeps what is good, and stops no other.
+// A run that fails or has damaged files is named, keeps its good checkpoints, and stops no other
+// run.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -22,7 +23,7 @@ class Failure : public StoreTest {
 };
 
 // A time in which no packing settles.
-TEST_F(Failure, OfAPackingStopsItsShearAndNothingElse) {
+TEST_F(Failure, OfAPackingStopsOnlyItsShear) {
   const std::string text =
       tiny_manifest("", "sweep: {grid: {settle_time_limit_s: [60, 0.1], fluid: [still, cell]}}\n");
   const CampaignResult result = compute(store_, text);
@@ -53,11 +54,11 @@ TEST_F(Failure, OfAPackingStopsItsShearAndNothingElse) {
     EXPECT_GE(numbers.at("value").get<double>(), 0.1);
     EXPECT_GT(numbers.at("step").get<std::uint64_t>(), 0U);
   }
-  // Trying again fails alike.
+  // A second attempt fails in the same way.
   EXPECT_EQ(resume(store_).failed, 1U);
 }
 
-TEST_F(Failure, OfTheOverlapLimitEndsWhereALargerOneIsStated) {
+TEST_F(Failure, AtTheOverlapLimitIsResolvedByALargerLimit) {
   const CampaignResult low = compute(store_, tiny_manifest("  max_overlap_diameters: 0.001\n"));
   EXPECT_EQ(low.failed, 1U);
   const std::size_t runs = store_.runs().size();
@@ -98,7 +99,7 @@ TEST_F(Failure, UnderShearKeepsTheLastGoodCheckpoint) {
 }
 
 // A run shorter than the watchdog's interval is not unwatched.
-TEST_F(Failure, IsNoticedInAShortRunToo) {
+TEST_F(Failure, IsDetectedInAShortRun) {
   const CampaignResult result = compute(store_, tiny_manifest("  max_overlap_diameters: 0.05\n"
                                                               "  period_s: 0.05\n"
                                                               "  steps_per_cycle: 500\n"
@@ -108,7 +109,7 @@ TEST_F(Failure, IsNoticedInAShortRunToo) {
   EXPECT_EQ(sheared(store_).state, RunState::failed);
 }
 
-TEST_F(Failure, OfTheNewestCheckpointIsMendedFromTheOneBefore) {
+TEST_F(Failure, OfTheNewestCheckpointIsRepairedFromThePreviousOne) {
   compute(store_, tiny_manifest("", kBothFluids));
   const auto expected = final_hashes(store_);
   const RunRecord run = sheared(store_);
@@ -130,14 +131,14 @@ TEST_F(Failure, OfTheNewestCheckpointIsMendedFromTheOneBefore) {
   EXPECT_EQ(store_.run(run.id).particle_steps, static_cast<double>(kGrains * 3 * kStepsPerCycle));
 }
 
-TEST_F(Failure, OfTheLastStateAloneLeavesWorkToDo) {
+TEST_F(Failure, OfTheLastStateLeavesWork) {
   compute(store_, tiny_manifest());
   const RunRecord run = sheared(store_);
   const auto records = store_.checkpoints(run.id);
   ASSERT_EQ(records.size(), 3U);
   EXPECT_TRUE(stage_done(store_, run));
   truncate_file(file_of(records[1]));
-  EXPECT_TRUE(stage_done(store_, run)) << "nothing goes on from an older checkpoint";
+  EXPECT_TRUE(stage_done(store_, run)) << "no run continues from an older checkpoint";
   truncate_file(file_of(records[2]));
   EXPECT_FALSE(stage_done(store_, run));
 
@@ -160,7 +161,7 @@ TEST_F(Failure, OfTheNewestCheckpointOfAnUnfinishedRunIsNamed) {
   EXPECT_EQ(final_hashes(store_), undisturbed(tiny_manifest(), {.cycles = 3}));
 }
 
-TEST_F(Failure, OfEveryCheckpointBeginsAgainFromThePacking) {
+TEST_F(Failure, OfEveryCheckpointRestartsFromThePacking) {
   compute(store_, tiny_manifest());
   const auto expected = final_hashes(store_);
   const RunRecord run = sheared(store_);
@@ -171,7 +172,7 @@ TEST_F(Failure, OfEveryCheckpointBeginsAgainFromThePacking) {
   EXPECT_TRUE(store_.verify().ok());
 }
 
-TEST_F(Failure, OfAPackingFileIsMendedToTheSameState) {
+TEST_F(Failure, OfAPackingFileIsRepairedToTheSameState) {
   const std::vector<StageJob> jobs = declared(store_, tiny_manifest());
   ASSERT_EQ(run_stage(store_, jobs[0].id, {}), StageOutcome::completed);
   for (const CheckpointRecord& record : store_.checkpoints(jobs[0].id)) {
@@ -185,7 +186,7 @@ TEST_F(Failure, OfAPackingFileIsMendedToTheSameState) {
   EXPECT_TRUE(store_.verify().ok());
 }
 
-TEST_F(Failure, OfThePackingFileIsSeenByResumeToo) {
+TEST_F(Failure, OfThePackingFileIsDetectedByResume) {
   const std::vector<StageJob> jobs = declared(store_, tiny_manifest());
   ASSERT_EQ(run_stage(store_, jobs[0].id, {}), StageOutcome::completed);
   for (const CheckpointRecord& record : store_.checkpoints(jobs[0].id)) {
@@ -200,7 +201,7 @@ TEST_F(Failure, OfThePackingFileIsSeenByResumeToo) {
 }
 
 // A packing that was sound when the campaign looked at it.
-TEST_F(Failure, OfThePackingFileStartsNoRunFromAnUnsettledState) {
+TEST_F(Failure, OfThePackingFileDoesNotStartARunFromAnUnsettledState) {
   const std::vector<StageJob> jobs = declared(store_, tiny_manifest());
   interrupt_to_the_end(store_, jobs[0].id);
   const auto settling = store_.checkpoints(jobs[0].id);
@@ -215,7 +216,7 @@ TEST_F(Failure, OfThePackingFileStartsNoRunFromAnUnsettledState) {
   EXPECT_EQ(final_hashes(store_), undisturbed(tiny_manifest()));
 }
 
-TEST_F(Failure, OfARunThatBeganFromAnUnsettledStateIsNamed) {
+TEST_F(Failure, OfARunThatStartedFromAnUnsettledStateIsNamed) {
   const std::vector<StageJob> jobs = declared(store_, tiny_manifest());
   interrupt_to_the_end(store_, jobs[0].id);
   const CheckpointRecord unsettled = store_.checkpoints(jobs[0].id).front();

@@ -24,9 +24,9 @@ inline void PrintTo(const Case& damaged, std::ostream* out) {
   *out << damaged.name;
 }
 
-/// `says` is looked for on both streams; the word RUN stands for the id of a run that shears.
+/// `says` is searched for on both streams; the word RUN stands for the id of a run that shears.
 template <class... Says>
-Case told(const char* name, const std::string& command, int code, Damage damage, Says... says) {
+Case reported(const char* name, const std::string& command, int code, Damage damage, Says... says) {
   return {name, std::move(damage), split(command), code, {says...}};
 }
 
@@ -44,7 +44,7 @@ class HostileStore : public ProgramTest, public testing::WithParamInterface<Case
   }
 
   /// Damages the store, runs the command and compares.
-  void expect_told(const Case& damaged) {
+  void expect_reported(const Case& damaged) {
     std::vector<std::string> command = damaged.command;
     std::replace(command.begin(), command.end(), "RUN"s, last_run());
     damaged.damage(path("shearcell-store"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hostile manifests through the program, hostile names that reach gnuplot, and what stands in the
-// way of the files that the program writes; and a machine that lends little.
+// Hostile manifests, hostile names that reach gnuplot, existing files and folders where the program
+// writes, and a machine with few threads.
 #include <gtest/gtest.h>
 #include <sys/inotify.h>
 #include <sys/stat.h>
@@ -21,14 +21,14 @@ namespace fs = std::filesystem;
 
 class HostileManifest : public ProgramTest {};
 
-TEST_F(HostileManifest, MoreGrainsThanTheMachineHoldsAreRefusedBeforeTheyAreMade) {
+TEST_F(HostileManifest, TooManyGrainsForTheMemoryAreRejectedAtOnce) {
   if (machine_memory() > 60e9) GTEST_SKIP() << "this machine holds them";
   write("m.yaml", tiny_manifest("  grains: 100000000\n"));
   expect(3, {"run", "m.yaml"}, {"use fewer grains"});
 }
 
 /// Lines of `base`, the exit code of `plan`, and a part of what it says.
-TEST_F(HostileManifest, ParametersThatCannotBeComputedAreRefusedWithTheirLine) {
+TEST_F(HostileManifest, ImpossibleParametersAreRejectedWithTheirLine) {
   struct Case {
     const char* base;
     int code;
@@ -81,7 +81,7 @@ class Outputs : public ProgramTest {
   std::string id_;
 };
 
-TEST_F(Outputs, FiguresReplaceTheirOwnFilesAndNoOthers) {
+TEST_F(Outputs, FiguresReplaceOnlyTheirOwnFiles) {
   const std::vector<std::string> figures = {"figures", "S2", "--out", "out"};
   for (const char* file :
        {"S2a.csv", "S2a.gp", "S2b.svg", "S2b.pdf", "S2.verdict.json", "S2.lineage.json"}) {
@@ -108,7 +108,7 @@ TEST_F(Outputs, FiguresReplaceTheirOwnFilesAndNoOthers) {
   }
 }
 
-TEST_F(Outputs, AReportReplacesAReportAndNothingElse) {
+TEST_F(Outputs, AReportReplacesOnlyAReport) {
   write("out/notes.html", "<!doctype html>\n<html>mine\n");
   fs::create_symlink(path("m.yaml"), path("out/link.html"));
   ASSERT_EQ(mkfifo(path("out/pipe.html").c_str(), 0600), 0);
@@ -119,7 +119,7 @@ TEST_F(Outputs, AReportReplacesAReportAndNothingElse) {
   expect(0, {"report", "--out", "out/r.html"});
 }
 
-TEST_F(Outputs, AnExportIsNeverWrittenOverAnything) {
+TEST_F(Outputs, AnExportOverwritesNothing) {
   const std::string notes = "mine\n";
   write("out/notes", notes);
   fs::create_symlink(path("nowhere"), path("dangling"));
@@ -132,7 +132,7 @@ TEST_F(Outputs, AnExportIsNeverWrittenOverAnything) {
 }
 
 /// A forged store can name its variants as it likes; the names reach gnuplot's script and the CSV.
-TEST_F(Outputs, NamesOfAForgedStoreAreTextToGnuplot) {
+TEST_F(Outputs, NamesOfAForgedStoreAreQuotedForGnuplot) {
   const std::string evil =
       "a'`touch owned`\"$(touch owned)\n!touch owned\r;system('touch owned')%s,"
       "{/:Bold x}\\";
@@ -151,7 +151,7 @@ TEST_F(Outputs, NamesOfAForgedStoreAreTextToGnuplot) {
 
 class HostileMachine : public ProgramTest {};
 
-TEST_F(HostileMachine, ThatLendsFewThreadsGivesTheSameBits) {
+TEST_F(HostileMachine, WithTooFewThreadsGivesTheSameBits) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "a sanitizer needs more addresses than this limit leaves";
 #endif
@@ -166,7 +166,7 @@ TEST_F(HostileMachine, ThatLendsFewThreadsGivesTheSameBits) {
   EXPECT_EQ(hashes("few"), hashes("many"));
 }
 
-// No file is visible under its final name before it is whole: whoever reads it meanwhile, or a
+// No file is visible under its final name before it is complete: a reader at the same time, or a
 // program that is killed, must not leave or find half of one.
 
 /// What happens to names below a folder, whose folders exist already, while a program runs.
@@ -245,7 +245,7 @@ class FinalNames : public ProgramTest {
   std::string id_;
 };
 
-TEST_F(FinalNames, AreGivenToWholeFilesAndFolders) {
+TEST_F(FinalNames, AreGivenToCompleteFilesAndFolders) {
   for (const Arguments& command :
        std::vector<Arguments>{{"export", id_, "--to", "extxyz", "--out", "out/e.xyz"},
                               {"export", id_, "--to", "h5md", "--out", "out/e.h5md"},
@@ -262,7 +262,7 @@ TEST_F(FinalNames, AreGivenToWholeFilesAndFolders) {
   }
 }
 
-TEST_F(FinalNames, AreGivenToWholeFilesWhereOthersStood) {
+TEST_F(FinalNames, OfExistingFilesAreGivenToCompleteFiles) {
   struct Case {
     Arguments command;
     std::size_t files;
@@ -284,7 +284,7 @@ TEST_F(FinalNames, AreGivenToWholeFilesWhereOthersStood) {
   }
 }
 
-TEST_F(FinalNames, AreGivenToWholeCheckpoints) {
+TEST_F(FinalNames, AreGivenToCompleteCheckpoints) {
   Arguments again = {"regenerate"};
   const nlohmann::json pruning = json({"prune", "--keep-every", "2", "--yes", "--json"});
   for (const auto& pruned : pruning.at("checkpoints")) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stores that were forged so that all hashes match, stores that harm each other, and faults around
-// a store. Cases like those of hostile_stores_test.cpp.
+// Forged stores with matching hashes, stores with unusual names, places and sizes, and faults
+// around a store. The cases have the form of hostile_stores_test.cpp.
 #include "provenance/io/clock.hpp"
 #include "tests/experiments/hostile.hpp"
 
@@ -32,34 +32,35 @@ std::vector<Case> forged_events() {
         b["membership"]["variant"] == "fluid=still" ? "cell" : "still";
   };
   return {
-      told("cycle", "verify", 4, recorded("/cycle", 7.0), "cycle"),
-      told("cycle_in_figures", "figures S2 --fresh", 4, recorded("/cycle", 1.0), "cycle"),
-      told("cycle_in_export", "export RUN --to extxyz --out x", 4, recorded("/cycle", 1.0),
-           "cycle"),
-      told("time", "verify", 4, recorded("/time_s", 7.0), "time_s"),
-      told("step", "verify", 4, recorded("/step", 7), "step"),
-      told("observable", "verify", 4, recorded("/observables/mean_overlap_d", 0.1),
-           "mean_overlap_d"),
-      told("observable_removed", "verify", 4, recorded("/observables", json::object()), "absent"),
-      told("observable_added", "verify", 4, recorded("/observables/phi", 0.7), "phi"),
-      told("state_hash", "verify", 4, recorded("/state_hash", std::string(64, 'a')), "state"),
-      told("file_elsewhere", "verify", 4, recorded("/file", "objects/../../x.h5"),
-           "objects/../../x"),
-      told("grains", "verify", 4, member("/grains", 100), "grains"),
-      told("parent", "verify", 4, member("/parent", ""), "parent"),
-      told("kind", "verify", 4, member("/kind", "stiffen"), "stiffen"),
-      told("parameters", "verify", 4, member("/resolved/parameters/pressure_Pa", 10.0),
-           "are not those that it is named after"),
-      told("seed", "verify", 4, member("/membership/seed", 7), "seed"),
-      told("labels_swapped", "verify", 4,
-           event("RunDeclared",
-                 [=](json& b) {
-                   if (b["kind"] == "shear") swapped(b);
-                 }),
-           "fluid"),
-      told("variant", "verify", 4, member("/membership/variant", "fluid=none"), "fluid=none"),
-      told("manifest_text", "verify", 4,
-           event("ManifestRegistered", [](json& b) { b["text"] = "a: 1"; }), "SHA-256"),
+      reported("cycle", "verify", 4, recorded("/cycle", 7.0), "cycle"),
+      reported("cycle_in_figures", "figures S2 --fresh", 4, recorded("/cycle", 1.0), "cycle"),
+      reported("cycle_in_export", "export RUN --to extxyz --out x", 4, recorded("/cycle", 1.0),
+               "cycle"),
+      reported("time", "verify", 4, recorded("/time_s", 7.0), "time_s"),
+      reported("step", "verify", 4, recorded("/step", 7), "step"),
+      reported("observable", "verify", 4, recorded("/observables/mean_overlap_d", 0.1),
+               "mean_overlap_d"),
+      reported("observable_removed", "verify", 4, recorded("/observables", json::object()),
+               "absent"),
+      reported("observable_added", "verify", 4, recorded("/observables/phi", 0.7), "phi"),
+      reported("state_hash", "verify", 4, recorded("/state_hash", std::string(64, 'a')), "state"),
+      reported("file_elsewhere", "verify", 4, recorded("/file", "objects/../../x.h5"),
+               "objects/../../x"),
+      reported("grains", "verify", 4, member("/grains", 100), "grains"),
+      reported("parent", "verify", 4, member("/parent", ""), "parent"),
+      reported("kind", "verify", 4, member("/kind", "stiffen"), "stiffen"),
+      reported("parameters", "verify", 4, member("/resolved/parameters/pressure_Pa", 10.0),
+               "are not those that it is named after"),
+      reported("seed", "verify", 4, member("/membership/seed", 7), "seed"),
+      reported("labels_swapped", "verify", 4,
+               event("RunDeclared",
+                     [=](json& b) {
+                       if (b["kind"] == "shear") swapped(b);
+                     }),
+               "fluid"),
+      reported("variant", "verify", 4, member("/membership/variant", "fluid=none"), "fluid=none"),
+      reported("manifest_text", "verify", 4,
+               event("ManifestRegistered", [](json& b) { b["text"] = "a: 1"; }), "SHA-256"),
   };
 }
 
@@ -67,44 +68,47 @@ std::vector<Case> forged_events() {
 std::vector<Case> forged_states() {
   const auto replay = "verify --replay 9";
   return {
-      told("untouched", replay, 0, states([](Checkpoint&) {}), "the same state"),
-      told("cycle", replay, 4, states([](Checkpoint& c) { c.cycle += 1; }), "DIVERGED", "cycle"),
-      told("time", replay, 4, states([](Checkpoint& c) { c.time_s *= 2; }), "DIVERGED", "time_s"),
-      told("tilt", replay, 4, states([](Checkpoint& c) { c.theta += 0.01; }), "DIVERGED", "theta"),
-      told("observable", replay, 4,
-           states([](Checkpoint& c) { c.observables["mean_overlap_d"] *= 1.1; }), "DIVERGED",
-           "mean_overlap_d"),
-      told("observable_made_up", replay, 4,
-           states([](Checkpoint& c) { c.observables["phi"] = 0.7; }), "DIVERGED", "phi"),
-      told("velocity", replay, 4, states([](Checkpoint& c) { c.state.velocity(0, 0) += 1e-3; }),
-           "DIVERGED"),
-      told("diameter", "verify", 4, states([](Checkpoint& c) { c.units.diameter_m *= 2; }),
-           "diameter_m"),
-      told("diameter_in_export", "export RUN --to extxyz --out x", 4,
-           states([](Checkpoint& c) { c.units.diameter_m *= 2; }), "diameter_m"),
-      told("grain_outside", "figures S2 --fresh", 4,
-           states([](Checkpoint& c) { c.state.position(1, 0) += 1000; }), "checkpoint", "of run",
-           "grain 0 lies outside the cell"),
-      told("grain_outside_in_export", "export RUN --to vtk --out x", 4,
-           states([](Checkpoint& c) { c.state.position(1, 0) += 1000; }), "of run",
-           "grain 0 lies outside the cell"),
-      told("mass", "verify", 4, states([](Checkpoint& c) { c.units.mass_kg *= 2; }), "mass_kg"),
-      told("mass_in_export", "export RUN --to lammps --out x", 4,
-           states([](Checkpoint& c) { c.units.mass_kg *= 2; }), "mass_kg"),
-      told("one_grain_less", "verify", 4, states([](Checkpoint& c) {
-             c.state.position.conservativeResize(3, 199);
-             c.state.velocity.conservativeResize(3, 199);
-           }),
-           "199"),
-      told("measures", "verify", 4, measures("scalars", [](json& m) { m["phi"] = 0.719; }),
-           "derived.sqlite", "phi", "figures"),
-      told("measures_not_finite", "verify", 4,
-           measures("scalars", [](json& m) { m["phi"] = std::nan(""); }), "derived.sqlite"),
-      told("measures_of_another_kind", "verify", 4,
-           measures("scalars", [](json& m) { m = "none"; }), "derived.sqlite"),
-      told("measures_untouched", "verify", 0, measures("scalars", [](json&) {}), "4 of 4"),
-      told("measures_of_garbage", "verify", 0, at("derived.sqlite", written("garbage")),
-           "nothing was changed"),
+      reported("untouched", replay, 0, states([](Checkpoint&) {}), "the same state"),
+      reported("cycle", replay, 4, states([](Checkpoint& c) { c.cycle += 1; }), "DIVERGED",
+               "cycle"),
+      reported("time", replay, 4, states([](Checkpoint& c) { c.time_s *= 2; }), "DIVERGED",
+               "time_s"),
+      reported("tilt", replay, 4, states([](Checkpoint& c) { c.theta += 0.01; }), "DIVERGED",
+               "theta"),
+      reported("observable", replay, 4,
+               states([](Checkpoint& c) { c.observables["mean_overlap_d"] *= 1.1; }), "DIVERGED",
+               "mean_overlap_d"),
+      reported("observable_made_up", replay, 4,
+               states([](Checkpoint& c) { c.observables["phi"] = 0.7; }), "DIVERGED", "phi"),
+      reported("velocity", replay, 4, states([](Checkpoint& c) { c.state.velocity(0, 0) += 1e-3; }),
+               "DIVERGED"),
+      reported("diameter", "verify", 4, states([](Checkpoint& c) { c.units.diameter_m *= 2; }),
+               "diameter_m"),
+      reported("diameter_in_export", "export RUN --to extxyz --out x", 4,
+               states([](Checkpoint& c) { c.units.diameter_m *= 2; }), "diameter_m"),
+      reported("grain_outside", "figures S2 --fresh", 4,
+               states([](Checkpoint& c) { c.state.position(1, 0) += 1000; }), "checkpoint",
+               "of run", "grain 0 lies outside the cell"),
+      reported("grain_outside_in_export", "export RUN --to vtk --out x", 4,
+               states([](Checkpoint& c) { c.state.position(1, 0) += 1000; }), "of run",
+               "grain 0 lies outside the cell"),
+      reported("mass", "verify", 4, states([](Checkpoint& c) { c.units.mass_kg *= 2; }), "mass_kg"),
+      reported("mass_in_export", "export RUN --to lammps --out x", 4,
+               states([](Checkpoint& c) { c.units.mass_kg *= 2; }), "mass_kg"),
+      reported("one_grain_less", "verify", 4, states([](Checkpoint& c) {
+                 c.state.position.conservativeResize(3, 199);
+                 c.state.velocity.conservativeResize(3, 199);
+               }),
+               "199"),
+      reported("measures", "verify", 4, measures("scalars", [](json& m) { m["phi"] = 0.719; }),
+               "derived.sqlite", "phi", "figures"),
+      reported("measures_not_finite", "verify", 4,
+               measures("scalars", [](json& m) { m["phi"] = std::nan(""); }), "derived.sqlite"),
+      reported("measures_of_another_kind", "verify", 4,
+               measures("scalars", [](json& m) { m = "none"; }), "derived.sqlite"),
+      reported("measures_untouched", "verify", 0, measures("scalars", [](json&) {}), "4 of 4"),
+      reported("measures_of_garbage", "verify", 0, at("derived.sqlite", written("garbage")),
+               "nothing was changed"),
   };
 }
 
@@ -115,20 +119,21 @@ std::vector<Case> forged_limits() {
   };
   const std::string range = "1 to 1000000";
   return {
-      told("cadence_in_resume", "resume", 4, table("memberships SET checkpoint_every = 1 << 60"),
-           range),
-      told("cadence_in_verify", "verify", 4, member("/membership/checkpoint_every", huge), range),
-      told("cadence_in_the_table", "plan m.yaml", 4,
-           sql("UPDATE memberships SET checkpoint_every = 1152921504606846976"), range),
-      told("no_cadence", "resume", 4, table("memberships SET checkpoint_every = 0"), range),
-      told("target", "verify", 4, member("/target_cycles", huge), "0 to 1000000"),
-      told("target_in_the_table", "status", 4, sql("UPDATE runs SET target_cycles = -1"),
-           "0 to 1000000"),
-      told("extra_cycles", "resume", 4, rebuilt([=](auto& s) {
-             member("/membership/until", {{"phi", 0.1}, {"extra_cycles", huge}})(s);
-             member("/target_cycles", 2)(s);
-           }),
-           "extra_cycles"),
+      reported("cadence_in_resume", "resume", 4,
+               table("memberships SET checkpoint_every = 1 << 60"), range),
+      reported("cadence_in_verify", "verify", 4, member("/membership/checkpoint_every", huge),
+               range),
+      reported("cadence_in_the_table", "plan m.yaml", 4,
+               sql("UPDATE memberships SET checkpoint_every = 1152921504606846976"), range),
+      reported("no_cadence", "resume", 4, table("memberships SET checkpoint_every = 0"), range),
+      reported("target", "verify", 4, member("/target_cycles", huge), "0 to 1000000"),
+      reported("target_in_the_table", "status", 4, sql("UPDATE runs SET target_cycles = -1"),
+               "0 to 1000000"),
+      reported("extra_cycles", "resume", 4, rebuilt([=](auto& s) {
+                 member("/membership/until", {{"phi", 0.1}, {"extra_cycles", huge}})(s);
+                 member("/target_cycles", 2)(s);
+               }),
+               "extra_cycles"),
   };
 }
 
@@ -140,18 +145,19 @@ std::vector<Case> odd_files() {
   };
   const Damage hard_link = at("store.sqlite", linked_as_snap);
   return {
-      told("journal_is_pipe", "status", 4, journal_is_pipe, "store.sqlite-journal", "remove it"),
-      told("journal_is_pipe_for_figures", "figures S2", 4, journal_is_pipe, "remove it"),
-      told("journal_is_folder", "status", 4, at("store.sqlite-journal", folder_instead),
-           "remove it"),
-      told("journal_is_link", "run m.yaml", 4,
-           at("store.sqlite-journal",
-              [](const fs::path& file) {
-                write_bytes(file, "");
-                link_instead(file);
-              }),
-           "remove it"),
-      told(
+      reported("journal_is_pipe", "status", 4, journal_is_pipe, "store.sqlite-journal",
+               "remove it"),
+      reported("journal_is_pipe_for_figures", "figures S2", 4, journal_is_pipe, "remove it"),
+      reported("journal_is_folder", "status", 4, at("store.sqlite-journal", folder_instead),
+               "remove it"),
+      reported("journal_is_link", "run m.yaml", 4,
+               at("store.sqlite-journal",
+                  [](const fs::path& file) {
+                    write_bytes(file, "");
+                    link_instead(file);
+                  }),
+               "remove it"),
+      reported(
           "wal_is_pipe", "status", 4,
           [](const fs::path& s) {
             std::string bytes = read_bytes(s / "store.sqlite");
@@ -160,13 +166,14 @@ std::vector<Case> odd_files() {
             pipe_instead(s / "store.sqlite-wal");
           },
           "store.sqlite-wal", "remove it"),
-      told("measures_journal_is_pipe", "figures S2", 0, at("derived.sqlite-journal", pipe_instead),
-           "S2 ("),
-      told("hard_link", "run m.yaml", 4, hard_link, "hard link", "cp -a"),
-      told("hard_link_to_read", "status", 4, hard_link, "hard link", "cp -a"),
-      told("hard_link_to_merge", "merge shearcell-store --store other", 4, hard_link, "hard link"),
-      told("hard_linked_measures", "figures S2 --fresh", 0, at("derived.sqlite", linked_as_snap),
-           "S2 ("),
+      reported("measures_journal_is_pipe", "figures S2", 0,
+               at("derived.sqlite-journal", pipe_instead), "S2 ("),
+      reported("hard_link", "run m.yaml", 4, hard_link, "hard link", "cp -a"),
+      reported("hard_link_to_read", "status", 4, hard_link, "hard link", "cp -a"),
+      reported("hard_link_to_merge", "merge shearcell-store --store other", 4, hard_link,
+               "hard link"),
+      reported("hard_linked_measures", "figures S2 --fresh", 0,
+               at("derived.sqlite", linked_as_snap), "S2 ("),
   };
 }
 
@@ -191,17 +198,18 @@ std::vector<Case> other_faults() {
     store.record_figure("S2", facts);
   };
   return {
-      told("lease_without_end", "resume", 0, lease(58), "elsewhere, process 77", "60 s"),
-      told("lease_without_end_to_merge", "merge shearcell-store --store other", 0, lease(0)),
-      told("lease_that_is_over", "status", 0, lease(61), "3 stages"),
-      told("clock_went_back", "show S2", 0, figure_in_the_future, "made      20"),
-      told("clock_went_back_verified", "verify", 0, figure_in_the_future, "nothing was changed"),
+      reported("lease_without_end", "resume", 0, lease(58), "elsewhere, process 77", "60 s"),
+      reported("lease_without_end_to_merge", "merge shearcell-store --store other", 0, lease(0)),
+      reported("lease_that_is_over", "status", 0, lease(61), "3 stages"),
+      reported("clock_went_back", "show S2", 0, figure_in_the_future, "made      20"),
+      reported("clock_went_back_verified", "verify", 0, figure_in_the_future,
+               "nothing was changed"),
   };
 }
 
 class ForgedStore : public HostileStore {};
-TEST_P(ForgedStore, IsFound) {
-  expect_told(GetParam());
+TEST_P(ForgedStore, IsDetected) {
+  expect_reported(GetParam());
 }
 INSTANTIATE_TEST_SUITE_P(Events, ForgedStore, testing::ValuesIn(forged_events()), case_name);
 INSTANTIATE_TEST_SUITE_P(States, ForgedStore, testing::ValuesIn(forged_states()), case_name);
@@ -209,10 +217,10 @@ INSTANTIATE_TEST_SUITE_P(Limits, ForgedStore, testing::ValuesIn(forged_limits())
 INSTANTIATE_TEST_SUITE_P(Files, ForgedStore, testing::ValuesIn(odd_files()), case_name);
 INSTANTIATE_TEST_SUITE_P(Faults, ForgedStore, testing::ValuesIn(other_faults()), case_name);
 
-class Neighbours : public ProgramTest {};
+class UnusualStore : public ProgramTest {};
 
 // Else an export would leave the folder that it makes.
-TEST_F(Neighbours, TheNameOfAnExperimentIsNoPath) {
+TEST_F(UnusualStore, AnExperimentNameIsNotAPath) {
   campaign(tiny_manifest("  grains: 200\n", kBothFluids), {"--cycles", "1"});
   const std::string elsewhere = path("elsewhere").string();
   for (const std::string& name : {"../../elsewhere"s, elsewhere, ".."s, ".\x1b[2J/x"s}) {
@@ -230,7 +238,7 @@ TEST_F(Neighbours, TheNameOfAnExperimentIsNoPath) {
 }
 
 // The old process must neither play back the new store's journal nor write into it.
-TEST_F(Neighbours, AStoreThatIsMovedAwayIsLeftAlone) {
+TEST_F(UnusualStore, AMovedStoreIsNotWrittenTo) {
   write("long.yaml", tiny_manifest("  cycles: 400\n"));
   write("m.yaml", tiny_manifest());
   const Running program = start_beside({"run", "long.yaml", "-q"}, "moved");
@@ -246,7 +254,7 @@ TEST_F(Neighbours, AStoreThatIsMovedAwayIsLeftAlone) {
   expect(0, {"verify", "--store", "moved"});
 }
 
-TEST_F(Neighbours, AFolderMayHaveAnyName) {
+TEST_F(UnusualStore, AFolderMayHaveAnyName) {
   campaign(tiny_manifest("  grains: 200\n"), {"--cycles", "1"});
   for (const std::string name :
        {"a?b", "a%41b", "file:x", "file:x?mode=memory", "a#b", " ", "-x"}) {
@@ -259,7 +267,7 @@ TEST_F(Neighbours, AFolderMayHaveAnyName) {
 }
 
 // The nearest known run is looked for among all of them.
-TEST_F(Neighbours, PlansBesideTenThousandRuns) {
+TEST_F(UnusualStore, HasTenThousandRuns) {
   campaign(tiny_manifest("  grains: 200\n"), {"--cycles", "1"});
   sql("WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 10000) INSERT INTO "
       "runs SELECT printf('%064x', i), 100 + i, parent, kind, json_set(resolved, '$.seed', 9000 + "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Damaged and forged stores: what each command says of them, with what exit code, and what it
-// leaves alone. hostile_forgeries_test.cpp has those that are consistent in themselves.
+// Damaged and forged stores: message and exit code of each command, and what it does not change.
+// hostile_forgeries_test.cpp has the forgeries that are consistent in themselves.
 #include <gtest/gtest.h>
 
 #include "tests/experiments/hostile.hpp"
@@ -16,53 +16,54 @@ std::vector<Case> damaged_logs() {
   const auto log = [](const auto& change) { return at("store.sqlite", change); };
   const std::string odd = "a folder, link or device";
   return {
-      told("log_cut_in_half", "status", 4, log(truncate_file), "damaged", kBackup),
-      told("log_empty", "status", 4, log(written("")), "the log is empty", kBackup),
-      told("log_missing", "run m.yaml", 4, log(removed), "the log is lost", kBackup),
-      told("log_is_text", "status", 4, log(written(std::string(9999, 'x'))),
-           "not an SQLite database", "from a backup"),
-      told("log_is_folder", "status", 4, log(folder_instead), odd, "remove it"),
-      told("log_is_link", "status", 4, log(link_instead), odd, "remove it"),
-      told("log_is_pipe", "verify", 4, log(pipe_instead), odd, "remove it"),
-      told("pages_overwritten", "verify", 4, log([](const fs::path& file) {
-             std::string bytes = read_bytes(file);
-             bytes.replace(bytes.size() / 4, bytes.size() / 2, bytes.size() / 2, '\x55');
-             write_bytes(file, bytes);
-           }),
-           "damaged", kBackup),
-      told("journal_of_garbage", "status", 0, at("store.sqlite-journal", written("not a journal")),
-           "completed"),
-      told(
+      reported("log_cut_in_half", "status", 4, log(truncate_file), "damaged", kBackup),
+      reported("log_empty", "status", 4, log(written("")), "the log is empty", kBackup),
+      reported("log_missing", "run m.yaml", 4, log(removed), "the log is lost", kBackup),
+      reported("log_is_text", "status", 4, log(written(std::string(9999, 'x'))),
+               "not an SQLite database", "from a backup"),
+      reported("log_is_folder", "status", 4, log(folder_instead), odd, "remove it"),
+      reported("log_is_link", "status", 4, log(link_instead), odd, "remove it"),
+      reported("log_is_pipe", "verify", 4, log(pipe_instead), odd, "remove it"),
+      reported("pages_overwritten", "verify", 4, log([](const fs::path& file) {
+                 std::string bytes = read_bytes(file);
+                 bytes.replace(bytes.size() / 4, bytes.size() / 2, bytes.size() / 2, '\x55');
+                 write_bytes(file, bytes);
+               }),
+               "damaged", kBackup),
+      reported("journal_of_garbage", "status", 0,
+               at("store.sqlite-journal", written("not a journal")), "completed"),
+      reported(
           "store_is_a_file", "status", 2,
           [](const fs::path& store) {
             fs::remove_all(store);
             write_bytes(store, "x");
           },
           "a store is a folder", "name another one"),
-      told("store_is_missing", "status", 2, removed, "there is no store here", "shearcell run"),
-      told("of_another_program", "status", 4, sql("PRAGMA application_id=1"),
-           "belongs to another program"),
-      told("newer_schema", "run m.yaml", 4, sql("PRAGMA user_version=99"), "schema 99",
-           "use the newer shearcell"),
-      told("schema_that_never_was", "status", 4, sql("PRAGMA user_version=0"), "never existed",
-           "from a backup"),
-      told("no_events", "verify", 4, sql("DROP TABLE events"), "no such table: events", kBackup),
-      told("no_runs", "status", 4, sql("PRAGMA foreign_keys=OFF; DROP TABLE runs"),
-           "no such table: runs", kBackup),
-      told("view_for_a_table", "status", 4,
-           sql("ALTER TABLE figures RENAME TO f; CREATE VIEW figures AS SELECT * FROM f"),
-           "which no store of schema", kBackup),
-      told("trigger_of_a_stranger", "run m.yaml", 4,
-           sql("CREATE TRIGGER t AFTER INSERT ON events BEGIN DELETE FROM runs; END"), "'t'",
-           "which no store of schema", kBackup),
-      told("table_of_a_stranger", "verify", 4, sql("CREATE TABLE stranger(a)"), "'stranger'",
-           kBackup),
-      told("statistics_for_the_planner", "verify", 0, sql("ANALYZE"), "nothing was changed"),
-      told("index_that_computes", "status", 4, sql("CREATE INDEX i ON runs(abs(grains))"), "'i'",
-           kBackup),
-      told("value_of_70_MB", "status", 4,
-           sql("UPDATE runs SET error = printf('%.*c', 70000000, 'x')"), "larger than 64 MiB",
-           kBackup),
+      reported("store_is_missing", "status", 2, removed, "there is no store here", "shearcell run"),
+      reported("of_another_program", "status", 4, sql("PRAGMA application_id=1"),
+               "belongs to another program"),
+      reported("newer_schema", "run m.yaml", 4, sql("PRAGMA user_version=99"), "schema 99",
+               "use the newer shearcell"),
+      reported("schema_that_never_was", "status", 4, sql("PRAGMA user_version=0"), "never existed",
+               "from a backup"),
+      reported("no_events", "verify", 4, sql("DROP TABLE events"), "no such table: events",
+               kBackup),
+      reported("no_runs", "status", 4, sql("PRAGMA foreign_keys=OFF; DROP TABLE runs"),
+               "no such table: runs", kBackup),
+      reported("view_for_a_table", "status", 4,
+               sql("ALTER TABLE figures RENAME TO f; CREATE VIEW figures AS SELECT * FROM f"),
+               "which no store of schema", kBackup),
+      reported("trigger_of_a_stranger", "run m.yaml", 4,
+               sql("CREATE TRIGGER t AFTER INSERT ON events BEGIN DELETE FROM runs; END"), "'t'",
+               "which no store of schema", kBackup),
+      reported("table_of_a_stranger", "verify", 4, sql("CREATE TABLE stranger(a)"), "'stranger'",
+               kBackup),
+      reported("statistics_for_the_planner", "verify", 0, sql("ANALYZE"), "nothing was changed"),
+      reported("index_that_computes", "status", 4, sql("CREATE INDEX i ON runs(abs(grains))"),
+               "'i'", kBackup),
+      reported("value_of_70_MB", "status", 4,
+               sql("UPDATE runs SET error = printf('%.*c', 70000000, 'x')"), "larger than 64 MiB",
+               kBackup),
   };
 }
 
@@ -70,47 +71,47 @@ std::vector<Case> damaged_events() {
   const std::string deep =
       "{\"why\":" + std::string(200'000, '[') + std::string(200'000, ']') + "}";
   return {
-      told("payload_changed", "verify", 4,
-           sql("UPDATE events SET payload = replace(payload, '\"seed\":1', '\"seed\":2')"),
-           "does not match its content", "from a backup"),
-      told("payload_no_json", "rebuild", 4, forged([](Event& e) { e.payload = "{\"cut"; }),
-           "is not a JSON object"),
-      told("payload_a_list", "log", 4, forged([](Event& e) { e.payload = "[1]"; }),
-           "is not a JSON object"),
-      told("payload_nested_200000_deep", "verify", 4, forged([=](Event& e) { e.payload = deep; }),
-           "nested too deeply"),
-      told("payload_nested_in_figures", "show tiny/S2a.csv", 4, forged([=](Event& e) {
-             if (e.type == "FigureGenerated") e.payload = deep;
-           }),
-           "nested too deeply"),
-      told("payload_of_a_newer_layout", "rebuild", 4, forged([](Event& e) { e.schema = 9; }),
-           "layout 9", "use the newer shearcell"),
-      told("member_missing", "rebuild", 4,
-           payload("RunDeclared", [](auto& b) { b.erase("target_cycles"); }), "RunDeclared",
-           "target_cycles"),
-      told("member_of_another_type", "rebuild", 4,
-           payload("RunDeclared", [](auto& b) { b["membership"] = 1; }), "RunDeclared"),
-      told("step_of_1e300", "rebuild", 4,
-           payload("CheckpointRecorded", [](auto& b) { b["step"] = 1e300; }),
-           "step must be a whole number"),
-      told("negative_size", "rebuild", 4,
-           payload("CheckpointRecorded", [](auto& b) { b["size"] = -1; }),
-           "size must be a whole number"),
-      told("unknown_parent", "rebuild", 4,
-           payload("RunDeclared", [](auto& b) { b["parent"] = std::string(64, 'a'); }),
-           "FOREIGN KEY", kBackup),
-      told("figure_of_an_unknown_run", "show tiny/S2a.csv", 4,
-           payload("FigureGenerated", [](auto& b) { b["inputs"][0]["run"] = "x"; }),
-           "the store has no run 'x'"),
-      told("figure_without_inputs", "show tiny/S2a.csv", 4,
-           payload("FigureGenerated", [](auto& b) { b.erase("inputs"); }), "FigureGenerated"),
-      told("manifest_without_facts", "figures --all", 4,
-           payload("ManifestRegistered", [](auto& b) { b.erase("info"); }), "ManifestRegistered",
-           "info"),
-      told("manifest_of_another_text", "show tiny/S2a.csv", 4,
-           payload("ManifestRegistered", [](auto& b) { b["text"] = "a: 1"; }),
-           "has another SHA-256"),
-      told(
+      reported("payload_changed", "verify", 4,
+               sql("UPDATE events SET payload = replace(payload, '\"seed\":1', '\"seed\":2')"),
+               "does not match its content", "from a backup"),
+      reported("payload_no_json", "rebuild", 4, forged([](Event& e) { e.payload = "{\"cut"; }),
+               "is not a JSON object"),
+      reported("payload_a_list", "log", 4, forged([](Event& e) { e.payload = "[1]"; }),
+               "is not a JSON object"),
+      reported("payload_nested_200000_deep", "verify", 4,
+               forged([=](Event& e) { e.payload = deep; }), "nested too deeply"),
+      reported("payload_nested_in_figures", "show tiny/S2a.csv", 4, forged([=](Event& e) {
+                 if (e.type == "FigureGenerated") e.payload = deep;
+               }),
+               "nested too deeply"),
+      reported("payload_of_a_newer_layout", "rebuild", 4, forged([](Event& e) { e.schema = 9; }),
+               "layout 9", "use the newer shearcell"),
+      reported("member_missing", "rebuild", 4,
+               payload("RunDeclared", [](auto& b) { b.erase("target_cycles"); }), "RunDeclared",
+               "target_cycles"),
+      reported("member_of_another_type", "rebuild", 4,
+               payload("RunDeclared", [](auto& b) { b["membership"] = 1; }), "RunDeclared"),
+      reported("step_of_1e300", "rebuild", 4,
+               payload("CheckpointRecorded", [](auto& b) { b["step"] = 1e300; }),
+               "step must be a whole number"),
+      reported("negative_size", "rebuild", 4,
+               payload("CheckpointRecorded", [](auto& b) { b["size"] = -1; }),
+               "size must be a whole number"),
+      reported("unknown_parent", "rebuild", 4,
+               payload("RunDeclared", [](auto& b) { b["parent"] = std::string(64, 'a'); }),
+               "FOREIGN KEY", kBackup),
+      reported("figure_of_an_unknown_run", "show tiny/S2a.csv", 4,
+               payload("FigureGenerated", [](auto& b) { b["inputs"][0]["run"] = "x"; }),
+               "the store has no run 'x'"),
+      reported("figure_without_inputs", "show tiny/S2a.csv", 4,
+               payload("FigureGenerated", [](auto& b) { b.erase("inputs"); }), "FigureGenerated"),
+      reported("manifest_without_facts", "figures --all", 4,
+               payload("ManifestRegistered", [](auto& b) { b.erase("info"); }),
+               "ManifestRegistered", "info"),
+      reported("manifest_of_another_text", "show tiny/S2a.csv", 4,
+               payload("ManifestRegistered", [](auto& b) { b["text"] = "a: 1"; }),
+               "has another SHA-256"),
+      reported(
           "parameters_of_another_run", "resume", 4,
           [](auto& s) {
             payload("RunDeclared", [](auto& b) {
@@ -125,73 +126,75 @@ std::vector<Case> damaged_events() {
 
 std::vector<Case> damaged_tables() {
   return {
-      told("unknown_state", "status", 4, sql("UPDATE runs SET state = 'x'"), "unknown state 'x'",
-           "run `rebuild`"),
-      told("labels_no_json", "status", 4, sql("UPDATE memberships SET labels = '{'"), "broken JSON",
-           "run `rebuild`"),
-      told("labels_a_list", "figures S2", 0, sql("UPDATE memberships SET labels = '[1]'")),
-      told("resolved_a_number", "figures S2", 4, sql("UPDATE runs SET resolved = '1'"),
-           "shearcell verify"),
-      told("table_not_of_the_events", "verify", 4, sql("UPDATE runs SET grains = 7"),
-           "not what the events give", "run `rebuild`"),
-      told("leases_of_garbage", "status", 0,
-           sql("INSERT INTO leases SELECT 'no-such-run', '', '', -1, -1, '', -1, -1, "
-               "9223372036854775807"),
-           "completed"),
-      told("terminal_escapes", "status", 0,
-           sql("UPDATE runs SET error = char(27) || ']0;owned' || char(7) || char(155)"),
-           "\\x1b]0;owned\\x07\\x9b"),
-      told("terminal_escapes_in_a_figure", "figures S2", 0,
-           sql("UPDATE memberships SET scale = char(27) || '[2J'"), "S2 (\\x1b[2J scale)"),
-      told("measures_of_garbage", "figures S2", 0, at("derived.sqlite", written("garbage")),
-           "S2 ("),
-      told("measures_nested_deeply", "figures S2", 0,
-           measures("",
-                    [](auto& m) {
-                      for (int i = 0; i < 100; ++i) m = {m};
-                    }),
-           "4 of them newly measured"),
-      told("measures_in_a_folder", "figures S2", 0, at("derived.sqlite", folder_instead),
-           "measures cannot be cached"),
-      told("measures_through_a_link", "figures S2", 0, at("derived.sqlite", link_instead),
-           "measures cannot be cached", "remove it"),
+      reported("unknown_state", "status", 4, sql("UPDATE runs SET state = 'x'"),
+               "unknown state 'x'", "run `rebuild`"),
+      reported("labels_no_json", "status", 4, sql("UPDATE memberships SET labels = '{'"),
+               "broken JSON", "run `rebuild`"),
+      reported("labels_a_list", "figures S2", 0, sql("UPDATE memberships SET labels = '[1]'")),
+      reported("resolved_a_number", "figures S2", 4, sql("UPDATE runs SET resolved = '1'"),
+               "shearcell verify"),
+      reported("table_not_of_the_events", "verify", 4, sql("UPDATE runs SET grains = 7"),
+               "not what the events give", "run `rebuild`"),
+      reported("leases_of_garbage", "status", 0,
+               sql("INSERT INTO leases SELECT 'no-such-run', '', '', -1, -1, '', -1, -1, "
+                   "9223372036854775807"),
+               "completed"),
+      reported("terminal_escapes", "status", 0,
+               sql("UPDATE runs SET error = char(27) || ']0;owned' || char(7) || char(155)"),
+               "\\x1b]0;owned\\x07\\x9b"),
+      reported("terminal_escapes_in_a_figure", "figures S2", 0,
+               sql("UPDATE memberships SET scale = char(27) || '[2J'"), "S2 (\\x1b[2J scale)"),
+      reported("measures_of_garbage", "figures S2", 0, at("derived.sqlite", written("garbage")),
+               "S2 ("),
+      reported("measures_nested_deeply", "figures S2", 0,
+               measures("",
+                        [](auto& m) {
+                          for (int i = 0; i < 100; ++i) m = {m};
+                        }),
+               "4 of them newly measured"),
+      reported("measures_in_a_folder", "figures S2", 0, at("derived.sqlite", folder_instead),
+               "measures cannot be cached"),
+      reported("measures_through_a_link", "figures S2", 0, at("derived.sqlite", link_instead),
+               "measures cannot be cached", "remove it"),
   };
 }
 
 std::vector<Case> damaged_objects() {
   return {
-      told("object_removed", "verify", 4, object(removed), "the file is missing", "from a backup"),
-      told("object_cut_in_half", "verify", 4, object(truncate_file), "bytes instead of",
-           "from a backup"),
-      told("object_of_zeros", "verify", 4,
-           object([](auto& f) { write_bytes(f, std::string(fs::file_size(f), '\0')); }),
-           "its SHA-256 is not the recorded one"),
-      told("object_with_holes_of_a_terabyte", "verify", 4,
-           object([](auto& f) { fs::resize_file(f, std::uintmax_t{1} << 40); }),
-           "it has 1099511627776 bytes instead of"),
-      told("object_is_link", "verify", 4, object(link_instead), "it is a symbolic link"),
-      told("object_is_folder", "verify", 4, object(folder_instead), "it is not a regular file"),
-      told("object_is_pipe", "verify", 4, object(pipe_instead), "it is not a regular file"),
-      told("objects_folder_is_file", "verify", 4, object([](auto& f) {
-             const fs::path d = f.parent_path();
-             fs::remove_all(d);
-             write_bytes(d, "x");
-           }),
-           "this must be a folder of the store", "remove it"),
-      told("objects_is_link", "verify", 4, at("objects", link_instead),
-           "this must be a folder of the store"),
-      told("no_objects", "figures S2 --fresh", 4, at("objects", removed), "objects",
-           "missing or empty"),
-      told("no_objects_to_continue_from", "run m.yaml --cycles 2", 4, at("objects", removed),
-           "objects", "missing or empty"),
-      told("no_objects_of_a_reader", "verify", 4, at("objects", removed), "the file is missing"),
-      told("object_of_a_stranger", "verify", 0, at("objects/note.txt", written("x")),
-           "no event names this file"),
-      told(
+      reported("object_removed", "verify", 4, object(removed), "the file is missing",
+               "from a backup"),
+      reported("object_cut_in_half", "verify", 4, object(truncate_file), "bytes instead of",
+               "from a backup"),
+      reported("object_of_zeros", "verify", 4,
+               object([](auto& f) { write_bytes(f, std::string(fs::file_size(f), '\0')); }),
+               "its SHA-256 is not the recorded one"),
+      reported("object_with_holes_of_a_terabyte", "verify", 4,
+               object([](auto& f) { fs::resize_file(f, std::uintmax_t{1} << 40); }),
+               "it has 1099511627776 bytes instead of"),
+      reported("object_is_link", "verify", 4, object(link_instead), "it is a symbolic link"),
+      reported("object_is_folder", "verify", 4, object(folder_instead), "it is not a regular file"),
+      reported("object_is_pipe", "verify", 4, object(pipe_instead), "it is not a regular file"),
+      reported("objects_folder_is_file", "verify", 4, object([](auto& f) {
+                 const fs::path d = f.parent_path();
+                 fs::remove_all(d);
+                 write_bytes(d, "x");
+               }),
+               "this must be a folder of the store", "remove it"),
+      reported("objects_is_link", "verify", 4, at("objects", link_instead),
+               "this must be a folder of the store"),
+      reported("no_objects", "figures S2 --fresh", 4, at("objects", removed), "objects",
+               "missing or empty"),
+      reported("no_objects_to_continue_from", "run m.yaml --cycles 2", 4, at("objects", removed),
+               "objects", "missing or empty"),
+      reported("no_objects_of_a_reader", "verify", 4, at("objects", removed),
+               "the file is missing"),
+      reported("object_of_a_stranger", "verify", 0, at("objects/note.txt", written("x")),
+               "no event names this file"),
+      reported(
           "checkpoints_forged_text", "figures S2 --fresh", 4,
           [](const fs::path& s) { forge_checkpoints(s, std::string(5000, 'x')); },
           "it is not HDF5"),
-      told(
+      reported(
           "checkpoints_forged_hdf5", "figures S2 --fresh", 4,
           [](const fs::path& s) {
             std::string hdf5 = read_bytes(an_object(s)).substr(512);
@@ -199,18 +202,18 @@ std::vector<Case> damaged_objects() {
             forge_checkpoints(s, hdf5);
           },
           "left out: ", "checkpoint: "),
-      told("checkpoint_names_a_parent_folder", "verify", 4,
-           payload("CheckpointRecorded", [](auto& b) { b["sha256"] = "../../../etc/passwd"; }),
-           "is not a SHA-256"),
-      told("checkpoint_of_a_terabyte", "verify", 4,
-           payload("CheckpointRecorded", [](auto& b) { b["size"] = std::uint64_t{1} << 40; }),
-           "bytes instead of 1099511627776"),
+      reported("checkpoint_names_a_parent_folder", "verify", 4,
+               payload("CheckpointRecorded", [](auto& b) { b["sha256"] = "../../../etc/passwd"; }),
+               "is not a SHA-256"),
+      reported("checkpoint_of_a_terabyte", "verify", 4,
+               payload("CheckpointRecorded", [](auto& b) { b["size"] = std::uint64_t{1} << 40; }),
+               "bytes instead of 1099511627776"),
   };
 }
 
 class DamagedStore : public HostileStore {};
-TEST_P(DamagedStore, IsToldWithItsExitCode) {
-  expect_told(GetParam());
+TEST_P(DamagedStore, IsReportedWithItsExitCode) {
+  expect_reported(GetParam());
 }
 INSTANTIATE_TEST_SUITE_P(Logs, DamagedStore, testing::ValuesIn(damaged_logs()), case_name);
 INSTANTIATE_TEST_SUITE_P(Events, DamagedStore, testing::ValuesIn(damaged_events()), case_name);

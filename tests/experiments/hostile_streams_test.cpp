@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Standard streams that are closed or full, signals that are ignored or come at a bad time,
-// programs that hang, neighbours that write to the same places, and odd words on the command line.
+// Closed or full standard streams, signals that are ignored or arrive at a bad time, programs that
+// hang, programs that write to the same places, and unusual texts on the command line.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -38,7 +38,7 @@ class Streams : public ProgramTest {
   }
 };
 
-TEST_F(Streams, EveryCommandEndsWithItsOwnCodeWithoutStandardError) {
+TEST_F(Streams, ExitCodesAreTheSameWithoutStandardError) {
   struct Case {
     const char* words;
     int code;
@@ -60,7 +60,7 @@ TEST_F(Streams, EveryCommandEndsWithItsOwnCodeWithoutStandardError) {
   }
 }
 
-TEST_F(Streams, OutputThatIsLostIsAnError) {
+TEST_F(Streams, LostOutputIsAnError) {
   for (const char* words : {"status",
                             "status --json",
                             "plan m.yaml",
@@ -97,7 +97,7 @@ TEST_F(Streams, OutputThatIsLostIsAnError) {
       << "what was found out counts more";
 }
 
-TEST_F(Streams, ACampaignOutlivesItsTerminalAndItsReaders) {
+TEST_F(Streams, ACampaignContinuesWithoutItsTerminalAndReaders) {
   const std::string whole = "\"$0\" run m.yaml --store ";
   open_hung_up_terminal();
   EXPECT_EQ(shell("trap '' HUP; exec " + whole + "a --cycles 1 2>&9").code, 0);
@@ -109,7 +109,7 @@ TEST_F(Streams, ACampaignOutlivesItsTerminalAndItsReaders) {
   EXPECT_EQ(shell("exec \"$0\" verify --store a <&- 2>&-").code, 0);
 }
 
-TEST_F(Streams, SignalsThatTheCallerIgnoresChangeNothing) {
+TEST_F(Streams, SignalsIgnoredByTheCallerAreIgnored) {
   for (const int ignored : {SIGCHLD, SIGPIPE, SIGHUP}) {
     fs::remove_all(path("out"));
     const auto before = std::signal(ignored, SIG_IGN);  // the program inherits it
@@ -121,7 +121,7 @@ TEST_F(Streams, SignalsThatTheCallerIgnoresChangeNothing) {
   }
 }
 
-TEST_F(Streams, TwoThatDrawIntoOneFolderDoNotDisturbEachOther) {
+TEST_F(Streams, TwoProgramsCanDrawIntoOneFolder) {
   for (int round = 0; round < 3; ++round) {
     const Running first = start_beside({"figures", "S2", "--out", "out"}, "first");
     const Running second = start_beside({"figures", "S2", "--out", "out"}, "second");
@@ -154,7 +154,7 @@ class Signals : public ProgramTest {
   }
 };
 
-TEST_F(Signals, AreHeededWhileACellIsFilled) {
+TEST_F(Signals, StopTheFillingOfACell) {
   write("m.yaml", tiny_manifest("  grains: 3000000\n"));
   std::signal(SIGHUP, SIG_DFL);  // programs inherit it if it is ignored here
   for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
@@ -170,7 +170,7 @@ TEST_F(Signals, AreHeededWhileACellIsFilled) {
   expect(0, {"verify"});
 }
 
-TEST_F(Signals, EndALammpsThatHangs) {
+TEST_F(Signals, EndAHangingLammps) {
   const std::string answers =
       "#!/bin/sh\ncase \"$*\" in *-h*) printf '%s\\n' "
       "'Large-scale Massively Parallel Simulator - 1 Jan 2020' gran/hooke;; "
@@ -196,8 +196,8 @@ TEST_F(Signals, EndALammpsThatHangs) {
   }
 }
 
-/// Two programs, a kill of one, and a resume end in the states of runs that nobody disturbed.
-TEST_F(Signals, AKillOfOneOfTwoLeavesWhatUntilAsksFor) {
+/// Two programs, a kill of one, and a resume give the states of undisturbed runs.
+TEST_F(Signals, AKillOfOneOfTwoProgramsKeepsTheEndByUntil) {
   const std::string text = tiny_manifest(
       "  cycles: 8\n", kBothFluids + "seeds: 2\nuntil: {phi: 0.3, extra_cycles: 3}\n");
   write("m.yaml", text);
@@ -214,9 +214,9 @@ TEST_F(Signals, AKillOfOneOfTwoLeavesWhatUntilAsksFor) {
   expect(0, {"verify"});
 }
 
-class Words : public ProgramTest {};
+class Messages : public ProgramTest {};
 
-TEST_F(Words, NumbersAreDecimalOnEveryOption) {
+TEST_F(Messages, NumbersOfOptionsAreDecimal) {
   for (const char* words : {"bench speed --size 010",
                             "bench speed --size 0x10",
                             "bench speed --threads 0x2",
@@ -249,7 +249,7 @@ TEST_F(Words, NumbersAreDecimalOnEveryOption) {
   }
 }
 
-TEST_F(Words, CharactersThatTurnATextAroundAreShownAsNumbers) {
+TEST_F(Messages, BidirectionalCharactersAreEscaped) {
   const std::string turns[] = {"\u202e", "\u2066", "\u2069", "\u200e",
                                "\u200f", "\u061c", "\u202a", "\u2028"};
   std::string all;
@@ -271,7 +271,7 @@ TEST_F(Words, CharactersThatTurnATextAroundAreShownAsNumbers) {
   expect(2, {"plan", "m.yaml"}, {"\\u"});
 }
 
-TEST_F(Words, CyclesOfAnExportAndCodesOfTheHelpAreTold) {
+TEST_F(Messages, HelpNamesExportedCyclesAndExitCodes) {
   campaign(tiny_manifest("  grains: 200\n", kBothFluids), {"--cycles", "1"});
   const std::string id = last_run();
   for (const char* cycles : {"1e999", "0:1e999", "nan", "inf", "0x1", "1:2:3:4", "-1", "1 "}) {

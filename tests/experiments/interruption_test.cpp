@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// However often and wherever a run is interrupted, it ends in the same bits as one that never was.
+// A run that is interrupted any number of times, at any step, ends in the same bits as an
+// uninterrupted one.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -18,7 +19,7 @@ using Interruption = StoreTest;
 
 // With the wish to stop pending from the start of each attempt, it ends after a single chunk of
 // steps.
-TEST_F(Interruption, AfterEveryChunkLeavesNoTrace) {
+TEST_F(Interruption, AfterEachChunkChangesNothing) {
   for (const StageJob& job : declared(store_, tiny_manifest())) {
     const std::size_t interrupted = interrupt_to_the_end(
         store_, job.id, [&] { EXPECT_EQ(store_.run(job.id).state, RunState::interrupted); });
@@ -35,7 +36,7 @@ TEST_F(Interruption, AfterEveryChunkLeavesNoTrace) {
   EXPECT_TRUE(store_.verify().ok());
 }
 
-TEST_F(Interruption, BeforeTheFirstStageBeginsNothing) {
+TEST_F(Interruption, BeforeTheFirstStageStartsNothing) {
   const std::string text = tiny_manifest("", kBothFluids);
   request_stop(true);
   const CampaignResult result = compute(store_, text);
@@ -52,7 +53,7 @@ TEST_F(Interruption, BeforeTheFirstStageBeginsNothing) {
 }
 
 // Two seconds without a record, at a lease of a quarter of it.
-TEST_F(Interruption, IsNotInvitedByALongWayBetweenCheckpoints) {
+TEST_F(Interruption, ByAnotherProgramIsPreventedBetweenDistantCheckpoints) {
   const std::string text = tiny_manifest("  cycles: 40\n", "checkpoints: {every_cycles: 40}\n");
   Store runner(store_.folder(), Access::write, {.lease_seconds = 0.5});
   std::atomic<bool> done = false;
@@ -70,7 +71,7 @@ TEST_F(Interruption, IsNotInvitedByALongWayBetweenCheckpoints) {
         } catch (const RunHeld&) {
           ++refused;
         } catch (const ConcurrencyConflict&) {
-          // It was completed between the look and the call.
+          // It was completed between the check and the call.
         }
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A published figure leads back to every checkpoint, run, manifest line, seed, build and host.
+// The lineage of a published figure names every checkpoint, run, manifest line, seed, build and
+// host.
 #include "experiments/figures/lineage.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +33,7 @@ class FigureLineageTest : public DrawingTest {
   std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
 };
 
-TEST_F(FigureLineageTest, LeadsToEveryCheckpointAndWhatMadeIt) {
+TEST_F(FigureLineageTest, NamesEveryCheckpointAndItsOrigin) {
   const FigureLineage lineage = figure_lineage(store_, figure_records(store_).at(0));
   ASSERT_EQ(lineage.inputs.size(), 4U);
   EXPECT_EQ(lineage.record.provenance.at("made"), host_facts());
@@ -65,7 +66,7 @@ TEST_F(FigureLineageTest, LeadsToEveryCheckpointAndWhatMadeIt) {
   EXPECT_EQ(all.at("outputs").size(), lineage.outputs.size());
 }
 
-TEST_F(FigureLineageTest, AFileAloneFindsItsRecord) {
+TEST_F(FigureLineageTest, FindsTheRecordOfAFile) {
   const std::string old = read_bytes(file("out/tiny/S2a.csv"));
   const std::string old_lineage = read_bytes(file("out/tiny/S2.lineage.json"));
   for (const char* name : {"out/tiny/S2a.csv", "out/tiny/S2b.csv", "out/tiny/S2.lineage.json"}) {
@@ -95,7 +96,7 @@ TEST_F(FigureLineageTest, AFileAloneFindsItsRecord) {
             figure_records(store_).at(1).seq);
 }
 
-TEST_F(FigureLineageTest, AChangedFileIsToldFromAnUnknownOne) {
+TEST_F(FigureLineageTest, DistinguishesChangedFromUnknownFiles) {
   const std::string bytes = read_bytes(file("out/tiny/S2a.csv"));
   for (const std::size_t at : {std::size_t{0}, bytes.size() / 2, bytes.size() - 1}) {
     std::string changed = bytes;
@@ -128,7 +129,7 @@ TEST_F(FigureLineageTest, MissingAndDamagedInputsAreNamed) {
 }
 
 // As the program recorded them before it recorded who made a figure.
-TEST_F(FigureLineageTest, ReadsAnOldRecordAndRefusesABrokenOne) {
+TEST_F(FigureLineageTest, ReadsAnOldRecordAndRejectsABrokenOne) {
   nlohmann::json old = figure_records(store_).at(0).provenance;
   old.erase("made");
   old.erase("analysis_version");

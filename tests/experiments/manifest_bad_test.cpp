@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every bad manifest is refused with a message that says where it is wrong and how to mend it, and
-// no bytes whatever lead to anything but a Manifest or a ManifestError.
+// Every bad manifest is rejected with a message that says where it is wrong and how to correct it.
+// Any bytes give a Manifest or a ManifestError, nothing else.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -38,7 +38,7 @@ std::string message_for_text(std::string_view text, const std::string& file = "t
 
 class BadManifest : public testing::TestWithParam<std::string> {};
 
-TEST_P(BadManifest, IsRefusedWithTheStatedMessage) {
+TEST_P(BadManifest, IsRejectedWithTheStatedMessage) {
   const auto& [text, message] = kBad.at(GetParam());
   EXPECT_EQ(message_for_text(text, "bad.yaml"), message);
 }
@@ -46,7 +46,7 @@ TEST_P(BadManifest, IsRefusedWithTheStatedMessage) {
 INSTANTIATE_TEST_SUITE_P(Files, BadManifest, testing::ValuesIn(names_of_bad_manifests()),
                          [](const auto& name) { return name.param; });
 
-TEST(BadFile, IsRefused) {
+TEST(BadFile, IsRejected) {
   const TemporaryFolder temporary;
   const fs::path folder = temporary.path();
   const auto at = [&](const char* name) { return folder / name; };
@@ -97,7 +97,7 @@ TEST(BadText, HasTooManyValues) {
   EXPECT_TRUE(has(message_for_text(nodes + "]"), "holds more than 100000 values"));
 }
 
-TEST(BadText, ExpandsWithoutEnd) {
+TEST(BadText, ExpandsWithoutLimit) {
   std::string text = "experiment: a\nbase: {}\nsweep:\n  grid:\n";
   for (const char* key : {"period_s", "amplitude_rad", "mass_kg", "drag_kg_per_s", "pressure_Pa",
                           "settle_time_limit_s", "gravity_m_per_s2"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A manifest expands into the runs that it says, in its order, none lost and none doubled.
+// A manifest expands into its runs, in its order, each once.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -143,7 +143,7 @@ TEST(Expand, AZipHasALengthForEachVariant) {
     EXPECT_EQ(run.target_cycles, 7U);
 }
 
-TEST(Expand, TakesOnlyTheVariantsAskedFor) {
+TEST(Expand, TakesOnlyTheRequestedVariants) {
   const Manifest manifest =
       parse("experiment: a\nsweep: {grid: {amplitude_rad: [0.05, 0.1], fluid: [still, cell]}}\n");
   EXPECT_EQ(variants(expand(manifest, {.variants = {"fluid=cell", "amplitude_rad=0.1"}})),
@@ -162,7 +162,7 @@ TEST(Expand, TakesOnlyTheVariantsAskedFor) {
             "amplitude_rad=0.1,fluid=still; amplitude_rad=0.1,fluid=cell.");
 }
 
-TEST(Expand, RefusesOptionsThatDoNotFit) {
+TEST(Expand, RejectsOptionsThatDoNotFit) {
   const Manifest manifest =
       parse("experiment: a\nbase: {}\nseeds: [4]\nscales: {smoke: {cycles: 1}, paper: {}}\n");
   EXPECT_EQ(message(manifest, {}),
@@ -233,7 +233,7 @@ TEST(Expand, WarnsOfPlotsAndClaimsThatCannotBeMade) {
   EXPECT_TRUE(warnings("plots: [{name: own, y: phi, at_cycle: 3, x: drag_kg_per_s}]\n").empty());
 }
 
-TEST(Expand, WarnsOfKeysThatNoVariantFeels) {
+TEST(Expand, WarnsOfKeysWithoutEffect) {
   const auto warnings = [](const std::string& base, const std::string& rest = "") {
     return plan_of(base, rest).warnings;
   };
@@ -263,7 +263,7 @@ TEST(Expand, WarnsOfKeysThatNoVariantFeels) {
       << "once, not for each variant";
 }
 
-TEST(Expand, AnUntilIsReadOverriddenAndPartOfNoIdentity) {
+TEST(Expand, UntilIsReadAndOverriddenAndDoesNotChangeIds) {
   const std::string text =
       "experiment: a\nscales:\n  one: {}\n  two: {until: {phi: 0.65}}\n"
       "  none: {until: none}\n";

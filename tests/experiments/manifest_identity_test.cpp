@@ -36,7 +36,7 @@ TEST(Identity, DependsOnSeedAndParent) {
   EXPECT_NE(last_stage({}, 1, parent).key, key);
 }
 
-TEST(Identity, DamagedRecordsAreRefusedByName) {
+TEST(Identity, DamagedRecordsAreRejectedByName) {
   const StageSpec prepare = prepare_stage(oldest(), 1);
   const json good = last_stage(oldest(), 1, prepare).resolved;
   const auto message = [](const json& record) {
@@ -71,7 +71,7 @@ TEST(Identity, DamagedRecordsAreRefusedByName) {
 }
 
 // Pinned, so that no change of code renames the runs of existing stores unnoticed.
-TEST(Identity, KeysStayWhatTheyWere) {
+TEST(Identity, KeysNeverChange) {
   const Parameters parameters = oldest();
   const StageSpec prepare = prepare_stage(parameters, 1);
   EXPECT_EQ(prepare.key, "11372fd7ee85ce5f268a00dfc54425ee42a83b439525ed42a3226df21f52c84a");
@@ -81,7 +81,7 @@ TEST(Identity, KeysStayWhatTheyWere) {
             "68b21760ec6eaef04455c4ce553a7ee5b8ac493875c81e7f3d2911321268899f");
 }
 
-TEST(Identity, AStiffeningIsNamedByWhatItFeels) {
+TEST(Identity, OfAStiffeningHasOnlyTheParametersThatActOnIt) {
   Parameters parameters = oldest();
   parameters.protocol = ProtocolKind::stiffen;
   const StageSpec prepare = prepare_stage(parameters, 1);
@@ -100,11 +100,11 @@ TEST(Identity, AStiffeningIsNamedByWhatItFeels) {
   for (const char* unfelt : {"amplitude_rad", "protocol", "engine", "pause_s", "fluid"}) {
     EXPECT_FALSE(stiffen.resolved.at("parameters").contains(unfelt)) << unfelt;
   }
-  // A shear that says it stiffens is no record of ours.
+  // This program never records a shear with the protocol stiffen.
   expect_refused_with(last_stage({}, 1, prepare).resolved, "protocol", {"stiffen"});
 }
 
-TEST(Identity, APauseEntersOnlyWhereTheProtocolIsPaused) {
+TEST(Identity, HasAPauseOnlyIfTheProtocolIsPaused) {
   Parameters longer{.pressure_at = PressureAt::moving_wall, .pause_s = 3};
   const StageSpec prepare = prepare_stage(oldest(), 1);
   EXPECT_EQ(prepare_stage(longer, 1).key, prepare.key);
@@ -133,7 +133,7 @@ TEST(Identity, APauseEntersOnlyWhereTheProtocolIsPaused) {
 }
 
 // A parameter younger than the stores: runs that do not use it keep the keys that they have.
-TEST(Identity, ADrawOfWallGrainsEntersOnlyWhereItIsNotTheFirst) {
+TEST(Identity, HasADrawOfWallGrainsOnlyIfNotTheFirst) {
   const StageSpec first = prepare_stage({}, 1);
   EXPECT_FALSE(first.resolved.at("parameters").contains("wall_grain_draw"));
   const Parameters redrawn{.wall_grain_draw = 2};
@@ -148,7 +148,7 @@ TEST(Identity, ADrawOfWallGrainsEntersOnlyWhereItIsNotTheFirst) {
 }
 
 // Part of the identity of older runs. Their records keep the value that they have.
-TEST(Identity, AnOverlapLimitIsRecordedAsItsFormerDefault) {
+TEST(Identity, HasTheFormerDefaultOfTheOverlapLimit) {
   json record = prepare_stage({.max_overlap_diameters = 0.4}, 1).resolved;
   EXPECT_EQ(record, prepare_stage({}, 1).resolved);
   EXPECT_EQ(record["parameters"]["max_overlap_diameters"], 0.1);
@@ -158,7 +158,7 @@ TEST(Identity, AnOverlapLimitIsRecordedAsItsFormerDefault) {
 }
 
 // Younger than the stores as well, and felt only where a moving bottom wall lifts grains.
-TEST(Identity, WhereThePressureActsEntersOnlyWhereItIsFelt) {
+TEST(Identity, HasWhereThePressureActsOnlyIfItMatters) {
   const Parameters at_top;
   const StageSpec stage = prepare_stage(at_top, 1);
   EXPECT_NE(stage.key, prepare_stage(oldest(), 1).key);
@@ -173,7 +173,7 @@ TEST(Identity, WhereThePressureActsEntersOnlyWhereItIsFelt) {
   }
 }
 
-TEST(Identity, AnEngineEntersOnlyTheShearAndOnlyWhereItIsAnother) {
+TEST(Identity, HasAnEngineOnlyInTheShearAndIfNotOurs) {
   const StageSpec packing = prepare_stage({}, 1);
   const StageSpec ours = last_stage({}, 1, packing);
   EXPECT_FALSE(ours.resolved.at("parameters").contains("engine"));
@@ -187,7 +187,7 @@ TEST(Identity, AnEngineEntersOnlyTheShearAndOnlyWhereItIsAnother) {
   expect_refused_with(theirs.resolved, "engine", {"shearcell", "gromacs", 1});
 }
 
-TEST(CanonicalJson, WritesOneTextForOneValue) {
+TEST(CanonicalJson, WritesEqualTextForEqualValues) {
   const json value = {{"b", {1, 2.5, true, nullptr}}, {"a", {{"y", "x\"\n"}, {"é", -0.0}}},
                       {"c", json::array()},           {"d", json::object()},
                       {"e", 4.385964912280702e-5},    {"f", 2.0}};
@@ -196,7 +196,7 @@ TEST(CanonicalJson, WritesOneTextForOneValue) {
             R"("e":4.385964912280702e-05,"f":2})");
 }
 
-TEST(CanonicalJson, RefusesWhatIsNoNumber) {
+TEST(CanonicalJson, RejectsNotANumber) {
   EXPECT_THROW(canonical_json(std::nan("")), std::invalid_argument);
   EXPECT_THROW(canonical_json({1, std::numeric_limits<double>::infinity()}), std::invalid_argument);
 }

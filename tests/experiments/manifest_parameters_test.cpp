@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parameters: the schema against the struct, the engine's units, and what the numbers of a manifest
-// say of a run before it is run.
+// Parameters: the schema and the struct agree, conversion to the engine's units, and the time step
+// and overlap that follow from a manifest.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -34,7 +34,7 @@ TEST(Schema, NamesAreUniqueAndDefaultsAllowed) {
   }
 }
 
-TEST(Suggest, FindsWhatWasMeant) {
+TEST(Suggest, FindsTheIntendedName) {
   const auto names = names_of(schema());
   EXPECT_EQ(suggest_name("stifness_N_per_m", names).name, "stiffness_N_per_m");
   EXPECT_EQ(suggest_name("grians", names).name, "grains");
@@ -91,7 +91,7 @@ TEST(Conversion, GivesTheNumbersOfTableOne) {
   EXPECT_EQ(drive({}).pause_steps, 0U);
 }
 
-TEST(Conversion, APauseHasWholeTimeSteps) {
+TEST(Conversion, APauseHasAWholeNumberOfSteps) {
   Parameters parameters{.protocol = ProtocolKind::paused};
   EXPECT_EQ(drive(parameters).pause_steps, 45600U) << "2 s, as long as a cycle";
   parameters.pause_s = 1.00003;  // 22800.7 steps
@@ -113,7 +113,7 @@ TEST(Conversion, SettlesInAFluidAtRestWithItsOwnTimeStep) {
   EXPECT_EQ(settle.stiffness, shear_scene(parameters).stiffness);
 }
 
-TEST(Conversion, CarriesTheGeometry) {
+TEST(Conversion, KeepsTheGeometry) {
   const Geometry shape = geometry(
       {.walls = WallTexture::smooth, .moving_wall = MovingWall::top, .wall_grain_draw = 1'000'000});
   EXPECT_EQ(shape.grains, 7900U);
@@ -165,7 +165,7 @@ TEST(TimeStep, OfTableI) {
   EXPECT_EQ(step.seconds, settle_time_step({}).seconds);
 }
 
-TEST(TimeStep, FollowsTheStiffnessWhereItIsAuto) {
+TEST(TimeStep, FollowsTheStiffnessIfAuto) {
   const auto runs_of = [](const std::string& base, const std::string& sweep = "") {
     return plan_of("grains: 600, " + base, sweep).runs;
   };
@@ -193,7 +193,7 @@ TEST(TimeStep, FollowsTheStiffnessWhereItIsAuto) {
       50000U);
 }
 
-TEST(TimeStep, IsAdvisedAgainstWhereItIsTooSmallOrTooLarge) {
+TEST(TimeStep, HasAWarningIfTooSmallOrTooLarge) {
   for (const double part : {0.15, 0.21, 0.355, 0.566, 0.7}) {
     EXPECT_FALSE(time_step_advice({1e-5, 0.1, part}, "steps_per_cycle")) << part;
   }
@@ -207,7 +207,7 @@ TEST(TimeStep, IsAdvisedAgainstWhereItIsTooSmallOrTooLarge) {
   EXPECT_TRUE(has(*large, "above 0.7"));
 }
 
-TEST(TimeStep, WarnsInAPlanUnlessNoTimePasses) {
+TEST(TimeStep, HasNoWarningInAPlanWithoutTimeSteps) {
   const auto warnings = [](const std::string& base) { return plan_of(base).warnings; };
   EXPECT_TRUE(warnings("grains: 600").empty());
   EXPECT_EQ(warnings("grains: 600, steps_per_cycle: 1000000").size(), 1U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Of any manifest: every combination runs once, and a run's name is its physics and nothing else.
+// For random manifests: every combination is run once, and a run's id depends on its physics only.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -129,7 +129,7 @@ std::vector<std::string> combinations(const Written& written) {
 }
 
 // The same of what it expands to, from the parameters that will be computed.
-std::string told(const PlannedRun& run) {
+std::string described(const PlannedRun& run) {
   Strings parts = {fmt::format("seed={}", run.seed)};
   for (const auto& [key, label] : run.labels.items()) {
     const json value = get_value(*find_field(key), run.parameters);
@@ -146,7 +146,7 @@ PROPERTY(Expand, GivesEveryCombinationAndSeedOnce, 400) {
   Strings expected = combinations(written), found;
   std::set<std::string> ids;
   for (const PlannedRun& run : plan.runs) {
-    found.push_back(told(run));
+    found.push_back(described(run));
     ids.insert(run.last.key);
   }
   std::sort(expected.begin(), expected.end());
@@ -168,7 +168,7 @@ PROPERTY(Expand, DoesNotDependOnTheOrderOfWriting, 300) {
   shuffle(written.grid);
   for (Axis& axis : written.grid) shuffle(axis.values);
   shuffle(written.zip);
-  if (!written.zip.empty()) {  // its rows, all axes alike
+  if (!written.zip.empty()) {  // its rows, equally many on all axes
     const std::size_t first = *rc::gen::inRange<std::size_t>(0, written.zip[0].values.size());
     for (Axis& axis : written.zip) {
       std::rotate(axis.values.begin(), axis.values.begin() + static_cast<std::ptrdiff_t>(first),
@@ -308,7 +308,7 @@ bool felt(const Field& field, const Parameters& before, const Parameters& after)
          (!field.identity.under || field.identity.under == after.protocol);
 }
 
-PROPERTY(Identity, ChangesWithEachValueAsTheSchemaSays, 100) {
+PROPERTY(Identity, ChangesWithEachValueAsTheSchemaStates, 100) {
   const Parameters before = any_parameters();
   const StageSpec prepare = prepare_stage(before, 1);
   const StageSpec last = last_stage(before, 1, prepare);

@@ -56,7 +56,7 @@ TEST(Manifests, EachExpandsAtEveryScale) {
       const std::string& scale = has.name;
       const Plan expanded = plan(experiment, scale);
       EXPECT_FALSE(expanded.runs.empty());
-      // Two steps of S3 lie above 0.7 of the stability limit on purpose.
+      // Two steps of S3 are above 0.7 of the stability limit on purpose.
       EXPECT_EQ(expanded.warnings.size(), experiment == "timestep" ? 2U : 0U) << scale;
     }
     experiments.insert(experiment);
@@ -67,7 +67,7 @@ TEST(Manifests, EachExpandsAtEveryScale) {
                                    "spring_constant", "system_size", "timestep", "walls"}));
 }
 
-TEST(Manifests, OfPublishedResultsStillExpand) {
+TEST(Manifests, OfPublishedResultsExpand) {
   std::size_t found = 0;
   for (const auto& entry : fs::recursive_directory_iterator(kFolder / "results")) {
     if (entry.path().extension() != ".yaml") continue;
@@ -81,7 +81,7 @@ TEST(Manifests, OfPublishedResultsStillExpand) {
 }
 
 // Still fluid, bottom wall moving, continuous shear, A = 0.0833, time step of Table I, first seed.
-TEST(Manifests, ShareTheRunThatTheyHaveInCommon) {
+TEST(Manifests, ShareTheirCommonRun) {
   for (const std::string& scale : kScales) {
     const std::string base = plan("drag", scale).runs.front().last.key;
     for (const char* experiment :
@@ -126,7 +126,7 @@ TEST(Manifests, HaveTheSizesAndNumbersOfTheSupplement) {
 }
 
 // analysis/figures/choices.cpp knows the defaults of the wall by these numbers.
-TEST(Manifests, ChoicesDepartFromTheDefaultsOneAtATimeByThree) {
+TEST(Manifests, ChoicesChangeOneDefaultAtATimeByAFactorOfThree) {
   const Plan expanded = plan("choices", "desk");
   ASSERT_EQ(expanded.runs.size(), 6 * 6U);
   const Parameters none;
@@ -148,7 +148,7 @@ TEST(Manifests, ChoicesDepartFromTheDefaultsOneAtATimeByThree) {
   }
 }
 
-TEST(Manifests, TimeStepsOfFigureS3CloseTheirCycles) {
+TEST(Manifests, TimeStepsOfFigureS3GiveWholeCycles) {
   const double stated[] = {2.6e-5, 3.5e-5, 4.4e-5, 7.0e-5};
   const Plan expanded = plan("timestep", "paper");
   for (std::size_t n = 0; n < 4; ++n) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures of checkpoints are kept, and a figure is the same from kept or computed measures.
+// Measures of checkpoints are cached, and a figure is the same from cached or new measures.
 #include "experiments/runner/measure.hpp"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ class Measure : public DrawingTest {
   }
 };
 
-TEST_F(Measure, IsMeasuredOnceAndGivesTheSameBytesAgain) {
+TEST_F(Measure, IsMeasuredOnceAndGivesTheSameBytes) {
   EXPECT_EQ(make("first").measured, 6U);
   EXPECT_EQ(make("second").measured, 0U);
   std::filesystem::remove(cache());
@@ -67,8 +67,8 @@ TEST_F(Measure, IsMeasuredOnceAndGivesTheSameBytesAgain) {
   EXPECT_TRUE(store_.verify().findings.empty()) << "what is kept is no orphan";
 }
 
-// Whoever knew the sample would forge all but that.
-TEST_F(Measure, AMergeSamplesWhatTheMakerOfASourceCannotForesee) {
+// With a known sample, a forger could change all other values.
+TEST_F(Measure, AMergeChecksAnUnpredictableSample) {
   make("first");
   const std::vector<CheckpointRecord> known = sample(records(), 3, 1);
   for (const CheckpointRecord& record : records()) {
@@ -108,7 +108,7 @@ TEST_F(Measure, CurvesAndMotionArePlotted) {
   EXPECT_TRUE(moved.starts_with(head + "fluid=cell,0,,,0\nfluid=cell,1,0.")) << moved;
 }
 
-TEST_F(Measure, OneAnalysisGivesAllThatFiguresMadeTogetherNeed) {
+TEST_F(Measure, OneAnalysisServesAllFiguresMadeTogether) {
   std::string text = tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\n");
   text.replace(text.find("[S2]"), 4, "[S7, walls]");
   compute(store_, text);
@@ -123,7 +123,7 @@ TEST_F(Measure, OneAnalysisGivesAllThatFiguresMadeTogetherNeed) {
 }
 
 // A run that two experiments have counts in each.
-TEST_F(Measure, AFigureOfEveryExperimentMeasuresNothing) {
+TEST_F(Measure, RedrawingEveryExperimentMeasuresNothing) {
   compute(store_, renamed(tiny_manifest("", kBothFluids), "other"));
   const FigureSummary table = draw("table", {*find_figure("table1"), ""});
   EXPECT_EQ(table.measured, 0U);
@@ -144,7 +144,7 @@ TEST_F(Measure, AChangedValueIsFoundAndReplaced) {
 }
 
 // As when the analysis was changed and its version was not.
-TEST_F(Measure, FreshNamesWhatWasKeptDifferently) {
+TEST_F(Measure, FreshNamesCachedValuesThatDiffer) {
   make("first");
   const CheckpointRecord victim = records().at(2);
   keep_phi(victim, 0.5);
@@ -157,7 +157,7 @@ TEST_F(Measure, FreshNamesWhatWasKeptDifferently) {
 }
 
 // Only who computes hashes can do this; it must neither crash nor give a wrong number.
-TEST_F(Measure, OtherContentUnderARightHashIsRefused) {
+TEST_F(Measure, WrongContentUnderARightHashIsRejected) {
   make("first");
   DerivedCache kept(store_.folder());
   DerivedObject object{{records().at(0).sha256, derived_measure("scalars").key(), analysis_version},
@@ -173,7 +173,7 @@ TEST_F(Measure, OtherContentUnderARightHashIsRefused) {
   EXPECT_EQ(csv("fourth"), csv("first"));
 }
 
-TEST_F(Measure, ResultsComeInTheOrderOfTheRecordsWhateverTheWorkers) {
+TEST_F(Measure, ResultsHaveTheOrderOfTheRecordsWithAnyNumberOfWorkers) {
   std::vector<CheckpointRecord> all = records();
   all.push_back(all.front());  // a run that two experiments share
   const std::vector<DerivedMeasure> two = {
@@ -198,7 +198,7 @@ TEST_F(Measure, ResultsComeInTheOrderOfTheRecordsWhateverTheWorkers) {
   }
 }
 
-TEST_F(Measure, WorksWhereNothingCanBeKept) {
+TEST_F(Measure, WorksWithoutAWritableCache) {
   make("first");
   std::filesystem::remove(cache());
   std::filesystem::create_directory(cache());

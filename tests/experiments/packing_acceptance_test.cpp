@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Table I at N = 2000, the whole way: a settled packing has the numbers of model.md, and ten cycles
-// at A = 0.0833 compact it.
+// Table I at N = 2000: a settled packing has the expected numbers, and ten cycles at A = 0.0833
+// compact it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ void expect_balance(Measures measures) {
   EXPECT_LT(in_si("contact_pressure_Pa"), 1.05 * load / (width * width));
 }
 
-TEST_F(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
+TEST_F(PackingOf2000, SettlesAndCompactsAsExpected) {
   const CampaignResult result = compute(store_,
                                         "experiment: packing\n"
                                         "base: {grains: 2000, cycles: 10}\n");
@@ -82,7 +82,7 @@ TEST_F(PackingOf2000, SettlesAndCompactsAsTheModelSays) {
 //     P = sum over contacts of k delta (d - delta) / (3 V),
 // so Table I's P and k leave no choice of the mean overlap. With n interior grains a volume and z
 // contacts a grain, P = n z <delta (d - delta)> k / 6.
-TEST_F(PackingOf2000, HasTheOverlapThatThePressureDemands) {
+TEST_F(PackingOf2000, HasTheOverlapOfThePressure) {
   ASSERT_EQ(compute(store_,
                     "experiment: packing\n"
                     "base: {grains: 2000, gravity_m_per_s2: 0, cycles: 0}\n")

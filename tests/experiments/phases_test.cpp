@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checkpoints at phases of a cycle: asked for like a denser cadence, they change no state, and only
-// what asks for them uses them.
+// Checkpoints at phases of a cycle, requested like a denser cadence: they change no state, and only
+// experiments that request them use them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -88,7 +88,7 @@ TEST_F(Phases, AreCheckpointsOfTheSameRun) {
 }
 
 // An event of a manifest without phases has the same bytes as before there were any.
-TEST_F(Phases, AreInTheRecordOfAMembershipThatAsksForThem) {
+TEST_F(Phases, AreRecordedWithTheMembershipThatAsksForThem) {
   compute(plain_, manifest(""));
   compute(store_, manifest(kPhases));
   for (const Store* store : {&plain_, &store_}) {
@@ -103,7 +103,7 @@ TEST_F(Phases, AreInTheRecordOfAMembershipThatAsksForThem) {
   EXPECT_TRUE(asks_of(store_, sheared(store_).parent).at(0).phases.empty());
 }
 
-TEST_F(Phases, OfACompletedRunAreMadeByReplay) {
+TEST_F(Phases, OfACompletedRunAreComputedByReplay) {
   compute(plain_, manifest(kPhases));
   compute(store_, manifest(""));
   const RunRecord before = sheared(store_);
@@ -147,7 +147,7 @@ TEST_F(Phases, AreTheSameAfterInterruptionsWithinCycles) {
   EXPECT_GT(left.size(), 4U) << "an interruption leaves checkpoints of its own";
   for (const auto& [cycle, sha256] : files(plain_, false)) EXPECT_EQ(left.at(cycle), sha256);
 
-  // The loop has the phases and its ends, in the order of time, and none of the others.
+  // The loop has the requested phases and its ends, in the order of time, and no other checkpoint.
   const std::string csv = drawn(store_, "loop").at("loop.csv");
   Store whole(folder_.path() / "whole", Access::create);
   compute(whole, text);
@@ -157,7 +157,7 @@ TEST_F(Phases, AreTheSameAfterInterruptionsWithinCycles) {
   EXPECT_TRUE(has(csv, at_quarter));
 }
 
-TEST_F(Phases, AreMadeByTwoProgramsOnOneStore) {
+TEST_F(Phases, CanBeComputedByTwoProgramsOnOneStore) {
   compute(plain_, manifest(kPhases));
   std::thread other([&] {
     Store same(store_.folder(), Access::write);
@@ -170,13 +170,13 @@ TEST_F(Phases, AreMadeByTwoProgramsOnOneStore) {
   EXPECT_EQ(files(store_, false), files(plain_, false));
 }
 
-TEST_F(Phases, HaveNoPartInTheEndOfARun) {
+TEST_F(Phases, DoNotEndARun) {
   const std::string until = "until: {phi: 0.1, extra_cycles: 1}\n";  // reached at cycle 0
   compute(store_, manifest("checkpoints: {phases: [0.25, 0.5]}\n" + until));
   EXPECT_EQ(cycles_of(store_, sheared(store_).id), (std::vector<double>{0, 0.25, 0.5, 1}));
 }
 
-TEST_F(Phases, AreRefusedWhereTheirRecordIsNotOurs) {
+TEST_F(Phases, OfAForgedRecordAreRejected) {
   compute(plain_, manifest(""));
   const RunRecord run = sheared(plain_);
   RunDeclaration forged = declaration_of(run);
@@ -190,7 +190,7 @@ TEST_F(Phases, AreRefusedWhereTheirRecordIsNotOurs) {
 // walls deform in their own way; it was 4 % from it here, which says that signs, units and volume
 // fit. Stress is positive in compression, so the loop turns the other way. The walls' own loop is
 // tested with the ledger.
-TEST_F(Phases, DrawALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
+TEST_F(Phases, GiveALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
   constexpr int parts = 16;
   std::string phases;
   for (int k = 1; k < parts; ++k) phases += fmt::format("{}{}", k > 1 ? ", " : "", k / 16.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs the built program in a folder of its own and checks its exit code, output and files.
+// Runs the built program in a temporary folder and checks its exit code, output and files.
 #pragma once
 
 #include <sys/types.h>

@@ -59,7 +59,7 @@ TEST_F(Protocols, PausedShearRecordsTheEndsOfItsPauses) {
     EXPECT_EQ(paused[n].theta, 0) << "upright";
     EXPECT_NEAR(paused[n].time_s, 1.3 * static_cast<double>(n), 1e-12);
   }
-  // The first cycles are the same; then one of the two rests between walls that stand still.
+  // The first cycles are the same; then one of the two rests between walls at rest.
   const Parameters p = read_stage(runs[0].resolved).parameters;
   const State rest = rested(continuous[1].cell, shear_scene(p), continuous[1].state, 0.3);
   EXPECT_EQ(rest.position, paused[1].state.position);
@@ -70,7 +70,7 @@ TEST_F(Protocols, PausedShearRecordsTheEndsOfItsPauses) {
   expect_replays(runs[1]);
 }
 
-TEST_F(Protocols, AnInterruptedPauseLeavesNoTrace) {
+TEST_F(Protocols, InterruptingAPauseChangesNothing) {
   const std::string text = tiny_manifest("  protocol: paused\n  cycles: 1\n");
   const std::vector<StageJob> jobs = declared(store_, text);
   EXPECT_EQ(run_stage(store_, jobs.at(0).id, {}), StageOutcome::completed);
@@ -141,7 +141,7 @@ TEST_F(Protocols, StiffeningRecordsEachSpringConstantAtRest) {
   expect_replays(run);
 }
 
-TEST_F(Protocols, StiffeningIsExtendedAndInterruptedWithoutATrace) {
+TEST_F(Protocols, ExtendingAndInterruptingStiffeningChangesNothing) {
   compute(store_, tiny_manifest(kStiffen + "  stiffness_decades: 1\n"));
   EXPECT_EQ(runs_of_kind(store_, "stiffen").at(0).cycle, 5);
 
@@ -151,7 +151,7 @@ TEST_F(Protocols, StiffeningIsExtendedAndInterruptedWithoutATrace) {
   EXPECT_EQ(final_hashes(store_), undisturbed(tiny_manifest(kStiffen)));
 }
 
-TEST_F(Protocols, AToleranceOutOfReachFailsTheRunAndSaysWhatToChange) {
+TEST_F(Protocols, AnUnreachableToleranceFailsTheRunWithARemedy) {
   // Forces of 1e-25 P d^2 are lost in the rounding of the contact sums.
   const CampaignResult result = compute(
       store_, tiny_manifest(kStiffen + "  grains: 80\n  minimize_force_tolerance: 1.0e-25\n"));

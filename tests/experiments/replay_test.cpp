@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was recorded can be computed again, to the last bit, from any state before it; and what
-// cannot is told apart from what was changed.
+// Every recorded state can be recomputed to the last bit from any state before it. States that
+// cannot be recomputed are distinguished from changed ones.
 #include "experiments/runner/replay.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ class ReplayTest : public DrawingTest {
   }
 };
 
-TEST_F(ReplayTest, GivesEveryRecordedState) {
+TEST_F(ReplayTest, ReproducesEveryRecordedState) {
   const auto all = replayable(store_);
   ASSERT_EQ(all.size(), store_.checkpoints(packing().id).size() + 5);
   const auto before = final_hashes(store_);
@@ -42,14 +42,14 @@ TEST_F(ReplayTest, GivesEveryRecordedState) {
   EXPECT_TRUE(store_.verify().ok());
 }
 
-TEST_F(ReplayTest, RecordsNothingWhenItIsInterruptedWhileTheCellIsFilled) {
+TEST_F(ReplayTest, RecordsNothingIfInterruptedWhileTheCellIsFilled) {
   const StopWish withdrawn_at_the_end;
   request_stop(true);
   EXPECT_TRUE(verify_by_replay(store_, store_.checkpoints(packing().id).front(), 1).interrupted);
   EXPECT_EQ(count_events(store_, "ReplayVerified") + count_events(store_, "ReplayDiverged"), 0U);
 }
 
-TEST_F(ReplayTest, SamplesWithoutRepetitionAndAlikeForOneSeed) {
+TEST_F(ReplayTest, SamplesWithoutRepetitionAndEquallyForEqualSeeds) {
   const auto all = replayable(store_);
   const auto names = [](const std::vector<CheckpointRecord>& records) {
     std::vector<std::string> found;
@@ -63,7 +63,7 @@ TEST_F(ReplayTest, SamplesWithoutRepetitionAndAlikeForOneSeed) {
   EXPECT_EQ(sample(all, 100, 7).size(), all.size());
 }
 
-TEST_F(ReplayTest, MakesPrunedCheckpointsAgain) {
+TEST_F(ReplayTest, RecreatesPrunedCheckpoints) {
   const auto records = store_.checkpoints(sheared().id);
   std::map<std::string, std::string> bytes;
   for (const CheckpointRecord& r : records) bytes[r.sha256] = read_bytes(store_.folder() / r.file);
@@ -85,7 +85,7 @@ TEST_F(ReplayTest, MakesPrunedCheckpointsAgain) {
   EXPECT_TRUE(store_.verify().ok());
 }
 
-TEST_F(ReplayTest, MendsADamagedFile) {
+TEST_F(ReplayTest, RepairsADamagedFile) {
   const auto records = store_.checkpoints(sheared().id);
   truncate_file(store_.folder() / records[2].file);
   EXPECT_FALSE(store_.verify().ok());
@@ -98,7 +98,7 @@ TEST_F(ReplayTest, MendsADamagedFile) {
 }
 
 // The settled packing is damaged, and states of its settling are intact.
-TEST_F(ReplayTest, DoesNotBeginFromAnUnsettledPacking) {
+TEST_F(ReplayTest, DoesNotStartFromAnUnsettledPacking) {
   Store other(folder_.path() / "other", Access::create);
   const std::vector<StageJob> jobs = declared(other, tiny_manifest());
   interrupt_to_the_end(other, jobs[0].id);
@@ -134,7 +134,7 @@ TEST_F(ReplayTest, WorksOnPackingsAndOnStatesWithinACycle) {
 }
 
 // A state that no computation gives, well recorded: as by a processor that erred.
-TEST_F(ReplayTest, TellsWhereAStateDiverges) {
+TEST_F(ReplayTest, ReportsWhereAStateDiverges) {
   const auto records = store_.checkpoints(sheared().id);
   Checkpoint wrong = store_.load_checkpoint(records[4]);
   wrong.state.step += kStepsPerCycle;
@@ -167,7 +167,7 @@ TEST_F(ReplayTest, TellsWhereAStateDiverges) {
   EXPECT_EQ(count_events(store_, "ReplayDiverged"), 2U);
 }
 
-TEST_F(ReplayTest, FiguresNameWhatWasPruned) {
+TEST_F(ReplayTest, FiguresNamePrunedCheckpoints) {
   const auto records = store_.checkpoints(sheared().id);
   store_.prune({records[1], records[2]});
   const FigureSummary figure = draw("figures");

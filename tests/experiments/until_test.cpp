@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `until`: a run ends where a measure reaches a value, at the same checkpoint in every program.
+// `until`: a run ends when a measure reaches a value, at the same checkpoint in every program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -125,7 +125,7 @@ class UntilTest : public StoreTest {
   static inline std::size_t end_ = 0;  // cycle
 };
 
-TEST_F(UntilTest, EndsTheRunSaysWhyAndKeepsTheMeasures) {
+TEST_F(UntilTest, EndsTheRunWithItsReasonAndKeepsTheMeasures) {
   EXPECT_EQ(compute(store_, manifest(until())).completed, 2U);
   expect_end(store_, end_);
   const RunRecord run = sheared(store_);
@@ -155,7 +155,7 @@ TEST_F(UntilTest, EndsTheRunSaysWhyAndKeepsTheMeasures) {
   expect_end(store_, end_);
 }
 
-TEST_F(UntilTest, IsExtendedWithoutOneOrWithALaterOne) {
+TEST_F(UntilTest, RunsAreExtendedWithoutUntilOrWithALaterOne) {
   compute(store_, manifest(until(0)));
   expect_end(store_, end_ - 1);
   EXPECT_EQ(compute(store_, manifest(until(2))).completed, 1U);
@@ -167,14 +167,14 @@ TEST_F(UntilTest, IsExtendedWithoutOneOrWithALaterOne) {
   EXPECT_TRUE(end_of(store_, sheared(store_)).is_null());
 }
 
-TEST_F(UntilTest, IsExtendedFromCycleZero) {
+TEST_F(UntilTest, RunsAreExtendedFromCycleZero) {
   compute(store_, manifest("until: {phi: 0.1}\n"));
   expect_end(store_, 0);
   EXPECT_EQ(compute(store_, manifest("")).completed, 1U);
   expect_end(store_, 6);
 }
 
-TEST_F(UntilTest, IsOpenForAPlanThatAlsoAsksForALaterOne) {
+TEST_F(UntilTest, ARunHasWorkLeftForAPlanWithALaterOne) {
   compute(store_, manifest(until(0)));
   const auto plan_of = [](const std::string& text) {
     return expand(parse_manifest(text, "tiny.yaml"), {});
@@ -193,14 +193,14 @@ TEST_F(UntilTest, IsOpenForAPlanThatAlsoAsksForALaterOne) {
       << "it may end at cycle 5 only";
 }
 
-TEST_F(UntilTest, OfTwoExperimentsTheLongestCounts) {
+TEST_F(UntilTest, TheLongestOfTwoExperimentsCounts) {
   declared(store_, manifest(until(0)));
   declared(store_, renamed(tiny_manifest("  cycles: 5\n"), "twin"));
   EXPECT_EQ(resume(store_).completed, 2U);
   expect_end(store_, 5);
 }
 
-TEST_F(UntilTest, OfTwoExperimentsTheReasonIsThatOfTheLongest) {
+TEST_F(UntilTest, TheReasonIsThatOfTheLongestOfTwoExperiments) {
   compute(store_, renamed(tiny_manifest("  cycles: 5\n"), "twin"));
   EXPECT_EQ(compute(store_, manifest(until(0))).already, 2U) << "nothing is stepped";
   const RunRecord run = sheared(store_);
@@ -214,7 +214,7 @@ TEST_F(UntilTest, OfTwoExperimentsTheReasonIsThatOfTheLongest) {
 }
 
 // Its figures and tables are the same whether or not another experiment continues its runs.
-TEST_F(UntilTest, AnExperimentEndsItsRunsInItsFiguresToo) {
+TEST_F(UntilTest, EndsRunsInFiguresToo) {
   const WantedFigure s2{*find_figure("S2"), "tiny"};
   RunSelection tiny;
   tiny.experiments = {"tiny"};
@@ -230,7 +230,7 @@ TEST_F(UntilTest, AnExperimentEndsItsRunsInItsFiguresToo) {
   EXPECT_EQ(compute_figure(store_, s2, {}).lineage, alone) << "measured again";
 }
 
-TEST_F(UntilTest, AnExperimentKeepsItsCadenceInItsTable) {
+TEST_F(UntilTest, AnExperimentKeepsItsCadenceInTables) {
   RunSelection tiny;
   tiny.experiments = {"tiny"};
   const auto rows = [&] { return run_table(store_, tiny, RowPer::checkpoint, {}).rows.size(); };

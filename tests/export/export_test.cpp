@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exported frames, read back by other people's programs, and the frames themselves.
+// Exported frames, also as other programs read them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -279,7 +279,7 @@ TEST(Export, WritesTheSameBytesTwice) {
   EXPECT_EQ(bytes[0], bytes[1]);
 }
 
-TEST(Export, FramesOfCloseCheckpointsHaveFilesOfTheirOwn) {
+TEST(Export, CloseCheckpointsHaveSeparateFiles) {
   const TemporaryFolder folder;
   Frame frame = frame_of(checkpoints().back(), {}, about());
   const FrameWriter writers[] = {vtk_writer(folder.path(), 2), lammps_writer(folder.path())};
@@ -303,7 +303,7 @@ TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
   EXPECT_TRUE(has(text, " experiment=\"drag\" variant="));
 }
 
-TEST(Export, HasNoKeyThatIsNotOneOfAManifest) {
+TEST(Export, HasOnlyKeysOfAManifest) {
   SelectedRun run = about();
   run.run.resolved["parameters"]["forged=1\n99\n"] = 1;
   for (const auto& [key, value] : frame_of(checkpoints().back(), {}, run).parameters) {
@@ -311,7 +311,7 @@ TEST(Export, HasNoKeyThatIsNotOneOfAManifest) {
   }
 }
 
-TEST(Export, SaysWhatItCannotWrite) {
+TEST(Export, ReportsWhatItCannotWrite) {
   const Frame frame = frame_of(checkpoints().front());
   EXPECT_THROW(extxyz_writer("/nowhere/run.xyz", Lengths::metres), std::runtime_error);
   EXPECT_THROW(h5md_writer("/nowhere/run.h5", 1), std::runtime_error);

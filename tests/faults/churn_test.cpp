@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A long life of one store: every command that writes to it or reads it, in random order, to its
-// end, killed, told to stop, or two at once. In the end nothing of that shows.
+// Random sequences of all commands on one store: completed, killed, stopped, or two at once. The
+// store ends in the state of undisturbed runs.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -95,7 +95,7 @@ class Churn : public testing::Test {
   }
 
   /// What a program says when it ends with 1, where that is sound: a merge is refused while another
-  /// program is at work on a run that it would change; figures leave out what is pruned.
+  /// program computes a run that it would change; figures leave out what is pruned.
   static std::string excuse(const std::string& name, bool beside_another) {
     if (name == "merge" && beside_another) return "merge when it has ended";
     return name == "figures" ? "was pruned" : "";
@@ -143,7 +143,7 @@ class Churn : public testing::Test {
     expect_exit(second, programs[1], "with another", {0});
   }
 
-  /// No checkpoint of a run, no step of it and no other event stands twice in the store.
+  /// No checkpoint of a run, no step of it and no other event is in the store twice.
   static void expect_nothing_twice(const Store& store) {
     // A merge may write the store's own newest event of these again, after older ones of the source
     // that would have changed the state of the run.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Preloaded into the program under test (LD_PRELOAD): stands between it, SQLite included, and the
-// C library's file functions, counts the calls that touch one folder, and lets one of them fail.
+// Preloaded into the program under test (LD_PRELOAD): replaces the C library's file functions, also
+// for SQLite, counts the calls that touch one folder, and makes one of them fail.
 //
 //   FAULT_FOLDER  absolute path; calls on other files pass through, uncounted
-//   FAULT_AT      number of the call that goes wrong, from 1; 0 for none
+//   FAULT_AT      number of the call that fails, from 1; 0: no call
 //   FAULT_KIND    kill    the process dies instead of the call
 //                 enospc  the call fails with "no space left on device"; so does every later write
 //                 eio     the call fails with "input/output error"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two programs share a store and one of them is killed, again and again, at any moment: together
-// they end in the bits of one that was left alone.
+// Two programs share a store and one of them is killed repeatedly, at random times: together they
+// end in the same bits as one undisturbed program.
 #include <gtest/gtest.h>
 #include <signal.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each file operation of each command that writes to the store goes wrong in turn, in each way that
-// fits it. Afterwards the store verifies, and the same command again reaches the same result.
+// Each file operation of each command that writes to the store fails in turn, in each possible way.
+// Afterwards the store verifies, and repeating the command gives the same result.
 #include <gtest/gtest.h>
 #include <signal.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every fuzz target over its seeds, over these cut short and changed a little, and over every input
+// Every fuzz target with its seeds, with truncated and slightly changed seeds, and with every input
 // that once found a fault.
 #include <gtest/gtest.h>
 
@@ -19,14 +19,14 @@ class FuzzTarget : public testing::TestWithParam<Target> {
   }
 };
 
-TEST_P(FuzzTarget, TakesItsSeeds) {
+TEST_P(FuzzTarget, ReadsItsSeeds) {
   const std::vector<std::string> seeds = GetParam().seeds();
   ASSERT_FALSE(seeds.empty());
   for (const std::string& seed : seeds) EXPECT_NO_THROW(run(seed));
   EXPECT_NO_THROW(run(""));
 }
 
-TEST_P(FuzzTarget, TakesDamagedSeeds) {
+TEST_P(FuzzTarget, SurvivesDamagedSeeds) {
   std::mt19937 random(11);
   const std::vector<std::string> seeds = GetParam().seeds();
   for (int round = 0; round < 200; ++round) {
@@ -40,7 +40,7 @@ TEST_P(FuzzTarget, TakesDamagedSeeds) {
   }
 }
 
-TEST_P(FuzzTarget, TakesWhatOnceFoundAFault) {
+TEST_P(FuzzTarget, SurvivesInputsThatOnceFoundAFault) {
   const auto folder = std::filesystem::path(SHEARCELL_FUZZ_REGRESSIONS) / GetParam().name;
   if (!std::filesystem::exists(folder)) return;  // no fault was found with this target
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

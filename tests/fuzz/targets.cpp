@@ -30,20 +30,20 @@ std::string_view text_of(Input input) {
   return {reinterpret_cast<const char*>(input.data()), input.size()};
 }
 
-// For what must hold whatever the input is.
+// For conditions that must hold for every input.
 void require(bool fact, const char* what) {
   if (fact) return;
   std::fprintf(stderr, "not so: %s\n", what);
   std::abort();
 }
 
-// What reads an input ends in an answer or in an error of this kind, with a message.
-template <class Told, class Work>
+// Reading an input gives a result, or an error of this type with a message.
+template <class Error, class Work>
 void attempt(Work&& work) {
   try {
     work();
-  } catch (const Told& told) {
-    require(*told.what() != '\0', "an error says what is wrong");
+  } catch (const Error& error) {
+    require(*error.what() != '\0', "an error says what is wrong");
   }
 }
 
@@ -185,7 +185,7 @@ void forge(const fs::path& log, std::string_view lines) {
   database.execute("COMMIT");
 }
 
-// JSON's own exceptions and bad_alloc are no runtime errors: nobody translated them.
+// The JSON library's exceptions and bad_alloc are not runtime errors: they were not translated.
 template <class Work>
 void attempt_store(Work&& work) {
   attempt<std::runtime_error>(work);

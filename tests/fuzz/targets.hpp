@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is fuzzed: one function for each kind of input that the program takes from strangers.
+// Fuzz targets: one function for each kind of untrusted input.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <ostream>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,11 +20,16 @@ using Input = std::span<const std::uint8_t>;
 struct Target {
   const char* name;
   /// Takes any bytes. It catches the exceptions that such an input may end in, those with a message
-  /// for people; whatever else leaves it is a fault, as are crashes, leaks and undefined behaviour.
+  /// for people; any other exception is a fault, as are crashes, leaks and undefined behaviour.
   void (*run)(Input);
   /// Sound inputs, small ones, to start from, made by the program's own code.
   std::vector<std::string> (*seeds)();
 };
+
+/// For GoogleTest.
+inline void PrintTo(const Target& target, std::ostream* out) {
+  *out << target.name;
+}
 
 extern const std::array<Target, 6> all_targets;
 

@@ -64,7 +64,7 @@ TEST(CyclicShear, StopsAtTheEndOfEveryCycleUpright) {
   EXPECT_FALSE(same_bits(simulation.state(), dense().state));
 }
 
-TEST(CyclicShear, PromisesCheckpointsWhereItsCadencesHaveThemAndAtTheEnd) {
+TEST(CyclicShear, HasCheckpointsAtItsCadencesAndAtTheEnd) {
   const std::vector<double> phases = {0.1, 0.5};
   EXPECT_EQ(steps_at(phases, kDrive), (std::vector<std::uint64_t>{300, 1500}));
   EXPECT_EQ(steps_at(std::vector<double>{0, 1e-9, 0.5, 0.5, 1 - 1e-9, 1, 2}, kDrive),
@@ -145,7 +145,7 @@ TEST(CyclicShear, HoldsTheMovingWallDuringAPause) {
   EXPECT_NE(after(CyclicShear(paused, 2, 1)).wall_height, end.wall_height);
 }
 
-TEST(CyclicShear, PromisesCheckpointsAtTheEndsOfPauses) {
+TEST(CyclicShear, HasCheckpointsAtTheEndsOfPauses) {
   Drive paused = kDrive;
   paused.pause_steps = 1000;
   const CyclicShear protocol(paused, 2, 1);
@@ -189,7 +189,7 @@ Balance balance_over_a_cycle(double wall_factor) {
 
 // A pressure off by a share e changes the overlaps, 2.5e-3 d, by that share and the density by 3 e
 // 2.5e-3. That must be far less than what a cycle compacts.
-TEST(Servo, KeepsThePressureWhateverItsMassAndDrag) {
+TEST(Servo, KeepsThePressureWithAnyMassAndDrag) {
   for (const double factor : {1.0, 3.0, 1.0 / 3}) {
     const Balance b = balance_over_a_cycle(factor);
     std::printf(

@@ -134,7 +134,7 @@ TEST(Settle, GivesTheSameBitsWhenItIsInterrupted) {
   EXPECT_TRUE(same_bits(pieces.state, whole.state));
 }
 
-TEST(Settle, TakesAFinishedStateAsFinished) {
+TEST(Settle, DoesNothingToASettledState) {
   const Packing& packing = settled_packing();
   const Settle protocol({}, packing.scene);
   Simulation simulation(packing.cell, packing.scene, packing.state);
@@ -145,7 +145,7 @@ TEST(Settle, TakesAFinishedStateAsFinished) {
   EXPECT_TRUE(same_bits(simulation.state(), packing.state));
 }
 
-TEST(Settle, SaysWhichLimitItRanInto) {
+TEST(Settle, NamesTheExceededLimit) {
   Packing packing = loose(rough_geometry(300), table_1());
   SettleParameters parameters;
   parameters.time_limit = 0.25;
@@ -158,7 +158,7 @@ TEST(Settle, SaysWhichLimitItRanInto) {
 }
 
 // The moving wall pushes out what it has caught between the wall grains; see settle.hpp.
-TEST(Settle, TakesLargeOverlapsUntilTheWallHasDoneItsWay) {
+TEST(Settle, AllowsLargeOverlapsWhileTheWallMovesIn) {
   Packing packing = loose(rough_geometry(300), table_1());
   packing.state.position.col(1) = packing.state.position.col(0) + Eigen::Vector3d(0, 0, 0.75);
   const Settle protocol({}, table_1());
@@ -172,7 +172,7 @@ TEST(Settle, TakesLargeOverlapsUntilTheWallHasDoneItsWay) {
   EXPECT_NEAR(failure.value, 0.25, 1e-9);
 }
 
-TEST(Settle, PressesUntilTheWallHasDoneItsWay) {
+TEST(Settle, PressesUntilTheWallHasMovedIn) {
   const Packing packing = loose(rough_geometry(600), table_1());
   const auto pressed = [&](const Scene& scene, const SettleParameters& parameters = {}) {
     return Settle(parameters, scene).press_steps(packing.cell, 600);

@@ -62,7 +62,7 @@ TEST(Stiffen, RaisesByTheSameFactorUpToWholeDecades) {
   EXPECT_EQ(raised_stiffness(1, 1, 4), 0x1.c73d51c54470ep+0);
 }
 
-TEST(Stiffen, EndsNineTimesAtRestAndEverHarder) {
+TEST(Stiffen, IsAtRestAtEachOfNineStiffnesses) {
   ASSERT_EQ(nine().size(), 9U);
   double before = 1;
   for (std::size_t n = 0; n < 9; ++n) {
@@ -88,7 +88,7 @@ TEST(Stiffen, EndsNineTimesAtRestAndEverHarder) {
   EXPECT_LT(before, 1e-4);
 }
 
-TEST(Stiffen, GoesOnFromAnyOfItsStatesAndInAnyChunks) {
+TEST(Stiffen, ContinuesFromAnyStateAndInAnyChunks) {
   const State& end = nine().back().state;
   for (const std::size_t n : {0U, 4U, 7U}) {
     EXPECT_TRUE(same_bits(stiffen(nine()[n].state, 3).back().state, end)) << n;

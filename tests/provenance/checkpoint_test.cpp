@@ -41,7 +41,7 @@ void expect_same(const Checkpoint& a, const Checkpoint& b) {
   EXPECT_EQ(rest(a), rest(b));
 }
 
-TEST(Checkpoint, GivesBackEveryBit) {
+TEST(Checkpoint, RestoresEveryBit) {
   const Checkpoint written = hard_checkpoint();
   expect_same(decode_checkpoint(encode_checkpoint(written)), written);
 }
@@ -72,7 +72,7 @@ TEST(Checkpoint, TakesAboutAHundredAndTwentyBytesPerGrain) {
   EXPECT_LT(per_grain, 125);
 }
 
-TEST(Checkpoint, StateHashTellsWhatARunContinuesFrom) {
+TEST(Checkpoint, StateHashCoversWhatARunContinuesFrom) {
   const Checkpoint c = hard_checkpoint();
   Checkpoint same = c;
   same.observables.clear();
@@ -91,7 +91,7 @@ TEST(Checkpoint, StateHashTellsWhatARunContinuesFrom) {
   EXPECT_TRUE(changed([](Checkpoint& o) { o.cell.wall_grains.pop_back(); }));
 }
 
-TEST(Checkpoint, RefusesToWriteWhatItCouldNotRead) {
+TEST(Checkpoint, DoesNotWriteWhatItCouldNotRead) {
   const auto refused = [](auto&& change) {
     Checkpoint c = sample_checkpoint("a");
     change(c);

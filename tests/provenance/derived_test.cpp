@@ -40,7 +40,7 @@ class DerivedCacheTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(DerivedCacheTest, GivesBackWhatWasKept) {
+TEST_F(DerivedCacheTest, ReturnsStoredResults) {
   const std::string content("\0\xff CBOR \0", 9);
   put(key(1), content);
   EXPECT_EQ(get(key(1)), bytes_of(content));
@@ -50,14 +50,14 @@ TEST_F(DerivedCacheTest, GivesBackWhatWasKept) {
   EXPECT_EQ(get(key(2)), bytes_of(""));
 }
 
-TEST_F(DerivedCacheTest, EveryPartOfTheKeyCounts) {
+TEST_F(DerivedCacheTest, EveryPartOfTheKeyMatters) {
   put(key(1), "content");
   EXPECT_EQ(get(key(2)), std::nullopt);
   EXPECT_EQ(get(key(1, "scalars {\"q6\":1}")), std::nullopt);
   EXPECT_EQ(get(key(1, "scalars {}", 2)), std::nullopt);
 }
 
-TEST_F(DerivedCacheTest, ADamagedOrMisplacedObjectIsNotGiven) {
+TEST_F(DerivedCacheTest, DoesNotReturnADamagedOrMisplacedObject) {
   put(key(1), "content");
   put(key(2), "content");
   sql("UPDATE derived SET content = x'00' WHERE checkpoint = '" + run_id(1) + "'");
@@ -70,7 +70,7 @@ TEST_F(DerivedCacheTest, ADamagedOrMisplacedObjectIsNotGiven) {
   EXPECT_EQ(get(key(1)), bytes_of("content"));
 }
 
-TEST_F(DerivedCacheTest, BeginsAnewWhereTheFileIsNoDatabase) {
+TEST_F(DerivedCacheTest, StartsOverIfTheFileIsNotADatabase) {
   put(key(1), "content");
   const std::string sound = read_bytes(file());
   for (const std::string& damaged : {std::string("no database at all, and long enough to be read"),
@@ -83,7 +83,7 @@ TEST_F(DerivedCacheTest, BeginsAnewWhereTheFileIsNoDatabase) {
   }
 }
 
-TEST_F(DerivedCacheTest, NoFlippedByteGivesAnotherContent) {
+TEST_F(DerivedCacheTest, NoFlippedByteChangesTheContent) {
   put(key(1), "content");
   const std::string sound = read_bytes(file());
   int given = 0, lost = 0;
@@ -100,7 +100,7 @@ TEST_F(DerivedCacheTest, NoFlippedByteGivesAnotherContent) {
   EXPECT_GT(lost, 0);
 }
 
-TEST_F(DerivedCacheTest, MayBeDeletedWhileItIsUsed) {
+TEST_F(DerivedCacheTest, MayBeDeletedWhileInUse) {
   DerivedCache cache(folder_.path());
   fs::remove(file());
   put(cache, key(1), "content");
@@ -126,7 +126,7 @@ TEST_F(DerivedCacheTest, TouchesNoForeignFile) {
   EXPECT_EQ(sqlite::Database(file(), Access::write).integer("SELECT x FROM mine"), 1);
 }
 
-TEST_F(DerivedCacheTest, SeveralMayKeepAtOnce) {
+TEST_F(DerivedCacheTest, SeveralProgramsMayWriteAtOnce) {
   start_threads(5, [this](std::size_t thread) {
     DerivedCache cache(folder_.path());  // a connection of its own, as another process has
     for (int i = 0; i < 50; ++i) put(cache, key(i), "content " + std::to_string(i));

@@ -53,7 +53,7 @@ TEST_F(EventLogTest, NumbersAndChainsEventsInTheLogAndInTheirStream) {
   EXPECT_EQ(log.version("test/c"), 0u);
 }
 
-TEST_F(EventLogTest, GivesTheEventsOfAStreamAndOfAType) {
+TEST_F(EventLogTest, SelectsEventsByStreamAndType) {
   sqlite::Database database = open();
   const EventLog log(database);
   const auto numbers = [&](const char* stream, const char* type) {
@@ -68,7 +68,7 @@ TEST_F(EventLogTest, GivesTheEventsOfAStreamAndOfAType) {
   EXPECT_TRUE(numbers("test/b", "Third").empty());
 }
 
-TEST_F(EventLogTest, HashesNetstringsThatNeedNoProgramToCheck) {
+TEST_F(EventLogTest, HashesAreThoseOfNetstrings) {
   const Event event{.seq = 7,
                     .stream = "run/ab",
                     .version = 2,
@@ -94,7 +94,7 @@ TEST_F(EventLogTest, AppendsAllOrNothing) {
   EXPECT_EQ(EventLog(database).version("test/a"), 3u);
 }
 
-TEST_F(EventLogTest, RefusesUpdateAndDelete) {
+TEST_F(EventLogTest, RejectsUpdateAndDelete) {
   sqlite::Database database = open();
   for (const std::string sql : {"UPDATE events SET type = 'Other' WHERE seq = 1",
                                 "DELETE FROM events WHERE seq = 4", "DELETE FROM events"}) {
@@ -117,7 +117,7 @@ TEST_F(EventLogTest, KeepsEveryByteOfAPayload) {
   EXPECT_FALSE(EventLog(database).verify_chain().has_value());
 }
 
-TEST_F(EventLogTest, SyncsAsTheDesignAsks) {
+TEST_F(EventLogTest, SyncsEachCommit) {
   sqlite::Database database = open();
   EXPECT_EQ(database.integer("PRAGMA synchronous"), 3);  // EXTRA
   EXPECT_EQ(database.integer("PRAGMA foreign_keys"), 1);
@@ -126,7 +126,7 @@ TEST_F(EventLogTest, SyncsAsTheDesignAsks) {
   EXPECT_EQ(mode.text(0), "delete");
 }
 
-TEST(Clock, TellsTimesBefore1970) {
+TEST(Clock, FormatsTimesBefore1970) {
   EXPECT_EQ(utc_text(0), "1970-01-01T00:00:00.000Z");
   EXPECT_EQ(utc_text(-1), "1969-12-31T23:59:59.999Z");
   EXPECT_EQ(utc_text(-86'400'850), "1969-12-30T23:59:59.150Z");

@@ -68,7 +68,7 @@ void perform(Store& store, const Act& act) {
   }
 }
 
-struct Told {
+struct RunModel {
   std::string state = "declared";
   std::uint64_t target = 0, attempts = 0;
   double particle_steps = 0;
@@ -84,7 +84,7 @@ struct Told {
     return furthest;
   }
 
-  void hear(const Event& event) {
+  void apply(const Event& event) {
     const nlohmann::json body = event.body();
     const std::string sha256 = body.value("sha256", "");
     if (event.type == "RunDeclared") {
@@ -117,23 +117,23 @@ struct Told {
   }
 };
 
-void expect_told(const Store& store) {
-  std::map<std::string, Told> runs;
+void expect_model(const Store& store) {
+  std::map<std::string, RunModel> runs;
   for (const Event& event : store.events()) {
-    if (event.stream.starts_with("run/")) runs[event.stream.substr(4)].hear(event);
+    if (event.stream.starts_with("run/")) runs[event.stream.substr(4)].apply(event);
   }
   RC_ASSERT(store.runs().size() == runs.size());
   for (const RunRecord& run : store.runs()) {
-    const Told& told = runs.at(run.id);
-    RC_ASSERT(name_of(run.state) == told.state);
-    RC_ASSERT(run.target_cycles == told.target);
-    RC_ASSERT(run.attempts == told.attempts);
-    RC_ASSERT(run.step == told.step());
-    RC_ASSERT(run.particle_steps == told.particle_steps);
+    const RunModel& model = runs.at(run.id);
+    RC_ASSERT(name_of(run.state) == model.state);
+    RC_ASSERT(run.target_cycles == model.target);
+    RC_ASSERT(run.attempts == model.attempts);
+    RC_ASSERT(run.step == model.step());
+    RC_ASSERT(run.particle_steps == model.particle_steps);
     const auto checkpoints = store.checkpoints(run.id, Listed::all);
-    RC_ASSERT(checkpoints.size() == told.checkpoints.size());
+    RC_ASSERT(checkpoints.size() == model.checkpoints.size());
     for (const CheckpointRecord& record : checkpoints) {
-      RC_ASSERT(name_of(record.state) == told.checkpoints.at(record.sha256).second);
+      RC_ASSERT(name_of(record.state) == model.checkpoints.at(record.sha256).second);
     }
   }
 }
@@ -160,7 +160,7 @@ auto rows_of_old_events(const std::filesystem::path& file, const std::vector<Eve
   return projection_rows(database);
 }
 
-PROPERTY(History, GivesTheTablesThatItsEventsTell, 100) {
+PROPERTY(History, GivesTheTablesOfItsEvents, 100) {
   // Starts, records and ends are drawn more often than the rest.
   const auto what = rc::gen::elementOf(std::vector<int>{
       0, 0, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 3, 4, 5, 5, 5, 6, 6, 7, 7, 8, 8, 9, 10, 11, 12, 12});
@@ -185,7 +185,7 @@ PROPERTY(History, GivesTheTablesThatItsEventsTell, 100) {
     }
     if (std::string(kActs[act.what]) == "reopen") store.emplace(path, Access::write);
   }
-  expect_told(*store);
+  expect_model(*store);
   const auto rows = [&] {
     return projection_rows(sqlite::Database(path / "store.sqlite", Access::write));
   };

@@ -210,7 +210,7 @@ std::vector<Forgery> forgeries() {
   return all;
 }
 
-TEST(HostileCheckpoint, AForgedObjectIsRefusedByName) {
+TEST(HostileCheckpoint, AForgedObjectIsRejectedByName) {
   const Checkpoint unchanged = decode_checkpoint(forge([](hid_t) {}));
   EXPECT_EQ(state_hash(unchanged), state_hash(sample_checkpoint("a", 1, 5)));
   for (const Forgery& forgery : forgeries()) {
@@ -222,7 +222,7 @@ TEST(HostileCheckpoint, AForgedObjectIsRefusedByName) {
 
 // ---- Every byte and every length.
 
-TEST(HostileCheckpoint, EveryTruncationIsRefused) {
+TEST(HostileCheckpoint, EveryTruncationIsRejected) {
   const std::vector<std::byte> whole = encode_checkpoint(sample_checkpoint("a", 1, 5));
   for (std::size_t size = 0; size < whole.size(); size += (size < 1100 ? 1 : 37)) {
     std::vector<std::byte> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
@@ -232,7 +232,7 @@ TEST(HostileCheckpoint, EveryTruncationIsRefused) {
   }
 }
 
-TEST(HostileCheckpoint, EveryChangedByteIsRefusedOrReadWithoutHarm) {
+TEST(HostileCheckpoint, EveryChangedByteIsRejectedOrReadWithoutHarm) {
   const std::vector<std::byte> whole = encode_checkpoint(sample_checkpoint("a", 1, 2));
   std::size_t refused = 0, taken = 0;
   for (std::size_t at = 0; at < whole.size(); ++at) {

@@ -56,7 +56,7 @@ TEST_F(LeaseTest, KeepsOthersFromARunThatIsHeld) {
   EXPECT_THROW(second.start_run(id_, {}), ConcurrencyConflict) << "it is completed";
 }
 
-TEST_F(LeaseTest, IsGivenBackWhenTheStoreIsClosed) {
+TEST_F(LeaseTest, IsReleasedWhenTheStoreIsClosed) {
   { open().start_run(id_, {}); }
   Store second = open();
   EXPECT_TRUE(second.leases().empty());
@@ -82,7 +82,7 @@ TEST_F(LeaseTest, ExpiresUnlessItIsRenewed) {
   second.record_checkpoint(id_, sample_checkpoint(id_));
 }
 
-TEST_F(LeaseTest, IsNotMissedByWhoWasOvertaken) {
+TEST_F(LeaseTest, OfARunThatAnotherProgramCompletedIsLost) {
   Store late = open(0);
   late.start_run(id_, {});
   Store other = open();
@@ -96,7 +96,7 @@ TEST_F(LeaseTest, IsNotMissedByWhoWasOvertaken) {
   EXPECT_TRUE(other.checkpoints(id_).empty());
 }
 
-TEST_F(LeaseTest, IsNotRenewedForARunThatAnotherProgramTookAndEnded) {
+TEST_F(LeaseTest, IsNotRenewedForARunThatAnotherProgramContinued) {
   Store late = open(0.01);
   late.start_run(id_, {});
   std::this_thread::sleep_for(20ms);
@@ -108,7 +108,7 @@ TEST_F(LeaseTest, IsNotRenewedForARunThatAnotherProgramTookAndEnded) {
   EXPECT_EQ(other.start_run(id_, {}), 3u);
 }
 
-TEST_F(LeaseTest, OfADeadProcessIsTakenAtOnce) {
+TEST_F(LeaseTest, OfADeadProcessIsFreeAtOnce) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
@@ -127,7 +127,7 @@ TEST_F(LeaseTest, OfADeadProcessIsTakenAtOnce) {
   EXPECT_EQ(store.start_run(id_, {}), 2u);
 }
 
-TEST_F(LeaseTest, OfAnotherMachineIsWaitedFor) {
+TEST_F(LeaseTest, OfAnotherMachineMustExpire) {
   const std::uint64_t now = now_ms();
   Lease lease{.run = id_,
               .holder = this_process(),
@@ -146,7 +146,7 @@ TEST_F(LeaseTest, OfAnotherMachineIsWaitedFor) {
   EXPECT_FALSE(lapsed(lease, now)) << "nothing is known of processes there";
 }
 
-TEST_F(LeaseTest, GoesToOneOfManyWhoAsk) {
+TEST_F(LeaseTest, IsGrantedToOneOfMany) {
   std::atomic<int> won = 0, refused = 0;
   start_threads(9, [&](std::size_t) {
     Store store = open();
@@ -162,7 +162,7 @@ TEST_F(LeaseTest, GoesToOneOfManyWhoAsk) {
   EXPECT_EQ(refused, 7);
 }
 
-TEST_F(LeaseTest, DoesNotBeginFromAStateThatIsNoLongerTheLast) {
+TEST_F(LeaseTest, DoesNotStartFromAnOutdatedState) {
   Store first = open();
   Store second = open();
   first.start_run(id_, {});
@@ -173,7 +173,7 @@ TEST_F(LeaseTest, DoesNotBeginFromAStateThatIsNoLongerTheLast) {
   EXPECT_EQ(second.start_run(id_, {}, two.sha256), 2u);
 }
 
-TEST_F(LeaseTest, IsNoProjection) {
+TEST_F(LeaseTest, IsNotAProjection) {
   Store first = open();
   first.start_run(id_, {});
   Store second = open();

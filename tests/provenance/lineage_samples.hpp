@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small history with every way an attempt can end, for the tests of lineage and its exports.
+// A small history in which attempts end in every possible way, for the tests of lineage and
+// exports.
 #pragma once
 
 #include <string>

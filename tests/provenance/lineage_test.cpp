@@ -18,7 +18,7 @@ class Lineage : public testing::Test {
   SampleHistory history_{store_};
 };
 
-TEST_F(Lineage, AttemptsAreToldFromTheirStartToTheirEnd) {
+TEST_F(Lineage, AttemptsAreListedFromTheirStartToTheirEnd) {
   const std::vector<RunLineage> stages = run_lineage(store_, history_.sheared);
   ASSERT_EQ(stages.size(), 2U);
   EXPECT_EQ(stages[0].run.id, history_.packing);
@@ -40,7 +40,7 @@ TEST_F(Lineage, AttemptsAreToldFromTheirStartToTheirEnd) {
   EXPECT_EQ(attempts[3].checkpoints.size(), 2U);
 }
 
-TEST_F(Lineage, TheFirstAttemptBeganWithThePackingAndLaterOnesWithTheirOwnState) {
+TEST_F(Lineage, TheFirstAttemptStartsFromThePackingAndLaterOnesFromTheirOwnState) {
   const std::vector<RunLineage> stages = run_lineage(store_, history_.sheared);
   const std::string packing = stages[0].checkpoints.at(0).record.sha256;
   const std::vector<Attempt>& attempts = stages[1].attempts;
@@ -52,7 +52,7 @@ TEST_F(Lineage, TheFirstAttemptBeganWithThePackingAndLaterOnesWithTheirOwnState)
   EXPECT_EQ(attempts[3].from_checkpoint, attempts[0].checkpoints.at(0)) << "not the rejected one";
 }
 
-TEST_F(Lineage, ARejectedCheckpointIsKnownAsSuchUntilItIsMadeAgain) {
+TEST_F(Lineage, ARejectedCheckpointIsMarkedUntilItIsRecomputed) {
   const auto rejected = [&] {
     const RunLineage run = run_lineage(store_, history_.sheared).back();
     return run.find(history_.rejected)->record.state == CheckpointState::rejected;
@@ -72,13 +72,13 @@ TEST_F(Lineage, ARejectedCheckpointIsKnownAsSuchUntilItIsMadeAgain) {
   EXPECT_TRUE(run.attempts.back().host.empty()) << "none was recorded";
 }
 
-TEST_F(Lineage, ARejectedCheckpointThatIsRegeneratedIsSoundAgain) {
+TEST_F(Lineage, ARegeneratedCheckpointIsSoundAgain) {
   store_.restore_checkpoint(store_.find_checkpoint(history_.rejected).value(),
                             sample_checkpoint(history_.sheared, 45600));
   EXPECT_TRUE(run_lineage(store_, history_.sheared).back().find(history_.rejected)->kept());
 }
 
-TEST_F(Lineage, AStartMayNameTheStateItBeganWith) {
+TEST_F(Lineage, AStartMayNameItsFirstState) {
   const std::string packing = store_.checkpoints(history_.packing).at(0).sha256;
   append_to_run(store_, history_.sheared, events::encode(events::RunStarted{5, {}, {}, packing}));
   const Attempt named = run_lineage(store_, history_.sheared).back().attempts.back();

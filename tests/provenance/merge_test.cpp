@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Merging is a union of what several stores know: nothing is lost, repeated or mixed up.
+// Merging is a union of several stores: nothing is lost, repeated or mixed up.
 #include "provenance/store.hpp"
 
 #include <gtest/gtest.h>
@@ -80,7 +80,7 @@ class MergeTest : public ::testing::Test {
 
 // Run 0 is shared by all, run 1 by the first two, run 2 is the third one's own. The stores got to
 // different cycles of them, and the third one's target is longer.
-TEST_F(MergeTest, ThreeThatOverlapEqualOneThatDidItAll) {
+TEST_F(MergeTest, ThreeOverlappingStoresEqualOneCompleteStore) {
   const std::string manifest = "a: 1\n";
   {
     Store a = open("a");
@@ -116,7 +116,7 @@ TEST_F(MergeTest, ThreeThatOverlapEqualOneThatDidItAll) {
   ASSERT_EQ(expected.at("runs").size(), 3u);
   ASSERT_EQ(expected.at("checkpoints").size(), 5u + 5u + 3u);
   std::vector<std::string> order = {"a", "b", "c"};
-  do {  // whatever comes first
+  do {  // until the first of these conditions
     const std::string name = "merged-" + order[0] + order[1] + order[2];
     SCOPED_TRACE(name);
     Store merged = open(name);
@@ -146,7 +146,7 @@ TEST_F(MergeTest, ThreeThatOverlapEqualOneThatDidItAll) {
   EXPECT_EQ(facts("rest"), expected);
 }
 
-TEST_F(MergeTest, IntoOneOfThemAndBack) {
+TEST_F(MergeTest, IntoOneOfTheSourcesAndBack) {
   computed("a", {{0, 3, 3}});
   copy("a", "b");  // a common past
   Store a = open("a");
@@ -161,7 +161,7 @@ TEST_F(MergeTest, IntoOneOfThemAndBack) {
   EXPECT_EQ(facts("a"), facts("b"));
   EXPECT_TRUE(a.verify().ok());
   EXPECT_TRUE(b.verify().ok());
-  // One effort for each checkpoint: none was counted twice.
+  // One effort for each checkpoint: each was counted once.
   EXPECT_EQ(a.run(run_id(0)).wall_seconds, 6);
 }
 
@@ -190,7 +190,7 @@ TEST_F(MergeTest, TheFurthestStateWins) {
   }
 }
 
-TEST_F(MergeTest, RefusesDifferentStatesByNameAndChangesNothing) {
+TEST_F(MergeTest, RejectsDifferentStatesByNameAndChangesNothing) {
   const std::string id = run_id(0);
   computed("a", {{0, 1, 3}});
   computed("c", {{1, 1, 1}});
@@ -215,7 +215,7 @@ TEST_F(MergeTest, RefusesDifferentStatesByNameAndChangesNothing) {
   EXPECT_EQ(a.verify().orphans, 0u);
 }
 
-TEST_F(MergeTest, RefusesDamagedSources) {
+TEST_F(MergeTest, RejectsDamagedSources) {
   computed("b", {{0, 2, 2}});
   Store a = open("a");
   const auto record = open("b").checkpoints(run_id(0)).at(1);
@@ -249,7 +249,7 @@ TEST_F(MergeTest, NamesTheSourceWhoseEventsDoNotFit) {
   EXPECT_EQ(a.merge({path("later")}).at(0).events, 7u);
 }
 
-TEST_F(MergeTest, WaitsForNobodyAndDisturbsNobody) {
+TEST_F(MergeTest, NeitherWaitsForNorStopsOtherPrograms) {
   computed("b", {{0, 2, 2}});
   Store a = open("a");
   Store runner = open("a");
@@ -260,7 +260,7 @@ TEST_F(MergeTest, WaitsForNobodyAndDisturbsNobody) {
   EXPECT_EQ(a.merge({path("b")}).at(0).checkpoints, 3u);
 }
 
-TEST_F(MergeTest, HealsAndRespectsPruning) {
+TEST_F(MergeTest, RepairsDamageAndKeepsPrunedCheckpointsPruned) {
   Store a = open("a");
   advance(a, 0, 3, 3);
   copy("a", "b");
@@ -280,7 +280,7 @@ TEST_F(MergeTest, HealsAndRespectsPruning) {
   EXPECT_TRUE(other.verify().ok());
 }
 
-TEST_F(MergeTest, OfABackupRestoresTheFilesThatWereRejected) {
+TEST_F(MergeTest, OfABackupRestoresRejectedFiles) {
   computed("a", {{0, 3, 3}});
   copy("a", "backup");
   Store a = open("a");

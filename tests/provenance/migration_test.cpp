@@ -50,7 +50,7 @@ void expect_what_was_stored(const Store& store) {
   EXPECT_EQ(report.checkpoints, 4u);
 }
 
-TEST_F(MigrationTest, AReaderLeavesTheOldSchemaAlone) {
+TEST_F(MigrationTest, AReaderKeepsTheOldSchema) {
   ASSERT_EQ(version(), 1);
   const std::string before = test::read_bytes(path_ / "store.sqlite");
   const Store store(path_, Access::read);
@@ -66,13 +66,13 @@ TEST_F(MigrationTest, AWriterMigratesAndChangesNoEvent) {
   expect_what_was_stored(Store(path_, Access::write));  // once is enough
 }
 
-TEST_F(MigrationTest, RebuildGivesTheTablesOfThatTime) {
+TEST_F(MigrationTest, RebuildGivesTheOldTables) {
   const auto before = projection_rows(database());
   Store(path_, Access::write).rebuild();
   EXPECT_EQ(projection_rows(database()), before);
 }
 
-TEST_F(MigrationTest, GoesOnFromThere) {
+TEST_F(MigrationTest, AMigratedStoreCanBeContinued) {
   Store store(path_, Access::write);
   const RunRecord run = store.run(kSheared);
   store.declare_run(
@@ -83,7 +83,7 @@ TEST_F(MigrationTest, GoesOnFromThere) {
   EXPECT_TRUE(store.verify(Head{15, kHead}).ok());
 }
 
-TEST_F(MigrationTest, WhenItIsCutShortTheOldVersionStays) {
+TEST_F(MigrationTest, AnInterruptedMigrationKeepsTheOldVersion) {
   execute("CREATE TABLE leases(in_the_way)");  // so that the migration fails
   EXPECT_THROW(Store(path_, Access::write), StoreDamaged);
   EXPECT_EQ(version(), 1);
@@ -115,7 +115,7 @@ TEST_F(MigrationTest, OldEventsAreReadInTheirNewLayout) {
   EXPECT_EQ(completed, 3);
 }
 
-TEST_F(MigrationTest, NewerPayloadsAreRefusedByName) {
+TEST_F(MigrationTest, NewerPayloadsAreRejectedByName) {
   EXPECT_EQ(events::newest_schema("RunStarted"), 2u);
   EXPECT_EQ(events::newest_schema("CheckpointRecorded"), 1u);
   Event event;

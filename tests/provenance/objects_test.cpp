@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An object is whole or absent, is what its name says, and never lies outside the store.
+// An object is complete or missing, matches the digest in its name, and is never outside the store.
 #include "provenance/objects.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class ObjectStoreTest : public ::testing::Test {
   const std::vector<std::byte> bytes_ = bytes_of("abc");
 };
 
-TEST_F(ObjectStoreTest, GivesBackWhatWasPut) {
+TEST_F(ObjectStoreTest, ReturnsStoredBytes) {
   const std::string sha256 = objects_.put(bytes_);
   EXPECT_EQ(sha256, sha256_hex("abc"));
   EXPECT_EQ(ObjectStore::file_of(sha256), "objects/ba/" + sha256 + ".h5");
@@ -49,7 +49,7 @@ TEST_F(ObjectStoreTest, ObeysTheUmask) {
   EXPECT_EQ(status.st_mode & 0777, 0755u);
 }
 
-TEST_F(ObjectStoreTest, NamesADamagedFileAndMendsItWithTheNextPut) {
+TEST_F(ObjectStoreTest, NamesADamagedFileAndRepairsItAtTheNextPut) {
   const std::string sha256 = objects_.put(bytes_);
   for (const std::string wrong : {"", "ab", "abd", "abcd"}) {
     write_bytes(folder_.path() / ObjectStore::file_of(sha256), wrong);
@@ -59,7 +59,7 @@ TEST_F(ObjectStoreTest, NamesADamagedFileAndMendsItWithTheNextPut) {
   EXPECT_EQ(objects_.get(sha256, 3), bytes_);
 }
 
-TEST_F(ObjectStoreTest, ReportsAMissingFileAndANameThatIsNoDigest) {
+TEST_F(ObjectStoreTest, ReportsAMissingFileAndANameThatIsNotADigest) {
   expect_refused<StoreDamaged>([&] { objects_.get(sha256_hex("absent"), 1); }, {"missing"});
   EXPECT_THROW(objects_.get("../../../../etc/passwd", 1), StoreDamaged);
   EXPECT_THROW(objects_.get("", 1), StoreDamaged);
@@ -87,7 +87,7 @@ TEST_F(ObjectStoreTest, FollowsNoLinkToAFolder) {
   EXPECT_EQ(objects_.strangers({sha256}), std::vector<std::string>{"objects/ba"});
 }
 
-TEST_F(ObjectStoreTest, NamesStrangers) {
+TEST_F(ObjectStoreTest, NamesForeignFiles) {
   const std::string sha256 = objects_.put(bytes_);
   write_bytes(folder_.path() / "objects/ba/.tmp-1-0", "half");
   write_bytes(folder_.path() / "objects/note.txt", "");
@@ -96,7 +96,7 @@ TEST_F(ObjectStoreTest, NamesStrangers) {
   EXPECT_EQ(objects_.strangers({}).size(), 3u);
 }
 
-TEST_F(ObjectStoreTest, TakesTheSameObjectFromSeveralThreads) {
+TEST_F(ObjectStoreTest, AcceptsTheSameObjectFromSeveralThreads) {
   const std::vector<std::byte> large(1 << 20, std::byte{7});
   start_threads(5, [&](std::size_t) { objects_.put(large); });
   const std::string sha256 = sha256_hex(large);
@@ -104,7 +104,7 @@ TEST_F(ObjectStoreTest, TakesTheSameObjectFromSeveralThreads) {
   EXPECT_TRUE(objects_.strangers({sha256}).empty());
 }
 
-TEST(TemporaryFolder, NamesTheFolderThatIsMissing) {
+TEST(TemporaryFolder, NamesTheMissingFolder) {
   const TemporaryFolder place;
   const std::string gone = place.path() / "gone";
   const Variable tmpdir("TMPDIR", gone);
@@ -113,7 +113,7 @@ TEST(TemporaryFolder, NamesTheFolderThatIsMissing) {
   EXPECT_EQ(beside.path().parent_path(), place.path());
 }
 
-TEST(Output, ToAFolderThatThisUserMayNotReadIsRefusedForThat) {
+TEST(Output, ToAnUnreadableFolderIsRejected) {
   if (geteuid() == 0) GTEST_SKIP() << "root reads everything";
   const TemporaryFolder folder;
   fs::permissions(folder.path(), fs::perms::none);
@@ -123,7 +123,7 @@ TEST(Output, ToAFolderThatThisUserMayNotReadIsRefusedForThat) {
   fs::permissions(folder.path(), fs::perms::owner_all);
 }
 
-TEST(NewFile, LeavesNothingOfWhatCouldNotBeWritten) {
+TEST(NewFile, LeavesNothingAfterAFailedWrite) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "new";
   NewFile file(path);

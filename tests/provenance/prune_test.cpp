@@ -92,7 +92,7 @@ TEST_F(PruneTest, KeepsTheNewestThatCanBeRead) {
   EXPECT_TRUE(there(records_[6]));
 }
 
-TEST_F(PruneTest, FinishesWhatACrashLeft) {
+TEST_F(PruneTest, FinishesAnInterruptedPrune) {
   const std::string file = read_bytes(path_ / records_[1].file);
   store_.prune({records_[1]});
   write_bytes(path_ / records_[1].file, file);  // as if it had died before the removal
@@ -126,7 +126,7 @@ TEST_F(PruneTest, RestoresTheSameBytesOnly) {
   EXPECT_TRUE(store_.verify().ok());
 }
 
-TEST_F(PruneTest, AcceptsAPrunedStateThatIsRecordedAnew) {
+TEST_F(PruneTest, AcceptsAPrunedStateThatIsRecordedAgain) {
   store_.prune({records_[8]});
   store_.start_run(run_id(1), {}, records_[9].sha256);
   store_.record_checkpoint(run_id(1), sample_checkpoint(run_id(1), kCycle));

@@ -22,7 +22,7 @@ Checkpoint advanced(Checkpoint at, const Scene& scene, const Drive& drive, std::
   return at;
 }
 
-PROPERTY(Restart, AtAnyStepFromACheckpointLeavesNoTrace, 80) {
+PROPERTY(Restart, AtAnyStepFromACheckpointGivesTheSameBits, 80) {
   Sheared packing = any_packing(300);
   Checkpoint start;
   start.run = "any";

@@ -47,7 +47,7 @@ class Crate : public testing::Test {
 };
 
 // Python is a second reader. Debian's modules belong to the Python in /usr/bin.
-TEST_F(Crate, MeetsItsSpecificationsAndHoldsTheFilesThatItDescribes) {
+TEST_F(Crate, MeetsItsSpecificationsAndHoldsItsFiles) {
   const std::string command = "PATH=/usr/bin:$PATH python3 " SHEARCELL_TEST_DATA
                               "/../provenance/check_crate.py '" +
                               crate_.string() + "'";
@@ -77,7 +77,7 @@ TEST_F(Crate, OneActionForEachAttempt) {
   EXPECT_EQ(of_type("Place").size(), 1U) << "one host";
 }
 
-TEST_F(Crate, AnActionIsGivenManifestPackingSeedAndParameters) {
+TEST_F(Crate, AnActionHasManifestPackingSeedAndParameters) {
   const json& action = entities_.at("#attempt-" + history_.sheared + "-1");
   const std::string packing = run_lineage(store_, history_.sheared)[0].checkpoints[0].record.sha256;
   std::set<std::string> objects;
@@ -93,7 +93,7 @@ TEST_F(Crate, AnActionIsGivenManifestPackingSeedAndParameters) {
                         {"fluid", "cell"}, {"mass_kg", 2e-5}, {"seed", 7}, {"stage", "shear"}}));
 }
 
-TEST_F(Crate, ProvJsonTellsOfEachCheckpointOnce) {
+TEST_F(Crate, ProvJsonHasEachCheckpointOnce) {
   const json prov = json::parse(read_bytes(crate_ / "prov.json"));
   EXPECT_EQ(prov.at("activity").size(), 5U);
   EXPECT_EQ(prov.at("agent").size(), 2U);
@@ -109,7 +109,7 @@ TEST_F(Crate, EqualStoresGiveEqualBytes) {
   }
 }
 
-TEST_F(Crate, AnEarlierExportIsBroughtUpToDateAndNothingElseIsTouched) {
+TEST_F(Crate, UpdatesAnEarlierExportAndNothingElse) {
   const fs::path damaged = crate_ / files_.front();
   write_bytes(damaged, "spoilt");
   write_bytes(crate_ / "notes.txt", "mine");
@@ -143,7 +143,7 @@ TEST_F(Crate, FollowsNoLinkOutOfItsFolder) {
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(crate_ / "prov.json")));
 }
 
-TEST_F(Crate, APrunedCheckpointIsToldOfAndNotCopied) {
+TEST_F(Crate, APrunedCheckpointIsListedAndNotCopied) {
   const CheckpointRecord record = store_.checkpoints(history_.sheared).at(1);
   fs::remove(store_.folder() / record.file);
   const fs::path pruned = folder_.path() / "pruned";

@@ -89,7 +89,7 @@ TEST_F(StoreTest, KeepsAManifestOnce) {
   EXPECT_EQ(events[0].body()["text"], "a: 1\n");
 }
 
-TEST_F(StoreTest, RecordsADeclarationOnlyWhenItSaysSomethingNew) {
+TEST_F(StoreTest, RecordsADeclarationOnlyIfItIsNew) {
   RunDeclaration d = sample_run(1);
   store_.declare_run(d);
   EXPECT_EQ(store_.events().size(), 1u);
@@ -122,7 +122,7 @@ TEST_F(StoreTest, ALongerTargetReopensACompletedRun) {
   EXPECT_EQ(store_.start_run(id_, {}), 2u);
 }
 
-TEST_F(StoreTest, TellsWhyARunStopped) {
+TEST_F(StoreTest, ReportsWhyARunStopped) {
   store_.start_run(id_, {});
   store_.interrupt_run(id_, "SIGINT");
   EXPECT_EQ(store_.run(id_).state, RunState::interrupted);
@@ -134,7 +134,7 @@ TEST_F(StoreTest, TellsWhyARunStopped) {
   EXPECT_EQ(store_.run(id_).error, "an overlap of 0.3 d");
 }
 
-TEST_F(StoreTest, ANewMembershipDisturbsNoRunner) {
+TEST_F(StoreTest, ANewMembershipDoesNotStopARunner) {
   store_.start_run(id_, {});
   RunDeclaration shared = sample_run(1);
   shared.membership.experiment = "other";
@@ -146,7 +146,7 @@ TEST_F(StoreTest, ANewMembershipDisturbsNoRunner) {
 
 TEST_F(StoreTest, RecordsTheSameCheckpointOnce) {
   const Checkpoint c = sample_checkpoint(id_);
-  EXPECT_THROW(store_.record_checkpoint(id_, c), ConcurrencyConflict);  // nobody holds the run
+  EXPECT_THROW(store_.record_checkpoint(id_, c), ConcurrencyConflict);  // no program holds the run
   store_.start_run(id_, {});
   const CheckpointRecord once = store_.record_checkpoint(id_, c);
   EXPECT_EQ(store_.record_checkpoint(id_, c).seq, once.seq);
@@ -154,7 +154,7 @@ TEST_F(StoreTest, RecordsTheSameCheckpointOnce) {
   EXPECT_THROW(store_.record_checkpoint(id_, sample_checkpoint(run_id(2))), std::invalid_argument);
 }
 
-TEST_F(StoreTest, PassesOverADamagedNewestCheckpoint) {
+TEST_F(StoreTest, SkipsADamagedNewestCheckpoint) {
   store_.start_run(id_, {});
   const auto first = store_.record_checkpoint(id_, sample_checkpoint(id_, 45600));
   const auto second = store_.record_checkpoint(id_, sample_checkpoint(id_, 91200));
@@ -185,7 +185,7 @@ TEST_F(StoreTest, PassesOverADamagedNewestCheckpoint) {
   EXPECT_EQ(store_.run(id_).step, 91200u);
 }
 
-TEST_F(StoreTest, ListsCheckpointsInATimeThatDoesNotGrowWithTheNumberOfRuns) {
+TEST_F(StoreTest, ListsCheckpointsInATimeIndependentOfTheNumberOfRuns) {
   sqlite::Database database(path_ / "store.sqlite", Access::write);
   database.execute(
       "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 50000) INSERT "
@@ -198,7 +198,7 @@ TEST_F(StoreTest, ListsCheckpointsInATimeThatDoesNotGrowWithTheNumberOfRuns) {
   };
   const double listed = seconds_of_100([&] { EXPECT_TRUE(store_.checkpoints(id_).empty()); });
   const double every_run = seconds_of_100([&] {
-    database.execute("UPDATE runs SET grains = 1 WHERE grains = 2");  // looks at every run
+    database.execute("UPDATE runs SET grains = 1 WHERE grains = 2");  // reads every run
   });
   EXPECT_LT(listed, every_run / 2);
 }
@@ -225,7 +225,7 @@ TEST_F(StoreTest, KeepsTheNewestRecordOfEachFigure) {
   EXPECT_EQ(store_.events("figure/S2a").size(), 2u);
 }
 
-TEST_F(StoreTest, TakesRecordsFromManyThreadsAndProcesses) {
+TEST_F(StoreTest, AcceptsRecordsFromManyThreadsAndProcesses) {
   constexpr int kRuns = 8;
   start_threads(1 + kRuns, [this](std::size_t thread) {
     const int i = 1 + static_cast<int>(thread);
@@ -259,7 +259,7 @@ TEST_F(StoreTest, AReaderChangesNothing) {
   EXPECT_EQ(read_bytes(path_ / "store.sqlite"), before);
 }
 
-TEST_F(StoreTest, StartsOverWhereItsCreationWasCutShort) {
+TEST_F(StoreTest, CanBeCreatedAfterAnInterruptedCreation) {
   const fs::path other = folder_.path() / "other";
   fs::create_directories(other);
   write_bytes(other / "store.sqlite", "");
@@ -268,7 +268,7 @@ TEST_F(StoreTest, StartsOverWhereItsCreationWasCutShort) {
   EXPECT_TRUE(store.verify().ok());
 }
 
-TEST_F(StoreTest, ThatMayNotBeWrittenIsOnlyRead) {
+TEST_F(StoreTest, IsReadOnlyIfItMayNotBeWritten) {
   if (geteuid() == 0) GTEST_SKIP() << "root writes everything";
   const auto expect_only_read = [&](const fs::path& path) {
     fs::permissions(path, fs::perms::owner_write, fs::perm_options::remove);
@@ -281,7 +281,7 @@ TEST_F(StoreTest, ThatMayNotBeWrittenIsOnlyRead) {
   EXPECT_EQ(open(Access::write).runs().size(), 1u);
 }
 
-TEST_F(StoreTest, WithoutItsObjectsIsOnlyRead) {
+TEST_F(StoreTest, IsReadOnlyWithoutItsObjects) {
   store_.start_run(id_, {});
   store_.record_checkpoint(id_, sample_checkpoint(id_));
   const Head head = store_.head();

@@ -130,7 +130,7 @@ TEST_F(VerifyTest, ChecksTheRestOfAStoreWithABadEvent) {
   }
 }
 
-TEST_F(VerifyTest, ReportsTheRestBesideAForgedEndOfARun) {
+TEST_F(VerifyTest, ReportsOtherFaultsBesideAForgedEndOfARun) {
   for (const std::string ended : {"[1]", "7", "{\"memberships\":[]}"}) {
     restore_without_triggers();
     execute("UPDATE events SET payload = '{\"summary\":{\"ended\":" + ended +
@@ -157,10 +157,10 @@ TEST_F(VerifyTest, FindsAChangedByteOfAnyFieldOfAnyEvent) {
                                   const std::string& original) {
       const std::string where = " WHERE seq = " + std::to_string(e.seq);
       execute("UPDATE events SET " + field + " = " + changed + where);
-      const bool told =
+      const bool named =
           field == "version" || field == "prev_hash" || (field == "hash" && e.seq < events_.size());
       EXPECT_TRUE(
-          names(verify(), event(e.seq), told ? field + " was changed" : "match its content"))
+          names(verify(), event(e.seq), named ? field + " was changed" : "match its content"))
           << e.type << "." << field << " = " << changed;
       execute("UPDATE events SET " + field + " = " + original + where);
       ++changes;
@@ -203,7 +203,7 @@ TEST_F(VerifyTest, FindsASwappedPair) {
   }
 }
 
-TEST_F(VerifyTest, FindsATruncatedTailAgainstAKeptHead) {
+TEST_F(VerifyTest, FindsATruncatedLogFromARecordedHead) {
   for (std::size_t kept = events_.size(); kept-- > 0;) {
     restore_without_triggers();
     execute("DELETE FROM events WHERE seq > " + std::to_string(kept));
@@ -212,7 +212,7 @@ TEST_F(VerifyTest, FindsATruncatedTailAgainstAKeptHead) {
   }
 }
 
-TEST_F(VerifyTest, FindsARewrittenPastAgainstAKeptHead) {
+TEST_F(VerifyTest, FindsARewrittenLogFromARecordedHead) {
   restore_without_triggers();
   // A new, valid chain from event 5 on.
   std::string prev = events_[3].hash;
@@ -255,7 +255,7 @@ TEST_F(VerifyTest, FindsAChangedByteOfACheckpoint) {
   EXPECT_TRUE(names(verify(), record.file));
 }
 
-TEST_F(VerifyTest, NotesTheLossOfARejectedObject) {
+TEST_F(VerifyTest, ReportsALostRejectedObject) {
   fs::remove(path_ / records_.back().file);
   EXPECT_EQ(only(verify()).severity, Finding::Severity::note);
 }
@@ -268,7 +268,7 @@ TEST_F(VerifyTest, NamesOrphans) {
   EXPECT_EQ(only(report).subject, ObjectStore::file_of(orphan));
 }
 
-TEST_F(VerifyTest, NotesAStepThatWasReproducedDifferently) {
+TEST_F(VerifyTest, ReportsAStepThatWasReproducedDifferently) {
   Store store(path_, Access::write);
   store.start_run(run_id(1), {}, records_[4].sha256);
   Checkpoint other = sample_checkpoint(run_id(1), 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The commands of provenance/README.md, "Reading it by hand", do what it says: none of them uses
-// this program.
+// The commands of provenance/README.md, "Reading it by hand", give its output. They do not use this
+// program.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -34,7 +34,7 @@ ProgramOutcome run_script(const std::string& script) {
   return run_program({"sh", "-euc", "PATH=/usr/bin:$PATH\n" + script}, "/").value();
 }
 
-TEST(WorkedExample, CommandsOfTheReadmeDoWhatItSays) {
+TEST(WorkedExample, CommandsOfTheReadmeGiveItsOutput) {
   for (const char* tool : {"sqlite3 -version", "h5dump --version", "sha256sum --version",
                            "python3 -c 'import h5py'"}) {
     if (run_script(tool).code != 0) GTEST_SKIP() << "this machine has no " << tool;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `bench accuracy --out` wrote is shown; malformed files are named.
+// Charts of `bench accuracy --out` are shown; malformed files are named.
 #include "experiments/report/report_data.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST_F(AccuracyCharts, HaveTheChartAndTheDrawingBesideTheNumbers) {
 }
 
 // The front end would stumble over each of these.
-TEST_F(AccuracyCharts, RefuseAMalformedChart) {
+TEST_F(AccuracyCharts, RejectAMalformedChart) {
   write("a.csv", "");
   for (const auto& [place, value] : std::initializer_list<std::pair<const char*, nlohmann::json>>{
            {"", nullptr},
@@ -75,7 +75,7 @@ TEST_F(AccuracyCharts, RefuseAMalformedChart) {
   EXPECT_TRUE(has(trouble(), "not a chart"));
 }
 
-TEST_F(AccuracyCharts, NameTheFileOrFolderThatIsWrong) {
+TEST_F(AccuracyCharts, NameTheWrongFileOrFolder) {
   EXPECT_TRUE(has(trouble(), "0 CSV files"));
   write("a.csv", std::string(3'000'000, '1'));
   EXPECT_TRUE(has(trouble(), "a.csv: not a readable file of at most 2 MB"));

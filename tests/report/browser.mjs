@@ -316,14 +316,14 @@ const checks = {
     });
     await page.locator('#packings [data-part="reset"]').click();
     // The click may have scrolled the page, and a late layout takes the grain away from the pointer.
-    let told = "";
-    for (let k = 0; k < 20 && !told.startsWith("grain"); ++k) {
+    let answer = "";
+    for (let k = 0; k < 20 && !answer.startsWith("grain"); ++k) {
       const area = await page.locator('#packings [data-part="canvas"]').boundingBox();
       await page.mouse.move(area.x + area.width / 2 + k % 2, area.y + area.height / 2);
-      told = await page.locator('#packings [data-part="grain"]').textContent();
-      if (!told.startsWith("grain")) await page.waitForTimeout(100);
+      answer = await page.locator('#packings [data-part="grain"]').textContent();
+      if (!answer.startsWith("grain")) await page.waitForTimeout(100);
     }
-    expect(/grain \d+: .*q6 = /.test(told), `packings: pointing tells '${told}'`);
+    expect(/grain \d+: .*q6 = /.test(answer), `packings: pointing shows '${answer}'`);
     const runs = await page.locator('#packings [data-part="run"] option').count();
     for (let run = 0; run < runs; ++run) {
       await choose("run", String(run));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A packed frame gives back what went in, to the step that it states.
+// A packed frame is unpacked to within its stated step.
 #include "experiments/report/packings.hpp"
 
 #include <gtest/gtest.h>
@@ -129,7 +129,7 @@ TEST_F(Frames, KeepFieldsToHalfAStepOfTheirRange) {
   }
 }
 
-TEST_F(Frames, HaveTheSizeThatTheBudgetCountsWith) {
+TEST_F(Frames, HaveTheSizeThatTheBudgetAssumes) {
   EXPECT_EQ(frame_.bytes.size(), 6 * kAll + 10 * kFrameGrains);
   EXPECT_EQ(frame_size_in_page(kFrameGrains, 4, 3), (frame_.bytes.size() + 2) / 3 * 4);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Texts stay texts in a page.
+// Texts do not become markup in a page.
 #include "experiments/report/html.hpp"
 #include "tests/support/text.hpp"
 
@@ -10,7 +10,7 @@
 namespace shearcell::test {
 namespace {
 
-TEST(Html, EscapesWhatMeansSomethingToAParserOrNoPageMayHold) {
+TEST(Html, EscapesMarkupAndCharactersThatAPageMayNotHold) {
   EXPECT_EQ(escape_html("<a href=\"x\" id='y'>&amp;</a>"),
             "&lt;a href=&quot;x&quot; id=&#39;y&#39;&gt;&amp;amp;&lt;/a&gt;");
   EXPECT_EQ(escape_html("ϕ = 0.64,\ttab\nline"), "ϕ = 0.64,\ttab\nline");
@@ -32,7 +32,7 @@ TEST(Html, JsonCannotEndItsScriptElement) {
   EXPECT_TRUE(nlohmann::json::accept(script_json({{"not UTF-8", "\xFF\xFE"}})));
 }
 
-TEST(Html, Base64IsThatOfRfc4648) {
+TEST(Html, Base64FollowsRfc4648) {
   for (const auto& [text, encoded] : std::map<std::string, std::string>{{"", ""},
                                                                         {"f", "Zg=="},
                                                                         {"fo", "Zm8="},

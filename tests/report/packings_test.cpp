@@ -47,7 +47,7 @@ TEST_F(PackingsOf, ShowTheLastRunOfEachVariant) {
   EXPECT_TRUE(packings.notes.empty());
 }
 
-TEST_F(PackingsOf, AreTheSameWhateverTheWorkers) {
+TEST_F(PackingsOf, DoNotDependOnTheNumberOfWorkers) {
   const auto with = [&](std::size_t workers) {
     return collect_packings(store_, {"tiny"}, {}, {}, workers, {}).runs.dump();
   };
@@ -72,7 +72,7 @@ TEST_F(PackingsOf, KeepToTheirBudget) {
   EXPECT_TRUE(collect(choice).runs.empty());
 }
 
-TEST_F(PackingsOf, CanBeNamed) {
+TEST_F(PackingsOf, CanBeSelectedByName) {
   PackingChoice choice;
   choice.runs = {runs_of_kind(store_, "shear").front().id};
   const Packings packings = collect(choice);
@@ -82,7 +82,7 @@ TEST_F(PackingsOf, CanBeNamed) {
   EXPECT_THROW(collect(choice), NotFound);
 }
 
-TEST_F(PackingsOf, LeaveOutWhatIsDamagedAndSaySo) {
+TEST_F(PackingsOf, LeaveOutAndReportDamagedCheckpoints) {
   const std::string run = runs_of_kind(store_, "shear").back().id;
   truncate_file(store_.folder() / store_.checkpoints(run).back().file);
   const Packings packings = collect({});

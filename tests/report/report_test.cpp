@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The report is a function of the store, and nothing that a store says becomes markup.
+// The report is a function of the store, and no text of a store becomes markup.
 #include "experiments/report/page.hpp"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ class ReportOfRuns : public ReportOf {
   ReportOfRuns() { compute(store_, tiny_manifest("", kBothFluids)); }
 };
 
-TEST_F(ReportOfRuns, HasTheSameBytesAgainAndLeavesTheLogAlone) {
+TEST_F(ReportOfRuns, HasTheSameBytesTwiceAndAddsNoEvent) {
   const Head before = store_.head();
   const std::string first = make();
   std::filesystem::remove(store_.folder() / "derived.sqlite");
@@ -60,7 +60,7 @@ TEST_F(ReportOfRuns, HasTheSameBytesAgainAndLeavesTheLogAlone) {
   EXPECT_EQ(store_.head().hash, before.hash);
 }
 
-TEST_F(ReportOfRuns, HoldsTheRunsThatAreSelected) {
+TEST_F(ReportOfRuns, HoldsTheSelectedRuns) {
   ReportOptions options;
   options.runs.variants = {"fluid=cell"};
   const ReportData report = collect(options);
@@ -113,7 +113,7 @@ TEST_F(ReportOfRuns, GivesTheFrontEndPlotsPackingsAndTraces) {
   EXPECT_EQ(variants, (std::set<std::string>{"fluid=cell", "fluid=still"}));
 }
 
-TEST_F(ReportOfRuns, ShowsPackingsOfTheNewestManifestAlone) {
+TEST_F(ReportOfRuns, ShowsPackingsOfTheNewestManifestOnly) {
   if (!has_front_end()) GTEST_SKIP() << "built without Node: there is no front end";
   compute(store_, tiny_manifest("  pressure_Pa: 700\n"));
   const nlohmann::json packings = data_of(make()).at("packings");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A program of its own on the installed libraries: settle a small packing, shear it for a twentieth
-// of a cycle, and measure it.
+// A program that uses the installed libraries: settles a small packing, shears it for a twentieth
+// of a cycle, and measures it.
 #include <analysis/measures.hpp>
 #include <cstdio>
 #include <experiments/manifest/conversion.hpp>

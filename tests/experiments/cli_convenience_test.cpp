@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What makes the program pleasant: a manifest to begin with, completion, the manual page, the
-// doctor, and tables that fit a terminal and have colours there alone.
+// `new`, completion, the manual page, `doctor`, and tables that fit a terminal and have colours
+// only there.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Comfort : public ProgramTest {
+class Convenience : public ProgramTest {
  protected:
   /// Output of a script of sh that must succeed.
   std::string shell_output(const std::string& script) {
@@ -44,7 +44,7 @@ class Comfort : public ProgramTest {
   }
 };
 
-TEST_F(Comfort, NewWritesAManifestThatExpandsAndNamesEveryKey) {
+TEST_F(Convenience, NewWritesAManifestThatExpandsAndNamesEveryKey) {
   expect(0, {"new", "softer"});
   const std::string text = read_bytes(path("softer.yaml"));
   const Manifest manifest = parse_manifest(text, "softer.yaml");
@@ -71,14 +71,14 @@ TEST_F(Comfort, NewWritesAManifestThatExpandsAndNamesEveryKey) {
   }
 }
 
-TEST_F(Comfort, NewLeavesWhatIsThereAlone) {
+TEST_F(Convenience, NewOverwritesNothing) {
   write("mine.yaml", "mine");
   expect_refused({"new", "mine"}, {"mine.yaml: the file exists already"});
   EXPECT_EQ(read_bytes(path("mine.yaml")), "mine");
   expect_refused({"new", "no name"}, {});
 }
 
-TEST_F(Comfort, ShellsCompleteCommandsAndOptions) {
+TEST_F(Convenience, ShellsCompleteCommandsAndOptions) {
   write("script", run({"completion", "bash"}).out);
   EXPECT_EQ(completed("bash", {"shearcell", "ru"}), "run\n");
   EXPECT_EQ(completed("bash", {"shearcell", "bench", "sp"}), "speed\n");
@@ -101,7 +101,7 @@ TEST_F(Comfort, ShellsCompleteCommandsAndOptions) {
   expect_refused({"completion", "tcsh"}, {});
 }
 
-TEST_F(Comfort, TheManualHasEveryCommand) {
+TEST_F(Convenience, TheManualHasEveryCommand) {
   const std::string page = run({"manual"}).out;
   const std::string help = run({"--help"}).out;
   std::istringstream lines(help.substr(help.find("Subcommands:")));
@@ -123,7 +123,7 @@ TEST_F(Comfort, TheManualHasEveryCommand) {
   }
 }
 
-TEST_F(Comfort, TheDoctorSaysWhatThereIs) {
+TEST_F(Convenience, DoctorReportsTheMachine) {
   const nlohmann::json findings = json({"doctor", "--no-speed", "--json"}).at("findings");
   std::set<std::string> seen;
   for (const auto& finding : findings) {
@@ -139,7 +139,7 @@ TEST_F(Comfort, TheDoctorSaysWhatThereIs) {
   EXPECT_TRUE(listing().empty()) << "it left something behind";
 }
 
-TEST_F(Comfort, TablesFitTheTerminalAndHaveColoursThereAlone) {
+TEST_F(Convenience, TablesFitTheTerminalAndHaveColoursOnlyThere) {
   campaign(tiny_manifest());
   const std::string piped = run({"status"}).out;
   EXPECT_FALSE(has(piped, "\x1b"));
@@ -158,7 +158,7 @@ TEST_F(Comfort, TablesFitTheTerminalAndHaveColoursThereAlone) {
   }
 }
 
-TEST_F(Comfort, TablesAreCutBetweenCharacters) {
+TEST_F(Convenience, TablesAreCutBetweenCharacters) {
   std::string long_name;
   for (int k = 0; k < 20; ++k) long_name += "ϕ";
   campaign(tiny_manifest("", kBothFluids + "labels: {\"fluid=still\": " + long_name + "}\n"),
@@ -177,7 +177,7 @@ TEST_F(Comfort, TablesAreCutBetweenCharacters) {
   }
 }
 
-TEST_F(Comfort, ExportsTheCyclesThatAreAskedFor) {
+TEST_F(Convenience, ExportsTheRequestedCycles) {
   campaign(tiny_manifest());
   const std::string id = last_run();
   const auto files = [&](const std::string& format, const std::string& out,
@@ -200,7 +200,7 @@ TEST_F(Comfort, ExportsTheCyclesThatAreAskedFor) {
   }
 }
 
-TEST_F(Comfort, WatchingEndsWhenNobodyIsAtWork) {
+TEST_F(Convenience, WatchEndsWhenNoProgramWorks) {
   campaign(tiny_manifest());
   EXPECT_EQ(expect(0, {"status", "--watch", "0.1"}).out, run({"status"}).out);
   expect_refused({"status", "--watch", "0"}, {"from 0.1 to 86400"});
@@ -224,7 +224,7 @@ TEST_F(BenchAccuracy, PrintsJsonAndWritesTablesAndFigures) {
                                           "accuracy-stiffness", "accuracy-wall"}));
 }
 
-TEST_F(BenchAccuracy, SaysWhatIsWrongBeforeItMeasures) {
+TEST_F(BenchAccuracy, ReportsErrorsBeforeItMeasures) {
   expect_refused({"bench", "accuracy", "--quick", "--jobs", "0"}, {"--jobs"});
   write("file", "");
   const Outcome in_the_way = run({"bench", "accuracy", "--quick", "--out", "file/figures"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The commands that prove, free, restore and unite; several programs on one store; signals, and
-// stores that are not what they should be.
+// Commands on a store: verify, prune, regenerate, merge, show, status, plan. Several programs on
+// one store, signals, and damaged stores.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -13,18 +13,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Care : public ProgramTest {
+class Commands : public ProgramTest {
  protected:
   const std::string manifest_ = tiny_manifest("", kBothFluids);
 
   std::string head() {
-    const nlohmann::json told = json({"verify", "--json"}).at("head");
-    return std::to_string(told.at("seq").get<std::uint64_t>()) + ":" +
-           told.at("hash").get<std::string>();
+    const nlohmann::json verified = json({"verify", "--json"}).at("head");
+    return std::to_string(verified.at("seq").get<std::uint64_t>()) + ":" +
+           verified.at("hash").get<std::string>();
   }
 };
 
-TEST_F(Care, PruneShowsFirstAndRegenerateBringsBack) {
+TEST_F(Commands, PruneOnlyListsByDefaultAndRegenerateRestores) {
   campaign(manifest_, {"--cycles", "4"});
   expect(2, {"prune"});  // nothing was said to go
   expect(2, {"prune", "--state", "lost"});
@@ -51,7 +51,7 @@ TEST_F(Care, PruneShowsFirstAndRegenerateBringsBack) {
   expect(2, {"regenerate", "no-such"});
 }
 
-TEST_F(Care, TheGravestFaultDecidesTheExitCode) {
+TEST_F(Commands, TheMostSevereFaultDecidesTheExitCode) {
   campaign(tiny_manifest("",
                          "sweep: {grid: {fluid: [still, cell], walls: [rough, smooth]}}\n"
                          "plots: [{name: mixed, y: phi, x: cycle, by: fluid}]\n"),
@@ -63,7 +63,7 @@ TEST_F(Care, TheGravestFaultDecidesTheExitCode) {
   expect(4, {"show", last_run(), "--json"}, {"not measured: "});
 }
 
-TEST_F(Care, ShowRefusesABeginningOfARunAndOfACheckpoint) {
+TEST_F(Commands, ShowRejectsAPrefixOfARunAndACheckpoint) {
   campaign(manifest_, {"--cycles", "0"});
   const std::string run = last_run(), brief = run.substr(0, 8);
   sqlite::Database(path("shearcell-store/store.sqlite"), Access::write)
@@ -74,12 +74,12 @@ TEST_F(Care, ShowRefusesABeginningOfARunAndOfACheckpoint) {
   expect(0, {"show", run});
 }
 
-TEST_F(Care, VerifyReplaysAndHoldsAgainstAHead) {
+TEST_F(Commands, VerifyReplaysAndComparesWithAHead) {
   campaign(manifest_);
   const std::string before = head();
-  const nlohmann::json told = json({"verify", "--replay", "3", "--seed", "5", "--json"});
-  ASSERT_EQ(told.at("replay").at("replayed").size(), 3U);
-  for (const auto& replay : told.at("replay").at("replayed")) {
+  const nlohmann::json verified = json({"verify", "--replay", "3", "--seed", "5", "--json"});
+  ASSERT_EQ(verified.at("replay").at("replayed").size(), 3U);
+  for (const auto& replay : verified.at("replay").at("replayed")) {
     EXPECT_EQ(replay.at("same"), true);
     EXPECT_GT(replay.at("steps"), 0) << "where a stage begins nothing is computed";
   }
@@ -94,7 +94,7 @@ TEST_F(Care, VerifyReplaysAndHoldsAgainstAHead) {
   expect(0, {"verify", "--against", before});
 }
 
-TEST_F(Care, MergesAndRefusesConflicts) {
+TEST_F(Commands, MergeRejectsConflicts) {
   campaign(tiny_manifest(), {"--cycles", "1"}, "a");
   campaign(manifest_, {}, "b");
   const auto whole = hashes("b");
@@ -126,7 +126,7 @@ TEST_F(Care, MergesAndRefusesConflicts) {
   EXPECT_EQ(hashes("all"), whole);
 }
 
-TEST_F(Care, StatusListsASharedRunUnderEachExperiment) {
+TEST_F(Commands, StatusListsASharedRunUnderEachExperiment) {
   const std::string text = tiny_manifest("", "sweep: {grid: {grains: [200, 300]}}\n");
   campaign(text, {"--cycles", "0"});
   write("twin.yaml", renamed(text, "twin"));
@@ -140,7 +140,7 @@ TEST_F(Care, StatusListsASharedRunUnderEachExperiment) {
   EXPECT_EQ(json({"status", "--json"}).at("runs").size(), 4U) << "each once";
 }
 
-TEST_F(Care, ValuesThatARecordLeavesOutAreNamed) {
+TEST_F(Commands, NamesIncludeValuesThatARecordLeavesOut) {
   const auto swept = [](const std::string& zip) {
     return tiny_manifest("", "sweep: {zip: {" + zip + "}}\n");
   };
@@ -155,7 +155,7 @@ TEST_F(Care, ValuesThatARecordLeavesOutAreNamed) {
   expect(0, {"status"}, {"packing wall_grain_draw=0 ", "packing wall_grain_draw=1 "});
 }
 
-TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
+TEST_F(Commands, PlanShowsWhatIsDoneSharedAndNew) {
   campaign(manifest_, {"--cycles", "1"});
   const auto stage = [](const nlohmann::json& plan, const std::string& kind,
                         std::uint64_t seed) -> nlohmann::json {
@@ -186,7 +186,7 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
   EXPECT_EQ(stage(more, "shear", 2).at("new").at("fields"),
             nlohmann::json::parse(R"([{"field": "seed", "value": 2, "store_has": 1}])"));
 
-  // A run that ended early is done for every manifest with that `until`, whatever else it says.
+  // A run that ended early is complete for every manifest with that `until`.
   const std::string early = tiny_manifest("", "until: {phi: 0.1}\n");
   write("early.yaml", early);
   expect(0, {"run", "early.yaml", "--cycles", "5", "-q"});
@@ -222,7 +222,7 @@ TEST_F(Care, PlanTellsWhatIsDoneSharedAndNew) {
   EXPECT_EQ(json({"plan", "m.yaml", "m.yaml", "--json"}).at("experiment"), "tiny");
 }
 
-class Sharing : public Care {
+class SharedStore : public Commands {
  protected:
   static std::string many_runs() {
     return tiny_manifest("  cycles: 6\n", kBothFluids + "seeds: 3\n");
@@ -240,7 +240,7 @@ class Sharing : public Care {
   }
 };
 
-TEST_F(Sharing, TwoProgramsDoEachRunOnce) {
+TEST_F(SharedStore, TwoProgramsComputeEachRunOnce) {
   const std::string text = write("many.yaml", many_runs());
   expect(0, {"run", text, "-q", "--store", "whole"});
   const Running first = start_beside({"run", text, "-j", "1", "--json"}, "first");
@@ -278,7 +278,7 @@ TEST_F(Sharing, TwoProgramsDoEachRunOnce) {
   expect_each_run_once(hashes("whole"));
 }
 
-TEST_F(Sharing, TheOtherTakesOverWhatAKilledOneHeld) {
+TEST_F(SharedStore, AProgramContinuesTheRunsOfAKilledOne) {
   const std::string text = write("one.yaml", tiny_manifest("  cycles: 20\n"));
   expect(0, {"run", text, "-q", "--store", "whole"});
   const Running first = start_beside({"run", text, "-q"}, "first");
@@ -294,7 +294,7 @@ TEST_F(Sharing, TheOtherTakesOverWhatAKilledOneHeld) {
   expect(0, {"verify"});
 }
 
-TEST_F(Care, HardCasesAreToldAndOneThatFailsEndsWithCode3) {
+TEST_F(Commands, BenchStabilityEndsWithCode3IfACaseFails) {
   const nlohmann::json cases =
       json({"bench", "stability", "--quick", "--only", "touching", "equal", "--json"}).at("cases");
   ASSERT_EQ(cases.size(), 4U);
@@ -311,7 +311,7 @@ TEST_F(Care, HardCasesAreToldAndOneThatFailsEndsWithCode3) {
 
 class CommandLineStore : public ProgramTest {};
 
-TEST_F(CommandLineStore, NamesATruncatedCheckpointAndGoesOnWithTheOthers) {
+TEST_F(CommandLineStore, NamesATruncatedCheckpointAndContinues) {
   campaign(tiny_manifest(), {"--cycles", "1", "--seeds", "2"});
   const auto expected = hashes();
   std::string victim;
@@ -330,14 +330,14 @@ TEST_F(CommandLineStore, NamesATruncatedCheckpointAndGoesOnWithTheOthers) {
   expect(0, {"verify"});
 }
 
-TEST_F(CommandLineStore, SaysWhyARunFailed) {
+TEST_F(CommandLineStore, ReportsWhyARunFailed) {
   const std::string manifest =
       write("m.yaml", tiny_manifest("", "sweep: {grid: {settle_time_limit_s: [60, 0.1]}}\n"));
   expect(3, {"run", manifest, "--cycles", "1", "-q"}, {"over its limit of 0.1"});
   expect(0, {"status"}, {"over its limit of 0.1", "completed"});
 }
 
-// Long enough that a signal finds it at work: about a second.
+// About a second, long enough for a signal to arrive during the work.
 const std::string kCycles = "20";
 
 class Signals : public CommandLineStore, public testing::WithParamInterface<int> {};
