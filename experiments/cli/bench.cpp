@@ -132,7 +132,7 @@ void print_facts(const std::vector<Facts>& results) {
 }
 
 void report_progress(const std::string& what) {
-  print_escaped_stderr("{}\n", what);
+  print_stderr("{}\n", what);
 }
 
 void add_speed(CLI::App& bench, Context& context) {

@@ -27,16 +27,15 @@ std::optional<Store> open_if_there(const std::string& folder) {
   return std::optional<Store>(std::in_place, folder, Access::read);
 }
 
-void tell_problems(const MeasureOutcome& outcome, const char* left_out, Context& context) {
+void print_problems(const MeasureOutcome& outcome, const char* left_out, Context& context) {
   for (const auto* lines : {&outcome.damage, &outcome.pruned}) {
-    for (const std::string& line : *lines) print_escaped_stderr("{}: {}\n", left_out, line);
+    for (const std::string& line : *lines) print_stderr("{}: {}\n", left_out, line);
   }
   for (const std::string& sha256 : outcome.changed) {
-    print_escaped_stderr("checkpoint {:.12}: the cached measures differed and were replaced\n",
-                         sha256);
+    print_stderr("checkpoint {:.12}: the cached measures differed and were replaced\n", sha256);
   }
   if (!outcome.cache_trouble.empty()) {
-    print_escaped_stderr("measures cannot be cached: {}\n", outcome.cache_trouble);
+    print_stderr("measures cannot be cached: {}\n", outcome.cache_trouble);
   }
   if (!outcome.damage.empty()) fail(context, kStoreDamaged);
 }
@@ -101,7 +100,7 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths,
     loaded.manifests.push_back(load_manifest(path));
     loaded.plans.push_back(expand(loaded.manifests.back(), options));
     for (const std::string& warning : loaded.plans.back().warnings) {
-      print_escaped_stderr("warning: {}\n", warning);
+      print_stderr("warning: {}\n", warning);
     }
   }
   return loaded;

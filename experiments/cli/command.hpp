@@ -45,7 +45,7 @@ std::optional<Store> open_if_there(const std::string& folder);
 
 /// Prints the problems of measuring, each checkpoint after the words `left_out`. Damage sets the
 /// exit code.
-void tell_problems(const MeasureOutcome& outcome, const char* left_out, Context& context);
+void print_problems(const MeasureOutcome& outcome, const char* left_out, Context& context);
 
 // Each adds a subcommand to the parser; add_run also adds `resume`.
 using AddCommand = void(CLI::App& app, Context& context);

@@ -145,9 +145,8 @@ std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& select
         run.id, cycles.empty() ? "of any number" : cycles));
   }
   if (pruned > 0) {
-    print_escaped_stderr(
-        "run {:.8}: left out: {} (pruned; `shearcell regenerate` makes them again)\n", run.id,
-        counted(pruned, "checkpoint"));
+    print_stderr("run {:.8}: left out: {} (pruned; `shearcell regenerate` makes them again)\n",
+                 run.id, counted(pruned, "checkpoint"));
   }
   return records;
 }
@@ -221,7 +220,7 @@ std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) 
   if (runs.empty()) {
     NewestRuns newest =
         newest_runs(select_runs(store, options.selection), options.selection.all_versions);
-    for (const std::string& note : newest.notes) print_escaped_stderr("{}\n", note);
+    for (const std::string& note : newest.notes) print_stderr("{}\n", note);
     for (SelectedRun& one : newest.runs) runs.push_back({one, {one.membership}});
   }
   std::map<std::string, std::size_t> first;  // place in `each`, by run
@@ -285,7 +284,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<WantedRun>
       done.push_back({run, single ? out : out / name, std::move(files)});
     } catch (const std::invalid_argument& problem) {  // no checkpoint in these cycles
       if (single || (&run == &runs.back() && done.empty())) throw;
-      print_escaped_stderr("left out: {}\n", problem.what());
+      print_stderr("left out: {}\n", problem.what());
     }
   }
   require_new(out, folder);
@@ -309,8 +308,8 @@ void export_runs(const ExportOptions& options, Context& context) {
   for (Exported& one : done) {
     if (single) one.out = options.out;
     if (context.json) continue;
-    print_escaped("run {:.12}: {} in {}\n", one.run.run.id, counted(one.files.size(), "file"),
-                  one.out.string());
+    print_text("run {:.12}: {} in {}\n", one.run.run.id, counted(one.files.size(), "file"),
+               one.out.string());
   }
   if (!context.json) return;
   const nlohmann::json list = json_list(done, [&](const Exported& one) -> nlohmann::json {

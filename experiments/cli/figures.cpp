@@ -24,15 +24,15 @@ struct FigureArguments {
 
 void complain(const FigureSummary& result, std::set<std::string>& told, Context& context) {
   for (const std::string& note : result.notes) {
-    if (told.insert(note).second) print_escaped_stderr("{}\n", note);
+    if (told.insert(note).second) print_stderr("{}\n", note);
   }
-  tell_problems(result, "left out", context);
+  print_problems(result, "left out", context);
   if (!result.empty.empty()) {
-    print_escaped_stderr("warning: figure {}{}{}: its runs have no values to draw in {}\n",
-                         result.experiment, result.experiment.empty() ? "" : "/", result.name,
-                         fmt::join(result.empty, ", "));
+    print_stderr("warning: figure {}{}{}: its runs have no values to draw in {}\n",
+                 result.experiment, result.experiment.empty() ? "" : "/", result.name,
+                 fmt::join(result.empty, ", "));
   }
-  if (!result.plot_error.empty()) print_escaped_stderr("no plot: {}\n", result.plot_error);
+  if (!result.plot_error.empty()) print_stderr("no plot: {}\n", result.plot_error);
 }
 
 nlohmann::json facts(const FigureSummary& result) {
@@ -52,12 +52,11 @@ nlohmann::json facts(const FigureSummary& result) {
 }
 
 void print_verdicts(const FigureSummary& result) {
-  if (const auto ruling = overall(result.verdicts))
-    print_escaped("  verdict: {}\n", name_of(*ruling));
+  if (const auto ruling = overall(result.verdicts)) print_text("  verdict: {}\n", name_of(*ruling));
   for (const Verdict& verdict : result.verdicts) {
-    print_escaped("    {}: {}\n      {}: {}{}{}\n", name_of(verdict.ruling), verdict.claim,
-                  verdict.quantity, numbers_of(verdict), verdict.note.empty() ? "" : "; ",
-                  verdict.note);
+    print_text("    {}: {}\n      {}: {}{}{}\n", name_of(verdict.ruling), verdict.claim,
+               verdict.quantity, numbers_of(verdict), verdict.note.empty() ? "" : "; ",
+               verdict.note);
   }
 }
 
@@ -66,11 +65,11 @@ void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
   if (!result.plot_error.empty() || !result.pruned.empty()) fail(context, kOtherError);
   list.push_back(facts(result));
   if (context.json) return;
-  print_escaped("{}{}{} ({} scale): {}, {}, {} of them newly measured\n", result.experiment,
-                result.experiment.empty() ? "" : "/", result.name, scale_name(result.scale),
-                counted(result.runs, "run"), counted(result.checkpoints, "checkpoint"),
-                result.measured);
-  for (const auto& file : result.files) print_escaped("  {}\n", file.string());
+  print_text("{}{}{} ({} scale): {}, {}, {} of them newly measured\n", result.experiment,
+             result.experiment.empty() ? "" : "/", result.name, scale_name(result.scale),
+             counted(result.runs, "run"), counted(result.checkpoints, "checkpoint"),
+             result.measured);
+  for (const auto& file : result.files) print_text("  {}\n", file.string());
   print_verdicts(result);
 }
 
@@ -82,10 +81,10 @@ void figures(FigureArguments& options, Context& context) {
     throw NotFound(fmt::format("no experiment of the store lists {}; name one with --experiment",
                                fmt::join(options.names, " or ")));
   }
-  if (wanted.figures.empty()) print_escaped_stderr("No manifest of this store lists a figure.\n");
+  if (wanted.figures.empty()) print_stderr("No manifest of this store lists a figure.\n");
   std::set<std::string> told;  // each message once, not for each figure
   const auto complain_of = [&](const std::string& problem) {
-    if (told.insert(problem).second) print_escaped_stderr("shearcell: {}\n", problem);
+    if (told.insert(problem).second) print_stderr("shearcell: {}\n", problem);
     fail(context, kUsageError);
   };
   for (const std::string& problem : wanted.unknown) complain_of(problem);

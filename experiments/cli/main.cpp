@@ -66,7 +66,7 @@ ExitCode exit_code_of(const std::exception& error) {
 }
 
 int complain(int code, const char* what) {
-  print_escaped_stderr("shearcell: {}\n", what);
+  print_stderr("shearcell: {}\n", what);
   return code;
 }
 
@@ -131,7 +131,7 @@ int run(int argc, char** argv) {
     if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
     return context.exit_code;
   } catch (const CLI::ExtrasError&) {
-    print_escaped_stderr("{}\nRun with --help for more information.\n", describe_extras(app));
+    print_stderr("{}\nRun with --help for more information.\n", describe_extras(app));
     return kUsageError;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kUsageError;

@@ -20,7 +20,7 @@ void merge(const std::vector<std::string>& sources, Context& context) {
   std::vector<Finding> refused;
   const auto reports = merge_stores(store, {sources.begin(), sources.end()}, {}, &refused);
   for (const Finding& finding : refused) {
-    print_escaped_stderr("no measures were copied from {}: {}\n", finding.subject, finding.message);
+    print_stderr("no measures were copied from {}: {}\n", finding.subject, finding.message);
   }
   if (context.json) {
     const auto facts = [](const MergeReport& report) -> nlohmann::json {
@@ -33,9 +33,9 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     return print_json({{"merged", json_list(reports, facts)}});
   }
   for (const MergeReport& report : reports) {
-    print_escaped("{}: {} of {} events and {} checkpoints ({}) were new\n", report.source,
-                  report.events, report.head.seq, report.checkpoints,
-                  format_bytes(static_cast<double>(report.bytes)));
+    print_text("{}: {} of {} events and {} checkpoints ({}) were new\n", report.source,
+               report.events, report.head.seq, report.checkpoints,
+               format_bytes(static_cast<double>(report.bytes)));
   }
 }
 

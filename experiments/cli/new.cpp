@@ -120,8 +120,7 @@ void make(std::filesystem::path file) {
   const std::string text = text_of(file.stem().string());
   parse_manifest(text, file.string());  // refuses a bad name
   write_new(file, text);
-  print_escaped("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(),
-                file.string());
+  print_text("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(), file.string());
 }
 
 }  // namespace

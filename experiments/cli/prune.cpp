@@ -58,7 +58,7 @@ void print_plan(const Store& store, const std::vector<CheckpointRecord>& records
 
 bool agreed() {
   if (isatty(STDIN_FILENO) == 0) return false;
-  print_escaped_stderr("Free them? [y/N] ");
+  print_stderr("Free them? [y/N] ");
   std::string answer;
   return std::getline(std::cin, answer) && (answer == "y" || answer == "Y");
 }
@@ -115,8 +115,8 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
   const auto say = [&](const std::string& outcome, const std::string& text) {
     facts["outcome"] = outcome;
     if (!context.json) {
-      print_escaped("{:.12} (run {:.8}, cycle {:g}): {}\n", record.sha256, record.run, record.cycle,
-                    text);
+      print_text("{:.12} (run {:.8}, cycle {:g}): {}\n", record.sha256, record.run, record.cycle,
+                 text);
     }
     return facts;
   };

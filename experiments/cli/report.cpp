@@ -40,13 +40,13 @@ void report(ReportCommand& command, Context& context) {
   const std::string html = report_page(made);
   write_output(command.out, html);
   if (!made.damage.empty()) fail(context, kStoreDamaged);
-  for (const std::string& line : made.damage) print_escaped_stderr("left out: {}\n", line);
+  for (const std::string& line : made.damage) print_stderr("left out: {}\n", line);
   for (const std::string& line : made.notes) {
     const bool says_so = line.find("left out") != line.npos;
-    print_escaped_stderr("{}{}\n", says_so ? "" : "left out: ", line);
+    print_stderr("{}{}\n", says_so ? "" : "left out: ", line);
   }
   if (!has_front_end() && options.interactive) {
-    print_escaped_stderr(
+    print_stderr(
         "Figures are drawings and there are no packings: this program was built without "
         "Node.\n");
   }
@@ -63,9 +63,9 @@ void report(ReportCommand& command, Context& context) {
                        {"damage", made.damage},
                        {"notes", made.notes}});
   }
-  print_escaped("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(html.size())),
-                counted(made.experiments.size(), "experiment"),
-                counted(made.figures.size(), "figure"), counted(made.runs.size(), "stage"));
+  print_text("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(html.size())),
+             counted(made.experiments.size(), "experiment"), counted(made.figures.size(), "figure"),
+             counted(made.runs.size(), "stage"));
   if (made.interactive) {
     fmt::print(", {} of {} in 3D", counted(made.packings.frames, "checkpoint"),
                counted(packings, "run"));

@@ -104,8 +104,7 @@ void report(const CampaignResult& result, Context& context) {
     }
   }
   if (context.exit_code == kInterrupted) {
-    print_escaped_stderr("Interrupted. Continue with: shearcell resume --store {}\n",
-                         context.store);
+    print_stderr("Interrupted. Continue with: shearcell resume --store {}\n", context.store);
   }
 }
 

@@ -71,10 +71,10 @@ CheckpointFacts facts_at(const Store& store, const CheckpointRecord& record, Con
   try {
     found = measures_of(store, {&record, 1}, table_measures(), {});
   } catch (const AnalysisError& problem) {  // a failed run may leave such a state
-    print_escaped_stderr("not measured: {}\n", problem.what());
+    print_stderr("not measured: {}\n", problem.what());
     return facts_of(record, std::nullopt);
   }
-  tell_problems(found, "not measured", context);
+  print_problems(found, "not measured", context);
   return facts_of(record, found.measures.front());
 }
 
@@ -96,7 +96,7 @@ nlohmann::json as_json(const CheckpointFacts& facts) {
 void print(const CheckpointFacts& facts) {
   for (const auto& [column, value] : facts) {
     if (value.is_null() || value.is_string()) continue;
-    print_escaped("{:<37} {:<12.6g} {}\n", column.name, value.get<double>(), column.meaning);
+    print_text("{:<37} {:<12.6g} {}\n", column.name, value.get<double>(), column.meaning);
   }
 }
 
@@ -127,24 +127,24 @@ nlohmann::json run_facts(const Store& store, const RunRecord& run,
 
 void print_run(const Store& store, const RunRecord& run) {
   const nlohmann::json engine = engine_of_run(store, run.id);
-  print_escaped("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {}\n",
-                run.id, run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state),
-                run.cycle, run.target_cycles, counted(run.attempts, "attempt"));
+  print_text("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {}\n", run.id,
+             run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state), run.cycle,
+             run.target_cycles, counted(run.attempts, "attempt"));
   if (engine.is_object()) {
-    print_escaped("engine   {} {}, {} processes\n", engine.value("name", ""),
-                  engine.value("version", ""), engine.value("processes", 1));
+    print_text("engine   {} {}, {} processes\n", engine.value("name", ""),
+               engine.value("version", ""), engine.value("processes", 1));
   }
-  if (!run.error.empty()) print_escaped("error    {}\n", run.error);
+  if (!run.error.empty()) print_text("error    {}\n", run.error);
   if (const std::string why = describe_end(end_of(store, run)); !why.empty()) {
-    print_escaped("ended    {}\n", why);
+    print_text("ended    {}\n", why);
   }
   for (const Membership& m : run.memberships) {
-    print_escaped("part of  {} ({}) {} seed {}, manifest {:.8}\n", m.experiment,
-                  scale_name(m.scale), m.variant, m.seed, m.manifest);
+    print_text("part of  {} ({}) {} seed {}, manifest {:.8}\n", m.experiment, scale_name(m.scale),
+               m.variant, m.seed, m.manifest);
     const nlohmann::json given = overrides_of(store, run, m);
     for (const auto& [key, values] : given.items()) {
-      print_escaped("         given at the command line: {} {} (manifest: {})\n", key,
-                    values.at("run").dump(), values.at("manifest").dump());
+      print_text("         given at the command line: {} {} (manifest: {})\n", key,
+                 values.at("run").dump(), values.at("manifest").dump());
     }
   }
 }
@@ -152,14 +152,14 @@ void print_run(const Store& store, const RunRecord& run) {
 void print_resolved(const nlohmann::json& resolved) {
   for (const auto& [key, value] : resolved.items()) {
     if (!value.is_object()) {
-      print_escaped("{:<32} {}\n", key, value.dump());
+      print_text("{:<32} {}\n", key, value.dump());
       continue;
     }
     for (const auto& [name, inner] : value.items()) {
       // A constant of the record (Identity::recorded_as) is not the value that the run had.
       const Field* field = find_field(name);
       const bool constant = field != nullptr && !field->identity.recorded_as.empty();
-      if (!constant) print_escaped("{:<32} {}\n", name, inner.dump());
+      if (!constant) print_text("{:<32} {}\n", name, inner.dump());
     }
   }
 }
@@ -168,9 +168,9 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, Listed::all);
   if (context.json) return print_json(run_facts(store, run, checkpoints, context));
   print_run(store, run);
-  print_escaped("\n");
+  print_text("\n");
   print_resolved(run.resolved);
-  print_escaped("\n");
+  print_text("\n");
   print_table({"cycle", "step", "checkpoint", "state", "size", ""}, checkpoints,
               [](const CheckpointRecord& c) -> Row {
                 return {fmt::format("{:g}", c.cycle),
@@ -181,18 +181,18 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
                         c.state == CheckpointState::recorded ? "" : std::string(name_of(c.state))};
               });
   if (const CheckpointFacts facts = newest_measures(store, checkpoints, context); !facts.empty()) {
-    print_escaped("\nnewest checkpoint:\n");
+    print_text("\nnewest checkpoint:\n");
     print(facts);
   }
 }
 
 /// `file`: a description of its file.
 void print_head(const CheckpointRecord& record, const std::string& file) {
-  print_escaped("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256,
-                record.state_hash, record.run);
-  print_escaped("file        {}\n", file);
-  print_escaped("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step,
-                record.time_s);
+  print_text("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
+             record.run);
+  print_text("file        {}\n", file);
+  print_text("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step,
+             record.time_s);
 }
 
 // Prints the record of a checkpoint whose file was deleted.
@@ -200,8 +200,7 @@ void show_pruned(const CheckpointRecord& record, Context& context) {
   if (context.json) return print_json(checkpoint_facts(record));
   print_head(record,
              fmt::format("pruned; `shearcell regenerate {:.12}` recomputes it", record.sha256));
-  for (const auto& [name, value] : record.observables)
-    print_escaped("{:<42} {:.6g}\n", name, value);
+  for (const auto& [name, value] : record.observables) print_text("{:<42} {:.6g}\n", name, value);
 }
 
 void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
@@ -218,7 +217,7 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
   }
   print_head(record, fmt::format("{} ({}, hash verified)", record.file,
                                  format_bytes(static_cast<double>(record.size))));
-  print_escaped("grains      {} and {} wall grains\n", grains, wall_grains);
+  print_text("grains      {} and {} wall grains\n", grains, wall_grains);
   print(facts_at(store, record, context));
 }
 

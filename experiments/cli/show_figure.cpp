@@ -71,7 +71,7 @@ class Machines {
     for (std::size_t k = 0; k < all.size(); ++k) {
       std::string name = fmt::format("{} {}", what, k + 1);
       for (const std::string& line : all[k]) {
-        print_escaped("{:<9} {}\n", std::exchange(name, ""), cut(line, 10));
+        print_text("{:<9} {}\n", std::exchange(name, ""), cut(line, 10));
       }
     }
   }
@@ -80,38 +80,38 @@ class Machines {
 
 void print_manifests(const FigureLineage& lineage) {
   for (const ManifestText& manifest : lineage.manifests) {
-    print_escaped("\nmanifest  {}\n  sha256  {}\n", cut(manifest.path, 10), manifest.sha256);
+    print_text("\nmanifest  {}\n  sha256  {}\n", cut(manifest.path, 10), manifest.sha256);
     std::map<int, std::string> lines;
     for (const FigureInput& input : lineage.inputs) {
       if (input.manifest != manifest.sha256) continue;
       for (const ManifestLine& line : input.lines) lines.emplace(line.line, line.text);
     }
-    for (const auto& [number, text] : lines)
-      print_escaped("  line {:>4}  {}\n", number, cut(text, 13));
+    for (const auto& [number, text] : lines) {
+      print_text("  line {:>4}  {}\n", number, cut(text, 13));
+    }
   }
 }
 
 void print_attempts(const RunLineage& stage, Machines& machines) {
   for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
     const Attempt& attempt = stage.attempts[a];
-    print_escaped("  attempt {:<3} {}  {}, build {}, host {}\n", a + 1, moment(attempt.started_at),
-                  name_of(attempt.outcome), machines.build(attempt.host),
-                  machines.host(attempt.host));
-    if (!attempt.why.empty()) print_escaped("              {}\n", cut(attempt.why, 14));
+    print_text("  attempt {:<3} {}  {}, build {}, host {}\n", a + 1, moment(attempt.started_at),
+               name_of(attempt.outcome), machines.build(attempt.host), machines.host(attempt.host));
+    if (!attempt.why.empty()) print_text("              {}\n", cut(attempt.why, 14));
     if (!attempt.from_checkpoint.empty()) {
-      print_escaped("  from        {}\n", attempt.from_checkpoint);
+      print_text("  from        {}\n", attempt.from_checkpoint);
     }
   }
 }
 
 void print_checkpoints(const std::vector<std::string>& checkpoints, const RunLineage& run) {
-  print_escaped("  {:>6}  {:>2}  checkpoint\n", "cycle", "at");
+  print_text("  {:>6}  {:>2}  checkpoint\n", "cycle", "at");
   for (const std::string& sha256 : checkpoints) {
     const CheckpointHistory* known = run.find(sha256);
     const bool has_attempt = known != nullptr && known->attempt;
-    print_escaped("  {:>6}  {:>2}  {}\n",
-                  known != nullptr ? fmt::format("{:g}", known->record.cycle) : "?",
-                  has_attempt ? std::to_string(*known->attempt + 1) : "?", sha256);
+    print_text("  {:>6}  {:>2}  {}\n",
+               known != nullptr ? fmt::format("{:g}", known->record.cycle) : "?",
+               has_attempt ? std::to_string(*known->attempt + 1) : "?", sha256);
   }
 }
 
@@ -119,17 +119,16 @@ void print_input(const FigureInput& input, const RunLineage& run, Machines& mach
   std::set<int> numbers;
   for (const ManifestLine& line : input.lines) numbers.insert(line.line);
   const std::string lines = numbers.empty() ? "?" : fmt::format("{}", fmt::join(numbers, ", "));
-  print_escaped("\nrun       {}\n", input.run);
-  print_escaped("  {}\n", cut(fmt::format("{} {}, seed {}, {} grains; manifest {:.8}, lines {}",
-                                          input.experiment, input.variant, input.seed,
-                                          run.run.grains, input.manifest, lines),
-                              2));
+  print_text("\nrun       {}\n", input.run);
+  print_text("  {}\n", cut(fmt::format("{} {}, seed {}, {} grains; manifest {:.8}, lines {}",
+                                       input.experiment, input.variant, input.seed, run.run.grains,
+                                       input.manifest, lines),
+                           2));
   if (input.overrides.is_object()) {
     for (const auto& [key, values] : input.overrides.items()) {
-      print_escaped("  {}\n",
-                    cut(fmt::format("given at the command line: {} {} (manifest: {})", key,
-                                    text_at(values, "run"), text_at(values, "manifest")),
-                        2));
+      print_text("  {}\n", cut(fmt::format("given at the command line: {} {} (manifest: {})", key,
+                                           text_at(values, "run"), text_at(values, "manifest")),
+                               2));
     }
   }
   print_attempts(run, machines);
@@ -137,8 +136,8 @@ void print_input(const FigureInput& input, const RunLineage& run, Machines& mach
 }
 
 void print_stage_before(const RunLineage& stage, Machines& machines) {
-  print_escaped("\nbefore    {}\n  {}, seed {}, {} grains\n", stage.run.id, cut(stage.run.kind, 50),
-                text_at(stage.run.resolved, "seed"), stage.run.grains);
+  print_text("\nbefore    {}\n  {}, seed {}, {} grains\n", stage.run.id, cut(stage.run.kind, 50),
+             text_at(stage.run.resolved, "seed"), stage.run.grains);
   print_attempts(stage, machines);
   std::vector<std::string> checkpoints;
   for (const CheckpointHistory& c : stage.checkpoints) {
@@ -156,16 +155,16 @@ void print(const FigureLineage& lineage) {
     by = fmt::format(", build {}, host {}", machines.build(made), machines.host(made));
   }
   const std::string scale = text_at(facts, "scale");
-  print_escaped("figure    {}, {} scale, analysis version {}\n", cut(lineage.record.name, 40),
-                cut(scale_name(scale), 50), text_at(facts, "analysis_version"));
-  print_escaped("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at),
-                lineage.record.seq, by);
+  print_text("figure    {}, {} scale, analysis version {}\n", cut(lineage.record.name, 40),
+             cut(scale_name(scale), 50), text_at(facts, "analysis_version"));
+  print_text("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at),
+             lineage.record.seq, by);
   std::size_t widest = 0;
   for (const auto& [name, sha256] : lineage.outputs) {
     widest = std::max(widest, cut(name, 66).size());
   }
   for (const auto& [name, sha256] : lineage.outputs) {
-    print_escaped("  {:<{}}  {}\n", cut(name, 66), widest, sha256);
+    print_text("  {:<{}}  {}\n", cut(name, 66), widest, sha256);
   }
   print_manifests(lineage);
   for (const FigureInput& input : lineage.inputs) {
@@ -176,7 +175,7 @@ void print(const FigureLineage& lineage) {
       print_stage_before(stage, machines);
     }
   }
-  print_escaped("\n");
+  print_text("\n");
   machines.print();
 }
 
@@ -195,23 +194,22 @@ nlohmann::json check_json(const std::filesystem::path& file, const PublishedFile
 
 void print_check(const std::filesystem::path& file, const PublishedFile& found,
                  const std::vector<InputFault>& faults, std::size_t inputs) {
-  print_escaped("file      {}\n", cut(file.string(), 10));
+  print_text("file      {}\n", cut(file.string(), 10));
   if (found.matches()) {
-    print_escaped("verdict   matches what event {} recorded\n", found.record.seq);
+    print_text("verdict   matches what event {} recorded\n", found.record.seq);
   } else {
-    print_escaped("verdict   WAS CHANGED since event {}, or another store made it\n",
-                  found.record.seq);
-    print_escaped("  is      {}\n  was     {}\n", found.sha256, found.recorded);
+    print_text("verdict   WAS CHANGED since event {}, or another store made it\n",
+               found.record.seq);
+    print_text("  is      {}\n  was     {}\n", found.sha256, found.recorded);
   }
   if (faults.empty()) {
-    print_escaped("inputs    {}, all present and right\n\n", counted(inputs, "checkpoint"));
+    print_text("inputs    {}, all present and right\n\n", counted(inputs, "checkpoint"));
     return;
   }
-  print_escaped("inputs    {}, {} of them not as they were\n", counted(inputs, "checkpoint"),
-                faults.size());
-  for (const InputFault& fault : faults)
-    print_escaped("  {}\n  {}\n", fault.checkpoint, fault.what);
-  print_escaped("\n");
+  print_text("inputs    {}, {} of them not as they were\n", counted(inputs, "checkpoint"),
+             faults.size());
+  for (const InputFault& fault : faults) print_text("  {}\n  {}\n", fault.checkpoint, fault.what);
+  print_text("\n");
 }
 
 }  // namespace

@@ -216,7 +216,7 @@ nlohmann::json facts(const std::optional<Estimate>& estimate) {
 }
 
 void print(const Estimate& left) {
-  print_escaped(
+  print_text(
       "left: {}, {:.3g} particle-steps, {} {} with {} at a time{}\n",
       counted(left.work.stages, "stage"), left.work.particle_steps,
       left.at_most ? "at most" : "about", format_duration(left.seconds()), left.at_a_time,
@@ -249,15 +249,15 @@ void print_tables(const View& view) {
   Row header = {"run", "variant", "seed", "N", "state", "cycle", "M/s", "time"};
   if (queued) header.emplace_back("queue");
   for (const std::string& name : experiments) {
-    print_escaped("{}\n", name);
+    print_text("{}\n", name);
     print_table(header, tables[name]);
-    print_escaped("\n");
+    print_text("\n");
   }
   std::string all;
   for (const auto& [state, runs_in_it] : count) {
     all += fmt::format("{}{} {}", all.empty() ? ": " : ", ", runs_in_it, name_of(state));
   }
-  print_escaped("{}{}\n", counted(view.runs.size(), "stage"), all);
+  print_text("{}{}\n", counted(view.runs.size(), "stage"), all);
 }
 
 /// Prints the tables, the estimate, and notes on single runs.
@@ -265,18 +265,18 @@ void print(const View& view) {
   print_tables(view);
   if (const auto left = estimate(view)) print(*left);
   for (const auto& [run, lease] : view.holders) {
-    print_escaped("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
+    print_text("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
   }
   const std::string& problem = view.queue.problem;
   for (const Submission& submission : view.queue.submissions) {
-    if (problem.empty()) print_escaped("{}\n", describe(submission));
+    if (problem.empty()) print_text("{}\n", describe(submission));
   }
-  if (!problem.empty()) print_escaped("The queue is not known: {}\n", problem);
+  if (!problem.empty()) print_text("The queue is not known: {}\n", problem);
   for (const auto& [run, membership, newest] : view.runs) {
-    if (!run.error.empty()) print_escaped("{}: {}\n", run.id.substr(0, 8), run.error);
+    if (!run.error.empty()) print_text("{}: {}\n", run.id.substr(0, 8), run.error);
     if (const nlohmann::json ended = end_of(view.store, run); !ended.is_null()) {
-      print_escaped("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle,
-                    describe_end(ended));
+      print_text("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle,
+                 describe_end(ended));
     }
   }
 }

@@ -133,7 +133,7 @@ void queue(const Submission& submission, const Proposal& proposal, Store& store,
     words.push_back("--dependency=afterany:" + job);
     fold_job = queue_job(folder, "fold.sh", submission.fold_name(), words);
   } catch (const ProgramError& error) {
-    print_escaped_stderr(
+    print_stderr(
         "warning: {}\nThe stores of the tasks are not folded by themselves: `shearcell "
         "submit` again, or `merge` them, when the job has ended\n",
         error.what());
@@ -164,8 +164,8 @@ void fold_leftovers(Store& store, const std::vector<Submission>& open) {
       checkpoints += report.checkpoints;
     }
     if (checkpoints == 0) continue;
-    print_escaped_stderr("folded in {} checkpoints of submission {}, whose jobs have ended\n",
-                         checkpoints, submission.id);
+    print_stderr("folded in {} checkpoints of submission {}, whose jobs have ended\n", checkpoints,
+                 submission.id);
   }
 }
 
@@ -215,8 +215,7 @@ void submit(const SubmitOptions& options, Context& context) {
     try {
       ask_queue(open);
     } catch (const ProgramError& error) {
-      print_escaped_stderr("warning: runs that are queued already are not left out: {}\n",
-                           error.what());
+      print_stderr("warning: runs that are queued already are not left out: {}\n", error.what());
     }
     busy = busy_runs(*store, open);
   }

@@ -38,11 +38,11 @@ void table(const TableOptions& options, Context& context) {
     fmt::print("{}", terminal_columns(stdout) ? for_terminal(text) : text);
   } else {
     write_output(options.out, text);
-    print_escaped_stderr("{} rows of {} columns in {}\n", made.rows.size(), made.columns.size(),
-                         options.out);
+    print_stderr("{} rows of {} columns in {}\n", made.rows.size(), made.columns.size(),
+                 options.out);
   }
-  for (const std::string& note : made.notes) print_escaped_stderr("{}\n", note);
-  tell_problems(made, "not measured", context);
+  for (const std::string& note : made.notes) print_stderr("{}\n", note);
+  print_problems(made, "not measured", context);
 }
 
 std::string columns_text() {

@@ -91,10 +91,10 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   }
   if (!context.json) {
     if (left_out > 0) {
-      print_escaped("{} checkpoints of LAMMPS are left out: it does not repeat bits\n", left_out);
+      print_text("{} checkpoints of LAMMPS are left out: it does not repeat bits\n", left_out);
     }
-    print_escaped("replaying up to {} of {} checkpoints, --seed {}\n", chosen.size(), all.size(),
-                  seed);
+    print_text("replaying up to {} of {} checkpoints, --seed {}\n", chosen.size(), all.size(),
+               seed);
   }
   for (const CheckpointRecord& record : chosen) {
     const Replay result = verify_by_replay(store, record, options.threads);
@@ -104,7 +104,7 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
     }
     if (result.divergence) fail(context, kStoreDamaged);
     list.push_back(facts(result));
-    if (!context.json) print_escaped("{}\n", describe(result));
+    if (!context.json) print_text("{}\n", describe(result));
   }
   return {{"seed", seed}, {"candidates", all.size()}, {"left_out", left_out}, {"replayed", list}};
 }
@@ -141,18 +141,18 @@ MeasureCheck audit(const VerifyOptions& options, Context& context, VerifyReport&
 
 void print(const VerifyReport& report, const MeasureCheck& measures) {
   for (const Finding& finding : report.findings) {
-    print_escaped("{}: {}: {}\n", name_of_severity(finding), finding.subject, finding.message);
+    print_text("{}: {}: {}\n", name_of_severity(finding), finding.subject, finding.message);
   }
-  print_escaped("{}, {} ({}), {}: {}\nhead {} {}\n", counted(report.events, "event"),
-                counted(report.checkpoints, "checkpoint"),
-                format_bytes(static_cast<double>(report.bytes)), counted(report.orphans, "orphan"),
-                report.ok() ? "nothing was changed" : "DAMAGED", report.head.seq, report.head.hash);
+  print_text("{}, {} ({}), {}: {}\nhead {} {}\n", counted(report.events, "event"),
+             counted(report.checkpoints, "checkpoint"),
+             format_bytes(static_cast<double>(report.bytes)), counted(report.orphans, "orphan"),
+             report.ok() ? "nothing was changed" : "DAMAGED", report.head.seq, report.head.hash);
   if (measures.kept > 0) {
-    print_escaped("recomputed the measures of {} of {} checkpoints\n", measures.computed,
-                  measures.kept);
+    print_text("recomputed the measures of {} of {} checkpoints\n", measures.computed,
+               measures.kept);
   }
   if (report.ok()) {
-    print_escaped(
+    print_text(
         "Keep the head elsewhere; `verify --against SEQ HASH` proves later that the log only "
         "grew.\n");
   }
@@ -167,7 +167,7 @@ void verify(const VerifyOptions& options, Context& context) {
   if (!context.json) print(report, measures);
   if (!report.ok()) {
     fail(context, kStoreDamaged);
-    if (options.replay > 0) print_escaped_stderr("Not replayed: the store is damaged.\n");
+    if (options.replay > 0) print_stderr("Not replayed: the store is damaged.\n");
   } else if (options.replay > 0) {
     all["replay"] = replay(options, context);
   }

@@ -40,8 +40,7 @@ std::function<void()> tried(std::function<void()> action, seconds interval) {
     try {
       action();
     } catch (const std::exception& problem) {
-      print_escaped_stderr("shearcell: {}; tried again in {} s\n", problem.what(),
-                           interval.count());
+      print_stderr("shearcell: {}; tried again in {} s\n", problem.what(), interval.count());
     }
   };
 }

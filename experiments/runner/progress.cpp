@@ -51,7 +51,7 @@ Progress::~Progress() {
 void Progress::begin(const std::string& id, const std::string& name) {
   const std::lock_guard lock(mutex_);
   running_[id] = {name, "starting", std::chrono::steady_clock::now()};
-  if (!terminal_ && !quiet_) print_escaped_stderr("{}: started\n", name);
+  if (!terminal_ && !quiet_) print_stderr("{}: started\n", name);
 }
 
 void Progress::update(const std::string& id, const StageStatus& status) {
@@ -66,7 +66,7 @@ void Progress::update(const std::string& id, const StageStatus& status) {
   const auto now = std::chrono::steady_clock::now();
   if (now - shown.said_at < kPlainInterval) return;
   shown.said_at = now;
-  print_escaped_stderr("{}: {}\n", shown.name, shown.text);
+  print_stderr("{}: {}\n", shown.name, shown.text);
 }
 
 void Progress::end(const std::string& id, const std::string& name, const std::string& how,
@@ -76,7 +76,7 @@ void Progress::end(const std::string& id, const std::string& name, const std::st
   if (done) ++done_;
   if (quiet_) return;
   erase();
-  print_escaped_stderr("{}: {} ({} of {} stages done)\n", name, how, done_, stages_);
+  print_stderr("{}: {} ({} of {} stages done)\n", name, how, done_, stages_);
   if (terminal_) draw();
 }
 
@@ -98,7 +98,7 @@ void Progress::note(const std::string& line) {
 void Progress::say(const std::string& line) {
   const std::lock_guard lock(mutex_);
   erase();
-  print_escaped_stderr("{}\n", line);
+  print_stderr("{}\n", line);
 }
 
 void Progress::erase() {
@@ -112,7 +112,7 @@ void Progress::draw() {
   std::multimap<std::string, std::string> lines;
   for (const auto& [id, shown] : running_) lines.emplace(shown.name, shown.text);
   for (const auto& [name, text] : lines) {
-    print_escaped_stderr("{:.{}}\n", fmt::format("{:<28} {}", name, text), longest);
+    print_stderr("{:.{}}\n", fmt::format("{:<28} {}", name, text), longest);
     ++drawn_;
   }
 }

@@ -36,7 +36,7 @@ std::string_view first_characters(std::string_view text, std::size_t count);
 
 /// fmt::print of untrusted texts.
 template <typename... Arguments>
-void print_escaped(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+void print_text(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   const std::string text = fmt::format(format, std::forward<Arguments>(arguments)...);
   fmt::print("{}", for_terminal(text));
 }
@@ -45,9 +45,9 @@ void print_escaped(fmt::format_string<Arguments...> format, Arguments&&... argum
 /// or a full disk must not end a campaign.
 void write_stderr(std::string_view text) noexcept;
 
-/// `print_escaped` on standard error, by write_stderr.
+/// `print_text` on standard error, by write_stderr.
 template <typename... Arguments>
-void print_escaped_stderr(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+void print_stderr(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   write_stderr(for_terminal(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
