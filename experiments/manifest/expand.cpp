@@ -97,31 +97,62 @@ void check_engine(const Manifest& manifest, const Scale& scale, const Parameters
   }
 }
 
-void warn_of_variant(const std::string& file, const Variant& variant, Plan& plan) {
-  const Parameters& p = variant.parameters;
-  const auto warn = [&](const std::string& warning) {
-    plan.warnings.push_back(fmt::format("{}: variant {}: {}", file, variant.name(), warning));
-  };
+// What is sound but unlikely to be meant.
+std::vector<std::string> warnings_of(const Parameters& p) {
+  std::vector<std::string> warnings;
   if (!pressure_lifts_column(p)) {
-    warn(fmt::format(
+    warnings.push_back(fmt::format(
         "the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = {}). Use "
         "`pressure_at: top`, raise pressure_Pa, move the top wall, turn gravity off, or choose a "
         "lower cell (height_over_width).",
         p.pressure_Pa, p.grains));
   }
   if (const double overlap = expected_overlap(p); overlap > p.max_overlap_diameters) {
-    warn(
+    warnings.push_back(
         fmt::format("grains will overlap by {:.2g} d on average; the run fails at "
                     "max_overlap_diameters ({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
                     overlap, p.max_overlap_diameters));
   }
   if (p.protocol != ProtocolKind::stiffen) {
-    if (const auto advice = time_step_advice(shear_time_step(p), "steps_per_cycle")) warn(*advice);
+    if (auto advice = time_step_advice(shear_time_step(p), "steps_per_cycle")) {
+      warnings.push_back(*std::move(advice));
+    }
   }
-  if (const auto advice = time_step_advice(settle_time_step(p), "settle_time_step_s")) {
-    warn(*advice);
+  if (auto advice = time_step_advice(settle_time_step(p), "settle_time_step_s")) {
+    warnings.push_back(*std::move(advice));
   }
+  return warnings;
 }
+
+// The warnings of a scale's variants; a warning of several variants is one.
+class VariantWarnings {
+ public:
+  void add(const Variant& variant) {
+    for (std::string& warning : warnings_of(variant.parameters)) {
+      auto found = std::ranges::find(warned_, warning, &Warned::text);
+      if (found == warned_.end()) found = warned_.insert(found, {std::move(warning), {}});
+      found->variants.push_back(variant.name());
+    }
+  }
+
+  void append_to(Plan& plan, const std::string& file) const {
+    for (const auto& [text, variants] : warned_) {
+      const std::size_t named = std::min<std::size_t>(variants.size(), 8);
+      const std::string more =
+          named < variants.size() ? fmt::format(" and {} more", variants.size() - named) : "";
+      plan.warnings.push_back(
+          fmt::format("{}: variant{} {}{}: {}", file, named == 1 ? "" : "s",
+                      fmt::join(variants.begin(), variants.begin() + named, ", "), more, text));
+    }
+  }
+
+ private:
+  struct Warned {
+    std::string text;
+    std::vector<std::string> variants;
+  };
+  std::vector<Warned> warned_;
+};
 
 // Warns of each stated key that has no effect on any variant.
 void warn_of_unfelt(const Manifest& manifest, const Scale& scale,
@@ -197,9 +228,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
                              .checkpoint_phases = scale.checkpoints->phases};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
   Filter wanted(options.variants, has_values, keys_of);
+  VariantWarnings variant_warnings;
   for (const Variant& variant : variants) {
     if (!wanted.passes(variant.name())) continue;
-    warn_of_variant(manifest.file, variant, plan);
+    variant_warnings.add(variant);
     if (options.engine) check_engine(manifest, scale, variant.parameters);
     for (const std::uint64_t seed : seeds) {
       const PlannedRun& run = plan.runs.emplace_back(planned_run(common, scale, variant, seed));
@@ -219,6 +251,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
   }
   name_variants(manifest, plan);
+  variant_warnings.append_to(plan, manifest.file);
   std::ranges::move(own_warnings(manifest, variants), std::back_inserter(plan.warnings));
   warn_of_unfelt(manifest, scale, variants, plan);
   return plan;

@@ -41,7 +41,7 @@ HEADLINES = [
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper minus the lower third", "more near the top"),
 ]
 # Where README.md takes them from: the first of these where the claim was measured, and there the one with the most runs.
-SOURCES = ("volume", "paper", "decide", "desk")
+SOURCES = ("decide", "volume", "paper", "desk")
 FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "nucleation_core",
            "walls", "choices")
 

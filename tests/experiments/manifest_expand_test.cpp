@@ -191,6 +191,20 @@ TEST(Expand, WarnsOfACellThatThePressureCannotLift) {
   EXPECT_TRUE(warnings("grains: 30000, moving_wall: top").empty());
 }
 
+TEST(Expand, WarnsOnceOfWhatSeveralVariantsHave) {
+  const auto warnings = [](const std::string& amplitudes) {
+    return plan_of("grains: 600, steps_per_cycle: 20000",
+                   fmt::format("sweep: {{grid: {{amplitude_rad: [{}]}}}}\n", amplitudes))
+        .warnings;
+  };
+  const auto two = warnings("0.05, 0.1");
+  ASSERT_EQ(two.size(), 1U);
+  EXPECT_TRUE(has(two[0], ": variants amplitude_rad=0.05, amplitude_rad=0.1: steps_per_cycle: "));
+  const auto ten = warnings(".01, .02, .03, .04, .05, .06, .07, .08, .09, .1");
+  ASSERT_EQ(ten.size(), 1U);
+  EXPECT_TRUE(has(ten[0], "amplitude_rad=0.08 and 2 more: steps_per_cycle: "));
+}
+
 TEST(Expand, SelectsVariantsByValueNotBySpelling) {
   const Manifest manifest =
       parse("experiment: e\nbase: {grains: 600}\nsweep: {grid: {drag_kg_per_s: [1.28e-2, 0.1]}}\n");

@@ -42,7 +42,7 @@ TEST_P(FuzzTarget, SurvivesDamagedSeeds) {
 
 TEST_P(FuzzTarget, SurvivesInputsThatOnceFoundAFault) {
   const auto folder = std::filesystem::path(SHEARCELL_FUZZ_REGRESSIONS) / GetParam().name;
-  if (!std::filesystem::exists(folder)) return;  // no fault was found with this target
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no fault was found with this target";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     EXPECT_NO_THROW(run(test::read_bytes(entry.path()))) << entry.path();
   }
