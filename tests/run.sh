@@ -14,6 +14,7 @@ cmake --build --preset release
 room=$(df -k --output=avail /dev/shm 2>/dev/null | tail -n 1)
 if [ -z "${TMPDIR:-}" ] && [ -w /dev/shm ] && [ "${room:-0}" -gt 2000000 ]; then
   TMPDIR=$(mktemp -d /dev/shm/shearcell-tests-XXXXXX)
+  chmod 755 "$TMPDIR"  # Slurm's daemons have other users
   export TMPDIR
   trap 'rm -rf "$TMPDIR"' EXIT
 fi

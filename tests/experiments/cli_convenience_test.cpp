@@ -152,8 +152,9 @@ TEST_F(Convenience, TablesFitTheTerminalAndHaveColoursOnlyThere) {
     const bool of_table = has(line, "completed") && !has(line, "stages");
     EXPECT_TRUE(!of_table || line.size() <= 45U) << line;  // and the terminal's carriage return
   }
-  EXPECT_TRUE(has(on_terminal(80, "NO_COLOR=1", "run m.yaml --cycles 5"), "\x1b[2K"));
-  for (const char* words : {"status", "status --watch 0.1", "run m.yaml --cycles 6"}) {
+  // Long enough that progress is drawn.
+  EXPECT_TRUE(has(on_terminal(80, "NO_COLOR=1", "run m.yaml --cycles 60"), "\x1b[2K"));
+  for (const char* words : {"status", "status --watch 0.1", "run m.yaml --cycles 80"}) {
     EXPECT_FALSE(has(on_terminal(80, "TERM=dumb", words), "\x1b")) << words;
   }
 }
