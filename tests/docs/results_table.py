@@ -110,10 +110,9 @@ def verdicts(results):
             yield path.parent.relative_to(results).as_posix(), figure, drawing, claim
 
 
-def measured_elsewhere(place, figure, claim, others):
-    """Whether another folder of the same scale, with another part of the runs, measured what this one could not."""
-    same = [other for other_place, of, _, other in others
-            if of == figure and other["claim"] == claim["claim"] and other_place.split("/")[0] == place.split("/")[0]]
+def measured_elsewhere(figure, claim, others):
+    """Whether another folder, with other runs, measured what this one could not."""
+    same = [other for _, of, _, other in others if of == figure and other["claim"] == claim["claim"]]
     return claim["estimate"] is None and any(other["estimate"] is not None for other in same)
 
 
@@ -138,7 +137,7 @@ def all_claims(page, results):
     every = list(verdicts(results))
     asked = {}  # by figure and claim: its rows
     for place, figure, drawing, claim in every:
-        if not measured_elsewhere(place, figure, claim, every):
+        if not measured_elsewhere(figure, claim, every):
             asked.setdefault((figure, claim["claim"]), []).append((place, drawing, claim))
     last = None
     for (figure, name), found in sorted(asked.items(), key=lambda item: position(FIGURES, item[0][0])):
