@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ranges>
 #include <string_view>
 
 #include "provenance/events.hpp"
@@ -320,8 +319,8 @@ std::string try_apply(Database& database, const Event& event) {
 
 void rebuild_projections(Database& database, const EventLog& log) {
   sqlite::WriteTransaction lock(database);
-  for (const std::string_view table : kTableNames | std::views::reverse) {
-    database.execute(fmt::format("DROP TABLE IF EXISTS {}", table));
+  for (auto table = kTableNames.rbegin(); table != kTableNames.rend(); ++table) {
+    database.execute(fmt::format("DROP TABLE IF EXISTS {}", *table));
   }
   create_projections(database);
   log.for_each([&database](const Event& event) { apply(database, event); });

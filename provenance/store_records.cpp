@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <set>
 
 #include "provenance/events.hpp"
@@ -52,8 +51,9 @@ bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) 
 std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string& id,
                                                                std::vector<std::string>* damage,
                                                                std::uint64_t before_step) {
-  const std::vector<CheckpointRecord> records = checkpoints(id);
-  for (const CheckpointRecord& record : records | std::views::reverse) {
+  std::vector<CheckpointRecord> records = checkpoints(id);
+  std::ranges::reverse(records);
+  for (const CheckpointRecord& record : records) {
     if (record.step >= before_step) continue;
     try {
       return LoadedCheckpoint{record, load_checkpoint(record)};

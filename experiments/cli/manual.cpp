@@ -67,7 +67,7 @@ std::vector<CommandEntry> command_tree(const CLI::App& app, std::vector<std::str
   CommandEntry made{path, &app, {}};
   for (const CLI::Option* option : app.get_options()) made.options.push_back(entry(*option));
   const auto is_positional = [](const OptionEntry& option) { return option.names.empty(); };
-  std::ranges::stable_partition(made.options, is_positional);
+  std::stable_partition(made.options.begin(), made.options.end(), is_positional);
   std::vector<CommandEntry> tree = {made};
   path.emplace_back();
   for (const CLI::App* sub : made.subcommands()) {

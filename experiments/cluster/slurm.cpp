@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <ranges>
 #include <sstream>
 
 #include "provenance/io/child_process.hpp"
@@ -124,8 +123,9 @@ std::optional<double> slurm_seconds(std::string_view time) {
     time.remove_prefix(dash + 1);
   }
   std::vector<std::optional<unsigned>> parts;
-  for (const auto part : std::views::split(time, ':')) {
-    parts.push_back(read_number<unsigned>(std::string_view(part.begin(), part.end())));
+  for (std::size_t from = 0, end = 0; from <= time.size(); from = end + 1) {
+    end = std::min(time.find(':', from), time.size());
+    parts.push_back(read_number<unsigned>(time.substr(from, end - from)));
   }
   if (!days || parts.empty() || parts.size() > 3 ||
       std::ranges::any_of(parts, [](const auto& part) { return !part; })) {

@@ -246,7 +246,7 @@ bool selects(const VariantLabel& label, const json& variant) {
 std::map<json, std::string> variant_names(const std::vector<json>& variants,
                                           std::span<const VariantLabel> labels) {
   std::vector<std::string> all = swept_keys(variants);
-  std::ranges::stable_partition(all, [&](const std::string& key) {
+  std::stable_partition(all.begin(), all.end(), [&](const std::string& key) {
     return std::ranges::all_of(variants, [&](const json& v) { return v.contains(key); });
   });
   std::vector<std::string> keys = keys_telling_apart(variants, all);
