@@ -2,11 +2,11 @@
 #include "experiments/figures/select_runs.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
-#include <ranges>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -132,8 +132,9 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
 
 NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
   std::erase_if(selected, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
-  const auto older = std::ranges::stable_partition(selected, &SelectedRun::of_newest_version);
-  const std::size_t newest = selected.size() - older.size();
+  const auto older = std::stable_partition(selected.begin(), selected.end(),
+                                           std::mem_fn(&SelectedRun::of_newest_version));
+  const auto newest = static_cast<std::size_t>(older - selected.begin());
   NewestRuns chosen;
   std::set<std::pair<ExperimentScale, std::string>> taken;  // with the run's id
   using Seed = std::tuple<ExperimentScale, std::string, std::string, std::uint64_t>;
@@ -168,15 +169,10 @@ NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
     chosen.notes.push_back(fmt::format(
         "experiment {}: left out: {} of another version of its manifest: {}; --all-versions adds "
         "them",
-        where.first, counted(variants.size(), "run"), some_of({variants.begin(), variants.end()})));
+        where.first, counted(variants.size(), "run"),
+        some_of(std::set<std::string>(variants.begin(), variants.end()))));
   }
   return chosen;
-}
-
-std::string some_of(const std::set<std::string>& names) {
-  constexpr std::size_t most = 3;
-  const std::string first = fmt::format("{}", fmt::join(names | std::views::take(most), ", "));
-  return names.size() > most ? fmt::format("{} and {} more", first, names.size() - most) : first;
 }
 
 }  // namespace shearcell

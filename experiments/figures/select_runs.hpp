@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -46,9 +45,6 @@ struct NewestRuns {
 /// Each run is listed once, and each seed of a variant once: a run counted twice would make errors
 /// too small.
 NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions);
-
-/// "fluid=still, fluid=cell, fluid=none and 3 more".
-std::string some_of(const std::set<std::string>& names);
 
 /// A run that no experiment declared, as a damaged store may hold it, has an empty membership.
 Membership first_membership(const RunRecord& run);

@@ -137,12 +137,9 @@ class VariantWarnings {
 
   void append_to(Plan& plan, const std::string& file) const {
     for (const auto& [text, variants] : warned_) {
-      const std::size_t named = std::min<std::size_t>(variants.size(), 8);
-      const std::string more =
-          named < variants.size() ? fmt::format(" and {} more", variants.size() - named) : "";
-      plan.warnings.push_back(
-          fmt::format("{}: variant{} {}{}: {}", file, named == 1 ? "" : "s",
-                      fmt::join(variants.begin(), variants.begin() + named, ", "), more, text));
+      plan.warnings.push_back(fmt::format("{}: variant{} {}: {}", file,
+                                          variants.size() == 1 ? "" : "s", some_of(variants, 8),
+                                          text));
     }
   }
 

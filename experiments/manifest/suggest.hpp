@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Suggests the known name that is nearest to an unknown one.
+// Lists of names in messages: the name that is nearest to an unknown one, the first of many.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +29,14 @@ std::string with_nearest(std::string problem, std::string_view unknown,
 
 /// "did you mean NAME?"; "known are A, B, C" if no name is near.
 std::string did_you_mean(std::string_view unknown, std::span<const std::string_view> known);
+
+/// The first of the names: "fluid=still, fluid=cell, fluid=none and 3 more".
+std::string some_of(const auto& names, std::size_t most = 3) {
+  const auto last =
+      std::next(names.begin(), static_cast<std::ptrdiff_t>(std::min(most, names.size())));
+  const std::string first = fmt::format("{}", fmt::join(names.begin(), last, ", "));
+  return names.size() > most ? fmt::format("{} and {} more", first, names.size() - most) : first;
+}
 
 /// The member `name` of each item.
 std::vector<std::string_view> names_of(const auto& list) {

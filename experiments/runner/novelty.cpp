@@ -2,10 +2,10 @@
 #include "experiments/runner/novelty.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "experiments/manifest/suggest.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -64,24 +64,21 @@ json KnownRuns::novelty(const StageSpec& stage) const {
     const json other = nearest.value(key, json());
     if (other != value) fields.push_back({{"field", key}, {"value", value}, {"store_has", other}});
   }
-  std::ranges::stable_partition(fields, [](const json& d) { return d["field"] != "seed"; });
+  std::stable_partition(fields.begin(), fields.end(),
+                        [](const json& d) { return d["field"] != "seed"; });
   return {{"nearest", run.id}, {"fields", fields}};
 }
 
 std::string describe_novelty(const json& novelty) {
-  constexpr std::size_t most = 3;
   std::vector<std::string> parts;
   for (const json& field : novelty.at("fields")) {
-    if (parts.size() == most) break;
     const json &value = field["value"], &other = field["store_has"];
     std::string planned = short_text(value), known = other.is_null() ? "none" : short_text(other);
     if (planned == known) planned = value.dump(), known = other.dump();
     const std::string name = field["field"];
     parts.push_back(fmt::format("{} {} (store has {})", name, planned, known));
   }
-  const std::size_t left_out = novelty.at("fields").size() - parts.size();
-  return fmt::format("{}{}", fmt::join(parts, ", "),
-                     left_out > 0 ? fmt::format(" and {} more", left_out) : "");
+  return some_of(parts);
 }
 
 }  // namespace shearcell

@@ -23,11 +23,7 @@ dictionary="$build/manifest.dict"
 { cat tests/fuzz/manifest.dict
   sed -n '/^## Parameters/,/^## Measures/s/^| `\([a-zA-Z_0-9]*\)` | .*/"\1: "/p' experiments/REFERENCE.md; } >"$dictionary"
 
-# In memory where there is some: the target `store` waits for every file that it syncs.
-[ -n "${TMPDIR:-}" ] || [ ! -w /dev/shm ] || TMPDIR=/dev/shm
-export TMPDIR="${TMPDIR:-/tmp}"
-TMPDIR="$(mktemp -d)"
-trap 'rm -rf "$TMPDIR"' EXIT
+. tests/in_memory.sh
 export ASAN_OPTIONS="detect_leaks=1:allocator_may_return_null=0:max_allocation_size_mb=1024"
 export UBSAN_OPTIONS="print_stacktrace=1"
 
