@@ -133,10 +133,10 @@ Eigen::Vector3d Delaunay::circumcentre(const std::array<std::int32_t, 4>& vertic
   // Forward error of Cramer's rule: numerator and determinant each lose a few roundoffs of the
   // products of the edges' lengths, none above the longest. 32 covers the operations counted one
   // by one.
-  constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
+  constexpr double roundoff = std::numeric_limits<double>::epsilon() / 2;
   const double longest2 = std::max({aa, bb, cc});
   const double terms = longest2 * (longest2 + std::sqrt(longest2 * v.squaredNorm()));
-  if (32 * unit_roundoff * terms < worst_centre_error * determinant) return origin + v;
+  if (32 * roundoff * terms < worst_centre_error * determinant) return origin + v;
 
   using Rational = CGAL::Simple_cartesian<CGAL::Exact_rational>;
   const auto exact = [&](std::size_t k) {

@@ -84,7 +84,9 @@ TEST(Watchdog, StopsOverlapsOverTheLimitBeforeTheFirstStep) {
 // Drag hides the instability: at 1.3 times 2/sqrt(8 k/m) the grains vibrate without end, with
 // plausible overlaps and speeds.
 TEST(Watchdog, StopsAnUnstableTimeStepThatDragHides) {
-  const auto& [cell, start] = pressed(300, 9000);
+  const Sheared packing = pressed(300, 9000);
+  const auto& cell = packing.cell;
+  const auto& start = packing.state;
   Scene scene = table_1();
   scene.time_step = 1.3 * 2 / std::sqrt(8 * scene.stiffness);
   const auto energy_at_end = [&](const EngineSettings& settings) {

@@ -101,7 +101,7 @@ TEST(Overlap, IsAsAPlanPredicts) {
 }
 
 TEST(Speed, WorkOfAStepGrowsWithItsSlots) {
-  for (const std::size_t lanes : {1, 2, 4, 8}) {
+  for (const std::size_t lanes : {1U, 2U, 4U, 8U}) {
     const auto grains = static_cast<double>(lanes);
     const bench::StepWork none = bench::step_work(lanes, 0);
     const bench::StepWork ten = bench::step_work(lanes, 10);

@@ -64,11 +64,10 @@ Outcome ProgramTest::run(const Arguments& arguments) {
 }
 
 Outcome ProgramTest::expect(int code, const Arguments& arguments,
-                            const std::vector<std::string>& says,
-                            const std::source_location& where) {
+                            const std::vector<std::string>& says, CallPlace where) {
   std::string words;
   for (const std::string& word : arguments) words += " " + word;
-  const testing::ScopedTrace trace(where.file_name(), static_cast<int>(where.line()), words);
+  const testing::ScopedTrace trace(where.file, where.line, words);
   Outcome outcome = run(arguments);
   const std::string said = outcome.out + outcome.err;
   EXPECT_EQ(outcome.code, code) << "signal " << outcome.signal << "\n" << said.substr(0, 2000);
@@ -77,7 +76,7 @@ Outcome ProgramTest::expect(int code, const Arguments& arguments,
 }
 
 void ProgramTest::expect_refused(const Arguments& arguments, const std::vector<std::string>& says,
-                                 const std::source_location& where) {
+                                 CallPlace where) {
   const auto before = listing();
   EXPECT_EQ(expect(2, arguments, says, where).out, "");
   EXPECT_EQ(listing(), before) << "something was written";

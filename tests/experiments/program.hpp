@@ -11,7 +11,6 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <source_location>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -27,6 +26,15 @@ struct Outcome {
   int signal = 0;  ///< that ended it; 0 if none
   std::string out;
   std::string err;
+};
+
+/// Where a function was called. clang 14 has no std::source_location.
+struct CallPlace {
+  const char* file;
+  int line;
+  static CallPlace here(const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+    return {file, line};
+  }
 };
 
 /// "run m.yaml -q" as three arguments.
@@ -51,11 +59,11 @@ class ProgramTest : public testing::Test {
 
   /// Runs a command that must end with this code and print each of `says`, on either stream.
   Outcome expect(int code, const Arguments& arguments, const std::vector<std::string>& says = {},
-                 const std::source_location& where = std::source_location::current());
+                 CallPlace where = CallPlace::here());
 
   /// A bad command line must end with code 2, print to standard error only, and write no file.
   void expect_refused(const Arguments& arguments, const std::vector<std::string>& says,
-                      const std::source_location& where = std::source_location::current());
+                      CallPlace where = CallPlace::here());
 
   /// Runs a script of sh, whose "$0" is the program.
   Outcome shell(const std::string& script);
