@@ -4,7 +4,7 @@
 
     python3 results_table.py README.md RESULTS_FOLDER [--write]
 
-README.md has one row for each claim of HEADLINES that has been decided, RESULTS_FOLDER/README.md a row for every claim.
+README.md has one row for each claim of HEADLINES, RESULTS_FOLDER/README.md a row for every claim.
 Ends with code 1 if a table between the marks differs from the verdicts; --write makes them equal.
 """
 import json
@@ -40,7 +40,7 @@ HEADLINES = [
     ("S7", "E: crystallites are equally probable", "nuclei in the inner minus the outer half of the width", "equal"),
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper minus the lower third", "more near the top"),
 ]
-# Where README.md takes them from: the first of these where the claim was measured, and there the one with the most runs.
+# Folders of results; a claim is shown as the first of them measured it.
 SOURCES = ("decide", "volume", "paper", "desk")
 FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "nucleation_core",
            "walls", "choices")
@@ -110,47 +110,51 @@ def verdicts(results):
             yield path.parent.relative_to(results).as_posix(), figure, drawing, claim
 
 
-def measured_elsewhere(figure, claim, others):
-    """Whether another folder, with other runs, measured what this one could not."""
-    same = [other for _, of, _, other in others if of == figure and other["claim"] == claim["claim"]]
-    return claim["estimate"] is None and any(other["estimate"] is not None for other in same)
+def best_of(found):
+    """Of (place, drawing, claim): the first of SOURCES where the claim was measured, and there the one with the most runs."""
+    def rank(one):
+        place, _, claim = one
+        return claim["estimate"] is None, position(SOURCES, place.split("/")[0]), -claim["runs"]
+    return min(found, key=rank)
 
 
 def headlines(page, results):
     text = header(["claim", "supplement", "ours (90 % interval)", "runs", "verdict"])
     for figure, beginning, name, supplement in HEADLINES:
-        found = [(source, claim, drawing) for source in SOURCES for place, of, drawing, claim in verdicts(results)
-                 if of == figure and claim["claim"].startswith(beginning) and "(P on" not in claim["claim"]
-                 and place.startswith(source)]
+        found = [(place, drawing, claim) for place, of, drawing, claim in verdicts(results)
+                 if of == figure and claim["claim"].startswith(beginning) and "(P on" not in claim["claim"]]
         if not found:
             continue
-        best = next((source for source, claim, _ in found if claim["estimate"] is not None), found[0][0])
-        _, claim, drawing = max((one for one in found if one[0] == best), key=lambda one: one[1]["runs"])
-        verdict = f"[{claim['verdict']}]({drawing.relative_to(page.parent).as_posix()})"
-        text += row([name, supplement, measured(claim), runs(claim), verdict])
+        _, drawing, claim = best_of(found)
+        text += row([name, supplement, measured(claim), runs(claim), link(claim["verdict"], drawing, page)])
     return text
 
 
+def link(text, drawing, page):
+    return f"[{text}]({drawing.relative_to(page.parent).as_posix()})"
+
+
+def in_order(figure, claim):
+    """Sorts claims by figure, then by text with numbers by their value."""
+    return position(FIGURES, figure), re.sub(r"\d+(\.\d+)?", lambda number: f"{float(number[0]):012.6f}", claim)
+
+
 def all_claims(page, results):
-    """Claims in the order of FIGURES; of one claim, the scales follow each other in the order of SOURCES."""
-    text = header(["figure", "claim", "quantity", "from", "measured (90 % interval)", "margin", "runs", "verdict"])
-    every = list(verdicts(results))
-    asked = {}  # by figure and claim: its rows
-    for place, figure, drawing, claim in every:
-        if not measured_elsewhere(figure, claim, every):
-            asked.setdefault((figure, claim["claim"]), []).append((place, drawing, claim))
-    last = None
-    for (figure, name), found in sorted(asked.items(), key=lambda item: position(FIGURES, item[0][0])):
-        for place, drawing, claim in sorted(found, key=lambda one: position(SOURCES, one[0].split("/")[0])):
-            low, high = claim["interval"] or (None, None)
-            value = "not measured"
-            if claim["estimate"] is not None:
-                value = f"{digits(claim['estimate'])} ({digits(low)} to {digits(high)})"
-            again = (figure, name) == last
-            text += row(["" if again else figure, "" if again else name, "" if again else claim["quantity"],
-                         f"[{place}]({drawing.relative_to(page.parent).as_posix()})", value, digits(claim["margin"]),
-                         runs(claim), claim["verdict"]])
-            last = (figure, name)
+    """A row for each claim; its last cell has what other folders' runs gave."""
+    text = header(["figure", "claim", "quantity", "measured (90 % interval)", "margin", "runs", "verdict", "other runs"])
+    asked = {}  # by figure and claim
+    for place, figure, drawing, claim in verdicts(results):
+        asked.setdefault((figure, claim["claim"]), []).append((place, drawing, claim))
+    for (figure, name), found in sorted(asked.items(), key=lambda item: in_order(*item[0])):
+        best = best_of(found)
+        place, drawing, claim = best
+        low, high = claim["interval"] or (None, None)
+        is_measured = claim["estimate"] is not None
+        value = f"{digits(claim['estimate'])} ({digits(low)} to {digits(high)})" if is_measured else "not measured"
+        others = [f"{link(at, picture, page)}: {digits(one['estimate'])}, {one['verdict']} ({runs(one)})"
+                  for at, picture, one in found if (at, picture, one) != best and one["estimate"] is not None]
+        text += row([figure, name, claim["quantity"], value, digits(claim["margin"]), runs(claim),
+                     f"{claim['verdict']}, {link(place, drawing, page)}", "; ".join(others)])
     return text
 
 
