@@ -1,35 +1,47 @@
 #!/bin/sh
-# Computes a published figure from scratch and compares its numbers with the published ones, byte for byte:
-#   sh experiments/results/reproduce.sh [FIGURE [SCALE [VARIANT...]]]
-# Without arguments S1 at scale desk, half a minute once the program is built; for the time of others see
-# `shearcell plan`. Of a scale that is published in part, name the variants (amplitude_rad=0.1).
-# SHEARCELL names a program that is built already. Code 1: a number differs.
+# Computes the figures of a published folder from scratch and compares their numbers with the published ones, byte for
+# byte:
+#   sh experiments/results/reproduce.sh [FOLDER]
+# published.txt lists the folders. Without FOLDER desk/spring_constant, half a minute once the program is built; for the
+# time of others see `shearcell plan`. SHEARCELL names a program that is built already. Code 1: a number differs.
+#   sh experiments/results/reproduce.sh --write FOLDER
+# writes figures and the table of runs into FOLDER instead, and keeps the runs in the store of $SHEARCELL_STORE.
 set -eu
-cd "$(dirname "$0")/../.."
-figure=${1:-S1}
-scale=${2:-desk}
-[ $# -le 2 ] && set -- all || shift 2
-manifests=""
-for lineage in experiments/results/"$scale"/*/"$figure".lineage.json; do
-  [ ! -f "$lineage" ] || manifests="$manifests experiments/$(basename "$(dirname "$lineage")").yaml"
-done
-[ -n "$manifests" ] || { echo "experiments/results/$scale has no figure $figure" >&2; exit 2; }
+write=""
+[ "${1:-}" != --write ] || { write=yes && shift; }
+here=$(cd "$(dirname "$0")" && pwd)
+folder=${1:-desk/spring_constant}
+line=$(grep "^$folder |" "$here/published.txt") || { echo "published.txt has no folder $folder" >&2; exit 2; }
+column() { echo "$line" | cut -d '|' -f "$1" | xargs; }
+
+cd "$here/../.."
 if [ -z "${SHEARCELL:-}" ]; then
   sh .ci/setup
   cmake --preset release -DSHEARCELL_TESTS=OFF
   cmake --build --preset release --target shearcell
   SHEARCELL=build/release/shearcell
 fi
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-for variant; do
-  # shellcheck disable=SC2046,SC2086  # one word a manifest; no option for all variants
-  "$SHEARCELL" run $manifests --scale "$scale" $([ "$variant" = all ] || echo --variant "$variant") \
-    --store "$folder/store"
-done
-"$SHEARCELL" figures "$figure" --scale "$scale" --store "$folder/store" --out "$folder/figures"
-cd "$folder/figures"
-for file in */*.csv; do
-  cmp "$file" "$OLDPWD/experiments/results/$scale/$file"
-  echo "$file: the published bytes"
+new=$(mktemp -d)
+trap 'rm -rf "$new"' EXIT
+out=$new
+if [ -n "$write" ]; then
+  out=$here/$(dirname "$folder")
+else
+  export SHEARCELL_STORE="$new/store"
+fi
+name=$(basename "$folder")
+# shellcheck disable=SC2046  # one word an option
+{
+  "$SHEARCELL" run experiments/$(column 2) $(column 3) $(column 4)
+  "$SHEARCELL" figures $(column 5) --experiment "$name" $(column 3) --out "$out"
+}
+if [ -n "$write" ]; then
+  # shellcheck disable=SC2046
+  "$SHEARCELL" table --per run --experiment "$name" $(column 3) --out "$here/$folder/runs.csv"
+  rm "$here/$folder"/*.pdf
+  exit
+fi
+for file in "$new/$name"/*.csv; do
+  cmp "$file" "$here/$folder/$(basename "$file")"
+  echo "$folder/$(basename "$file"): the published bytes"
 done

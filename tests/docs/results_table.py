@@ -5,8 +5,10 @@
     python3 results_table.py README.md RESULTS_FOLDER [--write]
 
 README.md has one row for each claim of HEADLINES, RESULTS_FOLDER/README.md a row for every claim.
-Ends with code 1 if a table between the marks differs from the verdicts; --write makes them equal.
+Ends with code 1 if a table between the marks differs from the verdicts, which --write mends, or if published.txt
+lists other folders than there are.
 """
+import difflib
 import json
 import math
 import pathlib
@@ -158,9 +160,17 @@ def all_claims(page, results):
     return text
 
 
+def unlisted(results):
+    """Folders of figures without a line in published.txt, and lines without a folder."""
+    lines = [line for line in (results / "published.txt").read_text().splitlines() if not line.startswith("#")]
+    listed = {line.split("|")[0].strip() for line in lines}
+    drawn = {path.parent.relative_to(results).as_posix() for path in results.glob("**/*.lineage.json")}
+    return sorted(listed ^ drawn)
+
+
 def main():
     readme, results = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-    faults = []
+    faults = [f"published.txt does not fit the folder {folder}" for folder in unlisted(results)]
     for page, make in ((readme, headlines), (results / "README.md", all_claims)):
         text = page.read_text()
         begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
@@ -168,9 +178,11 @@ def main():
         if "--write" in sys.argv[3:]:
             page.write_text(text[:begin] + wanted + text[end:])
         elif text[begin:end] != wanted:
-            faults.append(f"{page} says\n{text[begin:end]}\nand the verdicts in {results} say\n{wanted}")
+            faults += difflib.unified_diff(text[begin:end].splitlines(), wanted.splitlines(), str(page), "the verdicts",
+                                           n=0, lineterm="")
+            faults.append("`results_table.py README.md RESULTS --write` makes them the same.")
     if faults:
-        sys.exit("\n".join(faults) + "\n`results_table.py README.md RESULTS --write` makes them the same.")
+        sys.exit("\n".join(faults))
 
 
 main()
