@@ -47,7 +47,7 @@ double settling_time(double height) {
 }
 
 // Evaluations of the forces in one minimization at the default tolerance, on average over the nine
-// of B.2; within a sixth of the measured 8.2e3, 16e3 and 51e3 at N = 600, 2000 and 7900.
+// of B.2; within a sixth of the measured 8.2e3, 16e3 and 52e3 at N = 600, 2000 and 7900.
 double minimization(double grains) {
   return 18e3 * std::pow(grains / 2000, 0.7);
 }
