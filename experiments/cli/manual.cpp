@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `manual` and `completion`: texts generated from the parser's commands and options.
+// `manual`: texts generated from the parser's commands and options.
 //   manual              the manual page, in roff, from the same texts as --help
 //   manual --markdown   the reference, experiments/REFERENCE.md
-//   completion          scripts with which a shell completes commands, options and paths
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,6 +12,7 @@
 #include "analysis/figure.hpp"
 #include "analysis/onset.hpp"
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/command_tree.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/read_parts.hpp"
 #include "experiments/manifest/schema.hpp"
@@ -21,153 +21,6 @@
 
 namespace shearcell::cli {
 namespace {
-
-// --- Commands and options as data ---
-
-struct OptionEntry {
-  std::vector<std::string> names;  ///< "-j", "--jobs"; empty for a positional
-  std::string placeholder;         ///< name of its value, as J; empty for a flag
-  std::string meaning;
-};
-
-struct CommandEntry {
-  std::vector<std::string> path;  ///< {} for the program, {"bench", "speed"}
-  const CLI::App* app;
-  std::vector<OptionEntry> options;  ///< positionals first
-  std::vector<const CLI::App*> subcommands() const { return app->get_subcommands({}); }
-};
-
-constexpr std::size_t kLongestChoice = 60;
-
-OptionEntry entry(const CLI::Option& option) {
-  OptionEntry made;
-  for (const std::string& name : option.get_snames()) made.names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) made.names.push_back("--" + name);
-  if (option.get_items_expected_max() > 0) {
-    made.placeholder = option.get_positional() ? option.get_single_name() : option.get_type_name();
-    if (const auto choices = made.placeholder.find(":{"); choices != std::string::npos) {
-      std::string one_of = made.placeholder.substr(choices + 2);
-      one_of.pop_back();
-      std::ranges::replace(one_of, ',', '|');
-      made.placeholder.erase(choices);
-      if (one_of.size() <= kLongestChoice) made.placeholder = one_of;  // longer lists are left out
-    }
-    if (made.placeholder.empty()) made.placeholder = "VALUE";
-  }
-  made.meaning = option.get_description();
-  if (const std::string value = option.get_default_str(); !value.empty()) {
-    made.meaning += fmt::format(" (default: {})", value);
-  }
-  return made;
-}
-
-/// The command, then each of its subcommands followed by their own, in the order of their
-/// declaration.
-std::vector<CommandEntry> command_tree(const CLI::App& app, std::vector<std::string> path = {}) {
-  CommandEntry made{path, &app, {}};
-  for (const CLI::Option* option : app.get_options()) made.options.push_back(entry(*option));
-  const auto is_positional = [](const OptionEntry& option) { return option.names.empty(); };
-  std::stable_partition(made.options.begin(), made.options.end(), is_positional);
-  std::vector<CommandEntry> tree = {made};
-  path.emplace_back();
-  for (const CLI::App* sub : made.subcommands()) {
-    path.back() = sub->get_name();
-    std::ranges::move(command_tree(*sub, path), std::back_inserter(tree));
-  }
-  return tree;
-}
-
-/// "shearcell bench speed".
-std::string spoken(const CommandEntry& command) {
-  return fmt::format("shearcell {}", fmt::join(command.path, " "));
-}
-
-// --- Completion ---
-
-std::string option_words(const CommandEntry& command) {
-  std::vector<std::string> names;
-  for (const OptionEntry& option : command.options) {
-    names.insert(names.end(), option.names.begin(), option.names.end());
-  }
-  return fmt::format("{}", fmt::join(names, " "));
-}
-
-std::string subcommand_words(const CommandEntry& command) {
-  std::vector<std::string> names;
-  for (const CLI::App* sub : command.subcommands()) names.push_back(sub->get_name());
-  return fmt::format("{}", fmt::join(names, " "));
-}
-
-std::string bash(const std::vector<CommandEntry>& tree) {
-  std::string cases;
-  for (const CommandEntry& command : tree) {
-    cases +=
-        fmt::format("    {}) commands={}; options={} ;;\n",
-                    shell_quoted(fmt::format("{}", fmt::join(command.path, " "))),
-                    shell_quoted(subcommand_words(command)), shell_quoted(option_words(command)));
-  }
-  return fmt::format(
-      R"(# bash completion for shearcell: source it, or put it where bash-completion looks.
-_shearcell() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} path='' commands='' options='' word
-  _shearcell_words ''
-  for word in "${{COMP_WORDS[@]:1:$((COMP_CWORD - 1))}}"; do
-    case " $commands " in *" $word "*)
-      path=${{path:+$path }}$word; _shearcell_words "$path" ;;
-    esac
-  done
-  if [[ $current == -* ]]; then
-    COMPREPLY=($(compgen -W "$options" -- "$current"))
-  elif [[ -n $commands ]]; then
-    COMPREPLY=($(compgen -W "$commands" -- "$current"))
-  else
-    local IFS=$'\n'
-      COMPREPLY=($(compgen -f -- "$current"))
-  fi
-}}
-_shearcell_words() {{
-  case $1 in
-{}  esac
-}}
-complete -o filenames -F _shearcell shearcell
-)",
-      cases);
-}
-
-std::string fish(const std::vector<CommandEntry>& tree) {
-  std::string all = "# fish completion for shearcell\n";
-  for (const CommandEntry& command : tree) {
-    std::string here;  // condition: this command was typed, without a subcommand
-    for (const std::string& word : command.path) {
-      here += fmt::format("{}__fish_seen_subcommand_from {}", here.empty() ? "" : "; and ", word);
-    }
-    if (!command.subcommands().empty()) {
-      here += fmt::format("{}not __fish_seen_subcommand_from {}", here.empty() ? "" : "; and ",
-                          subcommand_words(command));
-    }
-    for (const CLI::App* sub : command.subcommands()) {
-      all += fmt::format("complete -c shearcell -f -n {} -a {} -d {}\n", shell_quoted(here),
-                         sub->get_name(), shell_quoted(sub->get_description()));
-    }
-    for (const OptionEntry& option : command.options) {
-      if (option.names.empty()) continue;  // a positional
-      all += fmt::format("complete -c shearcell -n {}", shell_quoted(here));
-      for (const std::string& name : option.names) {
-        all += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-      }
-      all += fmt::format("{} -d {}\n", option.placeholder.empty() ? "" : " -r",
-                         shell_quoted(option.meaning));
-    }
-  }
-  return all;
-}
-
-/// zsh runs the bash function.
-std::string zsh(const std::vector<CommandEntry>& tree) {
-  return "#compdef shearcell\nautoload -U +X bashcompinit && bashcompinit\n" + bash(tree);
-}
-
-// --- The manual page ---
 
 /// Text for roff: no line may begin with a control character, and hyphens stay hyphens.
 std::string escaped(const std::string& text) {
@@ -331,23 +184,6 @@ std::string reference(const std::vector<CommandEntry>& tree) {
 }
 
 }  // namespace
-
-void add_completion(CLI::App& app, Context&) {
-  CLI::App* command = app.add_subcommand("completion", "Print a completion script for a shell");
-  auto shell = std::make_shared<std::string>();
-  command->add_option("shell", *shell, "bash, zsh or fish")
-      ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
-  command->footer(
-      R"(Examples:
-  shearcell completion bash > ~/.local/share/bash-completion/completions/shearcell
-  source <(shearcell completion zsh)
-  shearcell completion fish > ~/.config/fish/completions/shearcell.fish)");
-  command->callback([shell, &app] {
-    const std::vector<CommandEntry> tree = command_tree(app);
-    fmt::print("{}", *shell == "bash" ? bash(tree) : *shell == "zsh" ? zsh(tree) : fish(tree));
-  });
-}
 
 void add_manual(CLI::App& app, Context&) {
   CLI::App* command = app.add_subcommand("manual", "Print the manual page, in roff");
