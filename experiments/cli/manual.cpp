@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <iterator>
 #include <memory>
 
 #include "analysis/figure.hpp"
@@ -17,7 +15,6 @@
 #include "experiments/manifest/read_parts.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/host.hpp"
-#include "provenance/io/child_process.hpp"
 
 namespace shearcell::cli {
 namespace {
