@@ -2,7 +2,6 @@
 // `new`: writes a commented manifest with every key of the schema.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <memory>
@@ -96,23 +95,16 @@ scales:
 )";
 }
 
-/// Writes a temporary file and links it, so the file is complete and replaces no other.
+/// Replaces no file.
 void write_new(const std::filesystem::path& file, const std::string& text) {
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-  const std::filesystem::path whole = fmt::format("{}.tmp-{}", file.string(), getpid());
-  std::error_code failed, ignored;
   try {
-    write_output(whole, text);
-    std::filesystem::create_hard_link(whole, file, failed);
+    NewFile(file).add(text);
   } catch (const std::system_error& error) {
-    failed = error.code();
-  }
-  std::filesystem::remove(whole, ignored);
-  if (failed == std::errc::file_exists) {
+    if (error.code() != std::errc::file_exists) throw;
     throw UsageError(file.string() +
                      ": the file exists already. Choose another name, or remove it.");
   }
-  if (failed) throw std::system_error(failed, file.string() + ": cannot write");
 }
 
 void make(std::filesystem::path file) {

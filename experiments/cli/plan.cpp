@@ -91,22 +91,6 @@ void print_numerics(const std::vector<Line>& lines) {
       {"stage", "variant", "steps/cycle", "dt [s]", "dt/contact", "dt/limit", "overlap [d]"}, rows);
 }
 
-// Raises each target to the longest that the run was ever declared with, as `run` does. Returns how
-// many were raised.
-std::size_t take_longer_targets(const KnownRuns& known, Plan& plan) {
-  std::size_t longer = 0;
-  for (PlannedRun& run : plan.runs) {
-    const RunRecord* record = known.find(run.last.key);
-    if (record == nullptr || record->state == RunState::completed ||
-        record->target_cycles <= run.target_cycles) {
-      continue;
-    }
-    run.target_cycles = record->target_cycles;
-    ++longer;
-  }
-  return longer;
-}
-
 // Notes on runs that this machine cannot hold, and on runs by another engine.
 std::vector<std::string> notes_of(const Plan& plan) {
   std::vector<std::string> notes;
@@ -228,7 +212,7 @@ nlohmann::json facts(const Line& line) {
           {"parent", line.stage->parent},
           {"stage", name_of(line.stage->stage)},
           {"variant", line.run->variant},
-          {"parameters", line.stage->resolved.at("parameters")},
+          {"parameters", felt_parameters(line.stage->resolved)},
           {"seed", line.run->seed},
           {"N", line.run->parameters.grains},
           {"cycles", line.run->target_cycles},
@@ -271,7 +255,7 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
   const std::optional<Store> store = open_if_there(context.store);
   const auto runs = store ? store->runs() : std::vector<RunRecord>{};
   const KnownRuns known(runs);
-  const std::size_t longer = take_longer_targets(known, expanded);
+  const std::size_t longer = take_longer_targets(runs, expanded);
   const std::vector<Line> lines = lines_of(expanded, store, known);
   const Left left = left_of(lines, runs);
   const std::size_t cores = usable_cores();

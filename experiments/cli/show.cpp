@@ -14,6 +14,7 @@
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/own_part.hpp"
 #include "experiments/figures/run_table.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/progress.hpp"
 #include "experiments/runner/run_end.hpp"
@@ -116,6 +117,7 @@ nlohmann::json run_facts(const Store& store, const RunRecord& run,
           {"kind", run.kind},
           {"state", name_of(run.state)},
           {"resolved", run.resolved},
+          {"parameters", felt_parameters(run.resolved)},
           {"attempts", run.attempts},
           {"engine", engine_of_run(store, run.id)},
           {"memberships", json_list(run.memberships, member)},
@@ -151,16 +153,14 @@ void print_run(const Store& store, const RunRecord& run) {
 
 void print_resolved(const nlohmann::json& resolved) {
   for (const auto& [key, value] : resolved.items()) {
-    if (!value.is_object()) {
-      print_text("{:<32} {}\n", key, value.dump());
-      continue;
-    }
-    for (const auto& [name, inner] : value.items()) {
-      // A constant of the record (Identity::recorded_as) is not the value that the run had.
-      const Field* field = find_field(name);
-      const bool constant = field != nullptr && !field->identity.recorded_as.empty();
-      if (!constant) print_text("{:<32} {}\n", name, inner.dump());
-    }
+    if (key != "parameters") print_text("{:<32} {}\n", key, value.dump());
+  }
+  const nlohmann::json parameters = felt_parameters(resolved);
+  for (const auto& [name, value] : parameters.items()) {
+    // A constant of the record (Identity::recorded_as) is not the value that the run had.
+    const Field* field = find_field(name);
+    const bool constant = field != nullptr && !field->identity.recorded_as.empty();
+    if (!constant) print_text("{:<32} {}\n", name, value.dump());
   }
 }
 

@@ -43,7 +43,9 @@ std::vector<Share> work_left(const std::vector<Plan>& plans, const Store* store)
   };
   std::vector<Share> shares;
   std::map<std::string, std::size_t> places;  // of each packing in shares
-  for (const PlannedRun& run : joined(plans).runs) {
+  Plan all = joined(plans);
+  take_longer_targets(runs, all);
+  for (const PlannedRun& run : all.runs) {
     Share left;
     if (!add(run, run.last, left)) continue;
     left.runs = {run.last.key};

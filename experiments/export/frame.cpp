@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/export/frame.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "analysis/common_neighbours.hpp"
 #include "analysis/motion.hpp"
 #include "analysis/voronoi.hpp"
 #include "experiments/figures/more_measures.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 
 namespace shearcell {
@@ -92,9 +95,7 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
     if (column.name == "cycle" || column.name == "time_s" || column.name == "checkpoint") continue;
     frame.scalars.emplace_back(column.name, value.is_null() ? std::nan("") : value.get<double>());
   }
-  const nlohmann::json& resolved = selected.run.resolved;
-  const nlohmann::json parameters =
-      resolved.is_object() ? resolved.value("parameters", nlohmann::json()) : nlohmann::json();
+  const nlohmann::json parameters = felt_parameters(selected.run.resolved);
   for (const auto& [key, value] : parameters.items()) {
     // Leaves out a key with a constant record (Identity::recorded_as), and what a forged store may
     // hold.
@@ -105,6 +106,11 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
 }
 
 }  // namespace
+
+std::string frame_name(const Frame& frame) {
+  const bool settles = frame.cycle == 0 && frame.step > 0;
+  return settles ? fmt::format("step{}", frame.step) : fmt::format("{}", frame.cycle);
+}
 
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const SelectedRun& run,
                MeasureSources* sources) {

@@ -63,6 +63,9 @@ struct Frame {
   std::size_t particles() const { return type.size(); }
 };
 
+/// The frame in a file's name: its cycle; of a packing, which has no cycles, "step45600".
+std::string frame_name(const Frame& frame);
+
 /// Without `sources`, measures that need earlier checkpoints are NaN. Throws as analyse_stored().
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
                const SelectedRun& run = {}, MeasureSources* sources = nullptr);

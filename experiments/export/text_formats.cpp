@@ -109,7 +109,7 @@ FrameWriter lammps_writer(const std::filesystem::path& folder) {
       fmt::format_to(std::back_inserter(text), "{} {:.17g} {:.17g} {:.17g} 0 0 0\n", i + 1, v.x(),
                      v.y(), v.z());
     }
-    NewFile(folder / fmt::format("frame_{}.data", f.cycle)).add(text);
+    NewFile(folder / fmt::format("frame_{}.data", frame_name(f))).add(text);
   };
 }
 

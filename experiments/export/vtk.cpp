@@ -103,14 +103,14 @@ void write_cell(const Frame& f, const std::filesystem::path& file) {
 
 FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames) {
   return [folder, left = frames, sets = std::string()](const Frame& f) mutable {
-    const std::string grains = fmt::format("grains_{}.vtp", f.cycle);
-    const std::string cell = fmt::format("cell_{}.vtp", f.cycle);
+    const std::string grains = fmt::format("grains_{}.vtp", frame_name(f));
+    const std::string cell = fmt::format("cell_{}.vtp", frame_name(f));
     write_grains(f, folder / grains);
     write_cell(f, folder / cell);
     sets += fmt::format(
         "<DataSet timestep=\"{0:.17g}\" part=\"0\" name=\"grains\" file=\"{1}\"/>\n"
         "<DataSet timestep=\"{0:.17g}\" part=\"1\" name=\"cell\" file=\"{2}\"/>\n",
-        f.cycle, grains, cell);
+        f.cycle == 0 ? f.time_s : f.cycle, grains, cell);
     if (--left > 0) return;
     write_output(folder / "frames.pvd",
                  "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" "

@@ -159,13 +159,15 @@ std::vector<Column> ends() {
 }
 
 /// The value of a parameter that some variants sweep: from the variant's labels, or from the run's
-/// record; null if it does not affect the run.
-json swept_value(const Field& field, const SelectedRun& selected) {
+/// record; null if it does not affect the run, or its record cannot be read.
+json swept_value(const Field& field, const SelectedRun& selected) try {
   const auto label = selected.membership.labels.find(field.name);
   if (label != selected.membership.labels.end()) return *label;
   const StageRecord record = read_stage(selected.run.resolved);
   const bool felt = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
   return felt ? get_value(field, record.parameters) : json();
+} catch (const UnreadableRecord&) {
+  return nullptr;
 }
 
 /// The columns that distinguish runs.
@@ -237,7 +239,7 @@ void measure_where(const Store& store, std::span<const std::string> names,
 FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
   FigureRun history;
   history.labels = selected.membership.labels;
-  history.parameters = selected.run.resolved.value("parameters", json::object());
+  history.parameters = felt_parameters(selected.run.resolved);
   for (const Row& row : rows) {
     if (!row.measures || row.checkpoint->cycle != std::floor(row.checkpoint->cycle)) continue;
     history.checkpoints.emplace_back().cycle = row.checkpoint->cycle;
@@ -282,7 +284,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
       for (const Row& row : rows) add(row);
       continue;
     }
-    const FigureRun history = history_of(run, rows);
+    const FigureRun& history = table.histories.emplace_back(history_of(run, rows));
     Row last = rows.empty() ? Row{&run} : rows.back();
     if (run.run.kind == name_of(Stage::shear)) last.history = &history;
     add(last);

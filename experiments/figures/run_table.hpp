@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/figure.hpp"
 #include "experiments/figures/select_runs.hpp"
 #include "experiments/runner/measure.hpp"
 
@@ -30,6 +31,7 @@ struct RunTable : MeasureOutcome {
   std::vector<TableColumn> columns;
   std::vector<std::vector<nlohmann::json>> rows;  ///< null: not applicable or unknown
   std::vector<std::string> notes;                 ///< of newest_runs()
+  std::vector<FigureRun> histories;               ///< with RowPer::run: each row's whole cycles
 
   /// The index of a column; the number of columns if there is none of that name.
   std::size_t place(std::string_view name) const {

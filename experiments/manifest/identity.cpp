@@ -71,8 +71,8 @@ void append_canonical(const json& value, std::string& text) {
   }
 }
 
-std::runtime_error damaged(std::string_view key, std::string_view problem) {
-  return std::runtime_error(fmt::format("record of a stage: {} {}", key, problem));
+UnreadableRecord damaged(std::string_view key, std::string_view problem) {
+  return UnreadableRecord(fmt::format("record of a stage: {} {}", key, problem));
 }
 
 const json& member(const json& object, const char* key) {
@@ -149,7 +149,7 @@ std::string stage_key(const json& resolved) {
 }
 
 StageRecord read_stage(const json& resolved) {
-  if (!resolved.is_object()) throw std::runtime_error("record of a stage: not a JSON object");
+  if (!resolved.is_object()) throw UnreadableRecord("record of a stage: not a JSON object");
   const std::string name = text_member(resolved, "stage");
   const std::optional<Stage> stage = value_of<Stage>(name);
   if (!stage) throw damaged("stage", "is not one of prepare, shear, stiffen");

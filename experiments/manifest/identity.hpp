@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 
 #include "experiments/manifest/parameters.hpp"
@@ -37,8 +38,14 @@ StageSpec last_stage(const Parameters& parameters, std::uint64_t seed, const Sta
 /// check a recorded run against its id.
 std::string stage_key(const nlohmann::json& resolved);
 
-/// The record is not trusted: throws std::runtime_error that names the key when something is
-/// missing, unknown or out of range. Compare stage_key(resolved) with the run's id as well.
+/// A record of a stage that is damaged, or that another version of the program wrote. The message
+/// names the key.
+struct UnreadableRecord : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The record is not trusted: throws UnreadableRecord when something is missing, unknown or out of
+/// range. Compare stage_key(resolved) with the run's id as well.
 StageRecord read_stage(const nlohmann::json& resolved);
 
 /// The parameters that the record states, and those that it omits at the value of all older runs.

@@ -6,12 +6,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 #include <stdexcept>
-#include <tuple>
 
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
@@ -49,9 +46,10 @@ std::vector<ReportExperiment> experiments_of(const Store& store,
   return found;
 }
 
-std::string draw(const FigureTable& table, const TemporaryFolder& folder) {
-  std::ifstream svg(draw_svg(table, folder.path()), std::ios::binary);
-  return {std::istreambuf_iterator<char>(svg), {}};
+std::string draw(const FigureTable& table) {
+  const TemporaryFolder folder("shearcell-report-");
+  constexpr std::size_t most = 64'000'000;
+  return read_plain(draw_svg(table, folder.path()), most).value_or("");
 }
 
 /// The newest record of the figure with the same scale, inputs and analysis version.
@@ -81,12 +79,11 @@ ReportFigure figure_of(const Store& store, const WantedFigure& wanted, const Rep
   made.summary = std::move(computed.summary);
   made.recorded = record_of(records, wanted.figure.name, computed.lineage);
   made.lineage = figure_lineage(store, {wanted.path(), 0, "", computed.lineage});
-  const TemporaryFolder folder("shearcell-report-");
   for (const FigureTable& table : computed.result.tables) {
     ReportPanel panel{table.name, prefix + table.name, {}, to_csv(table), table.text, ""};
     if (!table.chart.series.empty()) panel.chart = chart_json(table);
     try {
-      if (!data.interactive && table.text.rows.empty()) panel.drawing = draw(table, folder);
+      if (!data.interactive && table.text.rows.empty()) panel.drawing = draw(table);
     } catch (const AnalysisError& error) {
       data.drawing_trouble = error.what();
     }
@@ -140,14 +137,6 @@ void add_runs(const Store& store, ReportData& data) {
   }
 }
 
-/// Scale, variant and run.
-using RowKey = std::tuple<std::string, std::string, std::string>;
-
-RowKey key_of(const RunTable& table, const std::vector<json>& row) {
-  const auto text = [&](const char* name) { return row[table.place(name)].get<std::string>(); };
-  return {text("scale"), text("variant"), text("run")};
-}
-
 /// Six significant digits are enough for a drawing.
 json rounded(const json& value) {
   if (!value.is_number_float()) return value;
@@ -155,18 +144,16 @@ json rounded(const json& value) {
 }
 
 /// ReportExperiment::traces.
-json traces_of(const RunTable& runs, const RunTable& checkpoints,
-               const std::map<std::string, RunLineage>& lineages) {
-  std::map<RowKey, json> traces;
-  for (const std::vector<json>& row : checkpoints.rows) {
-    json& trace = traces[key_of(checkpoints, row)];
-    trace["cycle"].push_back(row[checkpoints.place("cycle")]);
-    trace["phi"].push_back(rounded(row[checkpoints.place("phi")]));
-    trace["percent"].push_back(rounded(row[checkpoints.place("crystalline_percent")]));
-  }
+json traces_of(const RunTable& runs, const std::map<std::string, RunLineage>& lineages) {
   json all = json::array();
-  for (const std::vector<json>& row : runs.rows) {
-    json& run = all.emplace_back(traces[key_of(runs, row)]);
+  for (std::size_t k = 0; k < runs.rows.size(); ++k) {
+    json& run = all.emplace_back(json::object());
+    for (const CheckpointMeasures& checkpoint : runs.histories[k].checkpoints) {
+      run["cycle"].push_back(checkpoint.cycle);
+      run["phi"].push_back(rounded(checkpoint.measures.phi));
+      run["percent"].push_back(rounded(checkpoint.measures.crystalline_percent));
+    }
+    const std::vector<json>& row = runs.rows[k];
     for (const char* key : {"scale", "variant", "seed"}) run[key] = row[runs.place(key)];
     run["id"] = row[runs.place("run")];
     run["kind"] = lineages.at(run["id"].get<std::string>()).run.kind;
@@ -183,8 +170,7 @@ void add_run_tables(const Store& store, const ReportOptions& options, ReportData
     selection.experiments = {experiment.manifest.experiment};
     try {
       experiment.table = run_table(store, selection, RowPer::run, measuring);
-      const RunTable checkpoints = run_table(store, selection, RowPer::checkpoint, measuring);
-      experiment.traces = traces_of(experiment.table, checkpoints, data.runs);
+      experiment.traces = traces_of(experiment.table, data.runs);
       for (const std::string& line : experiment.table.damage) {
         if (std::ranges::count(data.damage, line) == 0) data.damage.push_back(line);
       }

@@ -14,6 +14,7 @@
 
 #include "core/filling.hpp"
 #include "core/threads.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/asks.hpp"
 #include "experiments/runner/registered.hpp"
@@ -160,6 +161,8 @@ class Campaign {
       note(job, &CampaignResult::damaged, damage.what());
     } catch (const GeometryError& error) {
       note(job, &CampaignResult::failed, error.what());
+    } catch (const UnreadableRecord& error) {
+      note(job, &CampaignResult::blocked, error.what());
     } catch (const ProgramError& error) {
       note(job, &CampaignResult::blocked, error.what());  // LAMMPS is missing
     } catch (const TooLittleMemory& error) {

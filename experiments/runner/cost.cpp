@@ -87,6 +87,21 @@ double checkpoint_bytes(const Geometry& shape) {
          kBytesPerWallGrain * wall_grain_count(shape);
 }
 
+std::size_t take_longer_targets(const std::vector<RunRecord>& known, Plan& plan) {
+  std::map<std::string, std::uint64_t> longest;
+  for (const RunRecord& run : known) {
+    if (run.state != RunState::completed) longest[run.id] = run.target_cycles;
+  }
+  std::size_t longer = 0;
+  for (PlannedRun& run : plan.runs) {
+    const auto found = longest.find(run.last.key);
+    if (found == longest.end() || found->second <= run.target_cycles) continue;
+    run.target_cycles = found->second;
+    ++longer;
+  }
+  return longer;
+}
+
 std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& stage,
                                         const RunRecord* known, const Store* store) {
   if (known == nullptr) return 0;

@@ -28,6 +28,10 @@ struct StageCost {
   double bytes = 0;  ///< of checkpoint files
 };
 
+/// Raises each target to the longest that the run was ever declared with, as `run` does. Returns
+/// how many were raised.
+std::size_t take_longer_targets(const std::vector<RunRecord>& known, Plan& plan);
+
 /// The cycle from which the stage must be computed; nothing when it is done. `known` is its record
 /// in `store`, or null. It is done when it has its length, or ended early by the same `until` of an
 /// experiment that asked for at least this length; and when it has every checkpoint that was asked

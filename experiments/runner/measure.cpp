@@ -149,9 +149,6 @@ UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
     for (std::size_t i = next++; i < count; i = next++) {
       try {
         work(i);
-        const std::lock_guard lock(mutex);
-        ++done;
-        if (progress) progress(done, count);
       } catch (const StoreDamaged& damage) {
         const std::lock_guard lock(mutex);
         unread.damage.emplace_back(damage.what());
@@ -163,6 +160,9 @@ UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
         if (!error) error = std::current_exception();
         next = count;
       }
+      const std::lock_guard lock(mutex);
+      ++done;
+      if (progress) progress(done, count);
     }
   };
   {
