@@ -119,6 +119,13 @@ TEST_F(Submitted, TasksEndRunsByUntil) {
   EXPECT_EQ(work_left({longer}, &store_).size(), 1U) << "nobody asked for this length yet";
 }
 
+TEST_F(Submitted, WorkIsThatOfTheLongestTarget) {
+  const std::vector<Share> longest = shares(9);
+  const std::vector<Share> shorter = shares(1);
+  ASSERT_EQ(shorter.size(), longest.size());
+  EXPECT_EQ(shorter[0].particle_steps, longest[0].particle_steps);
+}
+
 TEST_F(Submitted, RunsInTheQueueAreBusyWithTheirPackings) {
   Submission made = submit(shares());
   EXPECT_TRUE(busy_runs(store_, {made}).empty()) << "its jobs have ended";

@@ -7,9 +7,11 @@
 
 #include <set>
 
+#include "experiments/manifest/identity.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -131,6 +133,18 @@ TEST_F(CampaignTest, ResumesARequestedRunWithItsPacking) {
 
   EXPECT_THROW(unfinished(store_, {"no digest"}), NotFound);
   EXPECT_THROW(unfinished(store_, {""}), NotFound) << "an empty prefix fits every run";
+}
+
+TEST_F(CampaignTest, ARecordThatCannotBeReadStopsOnlyItsRun) {
+  declared(store_, tiny_manifest());
+  RunRecord run = sheared(store_);
+  run.resolved["parameters"]["of_a_newer_version"] = 1;
+  store_.declare_run({stage_key(run.resolved), run.parent, run.kind, run.resolved, run.grains,
+                      run.target_cycles, run.memberships.front()});
+  const CampaignResult result = resume(store_);
+  EXPECT_EQ(result.completed, 2U);
+  EXPECT_EQ(result.blocked, 1U);
+  EXPECT_TRUE(has(result.messages.at(0), "of_a_newer_version"));
 }
 
 TEST_F(CampaignTest, ZeroCyclesGiveThePackingAlone) {

@@ -13,6 +13,7 @@
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/replay.hpp"
 #include "provenance/derived.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/sqlite.hpp"
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
@@ -207,6 +208,18 @@ TEST_F(Measure, WorksWithoutAWritableCache) {
   EXPECT_NE(figure.cache_trouble, "");
   EXPECT_EQ(figure.measured, 6U);
   EXPECT_EQ(csv("second"), csv("first"));
+}
+
+TEST(ReadInParallel, CountsWhatCannotBeReadToo) {
+  std::size_t last = 0;
+  const UnreadCheckpoints unread = read_in_parallel(
+      3, 2,
+      [](std::size_t i) {
+        if (i == 1) throw StoreDamaged("cut off");
+      },
+      [&](std::size_t done, std::size_t) { last = done; });
+  EXPECT_EQ(unread.damage.size(), 1U);
+  EXPECT_EQ(last, 3U) << "so that a terminal's line ends";
 }
 
 }  // namespace

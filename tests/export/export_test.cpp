@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Exported frames, also as other programs read them.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -321,6 +322,22 @@ TEST(Export, ReportsWhatItCannotWrite) {
   const FrameWriter one = h5md_writer(folder.path() / "run.h5", 1);
   one(frame);
   EXPECT_THROW(one(frame), std::runtime_error);
+}
+
+TEST(Export, EachCheckpointOfAPackingHasAFile) {
+  const TemporaryFolder folder;
+  Checkpoint packing = checkpoints().front();
+  packing.cycle = 0;
+  const FrameWriter vtk = vtk_writer(folder.path(), 2), lammps = lammps_writer(folder.path());
+  for (const std::uint64_t step : {45600U, 54720U}) {
+    packing.state.step = step;
+    const Frame frame = frame_of(packing);
+    vtk(frame);
+    lammps(frame);
+    for (const std::string file : {"grains_step{}.vtp", "cell_step{}.vtp", "frame_step{}.data"}) {
+      EXPECT_TRUE(fs::exists(folder.path() / fmt::format(fmt::runtime(file), step))) << file;
+    }
+  }
 }
 
 }  // namespace
