@@ -173,7 +173,7 @@ Scalar percentage_over_phi() {
 
 Scalar onset_phi(OnsetMethod method) {
   const auto of = [method](const FigureRun& run) -> RunValue {
-    const RunOnset onset = method(run, critical_size_for(run));
+    const RunOnset onset = method(run);
     if (onset.observed == Observed::never) return {0, Missing::too_short};
     if (onset.observed == Observed::before_start) return {0, Missing::too_late};
     if (onset.observed == Observed::unclear) return {0, Missing::undefined};
@@ -263,7 +263,7 @@ std::vector<Waiting> waits_for_onset(RunGroup runs) {
   std::vector<Waiting> waits;
   for (const FigureRun* run : runs) {
     if (run->checkpoints.empty()) continue;
-    const RunOnset onset = onset_by_size(*run, critical_size_for(*run));
+    const RunOnset onset = onset_by_size(*run);
     const bool observed = onset.observed != Observed::never;
     waits.push_back({observed ? onset.cycle : run->checkpoints.back().cycle, observed});
   }

@@ -117,10 +117,10 @@ std::vector<double> bond_order_q6(const VoronoiDiagram& diagram) {
   return q6;
 }
 
-Structure structure(double phi_local, double q6) {
-  if (!(phi_local > crystalline_phi_local)) return Structure::disordered;
-  if (std::abs(q6 - q6_fcc) < q6_tolerance) return Structure::fcc;
-  if (std::abs(q6 - q6_hcp) < q6_tolerance) return Structure::hcp;
+Structure structure(double phi_local, double q6, double least_phi_local, double tolerance) {
+  if (!(phi_local > least_phi_local)) return Structure::disordered;
+  if (std::abs(q6 - q6_fcc) < tolerance) return Structure::fcc;
+  if (std::abs(q6 - q6_hcp) < tolerance) return Structure::hcp;
   return Structure::disordered;
 }
 

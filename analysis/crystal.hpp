@@ -34,7 +34,8 @@ inline constexpr double connecting_face = 0.01;
 
 enum class Structure : std::uint8_t { disordered, fcc, hcp };
 
-Structure structure(double phi_local, double q6);
+Structure structure(double phi_local, double q6, double least_phi_local = crystalline_phi_local,
+                    double tolerance = q6_tolerance);
 
 struct Crystallites {
   /// Crystallite of each grain, -1 for none. Numbered in the order of their lowest grain id.

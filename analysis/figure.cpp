@@ -8,25 +8,6 @@
 #include "analysis/figures/figures.hpp"
 
 namespace shearcell {
-namespace {
-
-using Make = FigureResult (*)(std::span<const FigureRun>);
-using Keys = std::vector<std::string>;
-
-/// A curve for each variant; `keys` are what they compare.
-Figure of_curves(const char* name, const char* title, Make make, Keys keys,
-                 std::vector<std::string> needs = {}) {
-  return {name, title, make, FigureForm::curves, std::move(keys), std::move(needs)};
-}
-
-/// Averages over the variants that have the same values of `keys`.
-Figure of_groups(const char* name, const char* title, Make make, Keys keys,
-                 std::vector<std::string> needs = {}) {
-  return {name, title, make, FigureForm::groups, std::move(keys), std::move(needs)};
-}
-
-}  // namespace
-
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
   for (const nlohmann::json* values : {&run.labels, &run.parameters}) {
     if (values->is_object() && values->contains(key)) return values->at(key);
@@ -79,32 +60,59 @@ std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::strin
 }
 
 std::span<const Figure> all_figures() {
+  using enum FigureForm;
   static const std::vector<Figure> all = {
-      {"table1", "Table I beside the parameters of every experiment", figure_table1,
-       FigureForm::table},
-      of_groups("S1", "Volume fraction in the limit of hard grains", figure_s1, {"pressure_at"}),
-      of_curves("S2", "Still fluid and fluid that moves with the cell", figure_s2, {"fluid"}),
-      of_curves("S3", "Time steps", figure_s3, {"steps_per_cycle"}),
-      of_curves("S4", "Moving bottom wall and moving top wall", figure_s4,
-                {"moving_wall", "pressure_at"}),
-      of_groups("S5a", "Onset of crystallization against amplitude", figure_s5a, {"amplitude_rad"}),
-      of_groups("S5b", "Onset of crystallization against system size", figure_s5b, {"grains"}),
-      of_curves("S6", "Shear with and without gravity", figure_s6,
-                {"amplitude_rad", "gravity_m_per_s2"}),
-      of_groups("S7", "Where crystallites nucleate", figure_s7,
-                {"amplitude_rad", "stiffness_N_per_m"}, {"crystallites"}),
-      of_groups("C", "Growth of crystallites by size", figure_c, {"amplitude_rad"},
-                {"crystallites"}),
-      of_groups("nucleation", "Runs without an onset, and the rate of nucleation",
-                figure_nucleation, {"amplitude_rad", "grains"}),
-      of_groups("nucleation_core", "The rate of nucleation at least 4 d from the walls",
-                figure_nucleation_core, {"amplitude_rad", "grains"}, {"core"}),
-      of_curves("B5", "Continuous and periodically paused shear", figure_b5, {"protocol"},
-                {"at_rest"}),
-      of_curves("walls", "Rough and smooth walls", figure_walls, {"walls"}),
-      of_curves("choices", "Mass and drag of the moving wall, and other wall grains",
-                figure_choices,
-                {"wall_mass_grains_per_d2", "wall_drag_grains_per_d2_s", "wall_grain_draw"})};
+      {"table1", "Table I beside the parameters of every experiment", figure_table1, table},
+      {"S1", "Volume fraction in the limit of hard grains", figure_s1, groups, {"pressure_at"}},
+      {"S2", "Still fluid and fluid that moves with the cell", figure_s2, curves, {"fluid"}},
+      {"S3", "Time steps", figure_s3, curves, {"steps_per_cycle"}},
+      {"S4",
+       "Moving bottom wall and moving top wall",
+       figure_s4,
+       curves,
+       {"moving_wall", "pressure_at"}},
+      {"S5a", "Onset of crystallization against amplitude", figure_s5a, groups, {"amplitude_rad"}},
+      {"S5b", "Onset of crystallization against system size", figure_s5b, groups, {"grains"}},
+      {"S6",
+       "Shear with and without gravity",
+       figure_s6,
+       curves,
+       {"amplitude_rad", "gravity_m_per_s2"}},
+      {"S7",
+       "Where crystallites nucleate",
+       figure_s7,
+       groups,
+       {"amplitude_rad", "stiffness_N_per_m"},
+       {"crystallites"}},
+      {"C",
+       "Growth of crystallites by size",
+       figure_c,
+       groups,
+       {"amplitude_rad"},
+       {"crystallites"}},
+      {"nucleation",
+       "Runs without an onset, and the rate of nucleation",
+       figure_nucleation,
+       groups,
+       {"amplitude_rad", "grains"}},
+      {"nucleation_core",
+       "The rate of nucleation at least 4 d from the walls",
+       figure_nucleation_core,
+       groups,
+       {"amplitude_rad", "grains"},
+       {"core"}},
+      {"B5",
+       "Continuous and periodically paused shear",
+       figure_b5,
+       curves,
+       {"protocol"},
+       {"at_rest"}},
+      {"walls", "Rough and smooth walls", figure_walls, curves, {"walls"}},
+      {"choices",
+       "Mass and drag of the moving wall, and other wall grains",
+       figure_choices,
+       curves,
+       {"wall_mass_grains_per_d2", "wall_drag_grains_per_d2_s", "wall_grain_draw"}}};
   return all;
 }
 

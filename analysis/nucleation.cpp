@@ -52,7 +52,7 @@ struct Stay {
 using Stays = std::map<std::int64_t, Stay>;  ///< by the bin's number
 
 Stays stays_of(const FigureRun& run, Region region) {
-  const RunOnset onset = onset_by_size(run, critical_size_for(run));
+  const RunOnset onset = onset_by_size(run);
   Stays stays;
   if (onset.observed == Observed::before_start) return stays;
   for (std::size_t k = 1; k < run.checkpoints.size(); ++k) {

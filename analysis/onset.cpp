@@ -58,7 +58,12 @@ std::optional<Slope> slope_at(std::span<const Point> points, double phi) {
 
 }  // namespace
 
-RunOnset onset_by_size(const FigureRun& run, double critical_size) {
+double critical_size_for(const FigureRun& run) {
+  return published_nearest(number_of(run, "amplitude_rad")).critical_size;
+}
+
+RunOnset onset_by_size(const FigureRun& run) {
+  const double critical_size = critical_size_for(run);
   const CheckpointMeasures* before = nullptr;
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
     if (!std::isfinite(checkpoint.measures.phi)) continue;
@@ -75,8 +80,8 @@ RunOnset onset_by_size(const FigureRun& run, double critical_size) {
   return {};
 }
 
-RunOnset onset_by_slope(const FigureRun& run, double critical_size) {
-  const RunOnset by_size = onset_by_size(run, critical_size);
+RunOnset onset_by_slope(const FigureRun& run) {
+  const RunOnset by_size = onset_by_size(run);
   if (by_size.observed != Observed::yes) return by_size;
   const std::vector<Point> points = points_of(run);
   const auto [lowest, highest] = std::ranges::minmax(points, {}, &Point::phi);
@@ -94,12 +99,8 @@ RunOnset onset_by_slope(const FigureRun& run, double critical_size) {
   return found;
 }
 
-double critical_size_for(const FigureRun& run) {
-  return published_nearest(number_of(run, "amplitude_rad")).critical_size;
-}
-
 double RunMeasure::of(const FigureRun& run) const {
-  const RunOnset onset = method(run, critical_size_for(run));
+  const RunOnset onset = method(run);
   return onset.observed == Observed::yes ? onset.*value : std::nan("");
 }
 
@@ -117,12 +118,11 @@ const RunMeasure* find_run_measure(std::string_view name) {
 }
 
 Onset onset(RunGroup runs, OnsetMethod method) {
-  const double critical_size = critical_size_for(*runs.front());
   Onset result;
   std::vector<double> phi;
   std::vector<double> cycle;
   for (const FigureRun* run : runs) {
-    const RunOnset found = method(*run, critical_size);
+    const RunOnset found = method(*run);
     if (found.observed == Observed::never) ++result.never;
     if (found.observed == Observed::before_start) ++result.before_start;
     if (found.observed == Observed::unclear) ++result.unclear;

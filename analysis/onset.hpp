@@ -27,23 +27,23 @@ struct RunOnset {
   double cycle = 0;  ///< likewise; between checkpoints
 };
 
-/// Method 1: the first time that the largest crystallite has `critical_size` grains or more. phi
-/// and cycle are interpolated linearly in the size between that checkpoint and the one before,
-/// which bound them. A run that begins with such a crystallite is censored at its start.
-RunOnset onset_by_size(const FigureRun& run, double critical_size);
+/// The supplement's critical size [grains] for the amplitude of the run.
+double critical_size_for(const FigureRun& run);
+
+/// Method 1: the first time that the largest crystallite has the critical size. phi and cycle are
+/// interpolated linearly in the size between that checkpoint and the one before, which bound them.
+/// A run that begins with such a crystallite is censored at its start.
+RunOnset onset_by_size(const FigureRun& run);
 
 /// Method 2: where ln(largest crystallite) against phi is steepest. The slope at phi is that of the
 /// straight line, by least squares, through the checkpoints within `slope_window / 2`; at least
 /// four checkpoints that span half of the window, and no crystallite counts as one grain; a run
-/// without such a window is unclear. One whose largest crystallite never reaches `critical_size`
+/// without such a window is unclear. One whose largest crystallite never has the critical size
 /// has not crystallized and is censored. [choice]
 inline constexpr double slope_window = 0.008;
-RunOnset onset_by_slope(const FigureRun& run, double critical_size);
+RunOnset onset_by_slope(const FigureRun& run);
 
-/// The supplement's critical size for the amplitude of the run.
-double critical_size_for(const FigureRun& run);
-
-using OnsetMethod = RunOnset (*)(const FigureRun& run, double critical_size);
+using OnsetMethod = RunOnset (*)(const FigureRun& run);
 
 /// One number of a whole run, for plots and claims, by its name in tables.
 struct RunMeasure {
@@ -67,8 +67,6 @@ struct Onset {
   std::size_t before_start = 0;     ///< runs that begin after
   std::size_t unclear = 0;          ///< runs in which the method finds none
 };
-/// With the supplement's critical size for the amplitude of the first run; `runs` must not be
-/// empty.
 Onset onset(RunGroup runs, OnsetMethod method);
 
 }  // namespace shearcell

@@ -36,11 +36,10 @@ double phi_between(const GrainMeasures& grains, std::span<const double> depth, d
   return packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi;
 }
 
-double crystalline_percent(const GrainMeasures& grains, double least_phi_local, double window) {
+double crystalline_percent(const GrainMeasures& grains, double least_phi_local, double tolerance) {
   return percent_of_interior(grains, [&](std::size_t i) {
-    const double distance =
-        std::min(std::abs(grains.q6[i] - q6_fcc), std::abs(grains.q6[i] - q6_hcp));
-    return grains.phi_local[i] > least_phi_local && distance < window;
+    return structure(grains.phi_local[i], grains.q6[i], least_phi_local, tolerance) !=
+           Structure::disordered;
   });
 }
 

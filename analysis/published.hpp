@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers that the supplement of Phys. Rev. Lett. 125, 258003 states, for tests and drawings.
+// Numbers that the supplement of Phys. Rev. Lett. 125, 258003 states, and the margins and
+// windows of the verdicts.
 #pragma once
 
 #include <algorithm>

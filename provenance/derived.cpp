@@ -55,7 +55,7 @@ void DerivedCache::open() {
   database_.emplace(file_, read_only_ ? Access::read : Access::create);
   sqlite::Database& database = *database_;
   // No syncs: damage by a power cut is found by the hash, and the object is computed again.
-  database.execute("PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA synchronous=OFF;");
+  database.execute("PRAGMA cell_size_check=ON; PRAGMA synchronous=OFF;");
   if (read_only_) database.execute("PRAGMA query_only=ON");
   if (!read_only_ && database.integer("PRAGMA page_count") == 0) {
     sqlite::WriteTransaction lock(database);

@@ -157,7 +157,7 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
   // several connections checkpoint a WAL at once. EXTRA also syncs the folder after the journal is
   // deleted, so that a committed event survives a power cut.
   database.execute(
-      "PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
+      "PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
       "PRAGMA synchronous=EXTRA;");
   if (database.integer("PRAGMA page_count") == 0) {
     // A new store starts with an empty file; with objects beside it, the log was lost.

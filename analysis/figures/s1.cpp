@@ -45,7 +45,7 @@ std::map<int, Stiffness> by_stiffness(RunGroup runs) {
 }
 
 struct Load {
-  const char* moves;   ///< the value of `pressure_at`
+  const char* at;      ///< the value of `pressure_at`
   Text note;           ///< behind the titles of its curves
   std::string claims;  ///< behind its claims
   std::string colour;
@@ -59,7 +59,7 @@ std::vector<Load> loads_of(std::span<const FigureRun> runs) {
       {"moving_wall", ", P on the moving wall", " (P on the moving wall)", "#d55e00"}};
   for (const FigureRun& run : runs) {
     for (Load& load : loads) {
-      if (parameter_of(run, "pressure_at") == load.moves) load.runs.push_back(&run);
+      if (parameter_of(run, "pressure_at") == load.at) load.runs.push_back(&run);
     }
   }
   std::erase_if(loads, [](const Load& load) { return load.runs.empty(); });
@@ -75,7 +75,7 @@ std::vector<Series> series_under(const Load& load) {
                               .y = column + "_mean",
                               .x_error = "overlap_standard_error_d",
                               .y_error = column + "_standard_error"},
-                  .filter = {"pressure_at", load.moves}};
+                  .filter = {"pressure_at", load.at}};
   };
   return {phi_series(italic("ϕ") + subscript("u") + ", uncorrected", 6, "phi_u"),
           phi_series(italic("ϕ"), 7, "phi")};
@@ -91,7 +91,7 @@ FigureTable table_of(std::span<const Load> loads) {
   table.chart = {.x = std::move(overlap), .y = phi_axis()};
   for (const Load& load : loads) {
     for (const auto& [hundredths, at] : by_stiffness(load.runs)) {
-      TableRow& row = table.rows.emplace_back(TableRow{load.moves, hundredths / 100.0});
+      TableRow& row = table.rows.emplace_back(TableRow{load.at, hundredths / 100.0});
       for (const auto& values : {at.overlap, at.phi_u, at.phi}) add_values(over_runs(values), row);
       row.emplace_back(over_runs(at.phi).runs);
     }

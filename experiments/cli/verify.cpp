@@ -50,14 +50,7 @@ nlohmann::json facts(const Replay& replay) {
       {"cycle", replay.record.cycle}, {"from_step", replay.from ? replay.from->step : 0},
       {"step", replay.record.step},   {"steps", replay.steps},
       {"same", !replay.divergence}};
-  if (const auto& d = replay.divergence) {
-    all["divergence"] = {{"last_same_step", d->same_step},
-                         {"first_step", d->first_step},
-                         {"field", d->field},
-                         {"grain", d->grain},
-                         {"ulp", d->ulp},
-                         {"why", d->message}};
-  }
+  if (replay.divergence) all["divergence"] = to_json(*replay.divergence);
   return all;
 }
 

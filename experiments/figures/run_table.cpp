@@ -116,7 +116,7 @@ void add_onset(const std::string& method, const std::string& meaning, OnsetMetho
   const auto add = [&](const std::string& ending, const std::string& what, auto value) {
     columns.push_back({{"onset_" + method + ending, what}, [find, value](const Row& row) -> json {
                          if (row.history == nullptr || row.history->checkpoints.empty()) return {};
-                         return value(find(*row.history, critical_size_for(*row.history)));
+                         return value(find(*row.history));
                        }});
   };
   add("", "observed, never, before_start or unclear: " + meaning,

@@ -11,6 +11,7 @@
 #include "analysis/onset.hpp"
 #include "experiments/manifest/read_parts.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell {
 namespace {
@@ -21,7 +22,6 @@ using std::string_view;
 
 constexpr std::size_t kShownNames = 20;
 constexpr std::size_t kLongestLabel = 60;  // [bytes]
-constexpr std::uint64_t kLastCycle = 1'000'000;
 
 /// The parameters that distinguish runs. The record of a run does not hold the others.
 std::vector<string_view> parameters() {
@@ -128,8 +128,8 @@ std::array<std::uint64_t, 2> read_interval(const Entry& in, const string& exampl
   const std::vector<Entry> ends = read_list(in, example);
   std::array<std::uint64_t, 2> interval = {1, 1};
   if (ends.size() == 2) {
-    interval[0] = read_count(ends[0], kLastCycle).value_or(1);
-    interval[1] = read_count(ends[1], kLastCycle).value_or(interval[0]);
+    interval[0] = read_count(ends[0], StoreLimits::cycles).value_or(1);
+    interval[1] = read_count(ends[1], StoreLimits::cycles).value_or(interval[0]);
   }
   if (ends.size() != 2 || interval[1] < interval[0]) {
     in.reject("is not a first and a last cycle", fmt::format("It takes `{}`.", example));
@@ -159,7 +159,7 @@ PlotSpec read_plot(const Entry& in, const Manifest& manifest) {
          plot.log_x = axes.starts_with('x');
          plot.log_y = axes.ends_with('y');
        }},
-      {"at_cycle", [&](auto& of) { plot.cycle = read_count(of, kLastCycle); }},
+      {"at_cycle", [&](auto& of) { plot.cycle = read_count(of, StoreLimits::cycles); }},
       {"cycles", [&](auto& of) { plot.cycles = read_interval(cycles.emplace(of), "[20, 21]"); }}};
   read_whole(in, keys, 2, "{name: compaction, y: phi, x: cycle}");
   if (const CurveMeasure* curve = find_curve_measure(plot.y); curve != nullptr && x) {
@@ -215,7 +215,7 @@ ClaimSpec read_claim(const Entry& in, const Manifest& manifest) {
       {"margin", [&](auto& of) { claim.margin = read_parameter(margin, of).value_or(0.0); }},
       {"at_cycle",
        [&](auto& of) {
-         claim.first = claim.last = read_count(when.emplace(of), kLastCycle).value_or(1);
+         claim.first = claim.last = read_count(when.emplace(of), StoreLimits::cycles).value_or(1);
        }},
       {"cycles",
        [&](auto& of) {

@@ -11,6 +11,7 @@
 
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "provenance/limits.hpp"
 
 namespace shearcell {
 namespace {
@@ -19,7 +20,6 @@ using nlohmann::json;
 using std::string;
 using std::string_view;
 
-constexpr std::uint64_t kLargestCadence = 1'000'000;  // cycles
 // A double holds it exactly, so readers in any language can.
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
@@ -203,7 +203,8 @@ Checkpoints read_checkpoints(const Entry& in) {
   if (!in.is_map()) in.reject_type("a map of settings", "It takes `{every_cycles: 1}`.");
   const Key keys[] = {{"every_cycles",
                        [&](const Entry& entry) {
-                         checkpoints.every_cycles = read_count(entry, kLargestCadence).value_or(1);
+                         checkpoints.every_cycles =
+                             read_count(entry, StoreLimits::cycles).value_or(1);
                        }},
                       {"phases", [&](const Entry& entry) {
                          checkpoints.at = entry.node.at;
@@ -218,7 +219,7 @@ StatedUntil read_until(const Entry& in) {
   static const std::array<Field, 4> fields = {
       real_number("crystalline_percent", "%", {0, 100, true}),
       whole_number("largest_crystallite", {1, 1e8}), real_number("phi", "1", {0, 1, true}),
-      whole_number("extra_cycles", {0, 1e6})};
+      whole_number("extra_cycles", {0, StoreLimits::cycles})};
   StatedUntil stated{{}, in.node.at};
   if (in.is_scalar() && in.node.text == "none") return stated;
   const string remedy = "It takes `{crystalline_percent: 10, extra_cycles: 15}`, or `none`.";

@@ -33,7 +33,7 @@ using Clock = std::chrono::steady_clock;
 enum class JobState { waiting, running, held, done, ended };
 
 // Time between two checks of a run that another program holds.
-constexpr std::chrono::milliseconds kLook{500};
+constexpr std::chrono::milliseconds kCheckInterval{500};
 // A run that was lost so often while no other program holds it cannot be computed.
 constexpr int kMostLosses = 20;
 
@@ -70,7 +70,7 @@ class Campaign {
   struct Job {
     JobState state = JobState::waiting;
     // Of a run that another program holds or took; used only by the thread that runs the job.
-    Clock::time_point look_at = {};
+    Clock::time_point check_at = {};
     int losses = 0;
   };
 
@@ -87,7 +87,7 @@ class Campaign {
         job.state = JobState::ended;
         ++(was_done(jobs_[j]) ? result_.already : result_.blocked);
       } else if (held) {
-        if (look == kNone && Clock::now() >= job.look_at) look = j;
+        if (look == kNone && Clock::now() >= job.check_at) look = j;
       } else if (before == JobState::done) {
         return j;
       }
@@ -125,7 +125,7 @@ class Campaign {
         if (held == 0 && (count(JobState::waiting) == 0 || count(JobState::running) == 0)) break;
         if (held > 0) {
           show_waiting(held);
-          changed_.wait_for(lock, kLook);
+          changed_.wait_for(lock, kCheckInterval);
         } else {
           changed_.wait(lock);
         }
@@ -148,9 +148,9 @@ class Campaign {
     std::set<std::string> holders;
     for (const Lease& lease : store_.leases()) holders.insert(describe(lease.holder));
     progress_.note(
-        fmt::format("waiting for {} stage{} that another program computes ({}); a stage is free "
-                    "when its holder has ended or been silent for {} s",
-                    held, held == 1 ? "" : "s", fmt::join(holders, "; "), kLongestLeaseMs / 1000));
+        fmt::format("waiting for {} that another program computes ({}); a stage is free when its "
+                    "holder has ended or been silent for {} s",
+                    counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000));
   }
 
   JobState run_job(std::size_t j, bool was_held) {
@@ -182,7 +182,7 @@ class Campaign {
   }
 
   JobState put_off(std::size_t j) {
-    states_[j].look_at = Clock::now() + kLook;
+    states_[j].check_at = Clock::now() + kCheckInterval;
     return JobState::held;
   }
 

@@ -138,14 +138,7 @@ class Replaying {
     if (replay_.from) {
       facts["from"] = {{"sha256", replay_.from->sha256}, {"step", replay_.from->step}};
     }
-    if (const auto& d = replay_.divergence) {
-      facts["last_same_step"] = d->same_step;
-      facts["first_step"] = d->first_step;
-      facts["field"] = d->field;
-      facts["grain"] = d->grain;
-      facts["ulp"] = d->ulp;
-      facts["why"] = d->message;
-    }
+    if (replay_.divergence) facts.update(to_json(*replay_.divergence));
     store_.record_replay(record.run, !replay_.divergence, facts);
   }
 
@@ -159,6 +152,15 @@ class Replaying {
 };
 
 }  // namespace
+
+nlohmann::json to_json(const Divergence& divergence) {
+  return {{"last_same_step", divergence.same_step},
+          {"first_step", divergence.first_step},
+          {"field", divergence.field},
+          {"grain", divergence.grain},
+          {"ulp", divergence.ulp},
+          {"why", divergence.message}};
+}
 
 std::vector<CheckpointRecord> replayable(const Store& store) {
   std::vector<CheckpointRecord> found;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,8 @@ struct Divergence {
   std::uint64_t ulp = 0;  ///< largest distance in the field [units in the last place]
   std::string message;
 };
+
+nlohmann::json to_json(const Divergence& divergence);
 
 struct Replay {
   CheckpointRecord record;

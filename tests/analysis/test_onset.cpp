@@ -24,11 +24,12 @@ FigureRun logistic(double onset, int cycles = 100) {
 }
 
 TEST(OnsetBySize, IsInterpolatedBetweenCycles) {
-  const FigureRun run = made_up_run("fluid", "still", 1, 4, [](int n, Measures& m) {
+  FigureRun run = made_up_run("fluid", "still", 1, 4, [](int n, Measures& m) {
     m.phi = 0.64 + 0.001 * n;
     m.largest_crystallite = 4 * static_cast<std::size_t>(n);
   });
-  const RunOnset found = onset_by_size(run, 10);
+  run.parameters["amplitude_rad"] = 0.05;  // critical: 10 grains
+  const RunOnset found = onset_by_size(run);
   ASSERT_EQ(found.observed, Observed::yes);
   EXPECT_DOUBLE_EQ(found.phi, 0.6425);
   EXPECT_DOUBLE_EQ(found.cycle, 2.5);
@@ -40,20 +41,19 @@ TEST(OnsetBySize, IsTheFirstPassage) {
     m.phi = 0.64 + 0.001 * n;
     m.largest_crystallite = sizes[static_cast<std::size_t>(n)];
   });
-  EXPECT_DOUBLE_EQ(onset_by_size(run, 16).phi, 0.641);
+  EXPECT_DOUBLE_EQ(onset_by_size(run).phi, 0.641);
 }
 
 TEST(Onset, IsCensoredAtEitherEnd) {
-  const FigureRun run = logistic(0.66, 20);
   for (const OnsetMethod method : {onset_by_size, onset_by_slope}) {
-    EXPECT_EQ(method(run, 16).observed, Observed::never);
-    EXPECT_EQ(method(run, 2).observed, Observed::before_start);
+    EXPECT_EQ(method(logistic(0.66, 20)).observed, Observed::never);
+    EXPECT_EQ(method(logistic(0.62, 20)).observed, Observed::before_start);
   }
 }
 
 TEST(OnsetBySlope, IsTheSteepestPoint) {
   for (const double onset : {0.644, 0.646, 0.655}) {
-    const RunOnset found = onset_by_slope(logistic(onset), 16);
+    const RunOnset found = onset_by_slope(logistic(onset));
     ASSERT_EQ(found.observed, Observed::yes);
     EXPECT_NEAR(found.phi, onset, 0.0006);
     EXPECT_NEAR(found.cycle, (onset - 0.63) / 0.0005, 1.5);
@@ -64,7 +64,7 @@ TEST(OnsetBySlope, IsTheSteepestPoint) {
 TEST(OnsetBySlope, IsUnclearWithoutAWindow) {
   FigureRun run = logistic(0.646);
   run.checkpoints = {run.checkpoints[0], run.checkpoints[60]};
-  const RunOnset found = onset_by_slope(run, 16);
+  const RunOnset found = onset_by_slope(run);
   EXPECT_EQ(found.observed, Observed::unclear);
   EXPECT_EQ(name_of(found.observed), "unclear");
 }

@@ -308,7 +308,7 @@ TEST_F(Commands, BenchStabilityEndsWithCode3IfACaseFails) {
   }
   expect(3, {"bench", "stability", "--only", "1e7-steps-undamped", "--seconds", "0.1"},
          {"0 of 1 cases ended as expected"});
-  expect(2, {"bench", "stability", "--only", "vacanzy"}, {"did you mean 'vacancy'?"});
+  expect(2, {"bench", "stability", "--only", "vacanzy"}, {"the nearest is vacancy"});
 }
 
 class CommandLineStore : public ProgramTest {};

@@ -74,9 +74,7 @@ std::string unknown_case(const std::string& name) {
     if (hard.name.starts_with(name)) return "";
     names.push_back(hard.name);
   }
-  const std::string near = suggest_name(name, names).name;
-  return fmt::format("no hard case is named '{}'{}", name,
-                     near.empty() ? "" : fmt::format("; did you mean '{}'?", near));
+  return with_nearest(fmt::format("no hard case is named '{}'", name), name, names);
 }
 
 std::vector<Result> map_stability(const Options& options) {

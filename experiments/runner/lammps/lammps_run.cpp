@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kLook{20};
+constexpr std::chrono::milliseconds kCheckInterval{20};
 constexpr double kHelpSeconds = 10;
 
 std::string read_text(const fs::path& file) {
@@ -159,7 +159,7 @@ std::optional<State> LammpsRun::next_frame(std::chrono::milliseconds patience) {
     if (auto state = take_frame()) return state;
     if (code) fail(*code);
     if (std::chrono::steady_clock::now() >= until) return std::nullopt;
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kCheckInterval);
   }
 }
 
