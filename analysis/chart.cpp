@@ -152,6 +152,19 @@ std::string plain_text(const Text& text) {
   return plain;
 }
 
+bool is_on_log_axes(const Chart& chart, const ChartPoint& p) {
+  return !(chart.x.log && !(p.x > 0)) && !(chart.y.log && !(p.y > 0));
+}
+
+std::size_t not_on_log_axes(const FigureTable& table) {
+  std::size_t lost = 0;
+  for (const Series& series : table.chart.series) {
+    for (const ChartPoint& p : points_of(table, series))
+      lost += is_on_log_axes(table.chart, p) ? 0 : 1;
+  }
+  return lost;
+}
+
 std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
   std::string text = title + ".";
   bool bars = false, bands = false, own_errors = false;
@@ -173,6 +186,9 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
       }
     }
     add_once(notes, chart.note);
+    if (const std::size_t lost = not_on_log_axes(table); lost > 0) {
+      add_once(notes, fmt::format("Values that are not positive are not drawn: {}", lost));
+    }
     for (const ReferenceLine& line : chart.lines) add_once(lines, plain_text(line.title));
   }
   if (bars || bands) {

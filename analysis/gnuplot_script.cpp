@@ -109,9 +109,8 @@ class Script {
     for (const Series& series : chart_.series) {
       points_.push_back(points_of(table, series));
       for (ChartPoint& p : points_.back()) p.x += series.shift;
-      std::erase_if(points_.back(), [this](const ChartPoint& p) {
-        return (chart_.x.log && !(p.x > 0)) || (chart_.y.log && !(p.y > 0));
-      });
+      std::erase_if(points_.back(),
+                    [this](const ChartPoint& p) { return !is_on_log_axes(chart_, p); });
       for (const ChartPoint& p : points_.back()) {
         x_.take(p.x, p.x_error, chart_.x.log);
         y_.take(p.y, p.y_error, chart_.y.log);
@@ -161,7 +160,7 @@ class Script {
     } else if (axis.log) {
       add("unset m{0}tics\nset {0}tics ({1})\n", name, fmt::join(ticks_of_decades(data), ","));
     }
-    if (axis.whole && data.high <= 10) add("set {0}tics 1\nunset m{0}tics\n", name);
+    if (axis.whole && !axis.log && data.high <= 10) add("set {0}tics 1\nunset m{0}tics\n", name);
     if (axis.log || axis.whole) return;
     const double low = std::min(data.low, axis.low.value_or(data.low));
     const double high = std::max(data.high, axis.high.value_or(data.high));

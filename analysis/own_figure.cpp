@@ -107,21 +107,31 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
   return found;
 }
 
+/// Curves without symbols, which would hide them: each has its own colour, and dashes once these
+/// run out.
+void style_without_symbol(std::size_t curve, Series& series) {
+  series.colour = safe_colours[curve % safe_colours.size()];
+  series.point = 0;
+  if (curve / safe_colours.size() % 2 == 1) series.join = Join::dashes;
+}
+
 /// Every run against the cycle, or against a measure `x`.
 FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Quantity& y,
                    const ScalarMeasure* x) {
-  FigureTable table{.name = plot.name, .columns = {"variant", "seed", plot.x, plot.y}};
+  FigureTable table{.name = plot.name, .columns = {"variant", "seed"}};
+  if (x != nullptr) table.columns.emplace_back("cycle");
+  table.columns.insert(table.columns.end(), {plot.x, plot.y});
   for (std::size_t k = 0; k < curves.size(); ++k) {
     const Curve& curve = curves[k];
     Text title = curve.style.title;  // once in the key
     for (const FigureRun* run : curve.runs) {
-      // Thin lines have no symbols: each curve has its own colour, and dashes once these run out.
-      Series series =
-          thin_line(std::exchange(title, Text()), safe_colours[k % safe_colours.size()]);
-      if (k / safe_colours.size() % 2 == 1) series.join = Join::dashes;
+      Series series = thin_line(std::exchange(title, Text()), curve.style.colour);
+      style_without_symbol(k, series);
       for (const CheckpointMeasures& c : run->checkpoints) {
         const double at = x == nullptr ? c.cycle : x->of(c.measures), value = y(c.measures);
-        table.rows.push_back({curve.variant, run->seed, at, value});
+        TableRow& row = table.rows.emplace_back(TableRow{curve.variant, run->seed});
+        if (x != nullptr) row.emplace_back(c.cycle);
+        row.insert(row.end(), {at, value});
         if (std::isfinite(at) && std::isfinite(value)) series.points.push_back({at, value});
       }
       table.chart.series.push_back(std::move(series));
@@ -197,12 +207,14 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
   if (!of_whole_run) table.columns.emplace_back("cycle");
   std::vector<Series> traces;
   std::size_t with_value = 0;
-  for (const Curve& curve : curves) {
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    const Curve& curve = curves[k];
     const Points points = points_of(plot, curve, cycle);
     Text title = curve.style.title;  // once in the key
     for (const auto& [trace, values] : points.traces) {
       traces.push_back(
           thin_line(std::exchange(title, Text()), curve.style.colour, curve.style.point));
+      if (of_curve != nullptr) style_without_symbol(k, traces.back());
       for (const auto& [at, value] : values) traces.back().points.push_back({at, value});
     }
     for (const auto& [at, values] : points.values) {
@@ -215,13 +227,12 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
     }
   }
   table.chart.series = series_of(curves, columns_against(x, y));
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    if (of_curve != nullptr) style_without_symbol(k, table.chart.series[k]);
+    if (of_curve == nullptr) table.chart.series[k].band = false;
+  }
   if (plot.traces) table.chart.series = std::move(traces);
   for (Series& series : table.chart.series) {
-    if (of_curve != nullptr) {
-      series.point = 0;  // hundreds of values: symbols would hide the curve
-    } else {
-      series.band = false;
-    }
     if (curves.size() == 1) series.title = {};
   }
   table.chart.note =
@@ -349,6 +360,10 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
     if (const ScalarMeasure* one = find_measure(name)) figure.needs.emplace_back(one->derived());
   }
   figure.within = plot.cycles;
+  const bool every_cycle = measured == nullptr && !is_parameter(plot.x);
+  if (plot.cycle && !every_cycle && find_run_measure(plot.y) == nullptr) {
+    figure.within = {{*plot.cycle, *plot.cycle}};
+  }
   if (!plot.by.empty()) {
     figure.form = FigureForm::groups;
     figure.keys = {plot.by, x};

@@ -140,9 +140,11 @@ std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& select
     if (record.state == CheckpointState::recorded) records.push_back(record);
   }
   if (records.empty()) {
-    throw std::invalid_argument(fmt::format(
-        "run {:.8} has no stored checkpoint in cycles {} (pruned ones: `shearcell regenerate`)",
-        run.id, cycles.empty() ? "of any number" : cycles));
+    throw std::invalid_argument(
+        all.empty() ? fmt::format("run {:.8} has no checkpoint yet", run.id)
+                    : fmt::format("run {:.8} has no stored checkpoint{}{} (pruned ones: `shearcell "
+                                  "regenerate`)",
+                                  run.id, cycles.empty() ? "" : " in cycles ", cycles));
   }
   if (pruned > 0) {
     print_stderr("run {:.8}: left out: {} (pruned; `shearcell regenerate` makes them again)\n",
@@ -346,8 +348,9 @@ void add_export(CLI::App& app, Context& context) {
       ->check(unnamed)
       ->type_name("PATH");
   command
-      ->add_option("--cycles", options->cycles,
-                   "Checkpoints of these cycles (default: all that were asked for)")
+      ->add_option(
+          "--cycles", options->cycles,
+          "Checkpoints of these cycles (default: all that were asked for; not with ro-crate)")
       ->type_name("A[:B[:STEP]]");
   command->add_flag("--metres", options->metres, "Extended XYZ in SI units, not in diameters");
   command->add_option("--license", options->licence, "URI of the licence of the data")

@@ -124,7 +124,7 @@ void add_figures(CLI::App& app, Context& context) {
   auto options = std::make_shared<FigureArguments>();
   FigureOptions& how = options->how;
   how.folder = "shearcell-figures";
-  CLI::App* command = app.add_subcommand("figures", "Draw figures from the store alone");
+  CLI::App* command = app.add_subcommand("figures", "Draw figures from stored checkpoints");
   command->add_option("figure", options->names, "Figures, as S2 (default: all)");
   command->add_flag("--all", options->all, "Every figure that the store's manifests list");
   command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/NAME.csv, ...")

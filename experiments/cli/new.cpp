@@ -81,11 +81,15 @@ base:
 sweep:
   grid:
     fluid: [still, cell]
+  # zip: {moving_wall: [bottom, top], pressure_at: [top, moving_wall]}
 
 seeds: 6                       # 1 to 6, or a list
 
+
 checkpoints:
   every_cycles: 1
+  # phases: [0.25, 0.5, 0.75]    # within each cycle too
+# until: {crystalline_percent: 10, extra_cycles: 15}    # ends runs before their last cycle
 
 # Named sizes; each overrides what is above it in this file.
 scales:

@@ -84,8 +84,8 @@ void note_never_made(const Store& store, const Figure& figure, CollectedRuns& co
   }
 }
 
-/// Removes the runs without a checkpoint; notes those and the unfinished ones.
-void leave_out_not_begun(CollectedRuns& collected) {
+/// Removes the runs without a checkpoint for the figure; notes those and the unfinished ones.
+void leave_out_not_begun(const Figure& figure, CollectedRuns& collected) {
   std::set<std::string> not_begun, going_on;
   for (const CollectedRun& run : collected.runs) {
     const std::string name = fmt::format("{} seed {}", run.name, run.membership.seed);
@@ -97,8 +97,13 @@ void leave_out_not_begun(CollectedRuns& collected) {
   }
   std::erase_if(collected.runs, [](const CollectedRun& run) { return run.checkpoints.empty(); });
   if (!not_begun.empty()) {
-    collected.notes.push_back(fmt::format("left out: {} without a checkpoint yet: {}",
-                                          counted(not_begun.size(), "run"), some_of(not_begun)));
+    const std::string which =
+        figure.within
+            ? fmt::format(" in cycles {} to {}", figure.within->at(0), figure.within->at(1))
+            : "";
+    collected.notes.push_back(fmt::format("left out: {} without a checkpoint{} yet: {}",
+                                          counted(not_begun.size(), "run"), which,
+                                          some_of(not_begun)));
   }
   if (!going_on.empty()) {
     collected.notes.push_back(
@@ -267,7 +272,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }
   if (measured) {
-    leave_out_not_begun(collected);
+    leave_out_not_begun(wanted.figure, collected);
     note_never_made(store, wanted.figure, collected);
   }
   return collected;

@@ -163,13 +163,21 @@ bool has_no_value(const FigureTable& table) {
   });
 }
 
+/// Also says which runs were selected and what was left out.
 std::string caption(const FigureSummary& summary, const std::map<std::string, std::size_t>& runs,
-                    const std::vector<FigureTable>& tables) {
+                    const std::vector<FigureTable>& tables, const RunSelection& selected) {
   std::vector<std::string> counts;
   for (const auto& [variant, count] : runs) counts.push_back(fmt::format("{}: {}", variant, count));
-  return fmt::format("{} Runs: {}. Experiment {}, scale {}.",
-                     caption_of(fmt::format("Figure {}. {}", summary.name, summary.title), tables),
-                     fmt::join(counts, ", "), summary.experiment, scale_name(summary.scale));
+  std::string text =
+      fmt::format("{} Runs: {}. Experiment {}, scale {}.",
+                  caption_of(fmt::format("Figure {}. {}", summary.name, summary.title), tables),
+                  fmt::join(counts, ", "), summary.experiment, scale_name(summary.scale));
+  if (!selected.variants.empty()) {
+    text += fmt::format(" Selected: {}.", fmt::join(selected.variants, ", "));
+  }
+  if (!selected.seeds.empty()) text += fmt::format(" Seeds {}.", fmt::join(selected.seeds, ", "));
+  if (!summary.notes.empty()) text += fmt::format(" Notes: {}.", fmt::join(summary.notes, "; "));
+  return text;
 }
 
 std::string verdict_text(const ComputedFigure& computed) {
@@ -226,7 +234,10 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
   FigureSummary& result = computed.summary;
   FigureResult& made = computed.result;
   lay_out(made.tables, options.wide);
-  std::filesystem::create_directories(folder);
+  if (std::error_code failed; !std::filesystem::create_directories(folder, failed) && failed) {
+    throw UsageError(fmt::format("{}: cannot make this folder: {}. Name another with --out.",
+                                 folder.string(), failed.message()));
+  }
   for (const FigureTable& table : made.tables) require_own_files(table, folder);
   const std::string base = folder / result.name;
   const auto require = [&](const char* ending, const std::string& start, const std::string& part) {
@@ -256,7 +267,8 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
     }
   }
   const bool drawn = !made.tables.empty() && !made.tables.front().chart.series.empty();
-  write(".caption.txt", drawn ? caption(result, computed.runs_by_variant, made.tables) + "\n" : "");
+  write(".caption.txt",
+        drawn ? caption(result, computed.runs_by_variant, made.tables, options.runs) + "\n" : "");
   write(".verdict.json", made.verdicts.empty() ? "" : verdict_text(computed));
 
   nlohmann::json& facts = computed.lineage;

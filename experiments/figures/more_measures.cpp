@@ -54,10 +54,12 @@ struct Origins {
 /// checkpoint that could be read.
 template <class Read>
 void add_simulated(const Store& store, const DerivedMeasure& measure, const Origins& origins,
-                   const MeasureOptions& options, const Read& read) {
-  const auto found = measure_checkpoints(store, origins.from, {&measure, 1}, options).results;
-  for (std::size_t n = 0; n < found.size(); ++n) {
-    const nlohmann::json& result = found[n].front();
+                   const MeasureOptions& options, MeasuredPackings& made, const Read& read) {
+  const MeasuredCheckpoints found =
+      measure_checkpoints(store, origins.from, {&measure, 1}, options);
+  made.measured = std::max(made.measured, found.measured);
+  for (std::size_t n = 0; n < found.results.size(); ++n) {
+    const nlohmann::json& result = found.results[n].front();
     if (!result.is_null() && *origins.to[n]) read(origins.from[n], result, **origins.to[n]);
   }
 }
@@ -107,7 +109,7 @@ void add_cycle_energies(const Store& store, std::span<const CheckpointRecord> re
   const DerivedMeasure measure{
       "ledger_of_next_cycle", {{"stride", kLedgerStride}}, nullptr, nullptr};
   add_simulated(
-      store, measure, origins, simulating,
+      store, measure, origins, simulating, made,
       [&](const CheckpointRecord& begin, const nlohmann::json& result, Measures& measures) {
         const double unit_J = shears.at(begin.run).unit_J;
         for (const auto& [name, kept] : {std::pair("work_of_walls_per_cycle_J", "work_of_walls"),
@@ -142,7 +144,7 @@ void add_phi_at_rest(const Store& store, std::span<const CheckpointRecord> recor
   };
   measure.name = "scalars_at_rest";
   measure.parameters["rest_s"] = kRest;
-  add_simulated(store, measure, origins, resting,
+  add_simulated(store, measure, origins, resting, made,
                 [&](const CheckpointRecord&, const nlohmann::json& result, Measures& measures) {
                   measures.phi_at_rest = read_results({&measure, 1}, {&result, 1}).phi;
                 });

@@ -67,7 +67,7 @@ std::vector<Column> names(const VariantNames& variants) {
       of_run("experiment", "name of the manifest's experiment",
              [](const SelectedRun& s) { return s.membership.experiment; }),
       of_run("scale", "scale of the manifest",
-             [](const SelectedRun& s) { return s.membership.scale; }),
+             [](const SelectedRun& s) { return scale_name(s.membership.scale); }),
       of_run("variant", "its label in the manifest, or what varies in it",
              [variants](const SelectedRun& s) { return variants.of(s.membership); }),
       of_run("run", "id of the run", [](const SelectedRun& s) { return s.run.id; }),

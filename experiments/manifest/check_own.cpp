@@ -76,6 +76,9 @@ std::vector<std::string> problems_of(const PlotSpec& plot, const std::vector<Var
 
 std::vector<std::string> problems_of(const ClaimSpec& claim, const std::vector<Variant>& variants) {
   std::vector<std::string> found;
+  if (claim.between[0] == claim.between[1]) {
+    found.emplace_back("both sides of `between` are the same. Name two variants.");
+  }
   for (const nlohmann::json& side : claim.between) {
     const std::size_t count = count_of(side, variants);
     if (count == 1) continue;

@@ -64,8 +64,8 @@ bool is_early_end(const json& ended) {
          member_of(ended, "extra_cycles").is_number_unsigned();
 }
 
-/// The most cycles [at most those that the run has] for which an experiment without `until` asked
-/// when the run ended; 0 without any.
+/// The most cycles [at most those that the run has] for which an experiment without this `until`
+/// asked when the run ended; 0 without any.
 double longest_length(const Store& store, const RunRecord& run, const json& ended) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
@@ -74,7 +74,11 @@ double longest_length(const Store& store, const RunRecord& run, const json& ende
     if (left-- == 0) break;
     const auto cycles = static_cast<double>(m.target_cycles);
     if (cycles > run.cycle || cycles <= longest) continue;
-    if (!ask_of(store, run.id, m).until) longest = cycles;
+    const std::optional<Until> until = ask_of(store, run.id, m).until;
+    const bool same = until && ended.at("measure") == name_of(until->measure) &&
+                      ended.at("value") == until->value &&
+                      ended.at("extra_cycles") == until->extra_cycles;
+    if (!same) longest = cycles;
   }
   return longest;
 }

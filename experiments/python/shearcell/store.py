@@ -87,6 +87,8 @@ class Store:
         """
         import pandas
 
+        if curve and per != "checkpoint":
+            raise ValueError("a curve has a row for each value at each checkpoint; leave out `per`")
         rows = ("--curve", curve) if curve else ("--per", per)
         more = ("--all-versions",) if all_versions else ()
         text = self.call("table", *rows, *more, *_filters(select))
@@ -144,7 +146,7 @@ class Run:
         self.facts = facts
         self.id: str = facts["id"]
         self.experiment: str = facts["experiment"]
-        self.scale: str = facts["scale"]
+        self.scale: str = facts["scale"] or "base"
         self.variant: str = facts["variant"]
         self.seed: int = facts["seed"]
         self.state: str = facts["state"]
