@@ -22,11 +22,16 @@ set yrange [*<0.6445:0.6475<*]
 set offsets 0, 0, graph 0.05, graph 0.05
 set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '#888888'
 set arrow from graph 0, first 0.647 to graph 1, first 0.647 nohead dt 2 lc rgb '#888888'
+$series0 << EOD
+0.05,0.645954205,,0.00039476679
+EOD
 $series1 << EOD
 0.05,0.646431755,,0.000394644383
 EOD
 plot keyentry with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'gravity', \
      keyentry with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title 'no gravity', \
      $series1 every 1 using 1:2:4 with yerrorbars lc rgb '#d55e00' lw 0.7 pt 0 notitle, \
-     $series1 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle
+     $series1 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series0 every 1 using 1:2:4 with yerrorbars lc rgb '#000000' lw 0.7 pt 0 notitle, \
+     $series0 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle
 set output
