@@ -2,6 +2,7 @@
 // `new`: writes a commented manifest with every key of the schema.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <memory>
@@ -85,7 +86,6 @@ sweep:
 
 seeds: 6                       # 1 to 6, or a list
 
-
 checkpoints:
   every_cycles: 1
   # phases: [0.25, 0.5, 0.75]    # within each cycle too
@@ -99,16 +99,23 @@ scales:
 )";
 }
 
-/// Replaces no file.
+/// Writes a temporary file and links it, so the file is complete and replaces no other.
 void write_new(const std::filesystem::path& file, const std::string& text) {
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+  const std::filesystem::path whole = fmt::format("{}.tmp-{}", file.string(), getpid());
+  std::error_code failed, ignored;
   try {
-    NewFile(file).add(text);
+    write_output(whole, text);
+    std::filesystem::create_hard_link(whole, file, failed);
   } catch (const std::system_error& error) {
-    if (error.code() != std::errc::file_exists) throw;
+    failed = error.code();
+  }
+  std::filesystem::remove(whole, ignored);
+  if (failed == std::errc::file_exists) {
     throw UsageError(file.string() +
                      ": the file exists already. Choose another name, or remove it.");
   }
+  if (failed) throw std::system_error(failed, file.string() + ": cannot write");
 }
 
 void make(std::filesystem::path file) {

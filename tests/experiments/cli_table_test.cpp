@@ -176,7 +176,7 @@ TEST_F(CommandLineTable, ANumberOfGrainsIsAParameter) {
 }
 
 TEST_F(CommandLineTable, OverwritesOnlyItsOwnCsvFiles) {
-  const Outcome printed = expect(0, {"table", "--per", "run"}, {"\ntiny,,fluid=cell,"});
+  const Outcome printed = expect(0, {"table", "--per", "run"}, {"\ntiny,base,fluid=cell,"});
   EXPECT_TRUE(
       printed.out.starts_with("experiment,scale,variant,run,seed,grains,fluid,cycle,checkpoint,"))
       << printed.out;
