@@ -136,6 +136,16 @@ TEST(Chart, TheCaptionNamesPanelsErrorsAndLines) {
             "lines: the limit.");
 }
 
+TEST(Chart, TheCaptionCountsWhatALogarithmicAxisLeavesOut) {
+  const FigureTable table{
+      .name = "t",
+      .columns = {},
+      .rows = {},
+      .chart = {.y = {.name = "grains", .log = true}, .series = {{.points = {{1, 0}, {2, 3}}}}}};
+  EXPECT_TRUE(has(caption_of("A title", std::span(&table, 1)),
+                  " Values that are not positive are not drawn: 1."));
+}
+
 TEST(Chart, EveryPanelOfEveryFigureHasOne) {
   std::vector<FigureRun> runs;
   for (const std::uint64_t seed : {1U, 2U, 3U}) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -146,6 +148,14 @@ TEST(OwnPlot, AgainstAParameterComparesTheLastCycleThatAllRunsHave) {
   for (const TableRow& row : table.rows) EXPECT_EQ(row.back(), TableValue(2.0));
   EXPECT_TRUE(
       has(caption_of("A title", result.tables), "At cycle 2, the last that all runs have."));
+}
+
+TEST(OwnPlot, AtACycleNeedsThatCycleAlone) {
+  using Cycles = std::array<std::uint64_t, 2>;
+  EXPECT_EQ(plot_figure({.name = "own", .y = "phi", .x = "drag_kg_per_s", .cycle = 2}).within,
+            Cycles({2, 2}));
+  EXPECT_EQ(plot_figure({.name = "own", .y = "phi_profile", .cycle = 2}).within, Cycles({2, 2}));
+  EXPECT_EQ(plot_figure({.name = "own", .y = "phi"}).within, std::nullopt);
 }
 
 TEST(OwnPlot, AgainstOneKeyOfAZipIsOneCurve) {

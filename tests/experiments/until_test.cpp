@@ -10,6 +10,7 @@
 #include "experiments/runner/run_end.hpp"
 #include "provenance/derived.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -211,6 +212,14 @@ TEST_F(UntilTest, TheReasonIsThatOfTheLongestOfTwoExperiments) {
   EXPECT_TRUE(describe_end(why).starts_with("an experiment asks for 5 cycles; phi >= "));
   EXPECT_EQ(expected_end(store_, {StopMeasure::phi, value_, 0}), std::nullopt);
   EXPECT_FALSE(recorded_end(store_, run.id).contains("cycles_asked"));
+}
+
+TEST_F(UntilTest, TheReasonIsNotAnEarlierUntil) {
+  compute(store_, manifest(until(0)), {.cycles = 9});
+  compute(store_, renamed(tiny_manifest("  cycles: 5\n", "until: {phi: 0.99}\n"), "twin"));
+  const RunRecord run = sheared(store_);
+  EXPECT_EQ(run.cycle, 5);
+  EXPECT_TRUE(has(describe_end(end_of(store_, run)), "an experiment asks for 5 cycles"));
 }
 
 // Its figures and tables are the same whether or not another experiment continues its runs.
