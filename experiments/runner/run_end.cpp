@@ -64,6 +64,12 @@ bool is_early_end(const json& ended) {
          member_of(ended, "extra_cycles").is_number_unsigned();
 }
 
+/// Whether the recorded end is by this `until`.
+bool ended_by(const json& ended, const Until& until) {
+  return ended.at("measure") == name_of(until.measure) && ended.at("value") == until.value &&
+         ended.at("extra_cycles") == until.extra_cycles;
+}
+
 /// The most cycles [at most those that the run has] for which an experiment without this `until`
 /// asked when the run ended; 0 without any.
 double longest_length(const Store& store, const RunRecord& run, const json& ended) {
@@ -75,10 +81,7 @@ double longest_length(const Store& store, const RunRecord& run, const json& ende
     const auto cycles = static_cast<double>(m.target_cycles);
     if (cycles > run.cycle || cycles <= longest) continue;
     const std::optional<Until> until = ask_of(store, run.id, m).until;
-    const bool same = until && ended.at("measure") == name_of(until->measure) &&
-                      ended.at("value") == until->value &&
-                      ended.at("extra_cycles") == until->extra_cycles;
-    if (!same) longest = cycles;
+    if (!until || !ended_by(ended, *until)) longest = cycles;
   }
   return longest;
 }
@@ -159,11 +162,7 @@ std::optional<double> expected_end(const Store& store, const Until& until) {
   double sum = 0, count = 0;
   for (const RunRecord& run : store.runs()) {
     const json ended = end_of(store, run);
-    if (ended.is_null() || ended.contains("cycles_asked") ||
-        ended.at("measure") != name_of(until.measure) || ended.at("value") != until.value ||
-        ended.at("extra_cycles") != until.extra_cycles) {
-      continue;
-    }
+    if (ended.is_null() || ended.contains("cycles_asked") || !ended_by(ended, until)) continue;
     sum += run.cycle;
     ++count;
   }
