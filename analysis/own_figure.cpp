@@ -338,6 +338,10 @@ bool is_parameter(std::string_view x) {
   return x != "cycle" && find_measure(x) == nullptr;
 }
 
+bool draws_every_cycle(const PlotSpec& plot) {
+  return find_curve_measure(plot.y) == nullptr && !is_parameter(plot.x);
+}
+
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   const CurveMeasure* measured = find_curve_measure(plot.y);
   const std::string x(measured == nullptr ? plot.x : measured->x);
@@ -360,8 +364,7 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
     if (const ScalarMeasure* one = find_measure(name)) figure.needs.emplace_back(one->derived());
   }
   figure.within = plot.cycles;
-  const bool every_cycle = measured == nullptr && !is_parameter(plot.x);
-  if (plot.cycle && !every_cycle && find_run_measure(plot.y) == nullptr) {
+  if (plot.cycle && !draws_every_cycle(plot) && find_run_measure(plot.y) == nullptr) {
     figure.within = {{*plot.cycle, *plot.cycle}};
   }
   if (!plot.by.empty()) {

@@ -49,6 +49,9 @@ std::string words_of(const nlohmann::json& values);
 /// Whether the x of a plot is a parameter: neither "cycle" nor a scalar measure.
 bool is_parameter(std::string_view x);
 
+/// Whether the plot draws every cycle, not one of them.
+bool draws_every_cycle(const PlotSpec& plot);
+
 /// Gives variants, which are objects of keys and values, names for people.
 using NameVariants = std::function<std::map<nlohmann::json, std::string>(
     const std::vector<nlohmann::json>& variants)>;

@@ -157,10 +157,7 @@ void print_resolved(const nlohmann::json& resolved) {
   }
   const nlohmann::json parameters = felt_parameters(resolved);
   for (const auto& [name, value] : parameters.items()) {
-    // A constant of the record (Identity::recorded_as) is not the value that the run had.
-    const Field* field = find_field(name);
-    const bool constant = field != nullptr && !field->identity.recorded_as.empty();
-    if (!constant) print_text("{:<32} {}\n", name, value.dump());
+    print_text("{:<32} {}\n", name, value.dump());
   }
 }
 

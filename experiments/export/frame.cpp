@@ -97,10 +97,7 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
   }
   const nlohmann::json parameters = felt_parameters(selected.run.resolved);
   for (const auto& [key, value] : parameters.items()) {
-    // Leaves out a key with a constant record (Identity::recorded_as), and what a forged store may
-    // hold.
-    const Field* field = find_field(key);
-    if (field == nullptr || !field->identity.recorded_as.empty()) continue;
+    if (find_field(key) == nullptr) continue;  // a forged store may hold it
     if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);
   }
 }

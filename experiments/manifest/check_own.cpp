@@ -62,7 +62,7 @@ std::vector<std::string> problems_of(const PlotSpec& plot, const std::vector<Var
                     "of each variant.",
                     key));
   }
-  const bool every_cycle = find_curve_measure(plot.y) == nullptr && !is_parameter(plot.x);
+  const bool every_cycle = draws_every_cycle(plot);
   if (plot.cycle && find_run_measure(plot.y) != nullptr) {
     found.push_back(
         fmt::format("at_cycle has no effect on {}, one number of a run. Leave it out.", plot.y));

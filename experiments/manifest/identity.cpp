@@ -197,13 +197,17 @@ json recorded_parameters(const json& resolved) {
 }
 
 json felt_parameters(const json& resolved) {
+  json values;
   try {
-    json values = recorded_parameters(resolved);
+    values = recorded_parameters(resolved);
     if (!feels_pressure_at(read_stage(resolved).parameters)) values.erase("pressure_at");
-    return values;
   } catch (const std::exception&) {  // damaged
-    return stated_parameters(resolved);
+    values = stated_parameters(resolved);
   }
+  for (const Field& field : schema()) {
+    if (!field.identity.recorded_as.empty()) values.erase(std::string(field.name));
+  }
+  return values;
 }
 
 EngineKind engine_of(const json& resolved) {
