@@ -15,7 +15,6 @@
 #include "experiments/figures/own_part.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/manifest/schema.hpp"
 #include "experiments/runner/progress.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
