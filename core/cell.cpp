@@ -7,13 +7,11 @@ namespace shearcell {
 
 WallPose wall_pose(const Cell& cell, double theta, double wall_height) {
   const SineCosine sc = sine_cosine(theta);
-  WallPose pose;
-  pose.tan_theta = sc.sine / sc.cosine;
-  pose.cos_theta = sc.cosine;
-  pose.sin_theta = sc.sine;
-  pose.bottom = cell.moving == MovingWall::bottom ? wall_height : cell.bottom;
-  pose.top = cell.moving == MovingWall::top ? wall_height : cell.top;
-  return pose;
+  return {.tan_theta = sc.sine / sc.cosine,
+          .cos_theta = sc.cosine,
+          .sin_theta = sc.sine,
+          .bottom = cell.moving == MovingWall::bottom ? wall_height : cell.bottom,
+          .top = cell.moving == MovingWall::top ? wall_height : cell.top};
 }
 
 std::array<WallPlane, 4> wall_planes(const Cell& cell, const WallPose& pose) {

@@ -63,6 +63,11 @@ struct WallPlane {
   double point[2] = {}, normal[2] = {};
 };
 
+/// Distance of a place from a plane [d], positive inside the cell.
+inline double distance_to(const WallPlane& plane, double x, double y) {
+  return (x - plane.point[0]) * plane.normal[0] + (y - plane.point[1]) * plane.normal[1];
+}
+
 /// The planes in a pose, indexed by WallSide.
 std::array<WallPlane, 4> wall_planes(const Cell& cell, const WallPose& pose);
 

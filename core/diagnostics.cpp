@@ -15,12 +15,11 @@ using Visit = std::function<void(const Contact&)>;
 void visit_planes(const std::array<WallPlane, 4>& planes, std::int32_t i, const Eigen::Vector3d& p,
                   const Visit& visit) {
   for (std::size_t w = 0; w < 4; ++w) {
-    const auto& [point, normal] = planes[w];
-    const double distance = (p.x() - point[0]) * normal[0] + (p.y() - point[1]) * normal[1];
-    if (distance < 0.5) {
-      visit({Contact::Kind::wall_plane, i, static_cast<std::int32_t>(w), static_cast<WallSide>(w),
-             0.5 - distance, Eigen::Vector3d(normal[0], normal[1], 0)});
-    }
+    const double distance = distance_to(planes[w], p.x(), p.y());
+    if (!(distance < 0.5)) continue;
+    const auto& normal = planes[w].normal;
+    visit({Contact::Kind::wall_plane, i, static_cast<std::int32_t>(w), static_cast<WallSide>(w),
+           0.5 - distance, Eigen::Vector3d(normal[0], normal[1], 0)});
   }
 }
 

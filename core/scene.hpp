@@ -40,7 +40,7 @@ struct Scene {
   double drag_rate = 0;  ///< b/m [1/s]
   double gravity = 0;    ///< g/d [1/s^2]; 0 is off
   double pressure = 0;   ///< P d/m [1/s^2]: force on one d^2 of wall
-  PressureAt pressure_at = PressureAt::moving_wall;
+  PressureAt pressure_at = PressureAt::top;
   double wall_mass = 10;    ///< M_w per d^2 of wall [m]
   double wall_drag = 1000;  ///< B_w per d^2 of wall [m/s]
   double time_step = 0;     ///< [s]

@@ -222,7 +222,7 @@ void Simulation::check() const {
 void Simulation::watch(double time_step) const {
   check_grains({.cell = cell_,
                 .scene = scene_,
-                .pose = pose_,
+                .planes = wall_planes(cell_, pose_),
                 .limits = settings_.limits,
                 .rows = rows_[0].data(),
                 .velocity = {velocity_[0].data(), velocity_[1].data(), velocity_[2].data()},
@@ -255,16 +255,14 @@ void Simulation::move_wall() {
 }
 
 Snapshot Simulation::snapshot(const Drive& drive) {
-  Snapshot now;
-  now.rows = rows_[0].data();
-  for (std::size_t axis = 0; axis < 3; ++axis) now.velocity[axis] = velocity_[axis].data();
-  now.grains = id_.size();
-  now.pose = pose_;
-  now.time_step = scene_.time_step;
-  now.shear_rate = shear_rate(drive);
-  now.wall_speed = std::fabs(wall_velocity_);
-  now.step = step_;
-  return now;
+  return {.rows = rows_[0].data(),
+          .velocity = {velocity_[0].data(), velocity_[1].data(), velocity_[2].data()},
+          .grains = id_.size(),
+          .pose = pose_,
+          .time_step = scene_.time_step,
+          .shear_rate = shear_rate(drive),
+          .wall_speed = std::fabs(wall_velocity_),
+          .step = step_};
 }
 
 void Simulation::refresh_lists(const Drive& drive) {

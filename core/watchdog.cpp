@@ -27,14 +27,6 @@ std::string message(const std::string& quantity, double value, double limit, std
          std::to_string(step) + ". " + remedy;
 }
 
-// Distances of a centre from the left, right, bottom and top plane [d].
-std::array<double, 4> plane_distances(const WatchTask& task, const double* row) {
-  const WallPose& pose = task.pose;
-  const double across = pose.cos_theta * row[0] - pose.sin_theta * (row[1] - pose.top);
-  return {across, pose.cos_theta * task.cell.width - across, row[1] - pose.bottom,
-          pose.top - row[1]};
-}
-
 // Calls visit(row offset, separation, whether it is of the moving wall) for every neighbour.
 template <class Visit>
 void for_each_neighbour(const WatchTask& task, std::size_t g, Visit&& visit) {
@@ -74,13 +66,14 @@ void for_each_contact_of(const WatchTask& task, std::size_t g, Visit&& visit) {
     const double wall = moving ? kOfMovingWall : kOfFixedWall;
     visit(dr / std::sqrt(square), offset < first_wall ? kOfGrain : wall, moving);
   });
-  const Eigen::Vector3d across(task.pose.cos_theta, -task.pose.sin_theta, 0), up(0, 1, 0);
-  const std::array<double, 4> distance = plane_distances(task, task.rows + 4 * g);
+  const double* own = task.rows + 4 * g;
   const auto moving_wall = static_cast<std::size_t>(moving_side(task.cell));
   for (std::size_t side = 0; side < 4; ++side) {
-    if (!(distance[side] < 0.5)) continue;
+    const WallPlane& plane = task.planes[side];
+    if (!(distance_to(plane, own[0], own[1]) < 0.5)) continue;
     const bool moving = side == moving_wall;
-    visit(side < 2 ? across : up, moving ? kOfMovingWall : kOfFixedWall, moving);
+    visit(Eigen::Vector3d(plane.normal[0], plane.normal[1], 0),
+          moving ? kOfMovingWall : kOfFixedWall, moving);
   }
 }
 
@@ -146,11 +139,14 @@ void check_time_step(const WatchTask& task) {
 }
 
 void check_place(const WatchTask& task, std::size_t g) {
-  const std::array<double, 4> distance = plane_distances(task, task.rows + 4 * g);
+  const double* own = task.rows + 4 * g;
   // NaN in x or y reaches the first distance, and nothing is smaller than that.
-  double smallest = distance[0];
-  for (const double d : distance) smallest = d < smallest ? d : smallest;
-  if (!(smallest >= -task.limits.escape && std::isfinite(task.rows[4 * g + 2]))) {
+  double smallest = distance_to(task.planes[0], own[0], own[1]);
+  for (const WallPlane& plane : task.planes) {
+    const double distance = distance_to(plane, own[0], own[1]);
+    smallest = distance < smallest ? distance : smallest;
+  }
+  if (!(smallest >= -task.limits.escape && std::isfinite(own[2]))) {
     throw NumericalFailure("the depth [d] of a grain's centre behind a wall", -smallest,
                            task.limits.escape, task.id[g], task.step,
                            "A grain was pushed out of the cell: lower the pressure or raise the "

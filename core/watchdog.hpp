@@ -2,6 +2,7 @@
 // Checks that stop a simulation whose state is not valid.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -36,7 +37,7 @@ struct WatchdogLimits {
 struct WatchTask {
   const Cell& cell;
   const Scene& scene;
-  const WallPose& pose;
+  std::array<WallPlane, 4> planes;  ///< indexed by WallSide
   const WatchdogLimits& limits;
   const double* rows;
   const double* velocity[3];

@@ -35,12 +35,11 @@ StageProgress CyclicShear::advance(Simulation& simulation, std::uint64_t most_st
   if (step < end) {
     simulation.advance(drive_, std::min({most_steps, due - step, end - step}));
   }
-  StageProgress progress;
-  progress.cycle =
-      static_cast<double>(simulation.step()) / static_cast<double>(cycle_steps(drive_));
-  progress.finished = simulation.step() >= end;
-  progress.checkpoint_due = progress.finished || simulation.step() == due;
-  return progress;
+  const bool finished = simulation.step() >= end;
+  return {
+      .cycle = static_cast<double>(simulation.step()) / static_cast<double>(cycle_steps(drive_)),
+      .checkpoint_due = finished || simulation.step() == due,
+      .finished = finished};
 }
 
 }  // namespace shearcell

@@ -19,10 +19,8 @@ Eigen::Matrix3Xd near_walls(const Cell& cell, const State& state, const WallPose
   std::vector<Eigen::Index> near;
   for (Eigen::Index i = 0; i < state.position.cols(); ++i) {
     const double x = state.position(0, i), y = state.position(1, i);
-    const bool touches = std::ranges::any_of(planes, [&](const WallPlane& plane) {
-      return (x - plane.point[0]) * plane.normal[0] + (y - plane.point[1]) * plane.normal[1] <
-             kWallReach;
-    });
+    const bool touches = std::ranges::any_of(
+        planes, [&](const WallPlane& plane) { return distance_to(plane, x, y) < kWallReach; });
     if (touches) near.push_back(i);
   }
   return state.position(Eigen::all, near);

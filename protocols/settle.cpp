@@ -47,7 +47,7 @@ std::uint64_t Settle::way_steps(const Cell& cell, std::size_t grains) const {
 State pressed(const Cell& cell, const State& loose, Scene scene) {
   scene.gravity = 0;
   Simulation simulation(cell, scene, loose);
-  simulation.set_overlap_limit(std::max(WatchdogLimits{}.overlap, kPressingOverlap));
+  simulation.set_overlap_limit(kPressingOverlap);
   const Settle unlimited({.time_limit = std::numeric_limits<double>::infinity()}, scene);
   simulation.advance(Drive{}, unlimited.way_steps(cell, simulation.grains()));
   State state = simulation.state();
@@ -78,10 +78,8 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
   const bool on_the_way = simulation.step() < way_steps(simulation.cell(), simulation.grains());
   simulation.set_overlap_limit(on_the_way ? std::max(parameters_.overlap_limit, kPressingOverlap)
                                           : parameters_.overlap_limit);
-  StageProgress progress;
   // A stage that was interrupted after its last state must not continue.
-  progress.finished = progress.checkpoint_due = finished();
-  if (progress.finished) return progress;
+  if (finished()) return {.checkpoint_due = true, .finished = true};
 
   Scene scene = scene_;
   if (simulation.step() < pressed) scene.gravity = 0;
@@ -89,10 +87,8 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
   const std::uint64_t to_look = next_look(simulation.step()) - simulation.step();
   simulation.advance(drive(), std::min(most_steps, to_look));
 
-  progress.finished = finished();
-  progress.checkpoint_due =
-      progress.finished || simulation.step() % (kLooksPerCheckpoint * look_steps_) == 0;
-  if (!progress.finished && simulation.step() >= limit_steps_) {
+  const bool done = finished();
+  if (!done && simulation.step() >= limit_steps_) {
     throw NumericalFailure(
         "the time [s] that the packing takes to settle",
         static_cast<double>(simulation.step()) * scene_.time_step, parameters_.time_limit, -1,
@@ -100,7 +96,8 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
         "Raise that limit (settle_time_limit_s) or the settling tolerances, or check that "
         "the pressure can lift the grains");
   }
-  return progress;
+  return {.checkpoint_due = done || simulation.step() % (kLooksPerCheckpoint * look_steps_) == 0,
+          .finished = done};
 }
 
 }  // namespace shearcell

@@ -17,7 +17,8 @@ struct SettleParameters {
   double force_tolerance = 1e-3;    ///< largest |load - contact force| / (P A_w) of the moving wall
   double kinetic_tolerance = 1e-8;  ///< largest kinetic energy per grain over P d^3
   double time_limit = 60;           ///< [s]; longer is an error
-  double overlap_limit = 0.1;       ///< of the watchdog, after the wall has pressed the grains [d]
+  double overlap_limit =
+      WatchdogLimits{}.overlap;  ///< of the watchdog, after the wall has pressed the grains [d]
 };
 
 /// Gravity is switched on only after the moving wall has had time to press the grains together.

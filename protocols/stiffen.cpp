@@ -44,11 +44,9 @@ StageProgress Stiffen::advance(Simulation& simulation, std::uint64_t most_steps)
     simulation.set_scene(scene);
     minimize_enthalpy(simulation, parameters_.minimize);
   }
-  StageProgress progress;
-  progress.cycle = static_cast<double>(simulation.step());
-  progress.finished = simulation.step() >= parameters_.steps;
-  progress.checkpoint_due = true;
-  return progress;
+  return {.cycle = static_cast<double>(simulation.step()),
+          .checkpoint_due = true,
+          .finished = simulation.step() >= parameters_.steps};
 }
 
 }  // namespace shearcell

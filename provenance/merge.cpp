@@ -273,12 +273,11 @@ void require_agreement(const Database& into, const std::string& name,
   }
 }
 
-void require_idle(const Database& into, const std::string& name) {
-  for (const Lease& lease : query_leases(into)) {
-    if (lapsed(lease, now_ms())) continue;
+void require_idle(const Store& into) {
+  for (const Lease& lease : into.leases()) {
     throw MachineError(
-        fmt::format("{}: a program computes run {:.12} ({}); merge when it has ended", name,
-                    lease.run, describe(lease.holder)));
+        fmt::format("{}: a program computes run {:.12} ({}); merge when it has ended",
+                    into.folder().string(), lease.run, describe(lease.holder)));
   }
 }
 
@@ -337,7 +336,6 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
                                       const std::set<std::string>& runs) {
   must_write();
   const std::scoped_lock guard(mutex_);
-  const std::string name = folder_.string();
   std::vector<Source> sources;
   for (const std::filesystem::path& folder : folders) {
     std::error_code ignored;
@@ -347,8 +345,8 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
     sources.push_back(read_source(folder, runs));
   }
   // All checks are made before the first byte is written.
-  require_idle(database_, name);
-  require_agreement(database_, name, sources);
+  require_idle(*this);
+  require_agreement(database_, folder_.string(), sources);
   for (const Source& source : sources) {
     for (const CheckpointRecord& record : needed_objects(database_, source))
       read_object(source, record);
@@ -365,7 +363,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
       report.bytes += record.size;
     }
     sqlite::WriteTransaction lock(database_);
-    require_idle(database_, name);
+    require_idle(*this);
     merge_events(database_, log_, lock, source, report);
     // Events that both stores have were skipped, and so a rejection by this store may still count.
     for (const CheckpointRecord& record : needed) {

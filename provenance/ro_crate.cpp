@@ -87,7 +87,7 @@ json add_software(Graph& graph, const json& host) {
     needs.push_back(name + " " + text_at(libraries, name.c_str()));
   }
   return graph.add(
-      {{"@id", "#shearcell-" + build_digest(host)},
+      {{"@id", "#shearcell-" + sha256_hex(build.dump() + libraries.dump()).substr(0, 16)},
        {"@type", "SoftwareApplication"},
        {"name", "shearcell"},
        {"softwareVersion",
@@ -144,6 +144,13 @@ std::string error_of(const Attempt& attempt) {
   return "ended without a record (a kill or a power cut); a later attempt continued";
 }
 
+/// The recorded checkpoint from which the attempt started; nullptr without one.
+const CheckpointHistory* initial_state(const CrateFacts& facts, const Attempt& attempt) {
+  const auto stage = std::ranges::find(facts.stages, attempt.from_run,
+                                       [](const RunLineage& each) { return each.run.id; });
+  return stage == facts.stages.end() ? nullptr : stage->find(attempt.from_checkpoint);
+}
+
 /// Inputs of every attempt of a run.
 struct Given {
   json manifests = json::array();
@@ -154,7 +161,7 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
                  const Given& given) {
   const Attempt& attempt = stage.attempts[a];
   json objects = given.manifests;
-  if (const auto* from = facts.initial_state(attempt)) {
+  if (const auto* from = initial_state(facts, attempt)) {
     objects.push_back(add_checkpoint(graph, *from));
   }
   objects.insert(objects.end(), given.parameters.begin(), given.parameters.end());
@@ -178,18 +185,13 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
 }
 
 json add_licence(Graph& graph, const std::string& licence) {
-  if (licence.empty()) {
-    return graph.add({{"@id", "#licence"},
-                      {"@type", "CreativeWork"},
-                      {"name", "No licence was chosen"},
-                      {"description",
-                       "The exporter of these data chose no licence; ask them before you use the "
-                       "data."}});
-  }
-  return graph.add({{"@id", licence},
+  const bool chosen = !licence.empty();
+  return graph.add({{"@id", chosen ? licence : "#licence"},
                     {"@type", "CreativeWork"},
-                    {"name", licence},
-                    {"description", "The licence of the data in this crate"}});
+                    {"name", chosen ? licence : "No licence was chosen"},
+                    {"description", chosen ? "The licence of the data in this crate"
+                                           : "The exporter of these data chose no licence; ask "
+                                             "them before you use the data."}});
 }
 
 std::string title_of(const RunRecord& run) {
@@ -236,24 +238,11 @@ std::string crate_path_of_manifest(const std::string& sha256) {
   return "manifests/" + sha256 + ".yaml";
 }
 
-std::string build_digest(const json& host) {
-  const json nothing = json::object();
-  const json build = host.value("build", nothing), libraries = host.value("libraries", nothing);
-  return sha256_hex(build.dump() + libraries.dump()).substr(0, 16);
-}
-
-const CheckpointHistory* CrateFacts::initial_state(const Attempt& attempt) const {
-  for (const RunLineage& stage : stages) {
-    if (stage.run.id == attempt.from_run) return stage.find(attempt.from_checkpoint);
-  }
-  return nullptr;
-}
-
 std::string crate_identifier(const std::string& run) {
   return "urn:x-shearcell:run:" + run;
 }
 
-json ro_crate_metadata(const CrateFacts& facts, const std::string& prov) {
+json ro_crate_metadata(const CrateFacts& facts) {
   Graph graph;
   json actions = json::array();
   for (const RunLineage& stage : facts.stages) {
@@ -268,8 +257,6 @@ json ro_crate_metadata(const CrateFacts& facts, const std::string& prov) {
       actions.push_back(add_attempt(graph, facts, stage, a, given));
     }
   }
-  graph.add(file_entity(kCrateProv, "The same provenance as W3C PROV-JSON", "application/json",
-                        prov.size(), sha256_hex(prov)));
   const json licence = add_licence(graph, facts.licence);
   graph.add({{"@id", kProfile},
              {"@type", "CreativeWork"},

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One run with its history as an RO-Crate 1.1 (https://w3id.org/ro/crate/1.1) that follows Process
-// Run Crate 0.5 (https://w3id.org/ro/wfrun/process/0.5), and as PROV-JSON (W3C Member Submission of
-// 24 April 2013).
+// Run Crate 0.5 (https://w3id.org/ro/wfrun/process/0.5).
 #pragma once
 
 #include <filesystem>
@@ -18,9 +17,6 @@ struct CrateFacts {
   std::vector<RunLineage> stages;  ///< the first stage first, the run itself last
   std::vector<ManifestText> manifests;
   std::string licence;  ///< URI of the licence of the data, or ""
-
-  /// The recorded checkpoint from which the attempt started; nullptr without one.
-  const CheckpointHistory* initial_state(const Attempt& attempt) const;
 };
 
 /// Throws NotFound for an unknown run.
@@ -30,24 +26,14 @@ CrateFacts crate_facts(const Store& store, const std::string& run, std::string l
 std::string crate_path_of_checkpoint(const std::string& sha256);
 std::string crate_path_of_manifest(const std::string& sha256);
 inline constexpr const char* kCrateMetadata = "ro-crate-metadata.json";
-inline constexpr const char* kCrateProv = "prov.json";
 
-/// The content of prov.json. Checkpoints, manifests and parameters are entities, attempts are
-/// activities, builds of the program are agents. If several attempts recorded a checkpoint, the
-/// last one generated it, because PROV allows one generation for each entity.
-nlohmann::json prov_json(const CrateFacts& facts);
-
-/// The content of ro-crate-metadata.json; `prov` is the content of prov.json. Equal logs give equal
-/// bytes.
-nlohmann::json ro_crate_metadata(const CrateFacts& facts, const std::string& prov);
+/// The content of ro-crate-metadata.json. Equal logs give equal bytes.
+nlohmann::json ro_crate_metadata(const CrateFacts& facts);
 
 /// Identifier of the crate of a run; it marks the folder of an earlier export.
 std::string crate_identifier(const std::string& run);
 
-/// Short hash of the recorded build and libraries of an attempt's host.
-std::string build_digest(const nlohmann::json& host);
-
-/// Writes metadata, prov.json, the manifests and every checkpoint that was neither rejected nor
+/// Writes the metadata, the manifests and every checkpoint that was neither rejected nor
 /// pruned; each checkpoint is verified. `folder` must be missing, empty, or an earlier export of
 /// the same run, which is updated: files of checkpoints that are no longer kept are deleted. A new
 /// folder appears complete or not at all. Returns the files, relative to the folder. Throws

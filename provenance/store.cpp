@@ -85,7 +85,7 @@ std::string loss_of(const sqlite::Database& database, const std::string& token,
 
 }  // namespace
 
-Store::Store(std::filesystem::path folder, Access access, const StoreOptions& options)
+Store::Store(std::filesystem::path folder, Access access, double lease_seconds)
     : folder_(prepare_folder(std::move(folder), access)),
       access_(access),
       objects_(folder_),
@@ -93,7 +93,7 @@ Store::Store(std::filesystem::path folder, Access access, const StoreOptions& op
       log_(database_),
       self_(this_process()),
       lease_ms_(std::min(kLongestLeaseMs,
-                         static_cast<std::uint64_t>(std::max(0.0, options.lease_seconds) * 1000))) {
+                         static_cast<std::uint64_t>(std::max(0.0, lease_seconds) * 1000))) {
   if (access_ != Access::read) require_objects(folder_, database_);
 }
 

@@ -22,11 +22,6 @@
 
 namespace shearcell {
 
-struct StoreOptions {
-  /// A lease that is not renewed for so long expires; at most kLongestLeaseMs.
-  double lease_seconds = static_cast<double>(kLongestLeaseMs) / 1000;
-};
-
 /// The stream of record_submission.
 inline constexpr std::string_view kSubmissions = "store/submission";
 
@@ -82,8 +77,10 @@ class Store {
  public:
   /// Throws StoreDamaged when the folder is not a store, has a newer schema, or, if it is to be
   /// written, has lost the folder of its checkpoints; NotFound when it is missing and `access` does
-  /// not create it.
-  Store(std::filesystem::path folder, Access access, const StoreOptions& options = {});
+  /// not create it. A lease that is not renewed for `lease_seconds` expires; at most
+  /// kLongestLeaseMs.
+  Store(std::filesystem::path folder, Access access,
+        double lease_seconds = static_cast<double>(kLongestLeaseMs) / 1000);
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;

@@ -65,7 +65,7 @@ const std::array kFormats = {
                  }},
     ExportFormat{"lammps", "LAMMPS data and run.json, a folder: LAMMPS, OVITO; SI", "",
                  [](const auto&, const fs::path& out, std::size_t) { return lammps_writer(out); }},
-    ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5, and PROV-JSON", "", nullptr},
+    ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5", "", nullptr},
 };
 
 struct CycleRange {

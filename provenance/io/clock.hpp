@@ -40,8 +40,5 @@ inline std::string utc_text(std::int64_t ms) {
   std::snprintf(text + length, sizeof text - length, ".%03uZ", static_cast<unsigned>(within));
   return text;
 }
-inline std::string utc_now() {
-  return utc_text(static_cast<std::int64_t>(now_ms()));
-}
 
 }  // namespace shearcell

@@ -21,6 +21,7 @@ inline Scene table_1() {
   scene.drag_rate = 64;
   scene.gravity = 3270;
   scene.pressure = 954 * 3e-3 / 2e-5;
+  scene.pressure_at = PressureAt::moving_wall;
   scene.time_step = 2.0 / 45600;
   return scene;
 }

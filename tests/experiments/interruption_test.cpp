@@ -55,7 +55,7 @@ TEST_F(Interruption, BeforeTheFirstStageStartsNothing) {
 // Two seconds without a record, at a lease of a quarter of it.
 TEST_F(Interruption, ByAnotherProgramIsPreventedBetweenDistantCheckpoints) {
   const std::string text = tiny_manifest("  cycles: 40\n", "checkpoints: {every_cycles: 40}\n");
-  Store runner(store_.folder(), Access::write, {.lease_seconds = 0.5});
+  Store runner(store_.folder(), Access::write, 0.5);
   std::atomic<bool> done = false;
   int refused = 0, taken = 0;
   std::thread other([&] {

@@ -195,10 +195,9 @@ void look_at_runs(const Store& store) {
   for (const RunRecord& run : store.runs()) {
     attempt_store([&] { store.checkpoints(run.id, Listed::all); });
     attempt_store([&] {
-      const CrateFacts facts = crate_facts(store, run.id);
       // As the program writes it: a forged store may hold text that is not UTF-8.
-      ro_crate_metadata(
-          facts, prov_json(facts).dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
+      ro_crate_metadata(crate_facts(store, run.id))
+          .dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
     });
   }
 }

@@ -28,9 +28,7 @@ class LeaseTest : public ::testing::Test {
     for (int i = 0; i < 2; ++i) store.declare_run(sample_run(i));
   }
 
-  Store open(double lease_seconds = 60) {
-    return Store(path_, Access::write, {.lease_seconds = lease_seconds});
-  }
+  Store open(double lease_seconds = 60) { return Store(path_, Access::write, lease_seconds); }
 
   TemporaryFolder folder_;
   std::filesystem::path path_ = folder_.path() / "store";
