@@ -11,22 +11,18 @@ namespace {
 // Factorials up to 25: the last Taylor term at pi/2 is below 1e-20.
 constexpr int kTerms = 12;
 
-double sine_series(double x) {
-  const double x2 = x * x;
+// 1 - x^2 / (a (a + 1)) (1 - x^2 / ((a + 2) (a + 3)) (1 - ...)): the cosine of x for a = 1, and its
+// sine over x for a = 2.
+double series(double x, int a) {
   double sum = 1.0;
-  for (int n = kTerms; n >= 1; --n) {
-    sum = std::fma(-x2 / static_cast<double>((2 * n) * (2 * n + 1)), sum, 1.0);
-  }
-  return x * sum;
-}
-
-double cosine_series(double x) {
-  const double x2 = x * x;
-  double sum = 1.0;
-  for (int n = kTerms; n >= 1; --n) {
-    sum = std::fma(-x2 / static_cast<double>((2 * n - 1) * (2 * n)), sum, 1.0);
+  for (int m = a + 2 * (kTerms - 1); m >= a; m -= 2) {
+    sum = std::fma(-(x * x) / static_cast<double>(m * (m + 1)), sum, 1.0);
   }
   return sum;
+}
+
+SineCosine sine_cosine_series(double x) {
+  return {x * series(x, 2), series(x, 1)};
 }
 
 }  // namespace
@@ -36,7 +32,7 @@ SineCosine sine_cosine(double angle) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     return {nan, nan};
   }
-  return {sine_series(angle), cosine_series(angle)};
+  return sine_cosine_series(angle);
 }
 
 SineCosine turn_sine_cosine(std::uint64_t step, std::uint64_t period) {
@@ -47,7 +43,7 @@ SineCosine turn_sine_cosine(std::uint64_t step, std::uint64_t period) {
   const bool folded = 2 * rest > period;
   const double part = static_cast<double>(folded ? period - rest : rest);
   const double x = std::numbers::pi / 2 * (part / static_cast<double>(period));
-  SineCosine sc{sine_series(x), cosine_series(x)};
+  SineCosine sc = sine_cosine_series(x);
   if (folded) sc = {sc.cosine, sc.sine};
   switch (quadrant) {
     case 1:

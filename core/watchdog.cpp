@@ -3,10 +3,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+#include <sstream>
 #include <utility>
 
 #include "core/contact.hpp"
@@ -14,17 +13,13 @@
 namespace shearcell {
 namespace {
 
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
-
 std::string message(const std::string& quantity, double value, double limit, std::int64_t grain,
                     std::uint64_t step, const std::string& remedy) {
-  return quantity + " is " + number(value) + ", over its limit of " + number(limit) +
-         (grain >= 0 ? ", at grain " + std::to_string(grain) : "") + ", step " +
-         std::to_string(step) + ". " + remedy;
+  std::ostringstream text;
+  text << quantity << " is " << value << ", over its limit of " << limit;
+  if (grain >= 0) text << ", at grain " << grain;
+  text << ", step " << step << ". " << remedy;
+  return text.str();
 }
 
 // Calls visit(row offset, separation, whether it is of the moving wall) for every neighbour.

@@ -22,7 +22,6 @@ using hdf5::make_group;
 using hdf5::Object;
 using hdf5::put_attribute;
 using hdf5::put_dataset;
-using hdf5::put_strings;
 using hdf5::refuse;
 using hdf5::require;
 using hdf5::Shape;
@@ -56,24 +55,18 @@ void put_element(const Handle& parent, const std::string& name, const Checkpoint
   put_dataset(group, "value", H5T_IEEE_F64LE, value, shape, unit);
 }
 
-void put_box(const Handle& all, const Checkpoint& checkpoint, const WallPose& pose) {
-  const Handle box = hdf5::put_h5md_box(all);
-  const double d = checkpoint.units.diameter_m;
-  const double edges[3] = {checkpoint.cell.width * d, (pose.top - pose.bottom) * d,
-                           checkpoint.cell.depth * d};
-  put_dataset(box, "edges", H5T_IEEE_F64LE, edges, {3}, "m");
-}
-
 /// The grains and then the wall grains at their current positions, in SI units, for other programs.
 void put_particles(const Handle& file, const Checkpoint& checkpoint) {
   const Handle particles = make_group(file, "particles");
   const Handle all = make_group(particles, "all");
   const WallPose pose = pose_of(checkpoint);
-  put_box(all, checkpoint, pose);
+  const double d = checkpoint.units.diameter_m;
+  const double edges[3] = {checkpoint.cell.width * d, (pose.top - pose.bottom) * d,
+                           checkpoint.cell.depth * d};
+  put_dataset(hdf5::put_h5md_box(all), "edges", H5T_IEEE_F64LE, edges, {3}, "m");
 
   const Eigen::Index grains = checkpoint.state.position.cols();
   const auto walls = static_cast<Eigen::Index>(checkpoint.cell.wall_grains.size());
-  const double d = checkpoint.units.diameter_m;
   Eigen::Matrix3Xd position(3, grains + walls);
   position.leftCols(grains) = checkpoint.state.position * d;
   position.rightCols(walls) = wall_grain_positions(checkpoint.cell, pose) * d;

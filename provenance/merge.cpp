@@ -143,10 +143,28 @@ struct RunMerge {
   std::set<std::uint64_t> attempts;  ///< seq, in the source, of the events of attempts to copy
   bool source_wins = false;          ///< the source's state is the further one
 
-  bool wants(const Database& into, const Event& event) const;
+  bool wants(const Database& into, const Event& event) const {
+    if (event.type == events::RunDeclared::kType) return !before || declares_news(into, event);
+    if (events::begins_attempt(event) || events::ends_attempt(event) ||
+        event.type == CheckpointRecorded::kType) {
+      return attempts.contains(event.seq);
+    }
+    // A checkpoint was rejected, pruned or regenerated; or something else happened to the run.
+    if (!event.type.starts_with("Checkpoint")) return true;
+    const nlohmann::json sha256 = member_of(event.body(), "sha256");
+    return !sha256.is_string() || !known.contains(sha256.get<std::string>());
+  }
+
   /// A copy of `last_claim` when the copied events changed the state of the run; appending it again
   /// restores the store's own state.
-  std::optional<Event> closing_event(const Database& into) const;
+  std::optional<Event> closing_event(const Database& into) const {
+    if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
+    const RunState now = query_run(into, before->id).value().state;
+    const bool more_to_do =
+        before->state == RunState::completed && now == RunState::declared;  // a longer target
+    if (now == before->state || more_to_do) return std::nullopt;
+    return last_claim;
+  }
 };
 
 /// The events (by seq) of the attempts to copy.
@@ -175,27 +193,6 @@ std::set<std::uint64_t> attempts_to_take(const Stream& stream, const RunMerge& p
   }
   close(true);
   return taken;
-}
-
-bool RunMerge::wants(const Database& into, const Event& event) const {
-  if (event.type == events::RunDeclared::kType) return !before || declares_news(into, event);
-  if (events::begins_attempt(event) || events::ends_attempt(event) ||
-      event.type == CheckpointRecorded::kType) {
-    return attempts.contains(event.seq);
-  }
-  // A checkpoint was rejected, pruned or regenerated; or something else happened to the run.
-  if (!event.type.starts_with("Checkpoint")) return true;
-  const nlohmann::json sha256 = member_of(event.body(), "sha256");
-  return !sha256.is_string() || !known.contains(sha256.get<std::string>());
-}
-
-std::optional<Event> RunMerge::closing_event(const Database& into) const {
-  if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
-  const RunState now = query_run(into, before->id).value().state;
-  const bool more_to_do =
-      before->state == RunState::completed && now == RunState::declared;  // a longer target
-  if (now == before->state || more_to_do) return std::nullopt;
-  return last_claim;
 }
 
 RunMerge plan_run(const Database& into, const EventLog& log, const Database& source_tables,

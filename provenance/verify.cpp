@@ -169,9 +169,10 @@ void check_objects(const std::vector<CheckpointRecord>& records,
   std::set<std::string> known;
   for (const CheckpointRecord& record : records) {
     const bool rejected = record.state == CheckpointState::rejected;
+    const bool pruned = record.state == CheckpointState::pruned;
     known.insert(record.sha256);
     try {
-      if (record.state == CheckpointState::pruned) {
+      if (pruned) {
         if (objects.contains(record.sha256)) {
           report.findings.push_back({Severity::note, record.file, record.run,
                                      "it was pruned but its file still exists, probably because of "
@@ -184,8 +185,7 @@ void check_objects(const std::vector<CheckpointRecord>& records,
       report.bytes += record.size;
       read_checkpoint(bytes, record, runs.at(record.run));
     } catch (const std::exception& problem) {
-      const bool was_pruned = record.state == CheckpointState::pruned;
-      if (!was_pruned && pruned_meanwhile(database, record)) continue;
+      if (!pruned && pruned_meanwhile(database, record)) continue;
       report.findings.push_back(
           {rejected ? Severity::note : Severity::error, record.file, record.run,
            rejected ? std::string(problem.what()) + " (rejected already)" : problem.what()});
