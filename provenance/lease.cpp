@@ -7,10 +7,12 @@
 
 #include <array>
 #include <cerrno>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 namespace shearcell {
@@ -56,10 +58,10 @@ Lease read_lease(const Statement& row) {
 std::string this_place() {
   std::string boot;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id") >> std::ws, boot);
-  std::array<char, 64> space{};
-  const ssize_t length = readlink("/proc/self/ns/pid", space.data(), space.size() - 1);
-  if (boot.empty() || length <= 0) return {};  // no /proc: processes cannot be checked
-  return boot + " " + std::string(space.data(), static_cast<std::size_t>(length));
+  std::error_code missing;
+  const std::string space = std::filesystem::read_symlink("/proc/self/ns/pid", missing);
+  if (boot.empty() || missing) return {};  // no /proc: processes cannot be checked
+  return boot + " " + space;
 }
 
 /// Start time of a process [clock ticks since boot]: 0 when it has ended and was not reaped yet,
