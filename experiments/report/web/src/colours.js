@@ -24,9 +24,9 @@ export function viridis(fraction) {
   return viridisStops[below].map((c, i) => Math.round(c + (viridisStops[below + 1][i] - c) * t));
 }
 
-export const quantities = {
-  phi: {label: [...italic("ϕ"), ...sub("local")], low: 0.55, high: 0.74, of: (grains) => grains.phiLocal},
-  q6: {label: [...italic("q"), ...sub("6")], low: 0.2, high: 0.6, of: (grains) => grains.q6}
+const quantities = {
+  phi: {label: [...italic("ϕ"), ...sub("local")], low: 0.55, high: 0.74, values: "phiLocal"},
+  q6: {label: [...italic("q"), ...sub("6")], low: 0.2, high: 0.6, values: "q6"}
 };
 
 const fieldLabels = {
@@ -36,69 +36,59 @@ const fieldLabels = {
 };
 const unknown = 255;
 
-// Three bytes a sphere, grains first.
-export function coloursOf(grains, count, mode) {
-  const total = grains.position.length / 3;
+// How this mode shows grains: `paint` gives the colour of a grain. Its key is [{colour, text}] in
+// `entries`, or a `bar` with {label, low, high}.
+export function lookOf(grains, mode) {
+  if (mode in quantities) {
+    const {low, high, values} = quantities[mode];
+    const paint = (i) => viridis((grains[values][i] - low) / (high - low));
+    return {paint, bar: quantities[mode]};
+  }
+  if (mode === "crystallite") return ofCrystallites(grains.crystallite);
+  const field = grains.fields[mode];
+  if (!field) return ofClasses(grains.structure, structureNames);
+  return field.classes ? ofClasses(field.bytes, field.classes) : ofField(field, fieldLabels[mode]);
+}
+
+function ofCrystallites(crystallite) {
+  const {size, rank} = crystalliteSizes(crystallite);
+  const palette = crystalliteColours.map(rgb);
+  const [none, rest] = [rgb(plainColour), rgb(small)];
+  const entries = [...rank].slice(0, 4).map(([label, place]) => ({
+    colour: crystalliteColours[place], text: size.get(label) === 1 ? "1 grain" : `${size.get(label)} grains`
+  }));
+  entries.push({colour: plainColour, text: entries.length > 0 ? "in none" : "no crystallite"});
+  const paint = (i) => {
+    const label = crystallite[i];
+    return label === 0 ? none : palette[rank.get(label)] ?? rest;
+  };
+  return {paint, entries};
+}
+
+function ofClasses(values, names) {
+  const classes = classColours.map(rgb);
+  const counts = names.map(() => 0);
+  for (const value of values) ++counts[value];
+  const order = [...names.keys()].slice(1).concat(0);
+  const entries = order.map((s) => ({colour: classColours[s], text: `${names[s]} ${counts[s]}`}));
+  return {paint: (i) => classes[values[i]], entries};
+}
+
+function ofField({bytes, unit, low, high}, label) {
+  const none = rgb(plainColour);
+  const paint = (i) => bytes[i] === unknown ? none : viridis(bytes[i] / 254);
+  if (bytes.every((byte) => byte === unknown)) {
+    return {paint, entries: [{colour: plainColour, text: "no checkpoint a cycle before"}]};
+  }
+  const end = (value) => `${Number(value.toPrecision(3))}`;
+  return {paint, bar: {label, low: end(low), high: end(high) + (unit ? ` ${unit}` : "")}};
+}
+
+// Three bytes a sphere: `count` grains, then the wall grains.
+export function coloursOf(paint, count, total) {
   const colours = new Uint8Array(3 * total);
-  const paint = painter(grains, mode);
   for (let i = 0; i < count; ++i) colours.set(paint(i), 3 * i);
   const of = rgb(wall);
   for (let i = count; i < total; ++i) colours.set(of, 3 * i);
   return colours;
-}
-
-function painter(grains, mode) {
-  if (mode in quantities) {
-    const {low, high, of} = quantities[mode];
-    const values = of(grains);
-    return (i) => viridis((values[i] - low) / (high - low));
-  }
-  if (mode === "crystallite") {
-    const {rank} = crystalliteSizes(grains.crystallite);
-    const palette = crystalliteColours.map(rgb);
-    const [none, rest] = [rgb(plainColour), rgb(small)];
-    return (i) => {
-      const label = grains.crystallite[i];
-      return label === 0 ? none : palette[rank.get(label)] ?? rest;
-    };
-  }
-  const classes = classColours.map(rgb);
-  const field = grains.fields[mode];
-  if (field?.classes) return (i) => classes[field.bytes[i]];
-  if (field) {
-    const none = rgb(plainColour);
-    return (i) => field.bytes[i] === unknown ? none : viridis(field.bytes[i] / 254);
-  }
-  return (i) => classes[grains.structure[i]];
-}
-
-function classKey(values, names) {
-  const counts = names.map(() => 0);
-  for (const value of values) ++counts[value];
-  const order = [...names.keys()].slice(1).concat(0);
-  return {entries: order.map((s) => ({colour: classColours[s], text: `${names[s]} ${counts[s]}`}))};
-}
-
-// What the colours mean: [{colour, text}] or {label, low, high} for a bar.
-export function keyOf(grains, mode) {
-  if (mode in quantities) return {bar: quantities[mode]};
-  if (mode === "crystallite") {
-    const {size, rank} = crystalliteSizes(grains.crystallite);
-    const entries = [...rank].slice(0, 4).map(([label, place]) => ({
-      colour: crystalliteColours[place], text: size.get(label) === 1 ? "1 grain" : `${size.get(label)} grains`
-    }));
-    entries.push({colour: plainColour, text: entries.length > 0 ? "in none" : "no crystallite"});
-    return {entries};
-  }
-  const field = grains.fields[mode];
-  if (field?.classes) return classKey(field.bytes, field.classes);
-  if (field) {
-    if (field.bytes.every((byte) => byte === unknown)) {
-      return {entries: [{colour: plainColour, text: "no checkpoint a cycle before"}]};
-    }
-    const unit = field.unit ? ` ${field.unit}` : "";
-    const end = (value) => `${Number(value.toPrecision(3))}`;
-    return {bar: {label: fieldLabels[mode], low: end(field.low), high: end(field.high) + unit}};
-  }
-  return classKey(grains.structure, structureNames);
 }

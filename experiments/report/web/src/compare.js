@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two variants side by side: every seed over the cycles on common axes, and a packing of each.
+import {mean} from "d3-array";
 import {addOptions, element, whenNear} from "./dom.js";
-import {Plot} from "./plot.js";
+import {addPlots} from "./plot.js";
 import {chartsOfVariant, commonRange} from "./traces.js";
 import {Viewer} from "./viewer.js";
 
@@ -19,8 +20,6 @@ function variantsOf(experiments) {
   }
   return [...variants.values()].filter(({runs}) => runs.some((run) => run.cycle));
 }
-
-const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
 function factsOf({runs}) {
   const last = (key) => runs.map((run) => run[key]?.at(-1)).filter((value) => value != null);
@@ -73,11 +72,7 @@ export class Comparison {
     this.sides.forEach(({facts, panels}, k) => {
       facts.textContent = `${chosen[k].experiment}, ${chosen[k].name}: ${factsOf(chosen[k])}`;
       panels.replaceChildren();
-      for (const {name, chart} of chartsOfVariant(chosen[k].runs, chosen[k].name, range)) {
-        const host = element("div", {className: "plot"});
-        panels.append(host);
-        new Plot(host, chart, name);
-      }
+      addPlots(panels, chartsOfVariant(chosen[k].runs, chosen[k].name, range));
     });
     this.showPackings();
   }

@@ -13,6 +13,13 @@ export function element(tag, properties = {}, ...children) {
   return made;
 }
 
+export function svg(tag, attributes = {}, parent = null) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  parent?.append(made);
+  return made;
+}
+
 export function button(properties, action, ...children) {
   const made = element("button", {type: "button", ...properties}, ...children);
   made.addEventListener("click", action);

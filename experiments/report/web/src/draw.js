@@ -3,30 +3,14 @@
 import {
   area, line, symbol, symbolCircle, symbolDiamond, symbolSquare, symbolTriangle
 } from "d3-shape";
+import {svg} from "./dom.js";
 import {ticksOf} from "./scales.js";
-import {axisLabel, writeSvgText} from "./text.js";
-
-const svgNamespace = "http://www.w3.org/2000/svg";
-
-export function svg(tag, attributes = {}, parent = null) {
-  const element = document.createElementNS(svgNamespace, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  if (parent) parent.append(element);
-  return element;
-}
+import {axisLabel, writeText} from "./text.js";
 
 // gnuplot's point types: even ones are open.
 const shapes = {
   2: symbolSquare, 3: symbolCircle, 4: symbolTriangle, 5: symbolTriangle, 6: symbolDiamond
 };
-
-function symbolPath(point, size = 34) {
-  const shape = shapes[Math.floor(point / 2)] ?? symbolCircle;
-  return symbol(shape, size)();
-}
-
-const isOpen = (point) => point % 2 === 0;
-const pointsDown = (point) => point === 10 || point === 11;
 
 // Makes dark colours visible on a dark page.
 function onDark(colour) {
@@ -45,11 +29,12 @@ export function dress(element, colour) {
 
 // One symbol of the plot or of the legend.
 export function drawSymbol(parent, point, x, y) {
-  if (point === 0) return null;
-  return svg("path", {
-    class: isOpen(point) ? "symbol open" : "symbol",
-    d: symbolPath(point),
-    transform: `translate(${x} ${y})${pointsDown(point) ? " rotate(180)" : ""}`
+  if (point === 0) return;
+  const kind = Math.floor(point / 2);
+  svg("path", {
+    class: point % 2 === 0 ? "symbol open" : "symbol",
+    d: symbol(shapes[kind] ?? symbolCircle, 34)(),
+    transform: `translate(${x} ${y})${kind === 5 ? " rotate(180)" : ""}`
   }, parent);
 }
 
@@ -70,26 +55,21 @@ export function drawFrame(root, chart, scales, box) {
   y.minor.forEach(rung(3));
   for (const {at, text} of x.major) {
     tick(6)(at);
-    const label = svg("text", {x: scales.x(at), y: bottom + 18, "text-anchor": "middle"}, frame);
-    writeSvgText(label, text);
+    writeText(
+      svg("text", {x: scales.x(at), y: bottom + 18, "text-anchor": "middle"}, frame), text);
   }
   for (const {at, text} of y.major) {
     rung(6)(at);
-    const label = svg("text", {x: left - 7, y: scales.y(at) + 4, "text-anchor": "end"}, frame);
-    writeSvgText(label, text);
+    writeText(
+      svg("text", {x: left - 7, y: scales.y(at) + 4, "text-anchor": "end"}, frame), text);
   }
   svg("rect", {x: left, y: top, width: right - left, height: bottom - top, fill: "none"}, frame);
-  const below = svg("text",
-    {class: "label", x: (left + right) / 2, y: bottom + 40, "text-anchor": "middle"}, root);
-  writeSvgText(below, axisLabel(chart.x));
-  const beside = svg("text", {
-    class: "label", "text-anchor": "middle",
-    transform: `translate(15 ${(top + bottom) / 2}) rotate(-90)`
-  }, root);
-  writeSvgText(beside, axisLabel(chart.y));
-  const above = svg("text",
-    {class: "title", x: root.viewBox.baseVal.width / 2, y: top - 9, "text-anchor": "middle"}, root);
-  writeSvgText(above, chart.title);
+  const middle = (attributes, text) =>
+    writeText(svg("text", {"text-anchor": "middle", ...attributes}, root), text);
+  middle({class: "label", x: (left + right) / 2, y: bottom + 40}, axisLabel(chart.x));
+  middle({class: "label", transform: `translate(15 ${(top + bottom) / 2}) rotate(-90)`},
+    axisLabel(chart.y));
+  middle({class: "title", x: root.viewBox.baseVal.width / 2, y: top - 9}, chart.title);
 }
 
 export function drawReferenceLines(root, chart, scales, box) {
@@ -145,5 +125,4 @@ export function drawSeries(root, one, scales) {
     svg("path", {class: one.dashed ? "line dashed" : "line", d: path(drawn)}, group);
   }
   for (const [x, y] of marks) drawSymbol(group, one.point, scales.x(x), scales.y(y));
-  return group;
 }

@@ -4,13 +4,9 @@
 
 export const structureNames = ["disordered", "FCC", "HCP"];
 
-function bytesOf(base64) {
-  return Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-}
-
 // Lengths in grain diameters d. `position` has x, y, z of the grains and then of the wall grains.
 export function decodeFrame(frame, grains, wallGrains) {
-  const bytes = bytesOf(frame.data);
+  const bytes = Uint8Array.from(atob(frame.data), (c) => c.charCodeAt(0));
   const all = grains + wallGrains;
   if (bytes.length !== 6 * all + (7 + frame.fields.length) * grains) {
     throw new Error(`a packing of ${bytes.length} bytes is not one of ${all} spheres`);

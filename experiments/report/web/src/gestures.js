@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Zooming a plot: drag a rectangle, double-click for everything, the wheel over a plot that has the
 // focus (elsewhere it scrolls the page), plus, minus and 0 on the keyboard.
-import {svg} from "./draw.js";
+import {svg} from "./dom.js";
 
 const smallestDrag = 6;  // pixels
 

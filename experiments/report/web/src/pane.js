@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One packing: its picture, the key of its colours, its values.
-import {coloursOf, keyOf, viridis} from "./colours.js";
+import {coloursOf, lookOf, viridis} from "./colours.js";
 import {pane as markup} from "./controls.js";
 import {element} from "./dom.js";
 import {crystalliteSizes, decodeFrame, structureNames} from "./frames.js";
 import {drawProfile} from "./profile.js";
 import {PackingScene} from "./scene.js";
-import {italic, plain, sub, writeHtmlText} from "./text.js";
+import {italic, plain, sub, writeText} from "./text.js";
 
 const axes = {none: -1, x: 0, y: 1, z: 2};
 
@@ -45,11 +45,7 @@ export class Pane {
     this.scene.spheres.setPositions(this.frame.position);
     this.scene.setCell(stored.cell, hadCell);
     const facts = [plain(stored.name), plain(`N = ${grains}`), ...stored.facts];
-    this.part("facts").replaceChildren(...facts.map((fact) => {
-      const one = element("span");
-      writeHtmlText(one, fact);
-      return one;
-    }));
+    this.part("facts").replaceChildren(...facts.map((fact) => writeText(element("span"), fact)));
     this.part("checkpoint").textContent = stored.sha256.slice(0, 12);
     this.part("checkpoint").title = stored.sha256;
     this.apply(choices);
@@ -58,8 +54,10 @@ export class Pane {
 
   // choices: {colour, profile, disordered, walls, box, axis, at, otherSide}
   apply(choices) {
-    this.scene.spheres.setColours(coloursOf(this.frame, this.packing.grains, choices.colour));
-    this.showKey(keyOf(this.frame, choices.colour));
+    const look = lookOf(this.frame, choices.colour);
+    this.scene.spheres.setColours(
+      coloursOf(look.paint, this.packing.grains, this.frame.position.length / 3));
+    this.showKey(look);
     drawProfile(this.part("profile-line"), this.packing.frames, this.stored, choices.profile);
     this.resize(choices);
     this.scene.frameLines.visible = choices.box;
@@ -127,7 +125,7 @@ export class Pane {
     readout.replaceChildren();
     const where = `${size > 0 ? `in a crystallite of ${size}` : "in no crystallite"}` +
       `${frame.interior[i] ? "" : ", near a wall"}, at (${place}) d`;
-    writeHtmlText(readout, [
+    writeText(readout, [
       ...plain(`grain ${i}: ${structureNames[frame.structure[i]]}, `),
       ...italic("ϕ"), ...sub("local"), ...plain(` = ${frame.phiLocal[i].toFixed(4)}, `),
       ...italic("q"), ...sub("6"), ...plain(` = ${frame.q6[i].toFixed(4)}, ${where}`)
@@ -138,8 +136,7 @@ export class Pane {
     const key = this.part("key");
     key.replaceChildren();
     if (bar) {
-      const label = element("span", {className: "of"});
-      writeHtmlText(label, bar.label);
+      const label = writeText(element("span", {className: "of"}), bar.label);
       const strip = element("span", {className: "strip"});
       const stops = [0, 0.25, 0.5, 0.75, 1].map((t) => `rgb(${viridis(t).join(" ")})`);
       strip.style.background = `linear-gradient(to right, ${stops.join(", ")})`;

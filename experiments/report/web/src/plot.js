@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One interactive plot: keeps which series and which part of the axes are visible, and redraws when
 // either changes.
-import {button, element} from "./dom.js";
-import {drawFrame, drawReferenceLines, drawSeries, drawSymbol, dress, svg} from "./draw.js";
+import {button, element, svg} from "./dom.js";
+import {drawFrame, drawReferenceLines, drawSeries, drawSymbol, dress} from "./draw.js";
 import {addGestures} from "./gestures.js";
 import {addReadout} from "./readout.js";
 import {saveSvg} from "./save.js";
 import {extentOf, makeScale} from "./scales.js";
-import {plainText, writeHtmlText} from "./text.js";
+import {plainText, writeText} from "./text.js";
 
 const margin = {left: 66, right: 24, top: 12, bottom: 52};
 let plots = 0;
@@ -22,9 +22,8 @@ export class Plot {
     this.clipId = `plot-area-${++plots}`;
     host.replaceChildren();
     this.addToolbar();
-    this.canvas = svg("svg", {class: "canvas", tabindex: 0, role: "img"});
-    this.canvas.setAttribute("aria-label", this.description());
-    host.append(this.canvas);
+    this.canvas = svg("svg",
+      {class: "canvas", tabindex: 0, role: "img", "aria-label": this.description()}, host);
     this.addLegend();
     this.readout = addReadout(this);
     addGestures(this);
@@ -138,8 +137,6 @@ export class Plot {
       dress(key, one.colour);
       if (one.line) svg("path", {class: one.dashed ? "line dashed" : "line", d: "M0 7H26"}, key);
       drawSymbol(key, one.point, 13, 7);
-      const title = element("span");
-      writeHtmlText(title, one.title);
       const entry = button({
         "aria-pressed": "true", title: "Show or hide this curve", className: empty ? "without-data" : ""
       }, () => {
@@ -147,9 +144,18 @@ export class Plot {
         for (const index of group) this.hidden[shows ? "delete" : "add"](index);
         entry.setAttribute("aria-pressed", String(shows));
         this.redraw();
-      }, key, title);
+      }, key, writeText(element("span"), one.title));
       legend.append(entry);
     }
     this.host.append(legend);
+  }
+}
+
+// Appends a plot for each of {name, chart}.
+export function addPlots(parent, charts) {
+  for (const {name, chart} of charts) {
+    const host = element("div", {className: "plot"});
+    parent.append(host);
+    new Plot(host, chart, name);
   }
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A measure of layers against their height, drawn over the right side of a packing.
+import {extent} from "d3-array";
+
 const names = {
   phi: ["volume fraction", ""], pressure: ["pressure", " kPa"],
   coordination: ["contacts per grain", ""], crystalline: ["crystalline", " %"]
@@ -8,8 +10,7 @@ const [width, height, margin] = [120, 260, 26];
 
 // The same range for all packings of a run, so that they can be compared.
 function rangeOf(frames, key) {
-  const values = frames.flatMap((frame) => frame.profiles[key]).filter((value) => value !== null);
-  const [low, high] = [Math.min(...values), Math.max(...values)];
+  const [low, high] = extent(frames.flatMap((frame) => frame.profiles[key]));
   return high > low ? [low, high] : [low - 1, low + 1];
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shows the values of the point under the pointer, or of the one selected by the arrow keys.
-import {element} from "./dom.js";
-import {dress, svg} from "./draw.js";
+import {element, svg} from "./dom.js";
+import {dress} from "./draw.js";
 import {positionIn} from "./gestures.js";
 import {formatOn} from "./scales.js";
-import {writeHtmlText} from "./text.js";
+import {writeText} from "./text.js";
 
 const reach = 28;  // pixels
 
@@ -36,8 +36,7 @@ export function addReadout(plot) {
   }
 
   function quantity(label, scale, value, error) {
-    const line = element("div");
-    writeHtmlText(line, label);
+    const line = writeText(element("div"), label);
     const spread = error ? ` ± ${formatOn(scale, error)}` : "";
     line.append(` = ${formatOn(scale, value)}${spread}`);
     return line;
@@ -51,8 +50,7 @@ export function addReadout(plot) {
     const at = place(found);
     const marker = svg("circle", {class: "marker", cx: at[0], cy: at[1], r: 7}, plot.overlay);
     dress(marker, found.one.colour);
-    const title = element("strong");
-    writeHtmlText(title, found.one.name ?? found.one.title);
+    const title = writeText(element("strong"), found.one.name ?? found.one.title);
     const [x, y, xError, yError] = found.one.points[found.index];
     note.replaceChildren(title, quantity(plot.chart.x.label, plot.scales.x, x - found.one.shift, xError),
       quantity(plot.chart.y.label, plot.scales.y, y, yError));

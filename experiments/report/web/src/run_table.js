@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Makes an experiment's table of runs sortable and filterable, and shows a run's trace below its row.
 import {button, element} from "./dom.js";
-import {Plot} from "./plot.js";
+import {addPlots} from "./plot.js";
 import {chartsOfRun} from "./traces.js";
 
 // A word of the filter: "phi>0.64", "fluid=still", or a text that the row has somewhere.
@@ -119,11 +119,7 @@ export class RunTable {
     row.body.append(line);  // plots need their width
     const others = this.runs.filter((one) =>
       one !== run && one.scale === run.scale && one.variant === run.variant);
-    for (const {name, chart} of chartsOfRun(run, others)) {
-      const host = element("div", {className: "plot"});
-      panels.append(host);
-      new Plot(host, chart, name);
-    }
+    addPlots(panels, chartsOfRun(run, others));
     line.addEventListener("keydown", (event) => {
       if (event.key !== "Escape" || event.target.closest("svg")) return;
       opener.click();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Downloads: a plot as SVG without a stylesheet, a table as CSV, a view as PNG.
-import {writeSvgText} from "./text.js";
+import {element, svg} from "./dom.js";
+import {writeText} from "./text.js";
 
 const written = [
   "fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin",
@@ -8,9 +9,7 @@ const written = [
 ];
 
 export function saveBlob(name, blob) {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
+  const link = element("a", {href: URL.createObjectURL(blob), download: name});
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
@@ -21,26 +20,23 @@ export function saveText(name, text, type) {
 
 // The plot as shown, in the colours for paper, with its legend below.
 function plotAsSvg(plot) {
-  const stage = document.createElement("div");
-  stage.className = "stage";
-  stage.dataset.theme = "light";
   const copy = plot.canvas.cloneNode(true);
   copy.querySelector(".overlay")?.remove();
-  stage.append(copy);
+  const stage = element("div", {className: "stage", "data-theme": "light"}, copy);
   document.body.append(stage);
   const height = plot.height + addLegend(plot, copy);
   copy.setAttribute("height", height);
   copy.setAttribute("viewBox", `0 0 ${plot.width} ${height}`);
-  for (const element of copy.querySelectorAll("path, text, tspan, rect:not(clipPath *)")) {
-    const style = getComputedStyle(element);
+  for (const part of copy.querySelectorAll("path, text, tspan, rect:not(clipPath *)")) {
+    const style = getComputedStyle(part);
     for (const name of written) {
       const value = style.getPropertyValue(name);
-      if (value && value !== "normal") element.setAttribute(name, value);
+      if (value && value !== "normal") part.setAttribute(name, value);
     }
   }
-  for (const element of [copy, ...copy.querySelectorAll("*")]) {
+  for (const part of [copy, ...copy.querySelectorAll("*")]) {
     for (const name of ["class", "style", "tabindex", "role", "aria-label"]) {
-      element.removeAttribute(name);
+      part.removeAttribute(name);
     }
   }
   stage.remove();
@@ -55,11 +51,8 @@ function addLegend(plot, copy) {
     const group = entry.querySelector("svg").cloneNode(true);
     group.setAttribute("x", 66);
     group.setAttribute("y", plot.height + 4 + 18 * row);
-    const text = document.createElementNS("http://www.w3.org/2000/svg", "text");
-    text.setAttribute("x", 100);
-    text.setAttribute("y", plot.height + 15 + 18 * row);
-    writeSvgText(text, series[row].title);
-    copy.append(group, text);
+    const text = svg("text", {x: 100, y: plot.height + 15 + 18 * row});
+    copy.append(group, writeText(text, series[row].title));
   });
   return 18 * entries.length + 8;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scales of a plot and their ticks, from a chart's points.
+import {extent} from "d3-array";
 import {scaleLinear, scaleLog} from "d3-scale";
 import {plain, sup} from "./text.js";
 
@@ -7,26 +8,12 @@ import {plain, sup} from "./text.js";
 export function extentOf(chart, series, axis) {
   const {log, low, high, clip} = chart[axis];
   const [value, error] = axis === "x" ? [0, 2] : [1, 3];
-  let least = Infinity;
-  let most = -Infinity;
-  for (const one of series) {
-    for (const point of one.points) {
-      const spread = point[error] ?? 0;
-      for (const end of [point[value] - spread, point[value], point[value] + spread]) {
-        if (log && end <= 0) continue;
-        least = Math.min(least, end);
-        most = Math.max(most, end);
-      }
-    }
-  }
+  const ends = series.flatMap(({points}) => points.flatMap((point) =>
+    [-1, 0, 1].map((sign) => point[value] + sign * (point[error] ?? 0))));
   if (axis === "y") {
-    for (const {at, vertical} of chart.lines) {
-      if (vertical) continue;
-      least = Math.min(least, at);
-      most = Math.max(most, at);
-    }
+    ends.push(...chart.lines.filter(({vertical}) => !vertical).map(({at}) => at));
   }
-  if (clip) [least, most] = [low, high];
+  let [least, most] = clip ? [low, high] : extent(ends.filter((end) => !log || end > 0));
   if (!(least <= most)) [least, most] = log ? [0.1, 1] : [low ?? 0, high ?? 1];
   return log ? paddedLog(least, most) : padded(least, most, low, high);
 }

@@ -2,28 +2,21 @@
 // The view of one packing: spheres, the tilted cell, a camera without perspective. It is drawn only
 // when something changes.
 import {
-  BufferGeometry, Color, Float32BufferAttribute, LineBasicMaterial, LineSegments, OrthographicCamera,
-  Scene, SRGBColorSpace, Vector3, WebGLRenderer
+  BoxGeometry, BufferGeometry, Color, EdgesGeometry, LineBasicMaterial, LineSegments, Matrix4,
+  OrthographicCamera, Scene, SRGBColorSpace, Vector3, WebGLRenderer
 } from "three";
 import {OrbitControls} from "three/examples/jsm/controls/OrbitControls.js";
 import {Spheres} from "./spheres.js";
 
 const firstDirection = new Vector3(0.5, 0.28, 1).normalize();
 
-// Corners of the sheared box: side walls tilt about the height of the top wall.
-function cellCorners(cell) {
-  const corners = [];
-  for (const z of [0, cell.depth]) {
-    for (const y of [cell.bottom, cell.top]) {
-      for (const x of [0, cell.width]) {
-        corners.push(new Vector3(x + (y - cell.top) * cell.tan_theta, y, z));
-      }
-    }
-  }
-  return corners;
+// Edges of the sheared box: side walls tilt about the height of the top wall.
+function cellEdges({width, depth, bottom, top, tan_theta: tilt}) {
+  const box = new BoxGeometry(width, top - bottom, depth);
+  box.translate(width / 2, (bottom + top) / 2, depth / 2);
+  const shear = new Matrix4().set(1, tilt, 0, -tilt * top, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
+  return new EdgesGeometry(box).applyMatrix4(shear);
 }
-
-const edges = [0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7];
 
 export class PackingScene {
   // Throws if the browser has no WebGL 2. `turned` is called when the reader turns, moves or zooms it.
@@ -54,12 +47,8 @@ export class PackingScene {
   }
 
   setCell(cell, keepView) {
-    const corners = cellCorners(cell);
-    const geometry = new BufferGeometry();
-    const line = edges.flatMap((corner) => corners[corner].toArray());
-    geometry.setAttribute("position", new Float32BufferAttribute(line, 3));
     this.frameLines.geometry.dispose();
-    this.frameLines.geometry = geometry;
+    this.frameLines.geometry = cellEdges(cell);
     this.cell = cell;
     if (!keepView) this.resetView();
   }

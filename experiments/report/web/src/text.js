@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Labels are lists of [text, style]; the style is "", or the HTML element "i", "sub" or "sup".
+import {element, svg} from "./dom.js";
 
 export const plain = (text) => [[text, ""]];
 export const italic = (text) => [[text, "i"]];
@@ -17,11 +18,22 @@ export function axisLabel({label, unit}) {
 
 const shiftEm = {sub: 0.25, sup: -0.38};
 
-// Fills an SVG text element.
-export function writeSvgText(element, label) {
+// Appends the label to an element of HTML or to a <text> of SVG, and returns that.
+export function writeText(target, label) {
+  if (target instanceof SVGElement) {
+    writeSvgText(target, label);
+    return target;
+  }
+  for (const [text, style] of label) {
+    target.append(["i", "sub", "sup"].includes(style) ? element(style, {}, text) : text);
+  }
+  return target;
+}
+
+function writeSvgText(target, label) {
   let risen = 0;
   for (const [text, style] of label) {
-    const span = document.createElementNS("http://www.w3.org/2000/svg", "tspan");
+    const span = svg("tspan", {}, target);
     span.textContent = text;
     const wanted = shiftEm[style] ?? 0;
     const size = wanted === 0 ? 1 : 0.75;
@@ -30,19 +42,5 @@ export function writeSvgText(element, label) {
     risen = wanted;
     if (style === "i") span.setAttribute("font-style", "italic");
     if (size !== 1) span.setAttribute("font-size", "0.75em");
-    element.append(span);
-  }
-}
-
-// Appends to an HTML element.
-export function writeHtmlText(element, label) {
-  for (const [text, style] of label) {
-    if (!["i", "sub", "sup"].includes(style)) {
-      element.append(text);
-      continue;
-    }
-    const inner = document.createElement(style);
-    inner.textContent = text;
-    element.append(inner);
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Charts of runs over their cycles, as experiments/report/report_data.cpp gives them: {cycle, phi,
 // percent, seed, variant, kind, ...}.
+import {extent} from "d3-array";
 import {italic, plain} from "./text.js";
 
 const quantities = [
@@ -56,9 +57,10 @@ export function chartsOfVariant(runs, name, range) {
 export function commonRange(runs) {
   const range = {};
   const add = (key, values) => {
-    const [low, high] = [Math.min(...values), Math.max(...values)];
+    if (values.length === 0) return;
+    const [low, high] = extent(values);
     const room = 0.04 * (high - low) || 0.05 * Math.abs(high) || 1;
-    if (values.length > 0) range[key] = {low: low - room, high: high + room};
+    range[key] = {low: low - room, high: high + room};
   };
   add("cycle", runs.flatMap((run) => run.cycle ?? []));
   for (const {key} of quantities) {
