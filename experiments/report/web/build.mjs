@@ -2,7 +2,7 @@
 // Bundles the front end into report.js, the licences of what it holds into licences.txt, and their names
 // and hashes into packages.json:
 //   node build.mjs FOLDER_WITH_NODE_MODULES OUT_FOLDER
-import {existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync} from "node:fs";
+import {mkdirSync, readdirSync, readFileSync, writeFileSync} from "node:fs";
 import {createRequire} from "node:module";
 import {dirname, join, resolve} from "node:path";
 import {fileURLToPath} from "node:url";
@@ -43,16 +43,13 @@ const list = [...packages].sort().map((name) => {
   if (kind !== "sha512") throw new Error(`the lock file has no SHA-512 of ${name}`);
   return {name, version, license, sha512: Buffer.from(hash, "base64").toString("hex")};
 });
-const licences = [...packages].sort().map((name) => {
-  const folder = join(modulesParent, "node_modules", name);
-  const {version, license} = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
-  return `${name} ${version} (${license})\n\n${licenceOf(folder)}\n`;
-});
+const licences = list.map(({name, version, license}) =>
+  `${name} ${version} (${license})\n\n${licenceOf(join(modulesParent, "node_modules", name))}\n`);
 
 const script = result.outputFiles[0].text.trim();
 // It is put into a page as it stands.
 if (/<\/script|<!--/i.test(script)) throw new Error("the bundle would end its own script element");
-if (!existsSync(out)) mkdirSync(out, {recursive: true});
+mkdirSync(out, {recursive: true});
 writeFileSync(join(out, "report.js"), script);
 writeFileSync(join(out, "licences.txt"), licences.join("\n" + "-".repeat(72) + "\n\n"));
 writeFileSync(join(out, "packages.json"), JSON.stringify(list, null, 2) + "\n");
