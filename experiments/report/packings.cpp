@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <set>
 
 #include "analysis/chart.hpp"
@@ -57,6 +56,14 @@ struct ChosenRun {
   std::size_t wall_grains = 0;
 };
 
+/// Keeps `count` of them, evenly spaced.
+template <class Value>
+void thin_out(std::vector<Value>& values, std::size_t count) {
+  std::vector<Value> kept;
+  for (const std::size_t i : evenly(values.size(), count)) kept.push_back(std::move(values[i]));
+  values = std::move(kept);
+}
+
 /// The last run of each variant, of at most `limit` variants that are evenly chosen.
 std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<SelectedRun>& runs,
                                           const std::string& experiment, std::size_t limit) {
@@ -72,9 +79,8 @@ std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<
     if (same == last.end()) same = last.emplace(last.end());
     *same = {run, member, std::move(checkpoints)};
   }
-  std::vector<ChosenRun> kept;
-  for (const std::size_t i : evenly(last.size(), limit)) kept.push_back(std::move(last[i]));
-  return kept;
+  thin_out(last, limit);
+  return last;
 }
 
 std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>& experiments,
@@ -132,13 +138,7 @@ void fit(std::vector<ChosenRun>& runs, const PackingChoice& choice, Packings& pa
   }
   std::size_t frames = std::max<std::size_t>(1, choice.frames);
   while (frames > 1 && bytes_with(runs, frames) > choice.budget) --frames;
-  for (ChosenRun& run : runs) {
-    std::vector<CheckpointRecord> kept;
-    for (const std::size_t i : evenly(run.checkpoints.size(), frames)) {
-      kept.push_back(std::move(run.checkpoints[i]));
-    }
-    run.checkpoints = std::move(kept);
-  }
+  for (ChosenRun& run : runs) thin_out(run.checkpoints, frames);
 }
 
 std::string frame_name(const CheckpointRecord& record) {

@@ -2,14 +2,13 @@
 #include "experiments/report/page.hpp"
 
 #include <fmt/format.h>
+#include <openssl/sha.h>
 
-#include <charconv>
-#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "experiments/report/html.hpp"
 #include "experiments/runner/progress.hpp"
-#include "provenance/sha256.hpp"
 
 // Files of the front end (web_assets.S).
 extern "C" {
@@ -29,14 +28,9 @@ std::string_view front_end_script() {
 
 /// The hash of the script for a Content-Security-Policy that allows no other script.
 std::string script_hash(std::string_view script) {
-  const std::string hex = sha256_hex(script);
-  std::vector<std::byte> digest;
-  for (std::size_t at = 0; at < hex.size(); at += 2) {
-    unsigned value = 0;
-    std::from_chars(hex.data() + at, hex.data() + at + 2, value, 16);
-    digest.push_back(static_cast<std::byte>(value));
-  }
-  return "sha256-" + base64(digest);
+  unsigned char digest[SHA256_DIGEST_LENGTH];
+  SHA256(reinterpret_cast<const unsigned char*>(script.data()), script.size(), digest);
+  return "sha256-" + base64(std::as_bytes(std::span(digest)));
 }
 
 std::string head_html(const ReportData& data) {

@@ -23,11 +23,11 @@ std::string table_html(const ReportPanel& panel) {
   std::vector<HtmlRow> rows;
   for (const std::vector<TextTable::Cell>& row : panel.text.rows) {
     HtmlRow& cells = rows.emplace_back();
-    for (const TextTable::Cell& cell : row) {
-      cells.push_back({cell.colour == TextTable::Cell().colour
-                           ? text_html(cell.text)
-                           : fmt::format("<span class=\"tint\" style=\"--tint: {}\">{}</span>",
-                                         cell.colour, text_html(cell.text))});
+    for (const auto& [text, colour] : row) {
+      cells.push_back(colour == TextTable::Cell().colour
+                          ? text_html(text)
+                          : fmt::format("<span class=\"tint\" style=\"--tint: {}\">{}</span>",
+                                        colour, text_html(text)));
     }
   }
   const HtmlRow head = std::move(rows.front());

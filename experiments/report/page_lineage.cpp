@@ -39,12 +39,10 @@ std::string made_by(const json& host) {
                      text_at(host, "host"), text_at(host, "cpu"), text_at(host, "simd"));
 }
 
-std::string makers_html(const ReportData& data, const ReportFigure& figure) {
+std::string makers_html(const ReportFigure& figure) {
   std::set<std::string> makers;
   for (const auto& [id, stage] : figure.lineage.runs) {
-    const auto known = data.runs.find(id);
-    if (known == data.runs.end()) continue;
-    for (const Attempt& attempt : known->second.attempts) makers.insert(made_by(attempt.host));
+    for (const Attempt& attempt : stage.attempts) makers.insert(made_by(attempt.host));
   }
   std::string html;
   for (const std::string& maker : makers) html += escape_html(maker) + "<br>";
@@ -178,7 +176,7 @@ std::string lineage_html(const ReportData& data, const ReportFigure& figure) {
   html += row("inputs", fmt::format("{} runs, {} checkpoints; analysis version {}",
                                     figure.summary.runs, figure.summary.checkpoints,
                                     escape_html(text_at(facts, "analysis_version"))));
-  html += row("computed by", makers_html(data, figure));
+  html += row("computed by", makers_html(figure));
   html += row("manifests", manifests_html(figure));
   html += row("outputs", outputs_html(figure));
   html += row("recorded", record_html(figure));
