@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `status`: every run with its state, progress and speed.
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,54 +26,50 @@
 namespace shearcell::cli {
 namespace {
 
+/// A run in its first place.
+struct ListedRun : SelectedRun {
+  std::vector<SelectedRun> places = {};  // one for each experiment and scale
+};
+
 /// The selected runs, with their holders and their places in the queue.
 struct View {
-  using Place = std::tuple<std::string, std::string, std::string>;  // experiment, scale, run
-  static Place place_of(const SelectedRun& s) {
-    return {s.membership.experiment, s.membership.scale, s.run.id};
-  }
-
   Store store;
-  std::vector<SelectedRun> places;  // each run once for each experiment and scale
-  std::vector<SelectedRun> runs;    // each run once, in its first place
-  std::map<std::string, std::vector<std::size_t>> places_of;  // by run: indices of its places
-  std::map<Place, Membership> newest;                         // those of newest_runs()
-  std::map<std::string, Lease> holders;                       // by run
+  std::vector<ListedRun> runs;
+  std::map<std::string, Lease> holders;  // by run
   QueueView queue;
   VariantNames names;
 
   View(const RunSelection& selection, const Context& context)
       : store(context.store, Access::read), queue(look_at_queue(store)), names(store) {
-    std::map<Place, std::size_t> known;
-    std::vector<SelectedRun> selected = select_runs(store, selection);
+    using Place = std::tuple<std::string, std::string, std::string>;
+    const auto place_of = [](const SelectedRun& s) -> Place {
+      return {s.membership.experiment, s.membership.scale, s.run.id};
+    };
+    const std::vector<SelectedRun> selected = select_runs(store, selection);
+    std::map<Place, Membership> newest;
     for (const SelectedRun& one : newest_runs(selected, false).runs) {
       newest.emplace(place_of(one), one.membership);
     }
-    for (SelectedRun& found : selected) {
-      std::vector<std::size_t>& own_places = places_of[found.run.id];
-      if (own_places.empty()) runs.push_back(found);
-      const auto [at, fresh] = known.try_emplace(place_of(found), places.size());
-      // If versions of a manifest named the variant differently, the last one is kept.
-      if (fresh) {
-        own_places.push_back(places.size());
-        places.push_back(std::move(found));
-      } else {
-        places[at->second] = std::move(found);
-      }
-    }
-    for (SelectedRun& place : places) {
-      const auto of_newest = newest.find(place_of(place));
+    for (const SelectedRun& found : selected) {
+      if (runs.empty() || runs.back().run.id != found.run.id) runs.push_back({found});
+      const auto of_newest = newest.find(place_of(found));
+      SelectedRun place = found;
+      place.of_newest_version = of_newest != newest.end() || found.run.kind == "prepare";
       if (of_newest != newest.end()) place.membership = of_newest->second;
+      // If versions of a manifest named the variant differently, the last one is kept.
+      std::vector<SelectedRun>& places = runs.back().places;
+      const auto known = std::ranges::find(places, place_of(found), place_of);
+      if (known == places.end()) {
+        places.push_back(std::move(place));
+      } else {
+        *known = std::move(place);
+      }
     }
     for (Lease& lease : store.leases()) holders.emplace(lease.run, std::move(lease));
   }
 
   std::string called(const SelectedRun& selected) const {
     return names.of(selected.run, selected.membership);
-  }
-
-  bool is_newest(const SelectedRun& selected) const {
-    return selected.run.kind == "prepare" || newest.contains(place_of(selected));
   }
 
   const QueuedRun* queued(const RunRecord& run) const {
@@ -103,43 +100,45 @@ nlohmann::json facts(const QueuedRun& run) {
           {"reported_cycle", reported ? nlohmann::json(reported->cycle) : nullptr}};
 }
 
-nlohmann::json facts_of_place(const SelectedRun& selected, const View& view) {
+/// The place of a run in an experiment.
+nlohmann::json place_facts(const SelectedRun& selected, const View& view) {
   const Membership& m = selected.membership;
-  return {{"experiment", m.experiment},    {"scale", m.scale}, {"variant", m.variant},
-          {"name", view.called(selected)}, {"seed", m.seed},   {"newest", view.is_newest(selected)},
-          {"manifest", m.manifest}};
+  return {{"experiment", m.experiment},
+          {"scale", m.scale},
+          {"variant", m.variant},
+          {"name", view.called(selected)},
+          {"seed", m.seed}};
 }
 
-nlohmann::json facts(const SelectedRun& selected, const View& view) {
-  const RunRecord& run = selected.run;
-  const Membership& first = selected.membership;
+nlohmann::json facts(const ListedRun& listed, const View& view) {
+  const RunRecord& run = listed.run;
   const auto held = view.holders.find(run.id);
   const QueuedRun* queued = view.queued(run);
-  return {
-      {"id", run.id},
-      {"kind", run.kind},
-      {"parent", run.parent},
-      {"experiment", first.experiment},
-      {"scale", first.scale},
-      {"variant", first.variant},
-      {"name", view.called(selected)},
-      {"seed", first.seed},
-      {"places", json_list(view.places_of.at(run.id),
-                           [&](std::size_t k) { return facts_of_place(view.places[k], view); })},
-      {"state", name_of(run.state)},
-      {"cycle", run.cycle},
-      {"target_cycles", run.target_cycles},
-      {"N", run.grains},
-      {"step", run.step},
-      {"attempts", run.attempts},
-      {"wall_seconds", run.wall_seconds},
-      {"particle_steps_per_second", rate(run)},
-      {"state_hash", run.state_hash},
-      {"error", run.error},
-      {"updated_at", run.updated_at},
-      {"ended", end_of(view.store, run)},
-      {"holder", held == view.holders.end() ? nlohmann::json() : facts(held->second)},
-      {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)}};
+  const auto place = [&](const SelectedRun& one) {
+    nlohmann::json all = place_facts(one, view);
+    all.update({{"newest", one.of_newest_version}, {"manifest", one.membership.manifest}});
+    return all;
+  };
+  nlohmann::json all = place_facts(listed, view);
+  all.update({{"id", run.id},
+              {"kind", run.kind},
+              {"parent", run.parent},
+              {"places", json_list(listed.places, place)},
+              {"state", name_of(run.state)},
+              {"cycle", run.cycle},
+              {"target_cycles", run.target_cycles},
+              {"N", run.grains},
+              {"step", run.step},
+              {"attempts", run.attempts},
+              {"wall_seconds", run.wall_seconds},
+              {"particle_steps_per_second", rate(run)},
+              {"state_hash", run.state_hash},
+              {"error", run.error},
+              {"updated_at", run.updated_at},
+              {"ended", end_of(view.store, run)},
+              {"holder", held == view.holders.end() ? nlohmann::json() : facts(held->second)},
+              {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)}});
+  return all;
 }
 
 /// State and progress of a run: as the store has them, or as its task reports them if that is
@@ -196,12 +195,8 @@ std::optional<Estimate> estimate(const View& view) {
 }
 
 std::string local_time(double seconds_from_now) {
-  const auto then =
-      static_cast<std::time_t>(static_cast<double>(now_ms()) * 1e-3 + seconds_from_now);
-  std::tm local{};
-  localtime_r(&then, &local);
-  char text[64];
-  return {text, std::strftime(text, sizeof text, "%F %R %Z", &local)};
+  const double then = static_cast<double>(now_ms()) * 1e-3 + seconds_from_now;
+  return fmt::format("{:%F %R %Z}", fmt::localtime(static_cast<std::time_t>(then)));
 }
 
 nlohmann::json facts(const std::optional<Estimate>& estimate) {
@@ -229,22 +224,23 @@ void print_tables(const View& view) {
   std::vector<std::string> experiments;
   std::map<std::string, std::vector<Row>> tables;
   std::map<RunState, std::size_t> count;
-  for (const SelectedRun& each : view.runs) {
-    ++count[Shown{each.run, view.queued(each.run)}.state()];
-  }
-  for (const SelectedRun& selected : view.places) {
-    const auto& [run, place, newest] = selected;
-    const std::string name = place.experiment + " at scale " + scale_name(place.scale);
-    if (!tables.contains(name)) experiments.push_back(name);
+  for (const ListedRun& listed : view.runs) {
+    const RunRecord& run = listed.run;
     const Shown shown{run, view.queued(run)};
-    Row& row = tables[name].emplace_back(
-        Row{run.id.substr(0, 8),
-            view.called(selected) + (view.is_newest(selected) ? "" : " (older version)"),
-            std::to_string(place.seed), std::to_string(run.grains),
-            fmt::format("{}{}", name_of(shown.state()), view.holders.contains(run.id) ? " *" : ""),
-            run.kind == "prepare" ? "" : fmt::format("{:.4g}/{}", shown.cycle(), run.target_cycles),
-            fmt::format("{:.1f}", rate(run) * 1e-6), format_duration(run.wall_seconds)});
-    if (queued) row.push_back(shown.queue());
+    ++count[shown.state()];
+    for (const SelectedRun& selected : listed.places) {
+      const Membership& place = selected.membership;
+      const std::string name = place.experiment + " at scale " + scale_name(place.scale);
+      if (!tables.contains(name)) experiments.push_back(name);
+      Row& row = tables[name].emplace_back(Row{
+          run.id.substr(0, 8),
+          view.called(selected) + (selected.of_newest_version ? "" : " (older version)"),
+          std::to_string(place.seed), std::to_string(run.grains),
+          fmt::format("{}{}", name_of(shown.state()), view.holders.contains(run.id) ? " *" : ""),
+          run.kind == "prepare" ? "" : fmt::format("{:.4g}/{}", shown.cycle(), run.target_cycles),
+          fmt::format("{:.1f}", rate(run) * 1e-6), format_duration(run.wall_seconds)});
+      if (queued) row.push_back(shown.queue());
+    }
   }
   Row header = {"run", "variant", "seed", "N", "state", "cycle", "M/s", "time"};
   if (queued) header.emplace_back("queue");
@@ -272,7 +268,8 @@ void print(const View& view) {
     if (problem.empty()) print_text("{}\n", describe(submission));
   }
   if (!problem.empty()) print_text("The queue is not known: {}\n", problem);
-  for (const auto& [run, membership, newest] : view.runs) {
+  for (const ListedRun& listed : view.runs) {
+    const RunRecord& run = listed.run;
     if (!run.error.empty()) print_text("{}: {}\n", run.id.substr(0, 8), run.error);
     if (const nlohmann::json ended = end_of(view.store, run); !ended.is_null()) {
       print_text("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle,
@@ -284,7 +281,7 @@ void print(const View& view) {
 void print_facts(const View& view) {
   const std::string& problem = view.queue.problem;
   print_json(
-      {{"runs", json_list(view.runs, [&](const SelectedRun& run) { return facts(run, view); })},
+      {{"runs", json_list(view.runs, [&](const ListedRun& run) { return facts(run, view); })},
        {"estimate", facts(estimate(view))},
        {"submissions", json_list(view.queue.submissions,
                                  [](const Submission& open) -> nlohmann::json {
@@ -301,8 +298,8 @@ void print_facts(const View& view) {
 // this long, the campaign has ended.
 constexpr std::chrono::seconds kIdle{10};
 
-bool stages_remain(const std::vector<SelectedRun>& runs) {
-  return std::ranges::any_of(runs, [](const SelectedRun& selected) {
+bool stages_remain(const std::vector<ListedRun>& runs) {
+  return std::ranges::any_of(runs, [](const ListedRun& selected) {
     return selected.run.state != RunState::completed && selected.run.state != RunState::failed;
   });
 }
