@@ -108,14 +108,13 @@ struct WantedRun : SelectedRun {
 std::vector<CheckpointRecord> asked_of(const Store& store, const WantedRun& wanted) {
   const RunRecord& run = wanted.run;
   if (wanted.places.empty()) return own_checkpoints(store, run, asks_of(store, run.id));
-  std::map<std::uint64_t, CheckpointRecord> by_step;
-  for (const Membership& place : wanted.places) {
-    for (CheckpointRecord& record : own_checkpoints(store, run, place, {})) {
-      by_step.insert_or_assign(record.step, std::move(record));
-    }
-  }
   std::vector<CheckpointRecord> all;
-  for (auto& [step, record] : by_step) all.push_back(std::move(record));
+  for (const Membership& place : wanted.places) {
+    std::ranges::move(own_checkpoints(store, run, place, {}), std::back_inserter(all));
+  }
+  std::ranges::sort(all, {}, &CheckpointRecord::step);
+  const auto repeated = std::ranges::unique(all, {}, &CheckpointRecord::step);
+  all.erase(repeated.begin(), repeated.end());
   return all;
 }
 
@@ -215,28 +214,23 @@ void require_effect(const ExportOptions& options, const ExportFormat& format) {
 std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) {
   parse_cycles(options.cycles);  // throws here once, not for each run
   std::vector<WantedRun> runs;
+  std::map<std::string, std::size_t> known;  // index in `runs`, by id
+  const auto add = [&](const SelectedRun& run) -> WantedRun& {
+    const auto [at, fresh] = known.try_emplace(run.run.id, runs.size());
+    if (fresh) runs.push_back({run});
+    return runs[at->second];
+  };
   for (const std::string& prefix : options.runs) {
-    RunRecord run = store.find_run(prefix);
-    runs.push_back({{run, first_membership(run)}});
+    const RunRecord run = store.find_run(prefix);
+    add({run, first_membership(run)});
   }
-  if (runs.empty()) {
-    NewestRuns newest =
-        newest_runs(select_runs(store, options.selection), options.selection.all_versions);
-    for (const std::string& note : newest.notes) print_stderr("{}\n", note);
-    for (SelectedRun& one : newest.runs) runs.push_back({one, {one.membership}});
-  }
-  std::map<std::string, std::size_t> first;  // place in `each`, by run
-  std::vector<WantedRun> each;
-  for (WantedRun& run : runs) {
-    const auto [at, fresh] = first.try_emplace(run.run.id, each.size());
-    if (fresh) {
-      each.push_back(std::move(run));
-    } else {
-      std::ranges::copy(run.places, std::back_inserter(each[at->second].places));
-    }
-  }
-  if (each.empty()) throw std::invalid_argument("no run of the store is selected");
-  return each;
+  if (!runs.empty()) return runs;
+  const NewestRuns newest =
+      newest_runs(select_runs(store, options.selection), options.selection.all_versions);
+  for (const std::string& note : newest.notes) print_stderr("{}\n", note);
+  for (const SelectedRun& one : newest.runs) add(one).places.push_back(one.membership);
+  if (runs.empty()) throw std::invalid_argument("no run of the store is selected");
+  return runs;
 }
 
 /// The name of a run's file in a folder of several: "drag_fluid=still_seed1_3f9a52c1.xyz".
@@ -255,8 +249,8 @@ std::string entry_name(const SelectedRun& selected, const ExportFormat& format) 
 }
 
 struct Exported {
-  SelectedRun run;
-  fs::path out;
+  std::string run;  ///< its id
+  fs::path out;     ///< PATH as given, or a file or folder in it
   std::vector<std::string> files;
 };
 
@@ -270,7 +264,8 @@ std::vector<Exported> write_all(const Store& store, const std::vector<WantedRun>
   const fs::path given = fs::absolute(options.out);
   const fs::path out = given.has_filename() ? given : given.parent_path();
   if (single && format.writer == nullptr) {  // a crate may replace an earlier one of the run
-    return {{runs.front(), out, write_run(store, runs.front(), format, options, out)}};
+    return {
+        {runs.front().run.id, options.out, write_run(store, runs.front(), format, options, out)}};
   }
   const bool folder = !single || *format.ending == '\0';
   require_new(out, folder);
@@ -283,7 +278,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<WantedRun>
     const std::string name = single ? "" : entry_name(run, format);
     try {
       auto files = write_run(store, run, format, options, single ? staged : staged / name);
-      done.push_back({run, single ? out : out / name, std::move(files)});
+      done.push_back({run.run.id, single ? fs::path(options.out) : out / name, std::move(files)});
     } catch (const std::invalid_argument& problem) {  // no checkpoint in these cycles
       if (single || (&run == &runs.back() && done.empty())) throw;
       print_stderr("left out: {}\n", problem.what());
@@ -307,20 +302,19 @@ void export_runs(const ExportOptions& options, Context& context) {
   } catch (const std::invalid_argument& problem) {
     throw UsageError(problem.what());
   }
-  for (Exported& one : done) {
-    if (single) one.out = options.out;
-    if (context.json) continue;
-    print_text("run {:.12}: {} in {}\n", one.run.run.id, counted(one.files.size(), "file"),
+  if (context.json) {
+    const nlohmann::json list = json_list(done, [&](const Exported& one) -> nlohmann::json {
+      return {{"run", one.run},
+              {"format", options.format},
+              {"out", one.out.string()},
+              {"files", one.files}};
+    });
+    return print_json(single ? list.front() : list);
+  }
+  for (const Exported& one : done) {
+    print_text("run {:.12}: {} in {}\n", one.run, counted(one.files.size(), "file"),
                one.out.string());
   }
-  if (!context.json) return;
-  const nlohmann::json list = json_list(done, [&](const Exported& one) -> nlohmann::json {
-    return {{"run", one.run.run.id},
-            {"format", options.format},
-            {"out", one.out.string()},
-            {"files", one.files}};
-  });
-  print_json(single ? list.front() : list);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The formats that are text: extended XYZ, LAMMPS data, and run.json beside folders of frames.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <memory>
@@ -27,11 +28,9 @@ std::string xyz_comment(const Frame& f, Lengths lengths) {
   const Eigen::Matrix3d e = f.edges / (si ? 1 : d);
   const Eigen::Vector3d o = f.origin / (si ? 1 : d);
   std::string line = fmt::format(
-      "Lattice=\"{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\" "
-      "Origin=\"{:.17g} {:.17g} {:.17g}\" pbc=\"F F T\" Time={:.17g} step={} cycle={:.17g} "
+      "Lattice=\"{:.17g}\" Origin=\"{:.17g}\" pbc=\"F F T\" Time={:.17g} step={} cycle={:.17g} "
       "theta={:.17g} Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:radius:R:1:type:I:1",
-      e(0, 0), e(1, 0), e(2, 0), e(0, 1), e(1, 1), e(2, 1), e(0, 2), e(1, 2), e(2, 2), o.x(), o.y(),
-      o.z(), f.time_s, f.step, f.cycle, f.theta);
+      fmt::join(e.reshaped(), " "), fmt::join(o, " "), f.time_s, f.step, f.cycle, f.theta);
   for (const FrameColumn& column : f.columns) {
     line += fmt::format(":{}:{}:1", column.name, column.values.index() == 0 ? 'R' : 'I');
   }
@@ -77,9 +76,8 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths) {
       const Eigen::Vector3d r = f.position.col(static_cast<Eigen::Index>(i)) / unit;
       const Eigen::Vector3d v = f.velocity.col(static_cast<Eigen::Index>(i)) / unit;
       const auto line = std::back_inserter(text);
-      fmt::format_to(line, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} {:.17g} {}",
-                     f.type[i] == 0 ? "H" : "He", r.x(), r.y(), r.z(), v.x(), v.y(), v.z(), i + 1,
-                     f.radius / unit, f.type[i]);
+      fmt::format_to(line, "{} {:.17g} {:.17g} {} {:.17g} {}", f.type[i] == 0 ? "H" : "He",
+                     fmt::join(r, " "), fmt::join(v, " "), i + 1, f.radius / unit, f.type[i]);
       for (const FrameColumn& column : f.columns) {
         if (const auto* real = std::get_if<0>(&column.values)) {
           fmt::format_to(line, " {:.17g}", (*real)[i]);
@@ -99,15 +97,13 @@ FrameWriter lammps_writer(const std::filesystem::path& folder) {
     std::string text = lammps_header(f) + "Atoms # sphere\n\n";
     for (std::size_t i = 0; i < f.particles(); ++i) {
       const auto r = f.position.col(static_cast<Eigen::Index>(i));
-      fmt::format_to(std::back_inserter(text),
-                     "{} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} 0 0 {}\n", i + 1, f.type[i] + 1,
-                     2 * f.radius, density, r.x(), r.y(), r.z(), f.image[i]);
+      fmt::format_to(std::back_inserter(text), "{} {} {:.17g} {:.17g} {:.17g} 0 0 {}\n", i + 1,
+                     f.type[i] + 1, 2 * f.radius, density, fmt::join(r, " "), f.image[i]);
     }
     text += "\nVelocities\n\n";
     for (std::size_t i = 0; i < f.particles(); ++i) {
       const auto v = f.velocity.col(static_cast<Eigen::Index>(i));
-      fmt::format_to(std::back_inserter(text), "{} {:.17g} {:.17g} {:.17g} 0 0 0\n", i + 1, v.x(),
-                     v.y(), v.z());
+      fmt::format_to(std::back_inserter(text), "{} {:.17g} 0 0 0\n", i + 1, fmt::join(v, " "));
     }
     NewFile(folder / fmt::format("frame_{}.data", frame_name(f))).add(text);
   };
