@@ -91,11 +91,8 @@ Facts facts(const bench::EngineMean& m) {
           {"standard_errors_apart", m.apart}};
 }
 
-template <class Result>
-std::vector<Facts> all_facts(const std::vector<Result>& results) {
-  std::vector<Facts> all;
-  for (const Result& result : results) all.push_back(facts(result));
-  return all;
+const Facts& facts(const Facts& result) {
+  return result;
 }
 
 nlohmann::json json_of(const TableValue& value) {
@@ -105,21 +102,23 @@ nlohmann::json json_of(const TableValue& value) {
   return nullptr;
 }
 
-nlohmann::json json_of(const std::vector<Facts>& results) {
-  return json_list(results, [](const Facts& result) {
+template <class Result>
+nlohmann::json json_of(const std::vector<Result>& results) {
+  return json_list(results, [](const Result& result) {
     nlohmann::json one;
-    for (const Fact& fact : result) one[fact.key] = json_of(fact.value);
+    for (const Fact& fact : facts(result)) one[fact.key] = json_of(fact.value);
     return one;
   });
 }
 
-void print_facts(const std::vector<Facts>& results) {
+template <class Result>
+void print_facts(const std::vector<Result>& results) {
   Row header;
   std::vector<Row> rows;
-  for (const Facts& result : results) {
+  for (const Result& result : results) {
     header.clear();
     rows.emplace_back();
-    for (const auto& [key, value, heading, text] : result) {
+    for (const auto& [key, value, heading, text] : facts(result)) {
       if (heading.empty()) continue;
       header.push_back(heading);
       const auto* word = std::get_if<std::string>(&value);
@@ -153,7 +152,7 @@ void add_speed(CLI::App& bench, Context& context) {
       "  shearcell bench speed --size 18200 --threads 1 2 --json");
   command->callback([options, &context] {
     options->report = report_progress;
-    const std::vector<Facts> results = all_facts(bench::measure_speed(*options));
+    const std::vector<bench::SpeedResult> results = bench::measure_speed(*options);
     if (context.json) return print_json({{"sizes", json_of(results)}});
     print_facts(results);
     fmt::print(
@@ -264,26 +263,26 @@ void print_means(const char* title, const bench::EngineMeans& all) {
 nlohmann::json json_of(const bench::EngineCheck& check) {
   return {{"lammps", check.lammps_version},
           {"N", check.grains},
-          {"settlings", json_of(all_facts(check.settlings))},
-          {"settled_means", json_of(all_facts(check.settled.means))},
+          {"settlings", json_of(check.settlings)},
+          {"settled_means", json_of(check.settled.means)},
           {"settled_limit_in_standard_errors", check.settled.limit},
-          {"trajectories", json_of(all_facts(check.trajectories))},
-          {"means", json_of(all_facts(check.sheared.means))},
+          {"trajectories", json_of(check.trajectories)},
+          {"means", json_of(check.sheared.means)},
           {"limit_in_standard_errors", check.sheared.limit},
-          {"speeds", json_of(all_facts(check.speeds))},
+          {"speeds", json_of(check.speeds)},
           {"agree", check.agree()}};
 }
 
 void print(const bench::EngineCheck& check) {
   fmt::print("LAMMPS {}; N = {}\n\n", check.lammps_version, check.grains);
-  print_facts(all_facts(check.settlings));
+  print_facts(check.settlings);
   fmt::print("\n");
   print_means("settled, mean over seeds", check.settled);
-  print_facts(all_facts(check.trajectories));
+  print_facts(check.trajectories);
   fmt::print(
       "distance: largest of a grain from ours; one rounding: effect of 1 ulp in one number.\n\n");
   print_means("sheared, mean over seeds", check.sheared);
-  print_facts(all_facts(check.speeds));
+  print_facts(check.speeds);
   fmt::print(
       "M/s: million particle-steps/s, of LAMMPS in its time loop. Memory: of our simulation, or "
       "of\nthe largest process of LAMMPS.\n{}\n",

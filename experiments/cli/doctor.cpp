@@ -36,12 +36,6 @@ fs::path place_of(const std::string& store) {
   return place;
 }
 
-Check cores() {
-  const std::size_t usable = usable_cores();
-  return {"cores", fmt::format("{} usable", usable), "ok",
-          fmt::format("`run` computes {} runs at a time", usable)};
-}
-
 Check vectors(const std::string& simd) {
   if (simd != scalar_kernels().name) return {"vectors", simd, "ok", ""};
   return {"vectors", simd, "slow", "the plain kernel has a twentieth of the speed of AVX-512"};
@@ -124,8 +118,10 @@ std::vector<Check> examine(const std::string& store, bool with_speed) {
   const nlohmann::json& libraries = facts.at("libraries");
   const auto version = [&](const char* name) { return libraries.at(name).get<std::string>(); };
   const fs::path place = place_of(store);
+  const std::size_t cores = usable_cores();
   std::vector<Check> found = {{"processor", facts.at("cpu").get<std::string>(), "ok", ""},
-                              cores(),
+                              {"cores", fmt::format("{} usable", cores), "ok",
+                               fmt::format("`run` computes {} runs at a time", cores)},
                               vectors(facts.at("simd").get<std::string>()),
                               memory(),
                               disk(place),

@@ -227,25 +227,21 @@ nlohmann::json facts(const Line& line) {
           {"memory_bytes", run_bytes(geometry(line.run->parameters))}};
 }
 
-Row row(const Line& line) {
-  const bool prepare = line.stage->stage == Stage::prepare;
-  return {line.stage->key.substr(0, 8),
-          std::string(name_of(line.stage->stage)),
-          prepare ? "" : line.run->name,
-          std::to_string(line.run->seed),
-          std::to_string(line.run->parameters.grains),
-          prepare ? "" : fmt::format("{:.4g}/{}", line.cycle, line.run->target_cycles),
-          line.state,
-          remark(line)};
-}
-
 void print_stages(const std::vector<Line>& lines, bool of_several_experiments) {
   Row header = {"run", "stage", "variant", "seed", "N", "cycle", "state", ""};
   if (of_several_experiments) header.insert(header.begin() + 2, "experiment");
   print_table(header, lines, [&](const Line& line) {
-    Row cells = row(line);
-    if (of_several_experiments) cells.insert(cells.begin() + 2, line.run->experiment);
-    return cells;
+    const bool prepare = line.stage->stage == Stage::prepare;
+    Row row = {line.stage->key.substr(0, 8),
+               std::string(name_of(line.stage->stage)),
+               prepare ? "" : line.run->name,
+               std::to_string(line.run->seed),
+               std::to_string(line.run->parameters.grains),
+               prepare ? "" : fmt::format("{:.4g}/{}", line.cycle, line.run->target_cycles),
+               line.state,
+               remark(line)};
+    if (of_several_experiments) row.insert(row.begin() + 2, line.run->experiment);
+    return row;
   });
 }
 
