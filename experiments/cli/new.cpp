@@ -2,7 +2,6 @@
 // `new`: writes a commented manifest with every key of the schema.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <memory>
@@ -99,30 +98,18 @@ scales:
 )";
 }
 
-/// Writes a temporary file and links it, so the file is complete and replaces no other.
-void write_new(const std::filesystem::path& file, const std::string& text) {
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-  const std::filesystem::path whole = fmt::format("{}.tmp-{}", file.string(), getpid());
-  std::error_code failed, ignored;
-  try {
-    write_output(whole, text);
-    std::filesystem::create_hard_link(whole, file, failed);
-  } catch (const std::system_error& error) {
-    failed = error.code();
-  }
-  std::filesystem::remove(whole, ignored);
-  if (failed == std::errc::file_exists) {
-    throw UsageError(file.string() +
-                     ": the file exists already. Choose another name, or remove it.");
-  }
-  if (failed) throw std::system_error(failed, file.string() + ": cannot write");
-}
-
 void make(std::filesystem::path file) {
   if (file.extension() != ".yaml") file += ".yaml";
   const std::string text = text_of(file.stem().string());
   parse_manifest(text, file.string());  // refuses a bad name
-  write_new(file, text);
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+  try {
+    NewFile(file).add(text);
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::file_exists) throw;
+    throw UsageError(file.string() +
+                     ": the file exists already. Choose another name, or remove it.");
+  }
   print_text("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(), file.string());
 }
 
