@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 
 #include "core/filling.hpp"
 #include "core/watchdog.hpp"
@@ -63,6 +64,13 @@ ExitCode exit_code_of(const std::exception& error) {
   // An exception of the JSON library comes from a record of the store: other JSON is checked first.
   if (is_any<StoreDamaged, nlohmann::json::exception>(error)) return kStoreDamaged;
   return kOtherError;
+}
+
+std::string message_of(const std::exception& error) {
+  const auto* of_path = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
+  if (of_path == nullptr) return error.what();
+  return fmt::format("{} cannot be used: {}; name another path, or change its permissions",
+                     of_path->path1().string(), of_path->code().message());
 }
 
 int complain(int code, const char* what) {
@@ -144,7 +152,7 @@ int run(int argc, char** argv) {
   } catch (const std::exception& error) {
     // An exit code that the command has set is more important than this error.
     const bool known = context.exit_code != kDone;
-    return complain(known ? context.exit_code : exit_code_of(error), error.what());
+    return complain(known ? context.exit_code : exit_code_of(error), message_of(error).c_str());
   }
 }
 
