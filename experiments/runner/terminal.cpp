@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <memory>
 
 #include "experiments/manifest/document.hpp"
 
@@ -68,7 +70,15 @@ void write_stderr(std::string_view text) noexcept {
 }
 
 std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what) {
-  if (isatty(STDERR_FILENO) == 0) return {};
+  if (isatty(STDERR_FILENO) == 0) {
+    using Clock = std::chrono::steady_clock;
+    const auto said_at = std::make_shared<Clock::time_point>(Clock::now());  // by all copies
+    return [what = std::move(what), said_at](std::size_t done, std::size_t total) {
+      if (Clock::now() - *said_at < std::chrono::seconds(10)) return;
+      *said_at = Clock::now();
+      write_stderr(fmt::format("{} {} of {}\n", what, done, total));
+    };
+  }
   return [what = std::move(what)](std::size_t done, std::size_t total) {
     write_stderr(fmt::format("\r{} {} of {}{}", what, done, total, done == total ? "\n" : ""));
   };

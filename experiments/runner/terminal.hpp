@@ -51,8 +51,8 @@ void print_stderr(fmt::format_string<Arguments...> format, Arguments&&... argume
   write_stderr(for_terminal(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
-/// A function that shows "WHAT done of total" on one line of standard error; empty if that is not a
-/// terminal.
+/// A function that shows "WHAT done of total" on standard error: on one line of a terminal; else as
+/// a new line, at most every ten seconds. Not thread-safe.
 std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what);
 
 }  // namespace shearcell
