@@ -298,12 +298,6 @@ void print_facts(const View& view) {
 // this long, the campaign has ended.
 constexpr std::chrono::seconds kIdle{10};
 
-bool stages_remain(const std::vector<ListedRun>& runs) {
-  return std::ranges::any_of(runs, [](const ListedRun& selected) {
-    return selected.run.state != RunState::completed && selected.run.state != RunState::failed;
-  });
-}
-
 /// Sleeps, or returns true as soon as a signal asks to stop.
 bool sleep_or_stop(double seconds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
@@ -316,6 +310,9 @@ bool sleep_or_stop(double seconds) {
 /// Prints the status every `interval` seconds until the campaign has ended or a signal comes.
 void watch(const RunSelection& selection, const Context& context, double interval) {
   catch_stop_signals();
+  const auto ended = [](const ListedRun& listed) {
+    return listed.run.state == RunState::completed || listed.run.state == RunState::failed;
+  };
   auto busy_at = std::chrono::steady_clock::now();
   while (true) {
     const View view(selection, context);
@@ -325,7 +322,7 @@ void watch(const RunSelection& selection, const Context& context, double interva
     const auto now = std::chrono::steady_clock::now();
     if (!view.holders.empty() || view.queue.busy()) {
       busy_at = now;
-    } else if (!stages_remain(view.runs) || now - busy_at > kIdle) {
+    } else if (std::ranges::all_of(view.runs, ended) || now - busy_at > kIdle) {
       return;
     }
     // Many users share the queue of a cluster, so query it at most every 10 s.

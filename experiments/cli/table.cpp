@@ -45,14 +45,6 @@ void table(const TableOptions& options, Context& context) {
   print_problems(made, "not measured", context);
 }
 
-std::string columns_text() {
-  std::string text;
-  for (const TableColumn& column : table_columns()) {
-    text += fmt::format("  {:<37} {}\n", column.name, column.meaning);
-  }
-  return text;
-}
-
 }  // namespace
 
 void add_table(CLI::App& app, Context& context) {
@@ -66,6 +58,10 @@ void add_table(CLI::App& app, Context& context) {
       command->add_option("--per", options->per, "One row for each checkpoint or each run")
           ->check(one_of<RowPer>())
           ->capture_default_str();
+  std::string columns_text;
+  for (const TableColumn& column : table_columns()) {
+    columns_text += fmt::format("  {:<37} {}\n", column.name, column.meaning);
+  }
   std::vector<std::string> curves;
   std::string curves_text;
   for (const CurveMeasure& curve : all_curve_measures()) {
@@ -92,7 +88,7 @@ void add_table(CLI::App& app, Context& context) {
   command->footer(
       "Columns (one more for each swept parameter after the seed, named as in a manifest; an empty "
       "field\nis unknown or does not apply):\n" +
-      columns_text() +
+      columns_text +
       "Columns named per_cycle come with --ledger alone. The last ones, from critical_size on, are "
       "those of --per run, whose measures are of the "
       "newest\ncheckpoint. A row for each experiment that shares a run, up to the cycles that it "

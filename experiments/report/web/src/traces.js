@@ -10,7 +10,7 @@ const quantities = [
     axis: {label: plain("percentage crystalline"), unit: plain("%"), low: 0}}
 ];
 
-export const colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+const colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 const grey = "#8f98a3";
 
 const pointsOf = (run, key) => (run.cycle ?? [])
@@ -32,25 +32,23 @@ const chartOf = (quantity, label, series, range = {}) => ({
   title: [], series, lines: []
 });
 
-// One run, and behind it the others of its variant: [{name, chart}].
+// A chart of each quantity: [{name, chart}].
+const chartsOf = (name, label, seriesFor, range) => quantities.map((quantity) => ({
+  name: `${quantity.name}-${name}`, chart: chartOf(quantity, label, seriesFor(quantity.key), range)
+}));
+
+// One run, and behind it the others of its variant.
 export function chartsOfRun(run, others) {
-  return quantities.map((quantity) => ({
-    name: `${quantity.name}-${run.id.slice(0, 8)}`,
-    chart: chartOf(quantity, abscissa(run), [
-      ...others.map((one, index) => seriesOf(one, quantity.key,
-        index === 0 ? plain("other seeds") : [], grey, 0)),
-      seriesOf(run, quantity.key, plain(`seed ${run.seed}`), colours[0], 7)
-    ])
-  }));
+  return chartsOf(run.id.slice(0, 8), abscissa(run), (key) => [
+    ...others.map((one, index) => seriesOf(one, key, index === 0 ? plain("other seeds") : [], grey, 0)),
+    seriesOf(run, key, plain(`seed ${run.seed}`), colours[0], 7)
+  ]);
 }
 
 // All seeds of a variant, on axes that `range` holds together.
 export function chartsOfVariant(runs, name, range) {
-  return quantities.map((quantity) => ({
-    name: `${quantity.name}-${name}`,
-    chart: chartOf(quantity, abscissa(runs[0]), runs.map((run, index) => seriesOf(run, quantity.key,
-      plain(`seed ${run.seed}`), colours[index % colours.length], 0)), range)
-  }));
+  return chartsOf(name, abscissa(runs[0]), (key) => runs.map((run, index) =>
+    seriesOf(run, key, plain(`seed ${run.seed}`), colours[index % colours.length], 0)), range);
 }
 
 // The ends of the axes that show all of these runs, with a little room.
