@@ -91,6 +91,7 @@ Facts facts(const bench::EngineMean& m) {
           {"standard_errors_apart", m.apart}};
 }
 
+// The tables of `accuracy` are facts already.
 const Facts& facts(const Facts& result) {
   return result;
 }

@@ -50,7 +50,7 @@ struct View {
     for (const SelectedRun& one : newest_runs(selected, false).runs) {
       newest.emplace(place_of(one), one.membership);
     }
-    for (const SelectedRun& found : selected) {
+    for (const SelectedRun& found : selected) {  // the places of a run follow each other
       if (runs.empty() || runs.back().run.id != found.run.id) runs.push_back({found});
       const auto of_newest = newest.find(place_of(found));
       SelectedRun place = found;
