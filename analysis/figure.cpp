@@ -8,6 +8,7 @@
 #include "analysis/figures/figures.hpp"
 
 namespace shearcell {
+
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
   for (const nlohmann::json* values : {&run.labels, &run.parameters}) {
     if (values->is_object() && values->contains(key)) return values->at(key);
@@ -54,65 +55,42 @@ std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::strin
   }
   const std::vector<nlohmann::json> list(variants.begin(), variants.end());
   std::vector<std::string> in_order(keys.begin(), keys.end());
-  std::stable_partition(in_order.begin(), in_order.end(),
-                        [&](const std::string& key) { return key == first; });
+  std::ranges::stable_partition(in_order, [&](const std::string& key) { return key == first; });
   return keys_telling_apart(list, std::move(in_order));
 }
 
 std::span<const Figure> all_figures() {
   using enum FigureForm;
+  using Names = std::vector<std::string>;
+  const auto one = [](const char* name, const char* title, auto* make, FigureForm form,
+                      Names keys = {}, Names needs = {}) {
+    return Figure{name, title, make, form, std::move(keys), std::move(needs)};
+  };
   static const std::vector<Figure> all = {
-      {"table1", "Table I beside the parameters of every experiment", figure_table1, table},
-      {"S1", "Volume fraction in the limit of hard grains", figure_s1, groups, {"pressure_at"}},
-      {"S2", "Still fluid and fluid that moves with the cell", figure_s2, curves, {"fluid"}},
-      {"S3", "Time steps", figure_s3, curves, {"steps_per_cycle"}},
-      {"S4",
-       "Moving bottom wall and moving top wall",
-       figure_s4,
-       curves,
-       {"moving_wall", "pressure_at"}},
-      {"S5a", "Onset of crystallization against amplitude", figure_s5a, groups, {"amplitude_rad"}},
-      {"S5b", "Onset of crystallization against system size", figure_s5b, groups, {"grains"}},
-      {"S6",
-       "Shear with and without gravity",
-       figure_s6,
-       curves,
-       {"amplitude_rad", "gravity_m_per_s2"}},
-      {"S7",
-       "Where crystallites nucleate",
-       figure_s7,
-       groups,
-       {"amplitude_rad", "stiffness_N_per_m"},
-       {"crystallites"}},
-      {"C",
-       "Growth of crystallites by size",
-       figure_c,
-       groups,
-       {"amplitude_rad"},
-       {"crystallites"}},
-      {"nucleation",
-       "Runs without an onset, and the rate of nucleation",
-       figure_nucleation,
-       groups,
-       {"amplitude_rad", "grains"}},
-      {"nucleation_core",
-       "The rate of nucleation at least 4 d from the walls",
-       figure_nucleation_core,
-       groups,
-       {"amplitude_rad", "grains"},
-       {"core"}},
-      {"B5",
-       "Continuous and periodically paused shear",
-       figure_b5,
-       curves,
-       {"protocol"},
-       {"at_rest"}},
-      {"walls", "Rough and smooth walls", figure_walls, curves, {"walls"}},
-      {"choices",
-       "Mass and drag of the moving wall, and other wall grains",
-       figure_choices,
-       curves,
-       {"wall_mass_grains_per_d2", "wall_drag_grains_per_d2_s", "wall_grain_draw"}}};
+      one("table1", "Table I beside the parameters of every experiment", figure_table1, table),
+      one("S1", "Volume fraction in the limit of hard grains", figure_s1, groups, {"pressure_at"}),
+      one("S2", "Still fluid and fluid that moves with the cell", figure_s2, curves, {"fluid"}),
+      one("S3", "Time steps", figure_s3, curves, {"steps_per_cycle"}),
+      one("S4", "Moving bottom wall and moving top wall", figure_s4, curves,
+          {"moving_wall", "pressure_at"}),
+      one("S5a", "Onset of crystallization against amplitude", figure_s5a, groups,
+          {"amplitude_rad"}),
+      one("S5b", "Onset of crystallization against system size", figure_s5b, groups, {"grains"}),
+      one("S6", "Shear with and without gravity", figure_s6, curves,
+          {"amplitude_rad", "gravity_m_per_s2"}),
+      one("S7", "Where crystallites nucleate", figure_s7, groups,
+          {"amplitude_rad", "stiffness_N_per_m"}, {"crystallites"}),
+      one("C", "Growth of crystallites by size", figure_c, groups, {"amplitude_rad"},
+          {"crystallites"}),
+      one("nucleation", "Runs without an onset, and the rate of nucleation", figure_nucleation,
+          groups, {"amplitude_rad", "grains"}),
+      one("nucleation_core", "The rate of nucleation at least 4 d from the walls",
+          figure_nucleation_core, groups, {"amplitude_rad", "grains"}, {"core"}),
+      one("B5", "Continuous and periodically paused shear", figure_b5, curves, {"protocol"},
+          {"at_rest"}),
+      one("walls", "Rough and smooth walls", figure_walls, curves, {"walls"}),
+      one("choices", "Mass and drag of the moving wall, and other wall grains", figure_choices,
+          curves, {"wall_mass_grains_per_d2", "wall_drag_grains_per_d2_s", "wall_grain_draw"})};
   return all;
 }
 

@@ -8,31 +8,24 @@
 
 namespace shearcell {
 
+using MakeFigure = FigureResult(std::span<const FigureRun> runs);
+
 // Table I and the parameters of the runs.
-FigureResult figure_table1(std::span<const FigureRun> runs);
+MakeFigure figure_table1;
 
 // phi and phi_u of a packing whose springs are made stiffer.
-FigureResult figure_s1(std::span<const FigureRun> runs);
+MakeFigure figure_s1;
 
 // The two panels of S2 to S4 are phi against cycle, and percentage crystalline against phi, with a
-// curve per variant. B5 and walls have the percentage against cycle between them.
-FigureResult figure_s2(std::span<const FigureRun> runs);
-FigureResult figure_s3(std::span<const FigureRun> runs);
-FigureResult figure_s4(std::span<const FigureRun> runs);
-FigureResult figure_b5(std::span<const FigureRun> runs);
-FigureResult figure_walls(std::span<const FigureRun> runs);
-// phi against cycle alone.
-FigureResult figure_choices(std::span<const FigureRun> runs);
+// curve per variant. B5 and walls have the percentage against cycle between them; choices has phi
+// against cycle alone.
+MakeFigure figure_s2, figure_s3, figure_s4, figure_b5, figure_walls, figure_choices;
 
 // Growth of crystallites; onset of crystallization; where they nucleate.
-FigureResult figure_c(std::span<const FigureRun> runs);
-FigureResult figure_s5a(std::span<const FigureRun> runs);
-FigureResult figure_s5b(std::span<const FigureRun> runs);
-FigureResult figure_s6(std::span<const FigureRun> runs);
-FigureResult figure_s7(std::span<const FigureRun> runs);
-// Onsets as survival data: share of runs without one, and rate of nucleation against phi.
-FigureResult figure_nucleation(std::span<const FigureRun> runs);
-// That rate for the grains at least 4 d from the walls.
-FigureResult figure_nucleation_core(std::span<const FigureRun> runs);
+MakeFigure figure_c, figure_s5a, figure_s5b, figure_s6, figure_s7;
+
+// Onsets as survival data: share of runs without one, and rate of nucleation against phi; that rate
+// for the grains at least 4 d from the walls.
+MakeFigure figure_nucleation, figure_nucleation_core;
 
 }  // namespace shearcell
