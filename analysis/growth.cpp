@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace shearcell {
 namespace {
@@ -65,29 +66,38 @@ std::optional<GrowthFit> fit(const Eigen::ArrayXd& log_size, const Eigen::ArrayX
   return GrowthFit{theta[0] - theta[1] * mean, theta[1]};
 }
 
-/// Bootstrap of `value`, a function of the sums of the counts over the selected runs.
-template <class Value>
-std::optional<Estimate> over_selections(const Cases& cases, const Value& value) {
-  return bootstrapped(static_cast<std::size_t>(cases.grew.cols()),
-                      [&](std::span<const std::size_t> selection) -> std::optional<double> {
-                        Eigen::ArrayXd grew = Eigen::ArrayXd::Zero(cases.log_size.size());
-                        Eigen::ArrayXd shrank = grew;
-                        for (const std::size_t run : selection) {
-                          grew += cases.grew.col(static_cast<Eigen::Index>(run));
-                          shrank += cases.shrank.col(static_cast<Eigen::Index>(run));
-                        }
-                        return value(grew, shrank);
-                      });
+using Selection = std::span<const std::size_t>;
+
+/// Sums of the counts, which are `cases.grew` or `cases.shrank`, over the selected runs.
+Eigen::ArrayXd sum_over(const Eigen::ArrayXXd& counts, Selection selection) {
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(counts.rows());
+  for (const std::size_t run : selection) sum += counts.col(static_cast<Eigen::Index>(run));
+  return sum;
 }
 
-/// Bootstrap of `value`, a function of the fit.
-template <class Value>
-std::optional<Estimate> over_fits(const Cases& cases, const Value& value) {
-  return over_selections(cases, [&](const Eigen::ArrayXd& grew, const Eigen::ArrayXd& shrank) {
-    const std::optional<GrowthFit> found = fit(cases.log_size, grew, shrank);
-    return found ? value(*found) : std::nullopt;
-  });
-}
+/// The fits to selections of the runs, each made once.
+class Fits {
+ public:
+  explicit Fits(Cases cases) : cases_(std::move(cases)) {}
+
+  /// Bootstrap of `value`, a function of the fit.
+  template <class Value>
+  std::optional<Estimate> estimate(const Value& value) {
+    const auto statistic = [&](Selection selection) -> std::optional<double> {
+      const auto [known, first] = fits_.try_emplace({selection.begin(), selection.end()});
+      if (first) {
+        known->second = fit(cases_.log_size, sum_over(cases_.grew, selection),
+                            sum_over(cases_.shrank, selection));
+      }
+      return known->second ? value(*known->second) : std::nullopt;
+    };
+    return bootstrapped(static_cast<std::size_t>(cases_.grew.cols()), statistic);
+  }
+
+ private:
+  Cases cases_;
+  std::map<std::vector<std::size_t>, std::optional<GrowthFit>> fits_;
+};
 
 /// Pools neighbouring sizes until the share that grew rises from pool to pool. Returns the smallest
 /// size of the first pool of which more than half grew; infinite if there is no such pool.
@@ -213,31 +223,34 @@ std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs, Vanished
 
 std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs, Vanished vanished) {
   const Cases cases = cases_of(runs, vanished);
-  const auto found = over_fits(cases, [](const GrowthFit& fit) { return fit.critical_size(); });
+  const auto found = Fits(cases).estimate([](const GrowthFit& fit) { return fit.critical_size(); });
   const auto largest = static_cast<double>(cases.log_size.size());
   if (!found || found->value < 1 || found->value > largest) return std::nullopt;
   return found;
 }
 
 std::optional<Estimate> monotone_critical_size(std::span<const GrowthBySize> runs) {
-  const auto found = over_selections(
-      cases_of(runs, Vanished::shrank),
-      [](const Eigen::ArrayXd& grew, const Eigen::ArrayXd& shrank) -> std::optional<double> {
-        return first_that_grows(grew, shrank);
-      });
+  const Cases cases = cases_of(runs, Vanished::shrank);
+  const auto found = bootstrapped(runs.size(), [&](Selection selection) {
+    return std::optional<double>(
+        first_that_grows(sum_over(cases.grew, selection), sum_over(cases.shrank, selection)));
+  });
   if (!found || !(found->value > 1)) return std::nullopt;
   return found;
 }
 
-std::optional<Estimate> fitted_delta_rho(std::span<const GrowthBySize> runs, double size) {
-  auto found = over_fits(cases_of(runs, Vanished::shrank), [size](const GrowthFit& fit) {
-    return std::optional<double>(fit.delta_rho(size));
-  });
-  if (found) {
+std::vector<std::optional<Estimate>> fitted_delta_rho(std::span<const GrowthBySize> runs,
+                                                      std::span<const double> sizes) {
+  Fits fits(cases_of(runs, Vanished::shrank));
+  std::vector<std::optional<Estimate>> all;
+  for (const double size : sizes) {
+    auto& found = all.emplace_back(fits.estimate(
+        [size](const GrowthFit& fit) { return std::optional<double>(fit.delta_rho(size)); }));
+    if (!found) continue;
     found->interval.low = std::max(-1.0, found->interval.low);
     found->interval.high = std::min(1.0, found->interval.high);
   }
-  return found;
+  return all;
 }
 
 }  // namespace shearcell

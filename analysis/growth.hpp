@@ -84,8 +84,9 @@ std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs,
 /// of critical_size(); none if all sizes grow, or none does.
 std::optional<Estimate> monotone_critical_size(std::span<const GrowthBySize> runs);
 
-/// The fitted delta_rho at `size` and its interval, which ends at -1 and 1 where many selections of
-/// runs have no fit.
-std::optional<Estimate> fitted_delta_rho(std::span<const GrowthBySize> runs, double size);
+/// The fitted delta_rho at each size and its interval, which ends at -1 and 1 where many selections
+/// of runs have no fit.
+std::vector<std::optional<Estimate>> fitted_delta_rho(std::span<const GrowthBySize> runs,
+                                                      std::span<const double> sizes);
 
 }  // namespace shearcell

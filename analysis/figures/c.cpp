@@ -81,11 +81,14 @@ constexpr std::size_t least_counted = 20;
 
 /// The fitted curve. Its error is half the length of the interval.
 std::vector<ChartPoint> fitted_points(const AmplitudeGrowth& one) {
+  std::vector<double> sizes;
+  for (double size = 1; one.fit && size <= 60; size += size < 10 ? 1 : 5) sizes.push_back(size);
+  const auto estimates = fitted_delta_rho(one.runs, sizes);
   std::vector<ChartPoint> points;
-  for (double size = 1; one.fit && size <= 60; size += size < 10 ? 1 : 5) {
-    ChartPoint& at = points.emplace_back(ChartPoint{size, one.fit->delta_rho(size)});
-    if (const auto found = fitted_delta_rho(one.runs, size)) {
-      at.y_error = (found->interval.high - found->interval.low) / 2;
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    ChartPoint& at = points.emplace_back(ChartPoint{sizes[k], one.fit->delta_rho(sizes[k])});
+    if (estimates[k]) {
+      at.y_error = (estimates[k]->interval.high - estimates[k]->interval.low) / 2;
     }
   }
   return points;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "tests/analysis/made_up_runs.hpp"
@@ -129,7 +130,7 @@ TEST(CriticalSize, IntervalComesFromTheRuns) {
   const GrowthBySize nearly_flat = {{1, {600, 400, 0}}, {10, {601, 399, 0}}};
   EXPECT_LT(fit_growth(std::vector{nearly_flat})->critical_size().value(), 1);
   EXPECT_FALSE(critical_size(std::vector(5, nearly_flat)).has_value()) << "less than a grain";
-  const Estimate band = fitted_delta_rho(runs, 15).value();
+  const Estimate band = fitted_delta_rho(runs, std::array{15.0}).front().value();
   EXPECT_LT(band.interval.low, 0);
   EXPECT_GT(band.interval.high, 0);
 }
@@ -138,7 +139,7 @@ TEST(CriticalSize, IntervalComesFromTheRuns) {
 TEST(FittedDeltaRho, IsUnknownIfManySelectionsHaveNoFit) {
   std::vector<GrowthBySize> runs(5, GrowthBySize{{3, {0, 9, 0}}, {9, {0, 4, 0}}});
   runs[0] = logistic_growth(15, 2);
-  const Estimate band = fitted_delta_rho(runs, 15).value();
+  const Estimate band = fitted_delta_rho(runs, std::array{15.0}).front().value();
   EXPECT_EQ(band.interval.low, -1);
   EXPECT_EQ(band.interval.high, 1);
 }
