@@ -43,6 +43,11 @@ std::optional<double> pooled(std::span<const std::vector<double>> histograms,
   return inside / all * static_cast<double>(histograms.front().size());
 }
 
+double phi_in(Region region, const Measures& measures) {
+  static const ScalarMeasure& core = *find_measure("core_phi");
+  return region == Region::core ? core.of(measures) : measures.phi;
+}
+
 /// The time of one run in one bin of phi before its onset.
 struct Stay {
   double cycles = 0;
@@ -124,39 +129,22 @@ double bisected(double low, double high, const auto& holds) {
 
 }  // namespace
 
-std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis) {
-  std::vector<double> places;
-  for (const CheckpointMeasures& checkpoint : run.checkpoints) {
-    if (!checkpoint.measures.crystallite_map) continue;
-    const CrystalliteMap& map = *checkpoint.measures.crystallite_map;
-    for (std::size_t c = 0; c < map.size.size(); ++c) {
-      if (map.size[c] < nucleus_smallest || map.size[c] > nucleus_largest) continue;
-      places.push_back(place(map, map.centre[c], axis));
-    }
-  }
-  return places;
-}
-
-std::vector<double> nucleus_births(const FigureRun& run, CellAxis axis) {
+std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis, Seen seen) {
   std::vector<double> places;
   std::set<std::int32_t> known;  // grains that have been in a nucleus
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
     if (!checkpoint.measures.crystallite_map) continue;
     const CrystalliteMap& map = *checkpoint.measures.crystallite_map;
-    std::vector<std::int32_t> seen(map.size.size());
+    std::vector<std::int32_t> known_of(map.size.size());
     for (std::size_t k = 0; k < map.grain.size(); ++k) {
-      if (known.contains(map.grain[k])) ++seen[static_cast<std::size_t>(map.label[k])];
-    }
-    for (std::size_t k = 0; k < map.grain.size(); ++k) {
-      if (map.size[static_cast<std::size_t>(map.label[k])] >= nucleus_smallest) {
-        known.insert(map.grain[k]);
-      }
+      const auto label = static_cast<std::size_t>(map.label[k]);
+      if (map.size[label] < nucleus_smallest) continue;
+      if (!known.insert(map.grain[k]).second) ++known_of[label];
     }
     for (std::size_t c = 0; c < map.size.size(); ++c) {
-      const bool is_new = map.size[c] >= nucleus_smallest && 2 * seen[c] < map.size[c];
-      if (is_new && map.size[c] <= nucleus_largest) {
-        places.push_back(place(map, map.centre[c], axis));
-      }
+      if (map.size[c] < nucleus_smallest || map.size[c] > nucleus_largest) continue;
+      const bool is_new = 2 * known_of[c] < map.size[c];
+      if (seen == Seen::always || is_new) places.push_back(place(map, map.centre[c], axis));
     }
   }
   return places;
@@ -186,11 +174,6 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> runs, std::
 double grains_in(Region region, const Measures& measures) {
   static const ScalarMeasure& core = *find_measure("core_grains");
   return region == Region::core ? core.of(measures) : static_cast<double>(measures.interior_grains);
-}
-
-double phi_in(Region region, const Measures& measures) {
-  static const ScalarMeasure& core = *find_measure("core_phi");
-  return region == Region::core ? core.of(measures) : measures.phi;
 }
 
 std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region) {

@@ -19,16 +19,15 @@ namespace shearcell {
 enum class CellAxis { x, y, y_nominal };
 inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 
-/// Places of the centres of mass of all crystallites of 15 to 25 grains in a run. x is counted from
+/// Whether a nucleus counts in every cycle, or once, where it is first seen. A crystallite of 15
+/// grains or more is a new nucleus if fewer than half of its grains have been in nuclei before, at
+/// any cycle. A nucleus that is first seen with more than 25 grains has no place. [choice]
+enum class Seen { always, first };
+
+/// Places of the centres of mass of the crystallites of 15 to 25 grains in a run. x is counted from
 /// d outside the left plane in units of w = width + 2 d, y from the bottom plane in units of the
 /// height h, so that both lie in [0, 1]; a cell higher than 1.675 L exceeds that. [choice]
-std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis);
-
-/// The same with one place for each nucleus, where it first has 15 to 25 grains. So a nucleus that
-/// is seen in many cycles counts once. A crystallite of 15 grains or more is a new nucleus if fewer
-/// than half of its grains have been in nuclei before, at any cycle. A nucleus that is first seen
-/// with more than 25 grains has no place. [choice]
-std::vector<double> nucleus_births(const FigureRun& run, CellAxis axis);
+std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis, Seen seen = Seen::always);
 
 struct DensityBin {
   double low = 0;
@@ -44,7 +43,6 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> runs, std::
 /// from the wall surfaces (packing_fraction.hpp). The onset is the same for both.
 enum class Region { interior, core };
 double grains_in(Region region, const Measures& measures);
-double phi_in(Region region, const Measures& measures);
 
 /// A bin of phi (binning.hpp) before the onset of crystallization (onset.hpp, method 1).
 struct NucleationRate {

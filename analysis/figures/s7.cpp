@@ -28,11 +28,10 @@ struct Places {
   std::size_t count = 0;
 };
 
-/// `find` is nucleus_places, or nucleus_births to count each nucleus once.
-Places places_of(RunGroup runs, CellAxis axis, decltype(nucleus_places)* find = nucleus_places) {
+Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
   Places places;
   for (const FigureRun* run : runs) {
-    std::vector<double> found = find(*run, axis);
+    std::vector<double> found = nucleus_places(*run, axis, seen);
     if (found.empty()) continue;
     places.count += found.size();
     places.runs.push_back(std::move(found));
@@ -94,7 +93,7 @@ Text ratio(const char* length, const Text& unit) {
 /// in the one part, -1 in the other, 0 elsewhere, and nothing where a nucleus is not counted.
 Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
                       const std::function<std::optional<int>(double place)>& side) {
-  const Places places = places_of(runs, axis, nucleus_births);
+  const Places places = places_of(runs, axis, Seen::first);
   const auto difference = [&](std::span<const std::size_t> selection) {
     double sum = 0;
     double all = 0;

@@ -54,10 +54,10 @@ TEST(NucleusBirths, CountAFollowedNucleusOnce) {
   const FigureRun run =
       run_with(std::vector{one_crystallite(15, 9, 10), one_crystallite(3, 9, 10),
                            one_crystallite(29, 9, 11), one_crystallite(20, 9, 11), two, two});
-  EXPECT_EQ(nucleus_births(run, CellAxis::y), (std::vector<double>{0.25, 0.75}));
+  EXPECT_EQ(nucleus_places(run, CellAxis::y, Seen::first), (std::vector<double>{0.25, 0.75}));
   EXPECT_TRUE(
-      nucleus_births(run_with(std::vector{one_crystallite(40, 9, 10), one_crystallite(20, 9, 10)}),
-                     CellAxis::x)
+      nucleus_places(run_with(std::vector{one_crystallite(40, 9, 10), one_crystallite(20, 9, 10)}),
+                     CellAxis::x, Seen::first)
           .empty())
       << "first seen with more than 25 grains";
 }
