@@ -23,6 +23,7 @@ namespace {
 MeasureColumn column_of(std::string_view measure, std::string_view of, Quantity quantity = {}) {
   std::string name(measure);
   std::string unit(of == "%" ? "percent" : of == "1" ? "" : of == "d^2" ? "d2" : of);
+  if (unit.starts_with("1/")) unit.replace(0, 2, "per_");
   if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
   return {std::move(name), std::move(unit), std::move(quantity)};
 }
@@ -33,11 +34,13 @@ MeasureColumn scalar_column(std::string_view name) {
   return column_of(name, measure.unit, [&measure](const Measures& m) { return measure.of(m); });
 }
 
-/// The axis of "largest_crystallite" is named "largest crystallite".
+/// The axis of "largest_crystallite" is named "largest crystallite". It has the unit in brackets if
+/// the name ends in it.
 Axis named_axis(std::string_view measure, std::string_view unit) {
   std::string name = column_of(measure, unit).name;
+  const bool has_unit = name.size() < measure.size();
   std::ranges::replace(name, '_', ' ');
-  if (unit == "1") return {.name = std::move(name)};
+  if (!has_unit) return {.name = std::move(name)};
   return {.name = std::move(name), .unit = Text(unit == "d^2" ? "d²" : std::string(unit))};
 }
 
@@ -57,8 +60,14 @@ bool all_stiffen(std::span<const FigureRun> runs) {
   });
 }
 
-Axis x_axis(const std::string& key, std::span<const FigureRun> runs) {
-  if (key != "cycle" || !all_stiffen(runs)) return axis_of(key);
+Axis x_axis(const PlotSpec& plot, std::span<const FigureRun> runs) {
+  if (const CurveMeasure* y = find_curve_measure(plot.y)) return named_axis(y->x, y->x_unit);
+  if (!plot.x_symbol.empty()) {
+    return {.symbol = italic(plot.x_symbol),
+            .unit = plot.x_unit.empty() ? Text() : Text(plot.x_unit)};
+  }
+  if (!plot.x_unit.empty()) return named_axis(plot.x, plot.x_unit);
+  if (plot.x != "cycle" || !all_stiffen(runs)) return axis_of(plot.x);
   return {.name = "step of the stiffening", .whole = true};
 }
 
@@ -229,7 +238,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
   table.chart.series = series_of(curves, columns_against(x, y));
   for (std::size_t k = 0; k < curves.size(); ++k) {
     if (of_curve != nullptr) style_without_symbol(k, table.chart.series[k]);
-    if (of_curve == nullptr) table.chart.series[k].band = false;
+    table.chart.series[k].band = of_curve != nullptr;
   }
   if (plot.traces) table.chart.series = std::move(traces);
   for (Series& series : table.chart.series) {
@@ -304,7 +313,6 @@ Scalar scalar_of(const ClaimSpec& claim) {
 }
 
 FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> runs) {
-  const bool waits = claim.compare == "onset_size_cycle";  // some runs end before their onset
   const Scalar scalar = scalar_of(claim);
   const std::string a = words_of(claim.between[0]), b = words_of(claim.between[1]);
   const std::string text =
@@ -314,11 +322,11 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> run
   const Claim decided{text, claim.margin, claim.higher ? Claimed::above : Claimed::within};
   const auto first = variant_with(claim, claim.between[0], runs);
   const auto second = variant_with(claim, claim.between[1], runs);
-  if (waits) {
-    return {{},
-            {compare_waits(decided, "the onset", waits_for_onset(first), waits_for_onset(second))}};
-  }
-  return {{}, {compare(decided, scalar, first, second)}};
+  const bool waits = claim.compare == "onset_size_cycle";  // some runs end before their onset
+  return {
+      {},
+      {waits ? compare_waits(decided, "the onset", waits_for_onset(first), waits_for_onset(second))
+             : compare(decided, scalar, first, second)}};
 }
 
 }  // namespace
@@ -346,12 +354,9 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   const CurveMeasure* measured = find_curve_measure(plot.y);
   const std::string x(measured == nullptr ? plot.x : measured->x);
   Figure figure{plot.name, plot.y + " against " + x,
-                [plot, names, measured](std::span<const FigureRun> runs) {
+                [plot, names](std::span<const FigureRun> runs) {
                   FigureTable table = draw(plot, runs, names);
-                  table.chart.x = measured == nullptr ? x_axis(plot.x, runs)
-                                                      : named_axis(measured->x, measured->x_unit);
-                  if (!plot.x_symbol.empty()) table.chart.x = {.symbol = italic(plot.x_symbol)};
-                  if (!plot.x_unit.empty()) table.chart.x.unit = plot.x_unit;
+                  table.chart.x = x_axis(plot, runs);
                   table.chart.y = axis_of(plot.y);
                   table.chart.x.log = plot.log_x;
                   table.chart.y.log = plot.log_y;

@@ -176,7 +176,7 @@ PlotSpec read_plot(const Entry& in, const Manifest& manifest) {
   }
   if (const Field* field = against_parameter ? find_field(plot.x) : nullptr) {
     plot.x_symbol = field->symbol;
-    if (!field->symbol.empty() && field->unit != "1") plot.x_unit = field->unit;
+    if (field->unit != "1") plot.x_unit = field->unit;
     if (get_value(*field, Parameters{}).is_string()) {
       x->reject_value("is not a number", "Take `by` for a curve of each of its values.");
     }

@@ -139,6 +139,19 @@ TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
   EXPECT_EQ(table({.name = "own", .y = "phi", .by = "fluid"}).chart.series.size(), 2U);
 }
 
+TEST(OwnPlot, NamesTheUnitOfAnAxisOnce) {
+  const std::vector<FigureRun> runs = two_parameters();
+  const auto x_axis = [&](const char* x, const char* unit) {
+    const PlotSpec plot{.name = "own", .y = "phi", .x = x, .x_unit = unit};
+    const Axis axis = plot_figure(plot).make(runs).tables.at(0).chart.x;
+    return plain_text(axis.name) + " [" + plain_text(axis.unit) + "]";
+  };
+  EXPECT_EQ(x_axis("pause_s", "s"), "pause [s]");
+  EXPECT_EQ(x_axis("shear_rate_per_s", ""), "shear rate [1/s]");
+  EXPECT_EQ(x_axis("msd_1_cycle_d2", ""), "msd 1 cycle [d²]");
+  EXPECT_EQ(x_axis("max_overlap_diameters", "d"), "max overlap diameters []");
+}
+
 TEST(OwnPlot, AgainstAParameterComparesTheLastCycleThatAllRunsHave) {
   std::vector<FigureRun> runs = two_parameters();
   runs.front().checkpoints.pop_back();
