@@ -9,7 +9,7 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/draw.hpp"
-#include "experiments/runner/progress.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
 

@@ -17,8 +17,8 @@
 #include "experiments/runner/engine.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/novelty.hpp"
-#include "experiments/runner/progress.hpp"
 #include "experiments/runner/run_end.hpp"
+#include "experiments/runner/words.hpp"
 
 namespace shearcell::cli {
 namespace {

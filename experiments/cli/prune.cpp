@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/runner/progress.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stop.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell::cli {

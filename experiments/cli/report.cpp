@@ -7,7 +7,7 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/report/page.hpp"
-#include "experiments/runner/progress.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/io/file.hpp"
 
 namespace shearcell::cli {

@@ -11,6 +11,7 @@
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/stop.hpp"
+#include "experiments/runner/words.hpp"
 
 namespace shearcell::cli {
 namespace {

@@ -15,8 +15,8 @@
 #include "experiments/figures/own_part.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/runner/progress.hpp"
 #include "experiments/runner/run_end.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell::cli {

@@ -11,7 +11,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/document.hpp"
-#include "experiments/runner/progress.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 

@@ -16,10 +16,10 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
 #include "experiments/runner/cost.hpp"
-#include "experiments/runner/progress.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/io/clock.hpp"
 #include "provenance/io/read_number.hpp"
 

@@ -11,7 +11,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/proposal.hpp"
 #include "experiments/cluster/submission.hpp"
-#include "experiments/runner/progress.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"

@@ -9,9 +9,9 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/audit.hpp"
-#include "experiments/runner/progress.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stop.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/sha256.hpp"
 

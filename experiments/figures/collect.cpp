@@ -15,9 +15,9 @@
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
-#include "experiments/runner/progress.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/limits.hpp"
 

@@ -13,8 +13,8 @@
 #include "experiments/manifest/filter.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
-#include "experiments/runner/progress.hpp"
 #include "experiments/runner/registered.hpp"
+#include "experiments/runner/words.hpp"
 
 namespace shearcell {
 namespace {

@@ -8,7 +8,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/page.hpp"
-#include "experiments/runner/progress.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {

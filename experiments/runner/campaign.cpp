@@ -21,6 +21,7 @@
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 

@@ -12,7 +12,7 @@
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "experiments/runner/progress.hpp"
+#include "experiments/runner/words.hpp"
 #include "protocols/settle.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers in messages.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace shearcell {
+
+/// "1 run", "2 runs".
+std::string counted(std::size_t number, std::string_view one);
+
+/// "7 s", "4 min 05 s", "1 h 02 min", "3 d 07 h" or "12 years".
+std::string format_duration(double seconds);
+
+}  // namespace shearcell
