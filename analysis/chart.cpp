@@ -156,15 +156,6 @@ bool is_on_log_axes(const Chart& chart, const ChartPoint& p) {
   return !(chart.x.log && !(p.x > 0)) && !(chart.y.log && !(p.y > 0));
 }
 
-std::size_t not_on_log_axes(const FigureTable& table) {
-  std::size_t lost = 0;
-  for (const Series& series : table.chart.series) {
-    for (const ChartPoint& p : points_of(table, series))
-      lost += is_on_log_axes(table.chart, p) ? 0 : 1;
-  }
-  return lost;
-}
-
 std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
   std::string text = title + ".";
   bool bars = false, bands = false, own_errors = false;
@@ -179,16 +170,16 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
                         chart.letter.empty() ? "" : "(" + chart.letter + ") ", axis_text(chart.y),
                         axis_text(chart.x), chart.errors.empty() ? "" : "; " + chart.errors);
     own_errors = own_errors || !chart.errors.empty();
+    std::size_t lost = 0;
     for (const Series& series : chart.series) {
-      if (!chart.errors.empty()) break;
       for (const ChartPoint& p : points_of(table, series)) {
-        if (p.y_error) (series.band ? bands : bars) = true;
+        if (p.y_error && chart.errors.empty()) (series.band ? bands : bars) = true;
+        lost += is_on_log_axes(chart, p) ? 0 : 1;
       }
     }
     add_once(notes, chart.note);
-    if (const std::size_t lost = not_on_log_axes(table); lost > 0) {
+    if (lost > 0)
       add_once(notes, fmt::format("Values that are not positive are not drawn: {}", lost));
-    }
     for (const ReferenceLine& line : chart.lines) add_once(lines, plain_text(line.title));
   }
   if (bars || bands) {

@@ -165,9 +165,6 @@ std::string plain_text(const Text& text);
 /// Whether the chart can draw the point: a logarithmic axis has positive values only.
 bool is_on_log_axes(const Chart& chart, const ChartPoint& p);
 
-/// The number of points that the chart cannot draw.
-std::size_t not_on_log_axes(const FigureTable& table);
-
 /// The caption of a figure: what each panel shows, what the errors are, and what the reference
 /// lines are. One paragraph that begins with `title`.
 std::string caption_of(const std::string& title, std::span<const FigureTable> tables);

@@ -48,10 +48,6 @@ json scalars_of(const MeasureInput& input) {
   return kept;
 }
 
-json crystallites_of(const MeasureInput& input) {
-  return to_json(input.analysis.crystallites);
-}
-
 json lattices_of(const MeasureInput& input) {
   const Checkpoint& c = *input.checkpoint;
   const std::vector<Lattice> lattice =
@@ -122,19 +118,17 @@ json to_json(const MeasuredCurve& curve) {
 }
 
 /// A function of the positions of the interior grains.
-template <auto kCompute>
-json of_places(const char* name, const MeasureInput& input) {
+MeasuredCurve of_places(decltype(pair_correlation)* compute, const MeasureInput& input) {
   const Checkpoint& c = *input.checkpoint;
-  return {{name, to_json(kCompute(c.cell, pose_of(c), c.state.position,
-                                  input.analysis.grains.interior))}};
+  return compute(c.cell, pose_of(c), c.state.position, input.analysis.grains.interior);
 }
 
 json pair_correlation_of(const MeasureInput& input) {
-  return of_places<pair_correlation>("pair_correlation", input);
+  return {{"pair_correlation", to_json(of_places(pair_correlation, input))}};
 }
 
 json structure_factor_of(const MeasureInput& input) {
-  return of_places<structure_factor>("structure_factor", input);
+  return {{"structure_factor", to_json(of_places(structure_factor, input))}};
 }
 
 json profiles_of(const MeasureInput& input) {
@@ -186,10 +180,6 @@ void read_curves(const json& result, Measures& measures) {
   }
 }
 
-void read_crystallites(const json& result, Measures& measures) {
-  measures.crystallite_map = read_crystallite_map(result);
-}
-
 /// Calls kRead and turns errors of the JSON library into AnalysisError.
 template <void (*kRead)(const json&, Measures&)>
 void checked(const json& result, Measures& measures) {
@@ -228,7 +218,11 @@ std::span<const DerivedMeasure> all_derived_measures() {
       {"scalars", criteria(), scalars_of<Scalars::own>, checked<read_scalars<Scalars::own>>},
       {"mechanics", interior(), scalars_of<Scalars::mechanics>,
        checked<read_scalars<Scalars::mechanics>>},
-      {"crystallites", criteria(), crystallites_of, read_crystallites},
+      {"crystallites", criteria(),
+       [](const MeasureInput& input) { return to_json(input.analysis.crystallites); },
+       [](const json& result, Measures& measures) {
+         measures.crystallite_map = read_crystallite_map(result);
+       }},
       {"lattices", interior(), lattices_of, checked<read_numbers>},
       {"motion",
        with(criteria(), {{"neighbour_d", motion_neighbour_d}, {"reversible_d", reversible_d}}),

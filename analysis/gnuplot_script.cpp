@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "analysis/plot.hpp"
 
@@ -237,7 +238,7 @@ class Script {
     return every;
   }
 
-  static std::string look_of(const Series& series) {
+  static std::string line_style(const Series& series) {
     return fmt::format("lc rgb '{}' lw {}{}{}", series.colour, series.thin ? 0.6 : 1.2,
                        series.join == Join::dashes ? " dt 2" : "",
                        series.point == 0 ? "" : fmt::format(" pt {} ps 0.4", series.point));
@@ -248,7 +249,7 @@ class Script {
   }
 
   static std::string key_entry(const Series& series) {
-    return fmt::format("keyentry with {} {} {}", kind_of(series), look_of(series),
+    return fmt::format("keyentry with {} {} {}", kind_of(series), line_style(series),
                        series.title.empty() ? "notitle" : "title " + literal(markup(series.title)));
   }
 
@@ -275,12 +276,12 @@ class Script {
   void curve(std::size_t k, std::vector<std::string>& plots) const {
     const Series& series = chart_.series[k];
     const std::size_t every = spacing(series);
-    const std::string look = look_of(series);
+    const std::string drawn = line_style(series);
     if (every > 1)
-      plots.push_back(fmt::format("$series{} using 1:2 with lines {} notitle", k, look));
+      plots.push_back(fmt::format("$series{} using 1:2 with lines {} notitle", k, drawn));
     if (every > 1 && series.point == 0) return;
     plots.push_back(fmt::format("$series{} every {} using 1:2 with {} {} notitle", k, every,
-                                every > 1 ? "points" : kind_of(series), look));
+                                every > 1 ? "points" : kind_of(series), drawn));
   }
 
   const Chart& chart_;
@@ -295,9 +296,7 @@ constexpr int row_height = 26;  // of a table drawn as text [px]
 constexpr int cell_margin = 10;
 
 int width_of(const TextTable& table) {
-  int width = 0;
-  for (const int column : table.widths) width += column;
-  return width;
+  return std::accumulate(table.widths.begin(), table.widths.end(), 0);
 }
 
 int height_of(const TextTable& table) {

@@ -18,14 +18,14 @@ void find_crystallites(const VoronoiDiagram& diagram, Analysis& analysis) {
   GrainMeasures& grains = analysis.grains;
   grains.crystallites =
       crystallites(diagram, crystalline_interior(grains), connecting_face * mean_surface(grains));
-  const auto percent = [&](auto&& is_wanted) {
-    return percent_of_interior(grains,
-                               [&](std::size_t i) { return is_wanted(grains.structure[i]); });
+  const auto percent = [&](auto... wanted) {
+    return percent_of_interior(
+        grains, [&](std::size_t i) { return ((grains.structure[i] == wanted) || ...); });
   };
   Measures& all = analysis.measures;
-  all.fcc_percent = percent([](Structure s) { return s == Structure::fcc; });
-  all.hcp_percent = percent([](Structure s) { return s == Structure::hcp; });
-  all.crystalline_percent = percent([](Structure s) { return s != Structure::disordered; });
+  all.fcc_percent = percent(Structure::fcc);
+  all.hcp_percent = percent(Structure::hcp);
+  all.crystalline_percent = percent(Structure::fcc, Structure::hcp);
   all.crystallites = grains.crystallites.size.size();
   all.largest_crystallite = static_cast<std::size_t>(grains.crystallites.largest);
 }

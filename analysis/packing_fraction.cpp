@@ -50,11 +50,9 @@ std::vector<double> depths(const Cell& cell, const WallPose& pose, const Eigen::
 
 std::vector<std::uint8_t> interior_grains(const Cell& cell, const WallPose& pose,
                                           const Eigen::Matrix3Xd& grains) {
-  const double least = interior_margin(cell);
-  std::vector<std::uint8_t> interior(static_cast<std::size_t>(grains.cols()));
-  for (Eigen::Index i = 0; i < grains.cols(); ++i) {
-    const double distance = wall_distances(cell, pose, grains.col(i)).minCoeff();
-    interior[static_cast<std::size_t>(i)] = distance >= least ? 1 : 0;
+  std::vector<std::uint8_t> interior;
+  for (const double depth : depths(cell, pose, grains)) {
+    interior.push_back(depth >= interior_distance ? 1 : 0);
   }
   return interior;
 }

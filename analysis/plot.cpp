@@ -23,11 +23,8 @@ void require_plain_name(const std::string& name) {
   if (!plain) throw AnalysisError("'" + name + "' cannot name a figure's files");
 }
 
-/// Runs a program so that it writes a fixed date into its files.
-std::optional<ProgramOutcome> run_timeless(const std::filesystem::path& folder,
-                                           const std::vector<std::string>& words) {
-  return run_program(words, folder, {"SOURCE_DATE_EPOCH=0"});
-}
+/// Programs write this date into their files, whenever they run.
+constexpr const char* fixed_date = "SOURCE_DATE_EPOCH=0";
 
 /// What a program drew; nothing when it failed.
 std::optional<std::string> drawing(const ProgramOutcome& outcome,
@@ -79,7 +76,7 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
 
   // -d: without the user's own settings.
   const std::optional<ProgramOutcome> outcome =
-      run_timeless(apart.path(), {"gnuplot", "-d", script});
+      run_program({"gnuplot", "-d", script}, apart.path(), {fixed_date});
   auto drawn = outcome ? drawing(*outcome, apart.path() / svg.filename()) : std::nullopt;
   if (!drawn) {  // older drawings show other data
     for (const auto& old : {svg, pdf}) std::filesystem::remove(old);
@@ -100,9 +97,9 @@ std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path&
   pdf.replace_extension(".pdf");
   const TemporaryFolder apart;
   const std::filesystem::path made = apart.path() / pdf.filename();
-  const std::optional<ProgramOutcome> outcome = run_timeless(
-      svg.parent_path(),
-      {"rsvg-convert", "--format=pdf", "--output", made.string(), svg.filename().string()});
+  const std::optional<ProgramOutcome> outcome = run_program(
+      {"rsvg-convert", "--format=pdf", "--output", made.string(), svg.filename().string()},
+      svg.parent_path(), {fixed_date});
   const auto drawn = outcome ? drawing(*outcome, made) : std::nullopt;
   if (!drawn) std::filesystem::remove(pdf);  // it shows other data
   if (!outcome) return std::nullopt;

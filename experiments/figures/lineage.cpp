@@ -40,9 +40,8 @@ json labels_of(const RunRecord& run, const FigureInput& input) {
 
 const ManifestText* remember_manifest(const Store& store, FigureLineage& lineage,
                                       const std::string& sha256) {
-  for (const ManifestText& known : lineage.manifests) {
-    if (known.sha256 == sha256) return &known;
-  }
+  const auto known = std::ranges::find(lineage.manifests, sha256, &ManifestText::sha256);
+  if (known != lineage.manifests.end()) return &*known;
   auto manifest = find_manifest(store, sha256);
   if (!manifest) return nullptr;
   lineage.manifests.push_back(std::move(*manifest));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -17,7 +18,6 @@
 namespace shearcell {
 namespace {
 
-constexpr double kTurn = 6.28318530717958647692;
 constexpr double kRest = 0.1;  // [s]
 /// Steps between samples of an energy ledger: a period of the fastest vibration at Table I's time
 /// step.
@@ -187,7 +187,7 @@ void add_drive(const RunRecord& run, const CheckpointRecord& checkpoint, Measure
     // Adding 0 turns -0 into 0.
     measures.numbers["shear_strain"] = sc.sine / sc.cosine + 0.0;
     measures.numbers["shear_rate_per_s"] =
-        kTurn / parameters.period_s * rate / (sc.cosine * sc.cosine) + 0.0;
+        2 * std::numbers::pi / parameters.period_s * rate / (sc.cosine * sc.cosine) + 0.0;
   } catch (const std::runtime_error&) {
     // This program cannot read the record.
   }

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A table as CSV and as JSON.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <ranges>
 
 #include "analysis/chart.hpp"
 #include "experiments/figures/run_table.hpp"
+#include "experiments/manifest/suggest.hpp"
 
 namespace shearcell {
 namespace {
@@ -20,16 +24,11 @@ std::string csv_cell(const json& value) {
 }  // namespace
 
 std::string to_csv(const RunTable& table) {
-  std::string text;
-  for (const TableColumn& column : table.columns) text += (text.empty() ? "" : ",") + column.name;
+  std::string text = fmt::format("{}\n", fmt::join(names_of(table.columns), ","));
   for (const std::vector<json>& row : table.rows) {
-    text += '\n';
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      if (c > 0) text += ',';
-      text += csv_cell(row[c]);
-    }
+    text += fmt::format("{}\n", fmt::join(row | std::views::transform(csv_cell), ","));
   }
-  return text + '\n';
+  return text;
 }
 
 std::string to_json(const RunTable& table) {
