@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "analysis/figures/figures.hpp"
@@ -43,6 +44,18 @@ std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> vari
     if (distinct(fewer) == all) keys = std::move(fewer);
   }
   return keys;
+}
+
+std::string averaged_key(
+    std::span<const std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants) {
+  std::map<std::vector<nlohmann::json>, nlohmann::json> curves;  // with its first variant
+  for (const auto& [curve, swept] : variants) {
+    const nlohmann::json& first = curves.try_emplace(curve, swept).first->second;
+    for (const auto& [key, value] : swept.items()) {
+      if (first.value(key, nlohmann::json()) != value) return key;
+    }
+  }
+  return "";
 }
 
 std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::string_view first) {

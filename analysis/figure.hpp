@@ -87,6 +87,12 @@ bool sweeps_engine(const FigureRun& run);
 std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,
                                             std::vector<std::string> keys);
 
+/// A swept key over whose values curves would average, one for each set of values of `keys`: it
+/// differs between variants of one curve. "" if there is none. For each variant: its values of
+/// `keys`, and its swept keys and values.
+std::string averaged_key(
+    std::span<const std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants);
+
 /// The swept keys of the runs that distinguish their variants; `first` stays of those that advance
 /// together with it.
 std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::string_view first = "");

@@ -109,28 +109,26 @@ void record(Store& store, const std::string& name, nlohmann::json facts) {
 /// Parameters that change together with its keys are allowed.
 void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>& runs) {
   if (wanted.figure.form != FigureForm::groups) return;
-  std::map<std::vector<nlohmann::json>, nlohmann::json> groups;  // swept values of the first run
+  std::vector<std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants;
   for (const FigureRun& run : runs) {
-    std::vector<nlohmann::json> group;
+    auto& [group, swept] = variants.emplace_back(std::vector<nlohmann::json>(), run.labels);
     for (const std::string& key : wanted.figure.keys) group.push_back(parameter_of(run, key));
-    const auto [known, first] = groups.try_emplace(std::move(group), run.labels);
-    for (const auto& [key, value] : run.labels.items()) {
-      if (known->second.value(key, nlohmann::json()) == value) continue;
-      const bool of_manifest = find_figure(wanted.figure.name) == nullptr;
-      if (find_field(key) == nullptr) {  // `manifest`, not swept
-        throw UsageError(fmt::format(
-            "figure {} would average over several versions of the manifest of experiment {}; leave "
-            "out --all-versions",
-            wanted.figure.name, wanted.experiment));
-      }
-      throw UsageError(fmt::format(
-          "figure {} would average over the values of {} that experiment {} sweeps; {}",
-          wanted.figure.name, key, wanted.experiment,
-          of_manifest ? "leave out its `by` for a curve of each variant"
-                      : "give each an experiment of its own, or state a plot in the manifest "
-                        "(`plots`)"));
-    }
   }
+  const std::string key = averaged_key(variants);
+  if (key.empty()) return;
+  if (find_field(key) == nullptr) {  // `manifest`, not swept
+    throw UsageError(
+        fmt::format("figure {} would average over several versions of the manifest of experiment "
+                    "{}; leave out --all-versions",
+                    wanted.figure.name, wanted.experiment));
+  }
+  const bool of_manifest = find_figure(wanted.figure.name) == nullptr;
+  throw UsageError(fmt::format(
+      "figure {} would average over the values of {} that experiment {} sweeps; {}",
+      wanted.figure.name, key, wanted.experiment,
+      of_manifest
+          ? "leave out its `by` for a curve of each variant"
+          : "give each an experiment of its own, or state a plot in the manifest (`plots`)"));
 }
 
 /// The experiment's folder. Checks the name, since the store is not trusted.

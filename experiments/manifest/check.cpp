@@ -35,8 +35,8 @@ struct VariantCheck {
     check_settle_steps();
     check_pause();
     check_cell();
-    if (p.engine == EngineKind::lammps && p.protocol == ProtocolKind::stiffen) {
-      report("engine", "LAMMPS cannot do the protocol stiffen", "Leave the engine out, or shear.");
+    if (const string why = unfit_for_lammps(p, {}); !why.empty()) {
+      report("engine", why, "Leave the engine out, or shear.");
     }
     check_density();
     if (!scale.checkpoints->phases.empty()) check_phases();
@@ -172,8 +172,8 @@ struct VariantCheck {
     const std::vector<double>& phases = scale.checkpoints->phases;
     if (p.protocol == ProtocolKind::stiffen) {
       refuse("protocol stiffen has no phases of a cycle", "Leave them out.");
-    } else if (p.engine == EngineKind::lammps) {
-      refuse("LAMMPS makes no checkpoints within a cycle", "Leave them out, or the engine.");
+    } else if (string why = unfit_for_lammps(p, *scale.checkpoints); !why.empty()) {
+      refuse(std::move(why), "Leave them out, or the engine.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
       refuse(fmt::format("two of them are one step, or the end of the cycle, with {} steps in a "
                          "cycle",
@@ -241,6 +241,12 @@ string without_effect(string_view key, const Parameters& p) {
     return "has an effect only with gravity and a moving bottom wall";
   }
   return "";
+}
+
+string unfit_for_lammps(const Parameters& p, const Checkpoints& checkpoints) {
+  if (p.engine != EngineKind::lammps) return "";
+  if (p.protocol == ProtocolKind::stiffen) return "LAMMPS cannot do the protocol stiffen";
+  return checkpoints.phases.empty() ? "" : "LAMMPS makes no checkpoints within a cycle";
 }
 
 void check_variants(const Manifest& manifest) {

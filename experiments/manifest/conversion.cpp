@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/packing_fraction.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -138,6 +140,14 @@ double expected_overlap(const Parameters& p) {
       p.moving_wall == MovingWall::bottom && p.pressure_at == PressureAt::moving_wall;
   const double half_weight = column_weight(p) / 2 * (hangs ? -1 : 1);
   return of_pressure * std::max(scene.pressure + half_weight, 0.0) / scene.stiffness;
+}
+
+double expected_interior_grains(const Parameters& p) {
+  const double margin =
+      interior_distance + (p.walls == WallTexture::rough ? rough_wall_surface : 0.0);
+  const double width = cell_width(geometry(p)), height = p.height_over_width * width;
+  const double per_d3 = p.nominal_packing_fraction * 6 / std::numbers::pi;
+  return per_d3 * std::max(width - 2 * margin, 0.0) * std::max(height - 2 * margin, 0.0) * width;
 }
 
 std::optional<std::string> time_step_advice(const TimeStep& step, const std::string& key) {

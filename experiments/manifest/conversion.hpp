@@ -81,6 +81,10 @@ void resolve_auto(std::string_view key, Parameters& parameters);
 /// grains' weight per area if P acts on a moving bottom wall, P plus that if P acts at the top.
 double expected_overlap(const Parameters& parameters);
 
+/// Expected number of interior grains (analysis/packing_fraction.hpp) at the nominal height; 0 in a
+/// cell that is too small for any.
+double expected_interior_grains(const Parameters& parameters);
+
 /// Advice against a time step below 0.15 or above 0.7 of the stability limit; `key` names it
 /// ("steps_per_cycle"). Nothing for other time steps.
 std::optional<std::string> time_step_advice(const TimeStep& step, const std::string& key);

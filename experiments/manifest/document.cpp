@@ -8,6 +8,7 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 #include <sstream>
 
@@ -18,12 +19,6 @@ using std::string_view;
 
 Position position(const YAML::Mark& mark) {
   return mark.is_null() ? Position{1, 1} : Position{mark.line + 1, mark.column + 1};
-}
-
-[[noreturn]] void refuse(string_view file, Position at, std::string problem, std::string remedy,
-                         std::string key = {}) {
-  throw ManifestError(
-      {{std::string(file), at, std::move(key), std::move(problem), "", std::move(remedy)}});
 }
 
 struct Character {
@@ -62,10 +57,10 @@ void check_characters(string_view text, string_view file) {
   while (!text.empty()) {
     const std::size_t length = decode(text).length;
     const char c = text.front();
-    if (length == 0) refuse(file, at, "is not valid UTF-8", "Save the file as UTF-8 text.");
-    if ((c >= 0 && c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7F) {
-      refuse(file, at, fmt::format("holds the control character 0x{:02x}", static_cast<int>(c)),
-             "A manifest is plain text.");
+    if (length == 0) refuse(file, at, "", "is not valid UTF-8", "", "Save the file as UTF-8 text.");
+    if (std::iscntrl(static_cast<unsigned char>(c)) != 0 && c != '\t' && c != '\n' && c != '\r') {
+      refuse(file, at, "", fmt::format("holds the control character 0x{:02x}", static_cast<int>(c)),
+             "", "A manifest is plain text.");
     }
     at = c == '\n' ? Position{at.line + 1, 1} : Position{at.line, at.column + 1};
     text.remove_prefix(length);
@@ -80,16 +75,14 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (started_) {
-      refuse(file_, position(mark), "a second YAML document begins",
+      refuse(file_, position(mark), "", "a second YAML document begins", "",
              "Write one manifest per file.");
     }
     started_ = true;
   }
   void OnDocumentEnd() override {}
 
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
-    add({.kind = Node::Kind::null, .at = position(mark)});
-  }
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add({.at = position(mark)}); }
   void OnAnchor(const YAML::Mark& mark, const std::string& name) override {
     refuse_reference(mark, "&" + name);
   }
@@ -105,89 +98,64 @@ class TreeBuilder : public YAML::EventHandler {
     check_tag(mark, tag);
     open({.kind = Node::Kind::list, .at = position(mark)});
   }
-  void OnSequenceEnd() override { close(); }
+  void OnSequenceEnd() override { open_.pop_back(); }
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                   YAML::EmitterStyle::value) override {
     check_tag(mark, tag);
     open({.kind = Node::Kind::map, .at = position(mark)});
   }
-  void OnMapEnd() override { close(); }
+  void OnMapEnd() override { open_.pop_back(); }
 
  private:
   // A list or map that is being read.
   struct Open {
-    Node node;
-    std::set<std::string> keys;
+    Node& node;
+    std::set<std::string> keys = {};
     bool awaits_value = false;
   };
 
   [[noreturn]] void refuse_reference(const YAML::Mark& mark, const std::string& name) {
-    refuse(file_, position(mark), "anchors and aliases are not read", "Write the value out.",
-           printable(name));
+    refuse(file_, position(mark), printable(name), "anchors and aliases are not read", "",
+           "Write the value out.");
   }
 
   void check_tag(const YAML::Mark& mark, const std::string& tag) {
     if (tag == "?" || tag == "!" || tag.empty()) return;  // no tag was written
-    refuse(file_, position(mark), fmt::format("the tag {} is not read", printable(tag)),
+    refuse(file_, position(mark), "", fmt::format("the tag {} is not read", printable(tag)), "",
            "Remove the tag; the key decides the type.");
   }
 
   void open(Node node) {
     if (open_.size() >= ManifestLimits::depth) {
-      refuse(file_, node.at, fmt::format("nested deeper than {} levels", ManifestLimits::depth),
-             "");
+      refuse(file_, node.at, "", fmt::format("nested deeper than {} levels", ManifestLimits::depth),
+             "", "");
     }
-    if (!open_.empty() && awaits_key()) refuse_key(node.at);
-    count(node.at);
-    open_.push_back({.node = std::move(node), .keys = {}});
+    open_.push_back({add(std::move(node))});
   }
 
-  void close() {
-    Node node = std::move(open_.back().node);
-    open_.pop_back();
-    place(std::move(node));
-  }
-
-  void add(Node node) {
-    count(node.at);
-    place(std::move(node));
-  }
-
-  void place(Node node) {
-    if (open_.empty()) {
-      root_ = std::move(node);
-    } else if (open_.back().node.kind == Node::Kind::list) {
-      open_.back().node.items.push_back(std::move(node));
-    } else if (awaits_key()) {
-      place_key(std::move(node), open_.back());
-    } else {
-      auto& [key, value] = open_.back().node.entries.back();
-      // An empty value is reported at its key.
-      if (node.kind == Node::Kind::null) node.at = key.at;
-      value = std::move(node);
-      open_.back().awaits_value = false;
-    }
-  }
-
-  void place_key(Node key, Open& map) {
-    if (key.kind != Node::Kind::scalar) refuse_key(key.at);
-    if (!map.keys.insert(key.text).second) {
-      refuse(file_, key.at, "appears twice in one map", "Keep one of them.", printable(key.text));
-    }
-    map.node.entries.emplace_back(std::move(key), Node{});
-    map.awaits_value = true;
-  }
-
-  bool awaits_key() const {
-    return open_.back().node.kind == Node::Kind::map && !open_.back().awaits_value;
-  }
-
-  [[noreturn]] void refuse_key(Position at) { refuse(file_, at, "a key must be a plain name", ""); }
-
-  void count(Position at) {
+  // Adds an item, key or value to the innermost open list or map. It stays in its place until that
+  // list or map gets the next one.
+  Node& add(Node node) {
     if (++nodes_ > ManifestLimits::nodes) {
-      refuse(file_, at, fmt::format("holds more than {} values", ManifestLimits::nodes), "");
+      refuse(file_, node.at, "", fmt::format("holds more than {} values", ManifestLimits::nodes),
+             "", "");
     }
+    if (open_.empty()) return root_ = std::move(node);
+    auto& [parent, keys, awaits_value] = open_.back();
+    if (parent.kind == Node::Kind::list) return parent.items.emplace_back(std::move(node));
+    awaits_value = !awaits_value;
+    if (awaits_value) {
+      if (node.kind != Node::Kind::scalar)
+        refuse(file_, node.at, "", "a key must be a plain name", "", "");
+      if (!keys.insert(node.text).second) {
+        refuse(file_, node.at, printable(node.text), "appears twice in one map", "",
+               "Keep one of them.");
+      }
+      return parent.entries.emplace_back(std::move(node), Node{}).first;
+    }
+    auto& [key, value] = parent.entries.back();
+    if (node.kind == Node::Kind::null) node.at = key.at;  // an empty value is reported at its key
+    return value = std::move(node);
   }
 
   std::string file_;
@@ -227,7 +195,7 @@ std::string syntax_remedy(string_view text, const YAML::Exception& error) {
 
 Node read_document(string_view text, string_view file) {
   if (text.size() > ManifestLimits::bytes) {
-    refuse(file, {}, fmt::format("is larger than {} bytes", ManifestLimits::bytes),
+    refuse(file, {}, "", fmt::format("is larger than {} bytes", ManifestLimits::bytes), "",
            "A manifest is a short text.");
   }
   check_characters(text, file);
@@ -236,11 +204,11 @@ Node read_document(string_view text, string_view file) {
   try {
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(builder)) {
-      refuse(file, {1, 1}, "the manifest is empty", "It needs at least `experiment`.");
+      refuse(file, {1, 1}, "", "the manifest is empty", "", "It needs at least `experiment`.");
     }
     parser.HandleNextDocument(builder);
   } catch (const YAML::Exception& error) {
-    refuse(file, position(error.mark), fmt::format("is not valid YAML: {}", error.msg),
+    refuse(file, position(error.mark), "", fmt::format("is not valid YAML: {}", error.msg), "",
            syntax_remedy(text, error));
   }
   return builder.take();

@@ -22,33 +22,28 @@ namespace {
 
 constexpr std::string_view kDefaultScale = "desk";
 
-[[noreturn]] void refuse(const Manifest& manifest, const std::string& option,
-                         const std::string& problem, const std::string& got,
-                         const std::string& remedy) {
-  throw ManifestError({{manifest.file, {}, option, problem, got, remedy}});
-}
-
 Scale choose_scale(const Manifest& manifest, const std::optional<std::string>& wanted) {
   if (manifest.scales.empty()) {
     if (!wanted || *wanted == "base") return manifest.base;
-    refuse(manifest, "scale", "the manifest has no scales", printable(*wanted), "Leave it out.");
+    refuse(manifest.file, {}, "scale", "the manifest has no scales", printable(*wanted),
+           "Leave it out.");
   }
   const std::string name = wanted.value_or(std::string(kDefaultScale));
-  const auto found = std::ranges::find(manifest.scales, name, &Scale::name);
-  if (found != manifest.scales.end()) return whole_scale(manifest, *found);
+  if (const Scale* found = find_scale(manifest, name)) return whole_scale(manifest, *found);
   const std::vector<std::string_view> names = names_of(manifest.scales);
   const std::string known = fmt::format("It has {}.", fmt::join(names, ", "));
   if (!wanted) {
-    refuse(manifest, "scale", fmt::format("there is no scale {}, the default", name), "",
+    refuse(manifest.file, {}, "scale", fmt::format("there is no scale {}, the default", name), "",
            fmt::format("Name one with --scale. {}", known));
   }
-  refuse(manifest, "scale", with_nearest("is unknown", name, names), printable(name), known);
+  refuse(manifest.file, {}, "scale", with_nearest("is unknown", name, names), printable(name),
+         known);
 }
 
 // Checks an option that replaces a parameter.
 void check_option(const Manifest& manifest, const char* key, const nlohmann::json& value) {
   if (const auto wrong = check_value(*find_field(key), value)) {
-    refuse(manifest, key, wrong->problem, printable(value_text(value)), wrong->remedy);
+    refuse(manifest.file, {}, key, wrong->problem, printable(value_text(value)), wrong->remedy);
   }
 }
 
@@ -57,7 +52,7 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
   if (!wanted) return stated.values;
   const std::string got = std::to_string(*wanted);
   if (*wanted == 0 || *wanted > ManifestLimits::runs) {
-    refuse(manifest, "seeds", "is out of range", got,
+    refuse(manifest.file, {}, "seeds", "is out of range", got,
            fmt::format("It takes an integer from 1 to {}.", ManifestLimits::runs));
   }
   if (stated.counted) {
@@ -66,8 +61,9 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
     return seeds;
   }
   if (*wanted > stated.values.size()) {
-    refuse(manifest, "seeds", fmt::format("the manifest lists {} seeds only", stated.values.size()),
-           got, "List more, or state a count.");
+    refuse(manifest.file, {}, "seeds",
+           fmt::format("the manifest lists {} seeds only", stated.values.size()), got,
+           "List more, or state a count.");
   }
   return {stated.values.begin(), stated.values.begin() + static_cast<std::ptrdiff_t>(*wanted)};
 }
@@ -76,25 +72,12 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
 void set_engine(const Manifest& manifest, const std::string& engine, Scale& scale) {
   check_option(manifest, "engine", engine);
   if (find_axis(*scale.sweep, "engine") != nullptr) {
-    refuse(manifest, "engine", "the manifest sweeps this key itself", engine,
+    refuse(manifest.file, {}, "engine", "the manifest sweeps this key itself", engine,
            "Leave the option out.");
   }
   if (value_at(scale, "engine") == engine) return;
   std::vector<SweepAxis>& grid = scale.sweep->grid;
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
-}
-
-// The option --engine may ask LAMMPS for what it cannot do.
-void check_engine(const Manifest& manifest, const Scale& scale, const Parameters& p) {
-  if (p.engine != EngineKind::lammps) return;
-  if (p.protocol == ProtocolKind::stiffen) {
-    refuse(manifest, "engine", "LAMMPS cannot do the protocol stiffen", "lammps",
-           "Leave the option out.");
-  }
-  if (!scale.checkpoints->phases.empty()) {
-    refuse(manifest, "engine", "LAMMPS makes no checkpoints within a cycle", "lammps",
-           "Leave the option out, or checkpoints.phases.");
-  }
 }
 
 // What is sound but unlikely to be meant.
@@ -106,6 +89,12 @@ std::vector<std::string> warnings_of(const Parameters& p) {
         "`pressure_at: top`, raise pressure_Pa, move the top wall, turn gravity off, or choose a "
         "lower cell (height_over_width).",
         p.pressure_Pa, p.grains));
+  }
+  if (expected_interior_grains(p) < 1) {
+    warnings.push_back(
+        fmt::format("the cell of {} grains is too small for interior grains, at least 1.5 d from "
+                    "the walls: phi and other measures of these have no value. Use more grains.",
+                    p.grains));
   }
   if (const double overlap = expected_overlap(p); overlap > p.max_overlap_diameters) {
     warnings.push_back(
@@ -124,32 +113,23 @@ std::vector<std::string> warnings_of(const Parameters& p) {
   return warnings;
 }
 
-// The warnings of a scale's variants; a warning of several variants is one.
-class VariantWarnings {
- public:
-  void add(const Variant& variant) {
+// Warns of each variant that the plan has; a warning of several variants is one.
+void warn_of_variants(const Manifest& manifest, const std::vector<Variant>& variants, Plan& plan) {
+  std::vector<std::string> warnings;
+  std::map<std::string, std::vector<std::string>> names;  // by warning
+  for (const Variant& variant : variants) {
     for (std::string& warning : warnings_of(variant.parameters)) {
-      auto found = std::ranges::find(warned_, warning, &Warned::text);
-      if (found == warned_.end()) found = warned_.insert(found, {std::move(warning), {}});
-      found->variants.push_back(variant.name());
+      std::vector<std::string>& known = names[warning];
+      if (known.empty()) warnings.push_back(warning);
+      known.push_back(variant.name());
     }
   }
-
-  void append_to(Plan& plan, const std::string& file) const {
-    for (const auto& [text, variants] : warned_) {
-      plan.warnings.push_back(fmt::format("{}: variant{} {}: {}", file,
-                                          variants.size() == 1 ? "" : "s", some_of(variants, 8),
-                                          text));
-    }
+  for (const std::string& warning : warnings) {
+    const std::vector<std::string>& of = names[warning];
+    plan.warnings.push_back(fmt::format("{}: variant{} {}: {}", manifest.file,
+                                        of.size() == 1 ? "" : "s", some_of(of, 8), warning));
   }
-
- private:
-  struct Warned {
-    std::string text;
-    std::vector<std::string> variants;
-  };
-  std::vector<Warned> warned_;
-};
+}
 
 // Warns of each stated key that has no effect on any variant.
 void warn_of_unfelt(const Manifest& manifest, const Scale& scale,
@@ -210,7 +190,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   if (options.engine) set_engine(manifest, *options.engine, scale);
   const std::vector<std::uint64_t> seeds = choose_seeds(manifest, *scale.seeds, options.seeds);
   if (variant_count(*scale.sweep) > ManifestLimits::runs / seeds.size()) {
-    refuse(manifest, "seeds",
+    refuse(manifest.file, {}, "seeds",
            fmt::format("the manifest expands to more than {} runs", ManifestLimits::runs), "",
            "Use fewer seeds.");
   }
@@ -225,11 +205,15 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
                              .checkpoint_phases = scale.checkpoints->phases};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
   Filter wanted(options.variants, has_values, keys_of);
-  VariantWarnings variant_warnings;
+  std::vector<Variant> chosen;
   for (const Variant& variant : variants) {
     if (!wanted.passes(variant.name())) continue;
-    variant_warnings.add(variant);
-    if (options.engine) check_engine(manifest, scale, variant.parameters);
+    chosen.push_back(variant);
+    if (const std::string why = unfit_for_lammps(variant.parameters, *scale.checkpoints);
+        !why.empty()) {
+      refuse(manifest.file, {}, "engine", why, "lammps",
+             "Leave the option out, or what it cannot do.");
+    }
     for (const std::uint64_t seed : seeds) {
       const PlannedRun& run = plan.runs.emplace_back(planned_run(common, scale, variant, seed));
       const std::string& same = variant_of.emplace(run.last.key, run.variant).first->second;
@@ -239,17 +223,18 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     }
   }
   if (const std::string* missing = wanted.unfound()) {
-    refuse(manifest, "variant", "no variant has these values", printable(*missing),
+    refuse(manifest.file, {}, "variant", "no variant has these values", printable(*missing),
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
   }
   if (plan.runs.empty()) {
-    refuse(manifest, "variant", "no variant has all of these values",
+    refuse(manifest.file, {}, "variant", "no variant has all of these values",
            printable(fmt::format("{}", fmt::join(options.variants, " and "))),
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
   }
   name_variants(manifest, plan);
-  variant_warnings.append_to(plan, manifest.file);
-  std::ranges::move(own_warnings(manifest, variants), std::back_inserter(plan.warnings));
+  warn_of_variants(manifest, chosen, plan);
+  std::ranges::move(figure_warnings(manifest, scale, variants, seeds.size()),
+                    std::back_inserter(plan.warnings));
   warn_of_unfelt(manifest, scale, variants, plan);
   return plan;
 }

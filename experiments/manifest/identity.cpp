@@ -99,13 +99,6 @@ std::optional<ProtocolKind> protocol_in(const json& values) {
   return value_of<ProtocolKind>(found->get_ref<const std::string&>());
 }
 
-void read_parameter(const Field& field, const json& value, Parameters& parameters) {
-  if (const auto wrong = check_value(field, value)) {
-    throw damaged(field.name, fmt::format("{}. {}", wrong->problem, wrong->remedy));
-  }
-  set_value(field, value, parameters);
-}
-
 // A parameter that does not affect the stage keeps its default. One that affects it and is missing
 // from the record has the value at which it is omitted.
 Parameters read_parameters(Stage stage, const json& values) {
@@ -115,12 +108,12 @@ Parameters read_parameters(Stage stage, const json& values) {
   for (const Field& field : schema()) {
     const auto found = values.find(field.name);
     if (found != values.end() && enters(field.identity, stage, protocol, *found)) {
-      const Parameters defaults;
-      read_parameter(field, *found, parameters);
-      const std::string_view constant = field.identity.recorded_as;
-      if (!constant.empty() && *found == as_json(field, constant)) {
-        set_value(field, get_value(field, defaults), parameters);
+      if (const auto wrong = check_value(field, *found)) {
+        throw damaged(field.name, fmt::format("{}. {}", wrong->problem, wrong->remedy));
       }
+      const std::string_view constant = field.identity.recorded_as;
+      const bool is_constant = !constant.empty() && *found == as_json(field, constant);
+      set_value(field, is_constant ? get_value(field, Parameters{}) : *found, parameters);
     } else if (found == values.end() && enters(field.identity, stage, protocol, nullptr)) {
       if (field.identity.omitted_at.empty()) throw damaged(field.name, "is missing");
       set_value(field, as_json(field, field.identity.omitted_at), parameters);

@@ -7,6 +7,7 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/manifest.hpp"
+#include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
 
 namespace shearcell {
@@ -20,10 +21,7 @@ std::string text_of_line(std::string_view text, int line) {
     if (end == std::string_view::npos) return {};
     text.remove_prefix(end + 1);
   }
-  text = text.substr(0, text.find('\n'));
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return printable(text.substr(first, text.find_last_not_of(" \t\r") - first + 1), kLongest);
+  return printable(trimmed(text.substr(0, text.find('\n'))), kLongest);
 }
 
 }  // namespace
@@ -36,8 +34,7 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
   };
   try {
     const Manifest manifest = parse_manifest(text, "manifest");
-    const auto stated = std::ranges::find(manifest.scales, scale, &Scale::name);
-    const Scale* own = stated == manifest.scales.end() ? nullptr : &*stated;
+    const Scale* own = find_scale(manifest, scale);
     const std::string path = "scales." + std::string(scale);
     const Scale& swept = own != nullptr && own->sweep ? *own : manifest.base;
     const auto add_labels = [&](const std::vector<SweepAxis>& axes, const std::string& kind) {
@@ -78,9 +75,8 @@ nlohmann::json overrides(std::string_view text, const Membership& membership) {
   };
   try {
     const Manifest manifest = parse_manifest(text, "manifest");
-    const auto scale = std::ranges::find(manifest.scales, membership.scale, &Scale::name);
-    const Scale stated =
-        scale == manifest.scales.end() ? manifest.base : whole_scale(manifest, *scale);
+    const Scale* scale = find_scale(manifest, membership.scale);
+    const Scale stated = scale == nullptr ? manifest.base : whole_scale(manifest, *scale);
     const auto labelled = [&](const auto& swept) {
       const auto label = membership.labels.find(swept.first);
       return label != membership.labels.end() && *label == swept.second->value;

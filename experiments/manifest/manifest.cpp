@@ -28,26 +28,23 @@ std::string join(const std::vector<ManifestProblem>& problems) {
   return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
-[[noreturn]] void refuse_file(const std::string& file, std::string problem, std::string remedy) {
-  throw ManifestError({{file, {}, "", std::move(problem), "", std::move(remedy)}});
-}
-
 std::string read_file(const std::filesystem::path& path, const std::string& name) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) {
-    refuse_file(name, "there is no such file", "");
+    refuse(name, {}, "", "there is no such file", "", "");
   }
-  if (error) refuse_file(name, fmt::format("cannot be read: {}", error.message()), "");
+  if (error) refuse(name, {}, "", fmt::format("cannot be read: {}", error.message()), "", "");
   if (std::filesystem::is_directory(status)) {
-    refuse_file(name, "is a directory", "Name a manifest file in it.");
+    refuse(name, {}, "", "is a directory", "", "Name a manifest file in it.");
   }
   // Reading a pipe or a device might never end.
-  if (!std::filesystem::is_regular_file(status)) refuse_file(name, "is not a regular file", "");
+  if (!std::filesystem::is_regular_file(status))
+    refuse(name, {}, "", "is not a regular file", "", "");
   std::ifstream stream(path, std::ios::binary);
   std::string text(ManifestLimits::bytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.is_open() || stream.bad()) refuse_file(name, "cannot be read", "");
+  if (!stream.is_open() || stream.bad()) refuse(name, {}, "", "cannot be read", "", "");
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;
 }
@@ -67,6 +64,12 @@ std::string ManifestProblem::text() const {
 
 ManifestError::ManifestError(std::vector<ManifestProblem> problems)
     : UsageError(join(problems)), problems_(std::move(problems)) {}
+
+void refuse(std::string_view file, Position at, std::string key, std::string problem,
+            std::string got, std::string remedy) {
+  throw ManifestError({{std::string(file), at, std::move(key), std::move(problem), std::move(got),
+                        std::move(remedy)}});
+}
 
 Manifest load_manifest(const std::filesystem::path& path) {
   const std::string name = path.string();

@@ -57,6 +57,10 @@ class ManifestError : public UsageError {
   std::vector<ManifestProblem> problems_;
 };
 
+/// Throws a ManifestError of this problem alone.
+[[noreturn]] void refuse(std::string_view file, Position at, std::string key, std::string problem,
+                         std::string got, std::string remedy);
+
 /// A checked value, or "auto" (resolve_auto), and where it was written.
 struct Setting {
   nlohmann::json value;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -138,8 +139,8 @@ std::optional<std::uint64_t> read_count(const Entry& in, std::uint64_t largest) 
 }
 
 bool is_text(const Node& node, std::size_t longest, bool lines) {
-  const auto controls = [&](char c) {
-    return (c >= 0 && c < 0x20 && !(lines && c == '\n')) || c == 0x7F;
+  const auto controls = [&](unsigned char c) {
+    return std::iscntrl(c) != 0 && !(lines && c == '\n');
   };
   return node.kind == Node::Kind::scalar && node.text.size() <= longest &&
          std::ranges::none_of(node.text, controls);

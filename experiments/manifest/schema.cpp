@@ -59,11 +59,9 @@ std::optional<double> parse_real(string_view text) {
 
 // Whether the text is like .inf, -.Inf, .nan, inf or NaN.
 bool names_no_number(string_view text) {
-  std::string lower;
-  for (const char c : text) {
-    if (c != '.' && c != '+' && c != '-') lower += static_cast<char>(c | 0x20);
-  }
-  return lower == "inf" || lower == "infinity" || lower == "nan";
+  std::string word = lower(text);
+  std::erase_if(word, [](char c) { return c == '.' || c == '+' || c == '-'; });
+  return word == "inf" || word == "infinity" || word == "nan";
 }
 
 std::string takes(const Field& field) {

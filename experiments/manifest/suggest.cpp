@@ -5,8 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstddef>
-#include <vector>
+#include <cctype>
 
 #include "experiments/manifest/schema.hpp"
 
@@ -16,14 +15,6 @@ namespace {
 using std::string_view;
 
 constexpr std::size_t kLongestGuess = 64;
-
-std::string lower(string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  }
-  return result;
-}
 
 // Insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`.
 std::size_t edit_distance(string_view a, string_view b) {
@@ -48,6 +39,18 @@ bool has_no_unit(string_view name) {
 }
 
 }  // namespace
+
+std::string lower(string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+string_view trimmed(string_view text) {
+  constexpr string_view blanks = " \t\r\n";
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
 
 Suggestion suggest_name(string_view unknown, std::span<const string_view> candidates) {
   if (unknown.empty() || unknown.size() > kLongestGuess) return {};

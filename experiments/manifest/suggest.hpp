@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lists of names in messages: the name that is nearest to an unknown one, the first of many.
+// Names as people write them, and lists of names in messages: the name that is nearest to an
+// unknown one, the first of many.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,6 +23,12 @@ struct Suggestion {
 /// The nearest of `candidates`: by a parameter's symbol (`N`), by its name without the unit
 /// (`mass`), or by spelling, with up to about a third of the letters wrong.
 Suggestion suggest_name(std::string_view unknown, std::span<const std::string_view> candidates);
+
+/// The text with small letters for A to Z.
+std::string lower(std::string_view text);
+
+/// The text without spaces, tabs and line ends at its beginning and end.
+std::string_view trimmed(std::string_view text);
 
 /// "PROBLEM, the nearest is NAME"; "PROBLEM" if no name is near.
 std::string with_nearest(std::string problem, std::string_view unknown,

@@ -13,6 +13,7 @@
 #include "analysis/figure.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/suggest.hpp"
 #include "provenance/io/read_number.hpp"
 
 namespace shearcell {
@@ -92,11 +93,6 @@ std::string name_of_variant(const json& variant, const std::vector<std::string>&
 /// "0.0128"), and the symbols and units of variant_names() replaced ("P=954 Pa" gives
 /// "pressure_Pa=954").
 std::string same_spelling(std::string_view part) {
-  const auto trimmed = [](std::string_view text) {
-    const auto first = text.find_first_not_of(' ');
-    if (first == text.npos) return std::string_view();
-    return text.substr(first, text.find_last_not_of(' ') - first + 1);
-  };
   const std::size_t equal = part.find('=');
   if (equal == part.npos) return std::string(trimmed(part));
   std::string_view key = trimmed(part.substr(0, equal));
@@ -128,6 +124,11 @@ void apply(const std::string& key, const Setting& setting, Parameters& parameter
 
 bool is_auto(const Setting& setting) {
   return setting.value == "auto";
+}
+
+const Scale* find_scale(const Manifest& manifest, std::string_view name) {
+  const auto found = std::ranges::find(manifest.scales, name, &Scale::name);
+  return found == manifest.scales.end() ? nullptr : &*found;
 }
 
 Scale whole_scale(const Manifest& manifest, const Scale& scale) {

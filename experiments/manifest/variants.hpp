@@ -16,6 +16,9 @@
 
 namespace shearcell {
 
+/// The scale of that name, or nullptr.
+const Scale* find_scale(const Manifest& manifest, std::string_view name);
+
 /// Completes the scale with what it takes from `base`.
 Scale whole_scale(const Manifest& manifest, const Scale& scale);
 
@@ -70,12 +73,15 @@ std::vector<Variant> variants_of(const Scale& scale);
 /// "has an effect only under protocol paused"; "" if it has one.
 std::string without_effect(std::string_view key, const Parameters& parameters);
 
-/// A warning for each plot or claim that `shearcell figures` would refuse or leave without data: a
-/// side of `between` that is not one variant, a plot that averages over a swept key that it does
-/// not name, cycles beyond the end of the runs, `at_cycle` in a plot of every cycle. `variants`:
-/// those of one scale.
-std::vector<std::string> own_warnings(const Manifest& manifest,
-                                      const std::vector<Variant>& variants);
+/// Why LAMMPS cannot compute such a run; "" if it can, or if the engine is another one.
+std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& checkpoints);
+
+/// A warning for each figure, plot and claim that `shearcell figures` would refuse, leave without
+/// data or not decide: a figure or plot that averages over a swept key, cycles beyond the end of
+/// the runs, `at_cycle` in a plot of every cycle, shear_strain at whole cycles alone, a side of
+/// `between` that is not one variant, fewer than least_runs seeds. `variants`: those of the scale.
+std::vector<std::string> figure_warnings(const Manifest& manifest, const Scale& scale,
+                                         const std::vector<Variant>& variants, std::size_t seeds);
 
 /// Checks the number of runs, and time steps and geometry of every variant of every scale. The
 /// manifest must come from read_manifest(). Throws ManifestError.

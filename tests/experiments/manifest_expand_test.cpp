@@ -220,7 +220,9 @@ TEST(Expand, SelectsVariantsByValueNotBySpelling) {
 TEST(Expand, WarnsOfPlotsAndClaimsThatCannotBeMade) {
   const auto warnings = [](const std::string& own) {
     return plan_of("cycles: 3",
-                   "sweep: {grid: {fluid: [still, cell], walls: [rough, smooth]}}\n" + own)
+                   "seeds: 3\n"
+                   "sweep: {grid: {fluid: [still, cell], walls: [rough, smooth]}}\n" +
+                       own)
         .warnings;
   };
   const auto claim = [&](const std::string& sides, int cycle) {
@@ -239,12 +241,50 @@ TEST(Expand, WarnsOfPlotsAndClaimsThatCannotBeMade) {
   for (const auto& [plot, problem] :
        {std::pair("y: phi, by: fluid", "average over the values of walls"),
         std::pair("y: phi, x: drag_kg_per_s, at_cycle: 50", "it asks for cycle 50"),
+        std::pair("y: stress_xy_Pa, x: shear_strain, cycles: [1, 2], show: traces",
+                  "shear_strain is 0 at whole cycles"),
         std::pair("y: phi, at_cycle: 2", "at_cycle has no effect")}) {
     const auto found = warnings(fmt::format("plots: [{{name: own, {}}}]\n", plot));
     ASSERT_EQ(found.size(), 1U) << plot;
     EXPECT_TRUE(has(found[0], problem)) << found[0];
   }
   EXPECT_TRUE(warnings("plots: [{name: own, y: phi, at_cycle: 3, x: drag_kg_per_s}]\n").empty());
+  EXPECT_TRUE(warnings("checkpoints: {phases: [0.5]}\nplots: [{name: own, y: stress_xy_Pa, "
+                       "x: shear_strain, cycles: [1, 2], show: traces}]\n")
+                  .empty());
+}
+
+TEST(Expand, WarnsOfClaimsThatTooFewSeedsCannotDecide) {
+  const auto warnings = [](std::uint64_t seeds) {
+    return plan_of("cycles: 3",
+                   "seeds: 3\nsweep: {grid: {fluid: [still, cell]}}\n"
+                   "claims: [{name: same, compare: phi, margin: 1, at_cycle: 3, "
+                   "between: [{fluid: still}, {fluid: cell}]}]\n",
+                   {.seeds = seeds})
+        .warnings;
+  };
+  EXPECT_TRUE(warnings(3).empty());
+  ASSERT_EQ(warnings(2).size(), 1U);
+  EXPECT_TRUE(has(warnings(2)[0], "claim same: a verdict takes at least 3 seeds, not 2"));
+}
+
+TEST(Expand, WarnsOfFiguresThatWouldAverageOverTheSweep) {
+  const auto warnings = [](const std::string& figure, const std::string& sweep) {
+    return plan_of("", fmt::format("figures: [{}]\nsweep: {{{}}}\n", figure, sweep)).warnings;
+  };
+  const std::string two = "grid: {amplitude_rad: [0.05, 0.1], walls: [rough, smooth]}";
+  ASSERT_EQ(warnings("S5a", two).size(), 1U);
+  EXPECT_TRUE(has(warnings("S5a", two)[0], "figure S5a would average over the values of walls"));
+  EXPECT_TRUE(warnings("S2", two).empty()) << "a curve of each variant";
+  EXPECT_TRUE(warnings("S5a", "zip: {amplitude_rad: [0.05, 0.1], walls: [rough, smooth]}").empty())
+      << "they change together";
+}
+
+TEST(Expand, WarnsOfCellsWithoutInteriorGrains) {
+  const auto warnings = [](const std::string& base) { return plan_of(base).warnings; };
+  ASSERT_EQ(warnings("grains: 60").size(), 1U);
+  EXPECT_TRUE(has(warnings("grains: 60")[0], "too small for interior grains"));
+  EXPECT_TRUE(warnings("grains: 300").empty());
 }
 
 TEST(Expand, WarnsOfKeysWithoutEffect) {
