@@ -187,11 +187,26 @@ double RemainingWork::seconds(std::size_t at_a_time) const {
   return std::max(longest_seconds, core_seconds / static_cast<double>(at_a_time));
 }
 
+std::set<std::string> waiting_for_failed(const std::vector<RunRecord>& runs) {
+  std::set<std::string> failed, waiting;
+  for (const RunRecord& run : runs) {
+    if (run.state == RunState::failed) failed.insert(run.id);
+  }
+  for (const RunRecord& run : runs) {
+    const bool ended = run.state == RunState::completed || run.state == RunState::failed;
+    if (!ended && failed.contains(run.parent)) waiting.insert(run.id);
+  }
+  return waiting;
+}
+
 RemainingWork remaining_work(const Store& store, const std::vector<RunRecord>& stages) {
   RemainingWork work;
-  const Rates rates(store.runs());
+  const std::vector<RunRecord> all = store.runs();
+  const Rates rates(all);
+  const std::set<std::string> waiting = waiting_for_failed(all);
   for (const RunRecord& run : stages) {
     if (run.state == RunState::completed || run.state == RunState::failed) continue;
+    if (waiting.contains(run.id)) continue;
     const StageRecord record = read_stage(run.resolved);
     PlannedRun planned;
     planned.parameters = record.parameters;

@@ -4,6 +4,8 @@
 
 #include <map>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "core/filling.hpp"
@@ -83,7 +85,11 @@ struct RemainingWork {
   double seconds(std::size_t at_a_time) const;
 };
 
-/// What is left of recorded stages, except those that failed, at the rates of the store's runs.
+/// Ids of unfinished runs that cannot start, because the packing that they start from failed.
+std::set<std::string> waiting_for_failed(const std::vector<RunRecord>& runs);
+
+/// What is left of recorded stages, except those that failed or cannot start, at the rates of the
+/// store's runs.
 RemainingWork remaining_work(const Store& store, const std::vector<RunRecord>& stages);
 
 }  // namespace shearcell

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "experiments/runner/audit.hpp"
+#include "experiments/runner/cost.hpp"
 #include "experiments/runner/stage_runner.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -54,6 +55,8 @@ TEST_F(Failure, OfAPackingStopsOnlyItsShear) {
     EXPECT_GE(numbers.at("value").get<double>(), 0.1);
     EXPECT_GT(numbers.at("step").get<std::uint64_t>(), 0U);
   }
+  EXPECT_EQ(waiting_for_failed(store_.runs()).size(), 2U);
+  EXPECT_EQ(remaining_work(store_, store_.runs()).stages, 0U) << "the two shears cannot start";
   // A second attempt fails in the same way.
   EXPECT_EQ(resume(store_).failed, 1U);
 }
