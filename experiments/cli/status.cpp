@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <thread>
 #include <tuple>
 
@@ -36,11 +37,15 @@ struct View {
   Store store;
   std::vector<ListedRun> runs;
   std::map<std::string, Lease> holders;  // by run
+  std::set<std::string> waiting;         // waiting_for_failed()
   QueueView queue;
   VariantNames names;
 
   View(const RunSelection& selection, const Context& context)
-      : store(context.store, Access::read), queue(look_at_queue(store)), names(store) {
+      : store(context.store, Access::read),
+        waiting(waiting_for_failed(store.runs())),
+        queue(view_queue(store)),
+        names(store) {
     using Place = std::tuple<std::string, std::string, std::string>;
     const auto place_of = [](const SelectedRun& s) -> Place {
       return {s.membership.experiment, s.membership.scale, s.run.id};
@@ -260,6 +265,12 @@ void print_tables(const View& view) {
 void print(const View& view) {
   print_tables(view);
   if (const auto left = estimate(view)) print(*left);
+  const auto waiting = std::ranges::count_if(
+      view.runs, [&](const SelectedRun& one) { return view.waiting.contains(one.run.id); });
+  if (waiting > 0) {
+    print_text("{} cannot start, since the packing failed\n",
+               counted(static_cast<std::size_t>(waiting), "stage"));
+  }
   for (const auto& [run, lease] : view.holders) {
     print_text("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
   }
@@ -287,7 +298,7 @@ void print_facts(const View& view) {
                                  [](const Submission& open) -> nlohmann::json {
                                    return {{"id", open.id},
                                            {"job", open.job},
-                                           {"fold_job", open.fold_job},
+                                           {"fold_job", open.merge_job},
                                            {"tasks", open.tasks.size()},
                                            {"in_queue", open.queue.size()}};
                                  })},
@@ -297,6 +308,13 @@ void print_facts(const View& view) {
 // A stage begins within milliseconds after the one before it. If no program has held a stage for
 // this long, the campaign has ended.
 constexpr std::chrono::seconds kIdle{10};
+
+bool stages_remain(const View& view) {
+  return std::ranges::any_of(view.runs, [&](const SelectedRun& selected) {
+    return selected.run.state != RunState::completed && selected.run.state != RunState::failed &&
+           !view.waiting.contains(selected.run.id);
+  });
+}
 
 /// Sleeps, or returns true as soon as a signal asks to stop.
 bool sleep_or_stop(double seconds) {
@@ -310,9 +328,6 @@ bool sleep_or_stop(double seconds) {
 /// Prints the status every `interval` seconds until the campaign has ended or a signal comes.
 void watch(const RunSelection& selection, const Context& context, double interval) {
   catch_stop_signals();
-  const auto ended = [](const ListedRun& listed) {
-    return listed.run.state == RunState::completed || listed.run.state == RunState::failed;
-  };
   auto busy_at = std::chrono::steady_clock::now();
   while (true) {
     const View view(selection, context);
@@ -322,7 +337,7 @@ void watch(const RunSelection& selection, const Context& context, double interva
     const auto now = std::chrono::steady_clock::now();
     if (!view.holders.empty() || view.queue.busy()) {
       busy_at = now;
-    } else if (std::ranges::all_of(view.runs, ended) || now - busy_at > kIdle) {
+    } else if (!stages_remain(view) || now - busy_at > kIdle) {
       return;
     }
     // Many users share the queue of a cluster, so query it at most every 10 s.

@@ -97,13 +97,13 @@ void dry_run(const Proposal& proposal, Context& context) {
   const fs::path store = whole_path(context.store);
   const JobPlaces places = places_of(store, store / "submissions" / "SUBMISSION");
   const std::string script = array_script(proposal.job, places, proposal.shares.size());
-  const std::string folding = fold_script(proposal.job, places, proposal.shares.size());
+  const std::string merging = merge_script(proposal.job, places, proposal.shares.size());
   if (context.json) {
-    return print_json_of(proposal, {{"script", script}, {"fold_script", folding}});
+    return print_json_of(proposal, {{"script", script}, {"fold_script", merging}});
   }
   print_shares(proposal);
   fmt::print("\nNothing was submitted. The array job:\n\n{}\nand, when all of it has ended:\n\n{}",
-             script, folding);
+             script, merging);
 }
 
 /// Queues the array. Deletes the submission's folder if that fails.
@@ -114,7 +114,7 @@ std::string queue_array(const Submission& submission, const Proposal& proposal,
   try {
     const JobPlaces places = places_of(store, folder);
     write_output(folder / "job.sh", array_script(proposal.job, places, tasks));
-    write_output(folder / "fold.sh", fold_script(proposal.job, places, tasks));
+    write_output(folder / "fold.sh", merge_script(proposal.job, places, tasks));
     return queue_job(folder, "job.sh", submission.name(), output_option(folder, "task-%a.log"));
   } catch (...) {
     std::error_code ignored;
@@ -123,48 +123,49 @@ std::string queue_array(const Submission& submission, const Proposal& proposal,
   }
 }
 
-/// Queues both jobs. If the second fails, the stores can be folded by hand.
+/// Queues both jobs. If the second fails, the stores can be merged by hand.
 void queue(const Submission& submission, const Proposal& proposal, Store& store, Context& context) {
   const fs::path folder = submission.folder(store.folder());
   const std::string job = queue_array(submission, proposal, store.folder());
-  std::string fold_job;
+  std::string merge_job;
   try {
     std::vector<std::string> words = output_option(folder, "fold.log");
     words.push_back("--dependency=afterany:" + job);
-    fold_job = queue_job(folder, "fold.sh", submission.fold_name(), words);
+    merge_job = queue_job(folder, "fold.sh", submission.merge_name(), words);
   } catch (const ProgramError& error) {
     print_stderr(
-        "warning: {}\nThe stores of the tasks are not folded by themselves: `shearcell "
+        "warning: {}\nThe stores of the tasks are not merged by themselves: `shearcell "
         "submit` again, or `merge` them, when the job has ended\n",
         error.what());
   }
   store.record_submission("JobQueued",
-                          {{"submission", submission.id}, {"job", job}, {"fold_job", fold_job}});
+                          {{"submission", submission.id}, {"job", job}, {"fold_job", merge_job}});
   if (context.json) {
     return print_json_of(proposal, {{"submission", submission.id},
                                     {"job", job},
-                                    {"fold_job", fold_job},
+                                    {"fold_job", merge_job},
                                     {"folder", folder.string()}});
   }
   print_shares(proposal);
   fmt::print("\nSubmitted as job {}; {} its stores. Logs: {}\n", job,
-             fold_job.empty() ? "nothing folds" : "job " + fold_job + " folds", folder.string());
+             merge_job.empty() ? "nothing merges" : "job " + merge_job + " merges",
+             folder.string());
   if (proposal.left_out > 0) {
     fmt::print("{} more runs were left out: they are queued or at work already\n",
                proposal.left_out);
   }
 }
 
-/// Folds what earlier submissions computed and no job folded, as after `scancel`.
-void fold_leftovers(Store& store, const std::vector<Submission>& open) {
+/// Merges what earlier submissions computed and no job merged, as after `scancel`.
+void merge_leftovers(Store& store, const std::vector<Submission>& open) {
   for (const Submission& submission : open) {
     if (!submission.queue.empty()) continue;
     std::uint64_t checkpoints = 0;
-    for (const MergeReport& report : fold(store, submission)) {
+    for (const MergeReport& report : merge_tasks(store, submission)) {
       checkpoints += report.checkpoints;
     }
     if (checkpoints == 0) continue;
-    print_stderr("folded in {} checkpoints of submission {}, whose jobs have ended\n", checkpoints,
+    print_stderr("merged {} checkpoints of submission {}, whose jobs have ended\n", checkpoints,
                  submission.id);
   }
 }
@@ -193,7 +194,7 @@ void submit_really(const SubmitOptions& options, const LoadedManifests& loaded, 
   const std::size_t seen = store.events(kSubmissions).size();
   std::vector<Submission> open = unfinished_submissions(store);
   ask_queue(open);
-  fold_leftovers(store, open);
+  merge_leftovers(store, open);
   for (std::size_t m = 0; m < loaded.manifests.size(); ++m) {
     declare(store, loaded.manifests[m], loaded.plans[m]);
   }

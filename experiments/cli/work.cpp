@@ -45,7 +45,7 @@ std::function<void()> tried(std::function<void()> action, seconds interval) {
   };
 }
 
-/// The task's store, or a copy on the node's disk that is folded back into it.
+/// The task's store, or a copy on the node's disk that is merged back into it.
 class WorkStore {
  public:
   WorkStore(const fs::path& task, const std::string& scratch) : task_(task) {
@@ -72,7 +72,7 @@ class WorkStore {
     merge_stores(task, {copy_}, runs_);
   }
 
-  /// Folds the copy back and removes it.
+  /// Merges the copy back and removes it.
   void finish() {
     if (!is_copy()) return;
     save();
@@ -82,7 +82,7 @@ class WorkStore {
 
  private:
   fs::path task_, copy_;
-  std::set<std::string> runs_;  // those of the task, which alone are folded back
+  std::set<std::string> runs_;  // those of the task, which alone are merged back
   std::optional<Store> store_;
 };
 

@@ -5,8 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 
+#include "experiments/manifest/suggest.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/read_number.hpp"
 
@@ -45,7 +47,7 @@ fi
 exit "$code"
 )sh";
 
-constexpr std::string_view kFoldBody = R"sh(
+constexpr std::string_view kMergeBody = R"sh(
 code=0
 for task in $(seq @TASKS@); do
   "$shearcell" merge "$tasks$task" --store "$store" || code=$?
@@ -71,11 +73,6 @@ std::string directives(const JobOptions& options, const std::vector<std::string>
          "#SBATCH --open-mode=append\n";
 }
 
-std::string trimmed(std::string text) {
-  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
-  return text;
-}
-
 // Slurm waits 10 s for an answer of its controller.
 constexpr double kAnswerSeconds = 15;
 
@@ -99,8 +96,8 @@ std::string ask(const std::vector<std::string>& words, const std::filesystem::pa
 
 std::string unfit_path(const std::filesystem::path& path) {
   const std::string text = path.string();
-  const bool fit = std::ranges::none_of(
-      text, [](char c) { return c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+  const bool fit =
+      std::ranges::none_of(text, [](unsigned char c) { return c == '\\' || std::iscntrl(c) != 0; });
   if (fit) return "";
   return fmt::format(
       "{}: Slurm cannot be given a path with a backslash, a line feed or another control "
@@ -154,12 +151,12 @@ std::string array_script(const JobOptions& options, const JobPlaces& places, std
          body;
 }
 
-std::string fold_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks) {
+std::string merge_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks) {
   return "#!/bin/bash\n" + directives(options, {}) +
          fmt::format("\nshearcell={}\nstore={}\ntasks={}", shell_quoted(places.program.string()),
                      shell_quoted(places.store.string()),
                      shell_quoted((places.folder / "task-").string())) +
-         replaced(std::string(kFoldBody), "@TASKS@", fmt::to_string(tasks));
+         replaced(std::string(kMergeBody), "@TASKS@", fmt::to_string(tasks));
 }
 
 std::string output_pattern(const std::filesystem::path& folder, std::string_view file) {
@@ -178,7 +175,7 @@ std::string queue_job(const std::filesystem::path& folder, const std::string& sc
   words.insert(words.end(), options.begin(), options.end());
   words.push_back(script);
   const std::string answer = ask(words, folder);
-  std::string job = trimmed(answer.substr(0, answer.find(';')));  // the name of the cluster follows
+  std::string job(trimmed(answer.substr(0, answer.find(';'))));  // the name of the cluster follows
   if (!read_number<std::uint64_t>(job)) {
     throw ProgramError(fmt::format("sbatch gave no job number but '{}'", trimmed(answer)));
   }
@@ -198,7 +195,7 @@ std::vector<QueuedTask> read_queue(const std::string& output) {
   for (std::string line; std::getline(lines, line);) {
     std::vector<std::string> fields;
     std::istringstream rest(line);
-    for (std::string field; std::getline(rest, field, '|');) fields.push_back(trimmed(field));
+    for (std::string field; std::getline(rest, field, '|');) fields.emplace_back(trimmed(field));
     fields.resize(std::max<std::size_t>(6, fields.size()));
     if (!read_number<std::uint64_t>(fields[1])) continue;
     tasks.push_back({.name = fields[0],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Slurm interface: the scripts that it runs (an array of tasks, and the folding job that merges
+// The Slurm interface: the scripts that it runs (an array of tasks, and the merge job that merges
 // their stores), and calls of its programs, with argument vectors instead of a shell.
 #pragma once
 
@@ -45,9 +45,9 @@ std::optional<double> slurm_seconds(std::string_view time);
 /// and is queued again when its time is over.
 std::string array_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks);
 
-/// Script of the folding job: merges the store of every task into STORE, one after the other. It
+/// Script of the merge job: merges the store of every task into STORE, one after the other. It
 /// ends with the last exit code that was not 0.
-std::string fold_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks);
+std::string merge_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks);
 
 /// Value of `--output`: patterns in `file` are kept, those in the folder's name are escaped.
 std::string output_pattern(const std::filesystem::path& folder, std::string_view file);

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <random>
 #include <system_error>
 
+#include "experiments/manifest/suggest.hpp"
 #include "experiments/runner/asks.hpp"
 #include "experiments/runner/audit.hpp"
 #include "provenance/errors.hpp"
@@ -46,18 +46,13 @@ void apply(std::vector<Submission>& known, const Event& event) {
     for (Submission& submission : known) {
       if (submission.id != id) continue;
       submission.job = body.at("job");
-      submission.fold_job = body.at("fold_job");
+      submission.merge_job = body.at("fold_job");
     }
   }
 }
 
 fs::path report_file(fs::path folder) {
   return folder += ".progress.json";
-}
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
 }
 
 QueuedTask task_of(const Submission& submission, std::size_t task) {
@@ -78,9 +73,7 @@ std::vector<Submission> read_submissions(const Store& store) {
     try {
       apply(known, event);
     } catch (const json::exception& problem) {
-      throw StoreDamaged(fmt::format("{}: event {} ({}): its payload is not as it must be: {}",
-                                     store.folder().string(), event.seq, event.type,
-                                     problem.what()));
+      throw damaged_payload(event, problem);
     }
   }
   return known;
@@ -111,18 +104,18 @@ void ask_queue(std::vector<Submission>& submissions) {
   std::vector<std::string> names;
   for (const Submission& s : submissions) {
     names.push_back(s.name());
-    names.push_back(s.fold_name());
+    names.push_back(s.merge_name());
   }
   for (QueuedTask& task : ask_queue(names)) {
     for (Submission& s : submissions) {
-      if (task.name != s.name() && task.name != s.fold_name()) continue;
+      if (task.name != s.name() && task.name != s.merge_name()) continue;
       s.queue.push_back(std::move(task));
       break;
     }
   }
 }
 
-std::vector<MergeReport> fold(Store& store, const Submission& submission) {
+std::vector<MergeReport> merge_tasks(Store& store, const Submission& submission) {
   std::vector<MergeReport> reports;
   for (std::size_t task = 1; task <= submission.tasks.size(); ++task) {
     const fs::path folder = submission.task_store(store.folder(), task);
@@ -210,7 +203,7 @@ bool QueueView::busy() const {
   return std::ranges::any_of(submissions, [](const auto& open) { return !open.queue.empty(); });
 }
 
-QueueView look_at_queue(const Store& store) {
+QueueView view_queue(const Store& store) {
   QueueView view;
   view.submissions = unfinished_submissions(store);
   try {
@@ -242,19 +235,19 @@ std::string describe(const Submission& s) {
         "submission {}: its jobs have ended with runs unfinished; `submit` them again", s.id);
   }
   std::map<std::string, std::size_t> count;
-  bool folding = false;
+  bool merge_queued = false;
   for (const QueuedTask& task : s.queue) {
     if (task.name == s.name()) ++count[lower(task.state)];
-    folding = folding || task.name == s.fold_name();
+    merge_queued = merge_queued || task.name == s.merge_name();
   }
   std::string states;
   for (const auto& [state, tasks] : count) {
     states += fmt::format("{}{} {}", states.empty() ? "" : ", ", tasks, state);
   }
-  return fmt::format("submission {}: job {}, {} of {} tasks in the queue{}", s.id,
-                     s.job.empty() ? s.queue.front().job : s.job, states.empty() ? "none" : states,
-                     s.tasks.size(),
-                     folding ? fmt::format("; job {} will fold their stores", s.fold_job) : "");
+  return fmt::format(
+      "submission {}: job {}, {} of {} tasks in the queue{}", s.id,
+      s.job.empty() ? s.queue.front().job : s.job, states.empty() ? "none" : states, s.tasks.size(),
+      merge_queued ? fmt::format("; job {} will merge their stores", s.merge_job) : "");
 }
 
 }  // namespace shearcell

@@ -23,11 +23,11 @@ struct Submission {
   std::string id;                               ///< 12 hex digits
   std::vector<std::vector<std::string>> tasks;  ///< runs of task 1, 2, ...
   std::string job;                              ///< "" when it was not queued
-  std::string fold_job;
+  std::string merge_job;  ///< "fold_job" in the log, for submissions that are queued already
   std::vector<QueuedTask> queue;  ///< its lines of the queue, by ask_queue()
 
   std::string name() const { return "shearcell-" + id; }  ///< of the array job
-  std::string fold_name() const { return name() + "-fold"; }
+  std::string merge_name() const { return name() + "-fold"; }
   std::filesystem::path folder(const std::filesystem::path& store) const {
     return store / "submissions" / id;
   }
@@ -52,7 +52,7 @@ std::set<std::string> busy_runs(const Store& store, const std::vector<Submission
 
 /// Merges the stores of a submission's tasks into the store. Task stores that no longer exist are
 /// skipped.
-std::vector<MergeReport> fold(Store& store, const Submission& submission);
+std::vector<MergeReport> merge_tasks(Store& store, const Submission& submission);
 
 /// Records a submission of these shares and makes a store for each task with copies of all records
 /// of its runs. `facts` is added to the event. Throws ConcurrencyConflict when another program
@@ -88,7 +88,7 @@ struct QueueView {
 };
 
 /// Asks Slurm only if the store has unfinished submissions.
-QueueView look_at_queue(const Store& store);
+QueueView view_queue(const Store& store);
 
 /// One line for `status`: its jobs and their states, or what to do if they have ended.
 std::string describe(const Submission& submission);

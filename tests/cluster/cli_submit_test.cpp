@@ -122,7 +122,7 @@ TEST_F(Submit, LeavesNothingOfARejectedSubmission) {
   EXPECT_FALSE(json({"submit", manifest_, "--json"}).at("submission").is_null()) << "and goes on";
 }
 
-TEST_F(Submit, FoldsUnfoldedTasksAndSubmitsTheRest) {
+TEST_F(Submit, MergesLeftTasksAndSubmitsTheRest) {
   slurm_that_works();
   const auto said = json({"submit", manifest_, "--seeds", "2", "--json"});
   const std::string folder = said.at("folder");

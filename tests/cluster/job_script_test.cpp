@@ -190,9 +190,9 @@ TEST_F(JobScript, WorksOnScratch) {
   EXPECT_TRUE(has(calls(), "--scratch\n" + options.scratch + "\n"));
 }
 
-TEST_F(JobScript, FoldsTheOtherTasksIfOneCannotBeFolded) {
+TEST_F(JobScript, MergesTheOtherTasksIfOneCannotBeMerged) {
   executable("shearcell", "echo \"shearcell $*\" >> \"$SAID\"\n[[ $2 != *task-2 ]] || exit 4\n");
-  EXPECT_EQ(run_script(fold_script({}, places(), 3)), 4);
+  EXPECT_EQ(run_script(merge_script({}, places(), 3)), 4);
   std::string expected;
   for (const char* task : {"task-1", "task-2", "task-3"}) {
     expected += "shearcell merge " + (root_ / "jobs" / task).string() + " --store " +

@@ -66,7 +66,7 @@ class Campaign:
             "--cpus-per-task", "1", *limits, "--json"))
         if said["submission"]:
             self.folder = pathlib.Path(said["folder"])
-            say(f"job {said['job']} of {len(said['tasks'])} tasks, folded by {said['fold_job']}")
+            say(f"job {said['job']} of {len(said['tasks'])} tasks, merged by {said['fold_job']}")
         return said
 
     def status(self):
@@ -85,7 +85,7 @@ class Campaign:
         before = self.checkpoints(task)
         wait_for(f"a checkpoint of task {task}", lambda: self.checkpoints(task) > before)
 
-    def wait_until_folded(self):
+    def wait_until_merged(self):
         wait_for("an empty queue", lambda: self.slurm.queue() == {}, 300)
 
 
@@ -188,7 +188,7 @@ def interrupted_in_every_way(campaign):
     kill_a_task(campaign)
     lose_the_node(campaign, begun)
     let_time_be_over(campaign, pause(campaign))
-    campaign.wait_until_folded()
+    campaign.wait_until_merged()
     compare(campaign)
     require(campaign.submit(CYCLES)["tasks"] == [], "there is nothing to do")
 
@@ -202,7 +202,7 @@ def cancelled_and_submitted_again(campaign):
     require(any(run["state"] != "completed" for run in campaign.status()["runs"]), "too late")
     again = campaign.submit(MORE_CYCLES)
     require(again["submission"] not in (None, said["submission"]), f"{again}")
-    campaign.wait_until_folded()
+    campaign.wait_until_merged()
     compare(campaign)
     say("a cancelled campaign went on from what it had recorded")
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs are distributed over tasks: each run once, each packing once, always the same way, with
-// about equal work. Stores of tasks, folding them, and the events that record this; without Slurm.
+// about equal work. Stores of tasks, merging them, and the events that record this; without Slurm.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ class Submitted : public StoreTest {
   }
 };
 
-TEST_F(Submitted, TasksComputeTheirSharesAndTheirStoresFoldIntoTheWhole) {
+TEST_F(Submitted, TasksComputeTheirSharesAndTheirStoresMergeIntoTheWhole) {
   const Submission made = submit(shares());
   for (std::size_t task = 1; task <= 2; ++task) {
     Store own = store_of(made, task);
@@ -50,12 +50,12 @@ TEST_F(Submitted, TasksComputeTheirSharesAndTheirStoresFoldIntoTheWhole) {
     EXPECT_EQ(resume(own).completed, 3U);
     EXPECT_TRUE(own.verify().ok());
   }
-  EXPECT_EQ(fold(store_, made).size(), 2U);
+  EXPECT_EQ(merge_tasks(store_, made).size(), 2U);
   EXPECT_EQ(final_hashes(store_), computed_here(2));
   EXPECT_TRUE(store_.verify().ok());
   const Head head = store_.head();
-  fold(store_, made);
-  EXPECT_EQ(store_.head().hash, head.hash) << "folding twice changes nothing";
+  merge_tasks(store_, made);
+  EXPECT_EQ(store_.head().hash, head.hash) << "merging twice changes nothing";
   EXPECT_TRUE(unfinished_submissions(store_).empty());
 }
 
@@ -65,13 +65,13 @@ TEST_F(Submitted, ATaskContinuesFromTheStore) {
     Store own = store_of(first, task);
     resume(own);
   }
-  fold(store_, first);
+  merge_tasks(store_, first);
   const Submission second = submit(shares(3));
   for (std::size_t task = 1; task <= 2; ++task) {
     Store own = store_of(second, task);
     EXPECT_EQ(resume(own).completed, 2U) << "the packing is there, and the first cycle";
   }
-  fold(store_, second);
+  merge_tasks(store_, second);
   EXPECT_EQ(final_hashes(store_), computed_here(3));
   for (const RunRecord& run : store_.runs()) {
     const auto records = store_.checkpoints(run.id);
@@ -94,7 +94,7 @@ TEST_F(Submitted, HaveWorkLeftWhileACompletedRunLacksCheckpoints) {
   EXPECT_EQ(unfinished_submissions(store_).size(), 1U) << "its tasks have only begun";
   Store own = store_of(made, 1);
   EXPECT_EQ(resume(own).completed, 1U);
-  fold(store_, made);
+  merge_tasks(store_, made);
   EXPECT_TRUE(unfinished_submissions(store_).empty());
   EXPECT_EQ(store_.checkpoints(sheared(store_).id).size(), 5U);
 }
@@ -107,7 +107,7 @@ TEST_F(Submitted, TasksEndRunsByUntil) {
   const Submission made = submit(share_out(work_left({plan}, &store_), 1));
   Store own = store_of(made, 1);
   EXPECT_EQ(resume(own).completed, 2U);
-  fold(store_, made);
+  merge_tasks(store_, made);
   const RunRecord run = runs_of_kind(store_, "shear").front();
   EXPECT_EQ(run.state, RunState::completed);
   EXPECT_EQ(run.cycle, 1);
@@ -130,7 +130,7 @@ TEST_F(Submitted, RunsInTheQueueAreBusyWithTheirPackings) {
   Submission made = submit(shares());
   EXPECT_TRUE(busy_runs(store_, {made}).empty()) << "its jobs have ended";
   made.queue = {{made.name(), "17", 2, "PENDING", {}, {}}};
-  EXPECT_EQ(busy_runs(store_, {made}).size(), 6U) << "nothing is folded before the end";
+  EXPECT_EQ(busy_runs(store_, {made}).size(), 6U) << "nothing is merged before the end";
 }
 
 TEST_F(Submitted, RunsAtWorkHereAreBusyWithTheirPackings) {
@@ -181,7 +181,7 @@ TEST_F(Submitted, CanBeReadFromTheLog) {
   EXPECT_EQ(known[0].id, made.id);
   EXPECT_EQ(known[0].tasks, made.tasks);
   EXPECT_EQ(known[0].job, "17");
-  EXPECT_EQ(known[0].fold_job, "18");
+  EXPECT_EQ(known[0].merge_job, "18");
   EXPECT_EQ(unfinished_submissions(store_).size(), 1U);
   fs::remove_all(made.folder(store_.folder()));
   EXPECT_TRUE(unfinished_submissions(store_).empty()) << "it is not of this folder";
@@ -212,16 +212,17 @@ TEST(Queue, IsReadLineByLine) {
   EXPECT_EQ(queue[2].job, "18");
 }
 
-TEST(Described, NamesTheArrayWhileOnlyTheFoldingJobWaits) {
+TEST(Described, NamesTheArrayWhileOnlyTheMergeJobWaits) {
   Submission made;
   made.id = "0123456789ab";
   made.tasks.resize(4);
   made.job = "17";
-  made.fold_job = "18";
-  made.queue = {{made.fold_name(), "18", {}, "PENDING", "Dependency", ""}};
-  EXPECT_EQ(describe(made),
-            "submission 0123456789ab: job 17, none of 4 tasks in the queue; job 18 will fold their "
-            "stores");
+  made.merge_job = "18";
+  made.queue = {{made.merge_name(), "18", {}, "PENDING", "Dependency", ""}};
+  EXPECT_EQ(
+      describe(made),
+      "submission 0123456789ab: job 17, none of 4 tasks in the queue; job 18 will merge their "
+      "stores");
   made.job = "";  // a crash before it was recorded
   made.queue.insert(made.queue.begin(), {made.name(), "17", 1, "RUNNING", "", "node7"});
   EXPECT_TRUE(describe(made).starts_with("submission 0123456789ab: job 17, 1 running of 4"));
