@@ -28,7 +28,7 @@ LammpsTask task_of(const Packing& packing, std::uint64_t steps) {
   task.drive = drive(packing.parameters);
   task.state = packing.state;
   task.end = task.stride = packing.state.step + steps;
-  task.look = lammps_look_steps(packing.parameters.grains, 1);
+  task.check_every = lammps_check_steps(packing.parameters.grains, 1);
   return task;
 }
 
@@ -141,6 +141,33 @@ std::vector<Packing> settle_all(const LammpsProgram& program, const EngineCheckO
   return packings;
 }
 
+// LAMMPS takes the steps between two checks of the protocol, which decides from the resulting state
+// whether more are needed. The result's step counts the steps that LAMMPS took.
+LammpsResult settle_by_lammps(std::size_t ranks, const LammpsProgram& program, const Packing& loose,
+                              const Settle& protocol,
+                              const std::function<void(const State&)>& seen) {
+  LammpsResult settled{loose.state, 0, 0};
+  for (;;) {
+    // One step of our own, whose result is discarded: in it the protocol decides whether the
+    // packing has settled and which forces act now, and the watchdog checks the grains.
+    Simulation check(loose.cell, loose.scene, settled.state);
+    if (protocol.advance(check, 1).finished) return settled;
+    const std::uint64_t end = protocol.next_look(settled.state.step);
+    const LammpsTask task{.cell = loose.cell,
+                          .scene = check.scene(),
+                          .drive = protocol.drive(),
+                          .state = std::move(settled.state),
+                          .end = end,
+                          .stride = end,
+                          .check_every = lammps_check_steps(check.grains(), ranks)};
+    LammpsResult part = run_lammps(program, task, ranks);
+    settled.state = std::move(part.state);
+    settled.loop_seconds += part.loop_seconds;
+    settled.peak_bytes = std::max(settled.peak_bytes, part.peak_bytes);
+    if (seen) seen(settled.state);
+  }
+}
+
 }  // namespace
 
 Settling settle_by(std::size_t ranks, const LammpsProgram& program, const Packing& loose,
@@ -153,8 +180,7 @@ Settling settle_by(std::size_t ranks, const LammpsProgram& program, const Packin
     settle(simulation, parameters, loose.scene);
     result = {simulation.state(), watch.seconds(), simulation.bytes()};
   } else {
-    result = settle_by_lammps(program, Settle(parameters, loose.scene), loose.scene, loose.cell,
-                              loose.state, ranks, seen);
+    result = settle_by_lammps(ranks, program, loose, Settle(parameters, loose.scene), seen);
   }
   const State& state = result.state;
   const auto work = static_cast<double>(state.step) * static_cast<double>(state.position.cols());

@@ -78,7 +78,7 @@ class Campaign {
   // The first job that may begin, or else the first held one that is due for a check; kNone if
   // there is none now. Jobs that can no longer begin are ended.
   std::size_t next_job() {
-    std::size_t look = kNone;
+    std::size_t held_job = kNone;
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
       Job& job = states_[j];
       const bool held = job.state == JobState::held;
@@ -88,12 +88,12 @@ class Campaign {
         job.state = JobState::ended;
         ++(was_done(jobs_[j]) ? result_.already : result_.blocked);
       } else if (held) {
-        if (look == kNone && Clock::now() >= job.check_at) look = j;
+        if (held_job == kNone && Clock::now() >= job.check_at) held_job = j;
       } else if (before == JobState::done) {
         return j;
       }
     }
-    return look;
+    return held_job;
   }
 
   // Of a job that is not computed any more. Reads the log alone, because the user waits for the

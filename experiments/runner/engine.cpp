@@ -56,7 +56,7 @@ class LammpsEngine final : public Engine {
                           .state = state_,
                           .end = end,
                           .stride = stride_,
-                          .look = lammps_look_steps(plan.run.grains, parallel.ranks)};
+                          .check_every = lammps_check_steps(plan.run.grains, parallel.ranks)};
     run_.emplace(program, task, parallel.ranks);
   }
 

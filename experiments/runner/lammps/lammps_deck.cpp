@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <iterator>
 #include <numbers>
 #include <string_view>
 
 #include "provenance/io/child_process.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell {
 namespace {
@@ -180,8 +180,8 @@ class Deck {
     add(text_,
         "variable stop equal c_asked\nfix stop all halt {} v_stop > 0.5 error continue "
         "message no",
-        task_.look);
-    add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.look);
+        task_.check_every);
+    add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
     // Under mpirun each process gets equally many grains, however far the wall grains reach.
     add(text_, "balance 1.05 shift xyz 20 1.02 weight group 1 planted 0.1");
     add(text_, "timestep {:.17g}\nrun 0 post no", scene_.time_step);
@@ -290,8 +290,7 @@ std::string lammps_deck(const LammpsTask& task) {
 }
 
 State read_lammps_frame(const std::filesystem::path& file, std::size_t grains) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string text = read_plain(file, kLargestFile).value_or("");
   Numbers numbers(text, file.string());
   State state;
   numbers.skip_past("ITEM: TIMESTEP");

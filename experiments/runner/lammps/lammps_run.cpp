@@ -9,11 +9,11 @@
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <thread>
 #include <vector>
 
 #include "experiments/runner/stop.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/io/read_number.hpp"
 
 namespace shearcell {
@@ -25,8 +25,7 @@ constexpr std::chrono::milliseconds kCheckInterval{20};
 constexpr double kHelpSeconds = 10;
 
 std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  return read_plain(file, kLargestFile).value_or("");
 }
 
 void write_text(const fs::path& file, const std::string& text) {
@@ -120,7 +119,7 @@ LammpsProgram find_lammps(std::size_t ranks) {
   return {path->string(), text.substr(version, text.find('\n', version) - version)};
 }
 
-std::uint64_t lammps_look_steps(std::size_t grains, std::size_t ranks) {
+std::uint64_t lammps_check_steps(std::size_t grains, std::size_t ranks) {
   return std::max<std::uint64_t>(1, 3'000'000 * ranks / std::max<std::size_t>(1, grains));
 }
 
@@ -171,7 +170,8 @@ std::uint64_t LammpsRun::step() {
   std::ifstream log(folder_.path() / "log", std::ios::binary);
   if (!log.seekg(-64, std::ios::end)) return step_;
   // The last complete line is a step or a message.
-  std::string tail{std::istreambuf_iterator<char>(log), {}};
+  std::string tail(64, '\0');
+  log.read(tail.data(), 64);
   tail.resize(tail.rfind('\n') == tail.npos ? 0 : tail.rfind('\n'));
   std::string line = last_line(tail);
   line.erase(std::remove(line.begin(), line.end(), ' '), line.end());
@@ -215,31 +215,6 @@ LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, st
   auto frame = run.next_frame(std::chrono::hours(24 * 365));
   run.finish();
   return {std::move(*frame), run.loop_seconds(), run.peak_bytes()};
-}
-
-LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protocol,
-                              const Scene& scene, const Cell& cell, const State& loose,
-                              std::size_t ranks, const std::function<void(const State&)>& seen) {
-  LammpsResult settled{loose, 0, 0};
-  for (;;) {
-    // One step of our own, whose result is discarded: in it the protocol decides whether the
-    // packing has settled and which forces act now, and the watchdog checks the grains.
-    Simulation look(cell, scene, settled.state);
-    if (protocol.advance(look, 1).finished) return settled;
-    const std::uint64_t end = protocol.next_look(settled.state.step);
-    const LammpsTask task{.cell = cell,
-                          .scene = look.scene(),
-                          .drive = protocol.drive(),
-                          .state = std::move(settled.state),
-                          .end = end,
-                          .stride = end,
-                          .look = lammps_look_steps(look.grains(), ranks)};
-    LammpsResult part = run_lammps(program, task, ranks);
-    settled.state = std::move(part.state);
-    settled.loop_seconds += part.loop_seconds;
-    settled.peak_bytes = std::max(settled.peak_bytes, part.peak_bytes);
-    if (seen) seen(settled.state);
-  }
 }
 
 }  // namespace shearcell

@@ -4,14 +4,12 @@
 
 #include <chrono>
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "experiments/runner/lammps/lammps_deck.hpp"
 #include "experiments/runner/lammps/scratch_folder.hpp"
-#include "protocols/settle.hpp"
 #include "provenance/io/child_process.hpp"
 
 namespace shearcell {
@@ -29,7 +27,7 @@ LammpsProgram find_lammps(std::size_t ranks = 1);
 
 /// Steps between two checks of LAMMPS for a request to stop, and of this program for progress:
 /// about half a second of work.
-std::uint64_t lammps_look_steps(std::size_t grains, std::size_t ranks);
+std::uint64_t lammps_check_steps(std::size_t grains, std::size_t ranks);
 
 class LammpsRun {
  public:
@@ -74,15 +72,5 @@ struct LammpsResult {
 
 /// Runs a task that asks for one frame, its last, and waits for it. Throws ProgramError.
 LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
-
-/// Settles loose grains as protocols/settle does: LAMMPS takes the steps between two checks, and
-/// our protocol decides from the resulting state whether more are needed. `scene` is the
-/// protocol's; the result's step counts the steps that LAMMPS took. `seen` gets the state at each
-/// check. Throws ProgramError, and NumericalFailure as the protocol does (for example after its
-/// time limit).
-LammpsResult settle_by_lammps(const LammpsProgram& program, const Settle& protocol,
-                              const Scene& scene, const Cell& cell, const State& loose,
-                              std::size_t ranks,
-                              const std::function<void(const State&)>& seen = {});
 
 }  // namespace shearcell
