@@ -10,13 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
-#include <span>
 #include <stdexcept>
 
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "protocols/cyclic_shear.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/limits.hpp"
 

@@ -50,17 +50,13 @@ std::string PackingNames::of(const Membership& place, const nlohmann::json& reso
   return own == names.end() ? "packing" : fmt::format("packing {}", own->second);
 }
 
-VariantNames::VariantNames(const Store& store)
-    : VariantNames(registered_manifests(store), store.runs()) {}
-
-VariantNames::VariantNames(const std::vector<RegisteredManifest>& manifests,
-                           const std::vector<RunRecord>& runs) {
+VariantNames::VariantNames(const Store& store) {
   std::map<std::string, std::vector<VariantLabel>> labels;
-  for (const RegisteredManifest& manifest : manifests) {
+  for (const RegisteredManifest& manifest : registered_manifests(store)) {
     if (auto known = read(manifest)) labels[manifest.sha256] = std::move(known->labels);
   }
   std::map<Group, std::vector<nlohmann::json>> variants;
-  for (const RunRecord& run : runs) {
+  for (const RunRecord& run : store.runs()) {
     for (const Membership& m : run.memberships) {
       if (run.kind == "prepare") {
         packings_.add(m, run.resolved);

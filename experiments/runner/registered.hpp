@@ -47,9 +47,8 @@ class PackingNames {
 /// vary in it (experiments/manifest/variants.hpp).
 class VariantNames {
  public:
+  VariantNames() = default;  ///< knows none
   explicit VariantNames(const Store& store);
-  VariantNames(const std::vector<RegisteredManifest>& manifests,
-               const std::vector<RunRecord>& runs);
   std::string of(const Membership& membership) const;  ///< if unknown, the variant itself
   /// The same; for a packing, its name by PackingNames.
   std::string of(const RunRecord& run, const Membership& membership) const;
