@@ -64,8 +64,8 @@ EngineMeans compare_means(const std::vector<std::size_t>& engines,
   using N = PackingNumbers;
   constexpr std::pair<const char*, double N::*> quantities[] = {
       {"phi", &N::phi},
-      {"contacts per grain", &N::contacts},
-      {"mean overlap [d]", &N::overlap},
+      {"contacts per grain", &N::contacts_per_grain},
+      {"mean overlap [d]", &N::mean_overlap},
       {"force imbalance of the wall", &N::imbalance},
       {"height [d]", &N::height}};
   EngineMeans result;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/measures.hpp"
 #include "core/diagnostics.hpp"
 #include "experiments/manifest/conversion.hpp"
 
@@ -67,13 +66,8 @@ Packing settled_packing(const Parameters& parameters, std::uint64_t seed) {
 
 PackingNumbers numbers_of(const Cell& cell, const Scene& scene, double theta, const State& state) {
   const WallPose pose = wall_pose(cell, theta, state.wall_height);
-  const Measures measures = analyse(cell, pose, state.position).measures;
-  return {measures.phi,
-          measures.phi_uncorrected,
-          measures.contacts_per_grain,
-          measures.mean_overlap,
-          std::fabs(diagnose(cell, scene, state, pose).wall_imbalance),
-          pose.top - pose.bottom};
+  return {analyse(cell, pose, state.position).measures,
+          std::fabs(diagnose(cell, scene, state, pose).wall_imbalance), pose.top - pose.bottom};
 }
 
 RunStatistics over(std::span<const PackingNumbers> packings, double PackingNumbers::*number) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "analysis/measures.hpp"
 #include "analysis/statistics.hpp"
 #include "core/simulation.hpp"
 #include "experiments/manifest/parameters.hpp"
@@ -44,13 +45,9 @@ State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive =
 
 void settle(Simulation& simulation, const SettleParameters& parameters, const Scene& scene);
 
-struct PackingNumbers {
-  double phi = 0;              ///< Eq. S4
-  double phi_uncorrected = 0;  ///< without the correction for overlaps
-  double contacts = 0;         ///< per grain
-  double overlap = 0;          ///< mean, Eq. S3 [d]
-  double imbalance = 0;        ///< |P A_w - F| / (P A_w) of the moving wall
-  double height = 0;           ///< of the cell [d]
+struct PackingNumbers : Measures {
+  double imbalance = 0;  ///< |P A_w - F| / (P A_w) of the moving wall
+  double height = 0;     ///< of the cell [d]
 };
 
 /// The numbers of a state at tilt `theta` [rad]. Throws AnalysisError as analyse() does.

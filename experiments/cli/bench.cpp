@@ -77,8 +77,8 @@ Facts facts(const bench::Settling& s) {
           {"million_particle_steps_per_second", rate, "M/s", digits(rate, 2)},
           {"bytes", s.bytes, "memory", format_bytes(s.bytes)},
           {"phi", n.phi, "phi", digits(n.phi, 4)},
-          {"contacts_per_grain", n.contacts, "contacts", digits(n.contacts, 3)},
-          {"mean_overlap_d", n.overlap, "overlap [d]", fmt::format("{:.3e}", n.overlap)},
+          {"contacts_per_grain", n.contacts_per_grain, "contacts", digits(n.contacts_per_grain, 3)},
+          {"mean_overlap_d", n.mean_overlap, "overlap [d]", fmt::format("{:.3e}", n.mean_overlap)},
           {"wall_force_imbalance", n.imbalance, "imbalance", fmt::format("{:.1e}", n.imbalance)},
           {"height_d", n.height}};
 }

@@ -147,11 +147,11 @@ PackingNumbers means_of_cycles(const bench::Packing& packing, std::uint64_t step
       const PackingNumbers now =
           bench::numbers_of(packing.cell, simulation.scene(), 0, simulation.state());
       mean.phi += now.phi / count;
-      mean.contacts += now.contacts / count;
-      mean.overlap += now.overlap / count;
+      mean.contacts_per_grain += now.contacts_per_grain / count;
+      mean.mean_overlap += now.mean_overlap / count;
     }
   } catch (const NumericalFailure&) {
-    mean.phi = mean.contacts = mean.overlap = kNaN;
+    mean.phi = mean.contacts_per_grain = mean.mean_overlap = kNaN;
   }
   return mean;
 }
@@ -183,8 +183,8 @@ Section seeds_section(const Options& options, double engine_rate) {
   for (std::size_t s = 0; s < steps.size(); ++s) {
     const std::span runs = std::span(means).subspan(s * seeds, seeds);
     const RunStatistics phi = bench::over(runs, &PackingNumbers::phi),
-                        contacts = bench::over(runs, &PackingNumbers::contacts),
-                        overlap = bench::over(runs, &PackingNumbers::overlap);
+                        contacts = bench::over(runs, &PackingNumbers::contacts_per_grain),
+                        overlap = bench::over(runs, &PackingNumbers::mean_overlap);
     const auto stopped = static_cast<std::int64_t>(seeds - phi.runs);
     p.steps_per_cycle = steps[s];
     const TimeStep step = shear_time_step(p);
@@ -263,7 +263,7 @@ Section stiffness_section(const Options& options, double engine_rate) {
     }
     const RunStatistics phi = bench::over(here, &PackingNumbers::phi),
                         phi_u = bench::over(here, &PackingNumbers::phi_uncorrected),
-                        overlap = bench::over(here, &PackingNumbers::overlap),
+                        overlap = bench::over(here, &PackingNumbers::mean_overlap),
                         bias = over_runs(biases), bias_u = over_runs(biases_u);
     section.results.push_back(
         {{"stiffness_factor", factor, "k/k_0", short_number(factor)},

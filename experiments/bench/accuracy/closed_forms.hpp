@@ -20,7 +20,6 @@ Scene contacts_only(double stiffness);
 struct Method {
   std::string name;
   int evaluations;  ///< of the forces in one time step
-  int order;        ///< where forces are smooth
   /// One time step; null for the engine, whose velocities are those of half a time step before.
   void (*step)(const Packing& box, double dt, State& state);
 };
