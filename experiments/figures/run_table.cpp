@@ -321,8 +321,7 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
 }
 
 std::vector<TableColumn> table_columns() {
-  const std::vector<Column> columns =
-      columns_for({}, RowPer::run, VariantNames(), true, false);
+  const std::vector<Column> columns = columns_for({}, RowPer::run, VariantNames(), true, false);
   return {columns.begin(), columns.end()};
 }
 
