@@ -103,6 +103,13 @@ class StageAttempt {
                        {"grain", failure.grain},
                        {"step", failure.step}});
       return StageOutcome::failed;
+    } catch (const std::exception& failure) {
+      // The disk, the memory or the store. Other programs may continue the run.
+      try {
+        store_.interrupt_run(id(), failure.what());
+      } catch (const std::exception&) {  // for the same reason; then the run's lease expires
+      }
+      throw;
     }
   }
 

@@ -86,7 +86,7 @@ std::vector<Fault> fault_points(const std::vector<std::string>& operations) {
   return all;
 }
 
-std::vector<std::string> check_left_behind(const fs::path& folder) {
+std::vector<std::string> check_left_behind(const fs::path& folder, bool could_write) {
   const fs::path store_folder = folder / "store";
   std::vector<std::string> wrong;
   try {
@@ -98,6 +98,7 @@ std::vector<std::string> check_left_behind(const fs::path& folder) {
       }
     }
     for (const RunRecord& run : store.runs()) {
+      if (could_write && run.state == RunState::running) wrong.push_back(run.id + " has no holder");
       for (const CheckpointRecord& record : store.checkpoints(run.id)) {
         store.load_checkpoint(record);  // throws when it is missing or wrong
       }

@@ -35,8 +35,9 @@ std::vector<std::string> list_operations(const std::filesystem::path& folder, co
 /// Every kind of fault at each of the operations.
 std::vector<Fault> fault_points(const std::vector<std::string>& operations);
 
-/// Checks a store after a fault: it opens, `verify` finds no error, and every recorded checkpoint
-/// can be loaded. Returns the violations.
-std::vector<std::string> check_left_behind(const std::filesystem::path& folder);
+/// Checks a store after a fault: it opens, `verify` finds no error, every recorded checkpoint can
+/// be loaded, and a program that could still write after it has released its runs. Returns the
+/// violations.
+std::vector<std::string> check_left_behind(const std::filesystem::path& folder, bool could_write);
 
 }  // namespace shearcell::test
