@@ -24,7 +24,7 @@ $series0 << EOD
 0.1,20,,
 EOD
 $series1 << EOD
-0.1,21.4024863,,2.13488096
+0.1,24.4033914,,1.70331611
 EOD
 plot keyentry with linespoints lc rgb '#888888' lw 1.2 dt 2 pt 6 ps 0.4 title 'supplement', \
      keyentry with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'simulated', \

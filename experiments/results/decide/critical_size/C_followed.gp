@@ -24,11 +24,11 @@ set yrange [*<20:20<*]
 set offsets graph 0.03, graph 0.03, graph 0.05, graph 0.05
 set arrow from graph 0, first 20 to graph 1, first 20 nohead dt 2 lc rgb '#6a3d9a'
 $series0 << EOD
-1,21.4024863,,2.13488096
-2,16.1072055,,1.58946044
-5,10.8070367,,1.65463226
-10,5.77868256,,1.11239759
-20,1.7023028,,0.539489787
+1,24.4033914,,1.70331611
+2,18.1562681,,1.25031421
+5,11.9517521,,1.36192462
+10,5.94896692,,1.02833589
+20,1.44081837,,0.334372622
 EOD
 plot keyentry with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.1', \
      $series0 every 1 using 1:2:4 with yerrorbars lc rgb '#6a3d9a' lw 0.7 pt 0 notitle, \
