@@ -1,4 +1,4 @@
-set terminal svg size 325,260 enhanced font 'Helvetica,10.67' background '#ffffff'
+set terminal svg size 325,275 enhanced font 'Helvetica,10.67' background '#ffffff'
 set encoding utf8
 set datafile separator ','
 set border 15 lw 0.8
@@ -19,6 +19,50 @@ set xrange [*:*]
 set yrange [0:1]
 set offsets graph 0.03, graph 0.03, 0, 0
 $series0 << EOD
+0,1,,
+20.9333333,1,,
+20.9333333,0.95,,
+30.3333333,0.95,,
+30.3333333,0.9,,
+33.9333333,0.9,,
+33.9333333,0.85,,
+34.5185185,0.85,,
+34.5185185,0.8,,
+37,0.8,,
+37,0.75,,
+42,0.75,,
+42,0.7,,
+46.875,0.7,,
+46.875,0.65,,
+48.3823529,0.65,,
+48.3823529,0.6,,
+49.2105263,0.6,,
+49.2105263,0.55,,
+54.1111111,0.55,,
+54.1111111,0.5,,
+58,0.5,,
+58,0.45,,
+58.75,0.45,,
+58.75,0.4,,
+86.8888889,0.4,,
+86.8888889,0.35,,
+87.8181818,0.35,,
+87.8181818,0.3,,
+88.8333333,0.3,,
+88.8333333,0.25,,
+92.8571429,0.25,,
+92.8571429,0.2,,
+94.4166667,0.2,,
+94.4166667,0.15,,
+101.5,0.15,,
+101.5,0.1,,
+109.666667,0.1,,
+109.666667,0.05,,
+124.666667,0.05,,
+124.666667,0,,
+124.666667,0,,
+EOD
+$series1 << EOD
 0,1,,
 11.7894737,1,,
 11.7894737,0.95,,
@@ -62,7 +106,7 @@ $series0 << EOD
 44.2857143,0,,
 44.2857143,0,,
 EOD
-$series1 << EOD
+$series2 << EOD
 0,1,,
 4.76470588,1,,
 4.76470588,0.95,,
@@ -106,7 +150,7 @@ $series1 << EOD
 34.2,0,,
 34.2,0,,
 EOD
-$series2 << EOD
+$series3 << EOD
 0,1,,
 3.28571429,1,,
 3.28571429,0.95,,
@@ -150,9 +194,11 @@ $series2 << EOD
 20.3703704,0,,
 20.3703704,0,,
 EOD
-plot keyentry with lines lc rgb '#0072b2' lw 1.2 title '{/:Italic A} = 0.0833, {/:Italic N} = 5200', \
-     keyentry with lines lc rgb '#d55e00' lw 1.2 title '{/:Italic A} = 0.0833, {/:Italic N} = 7900', \
-     keyentry with lines lc rgb '#009e73' lw 1.2 title '{/:Italic A} = 0.0833, {/:Italic N} = 18200', \
+plot keyentry with lines lc rgb '#0072b2' lw 1.2 title '{/:Italic A} = 0.0833, {/:Italic N} = 2000', \
+     keyentry with lines lc rgb '#d55e00' lw 1.2 title '{/:Italic A} = 0.0833, {/:Italic N} = 5200', \
+     keyentry with lines lc rgb '#009e73' lw 1.2 title '{/:Italic A} = 0.0833, {/:Italic N} = 7900', \
+     keyentry with lines lc rgb '#cc79a7' lw 1.2 title '{/:Italic A} = 0.0833, {/:Italic N} = 18200', \
+     $series3 using 1:2 with lines lc rgb '#cc79a7' lw 1.2 notitle, \
      $series2 using 1:2 with lines lc rgb '#009e73' lw 1.2 notitle, \
      $series1 using 1:2 with lines lc rgb '#d55e00' lw 1.2 notitle, \
      $series0 using 1:2 with lines lc rgb '#0072b2' lw 1.2 notitle
