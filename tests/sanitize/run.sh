@@ -44,7 +44,8 @@ build() {  # build PRESET: all of it, or the test programs of SUITES
 run_tests() {  # run_tests PRESET
   chosen="$(echo "$suites" | tr ' ' '|')"
   ctest --preset "$1" -j "$jobs" --no-tests=error -R "^(${chosen:-.*})\." -E "$left_out" \
-    >>"$logs/$part.log" 2>&1 || finding 'ERROR: |runtime error|WARNING: ThreadSanitizer|Failure|\*\*\*'
+    >>"$logs/$part.log" 2>&1 ||
+    finding 'ERROR: |runtime error|WARNING: ThreadSanitizer|: Failure|\*\*\*(Failed|Timeout|Exception)'
   said="$(sed -n 's/.* tests failed out of \([0-9]*\)/\1 tests/p' "$logs/$part.log")"
 }
 
