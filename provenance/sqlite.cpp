@@ -145,7 +145,8 @@ std::int64_t Database::integer(const std::string& sql) {
 Database::Prepared Statement::prepared() const {
   database_->require_in_place();
   if (auto idle = database_->idle_.extract(sql_)) {
-    return std::move(idle.mapped());
+    Database::Prepared found = std::move(idle.mapped());
+    return found;
   }
   sqlite3_stmt* handle = nullptr;
   check(sqlite3_prepare_v2(database_->handle(), sql_.data(), static_cast<int>(sql_.size()), &handle,

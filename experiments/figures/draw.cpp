@@ -111,8 +111,9 @@ void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>
   if (wanted.figure.form != FigureForm::groups) return;
   std::vector<std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants;
   for (const FigureRun& run : runs) {
-    auto& [group, swept] = variants.emplace_back(std::vector<nlohmann::json>(), run.labels);
+    std::vector<nlohmann::json> group;
     for (const std::string& key : wanted.figure.keys) group.push_back(parameter_of(run, key));
+    variants.emplace_back(std::move(group), run.labels);
   }
   const std::string key = averaged_key(variants);
   if (key.empty()) return;

@@ -42,11 +42,12 @@ std::string averaged_over(const std::vector<std::string>& keys,
                           const std::vector<Variant>& variants) {
   std::vector<std::pair<std::vector<nlohmann::json>, nlohmann::json>> values;
   for (const Variant& variant : variants) {
-    auto& [curve, swept] = values.emplace_back(std::vector<nlohmann::json>(), variant.labels());
+    std::vector<nlohmann::json> curve;
     for (const std::string& key : keys) {
       const Field* field = find_field(key);
       if (field != nullptr) curve.push_back(get_value(*field, variant.parameters));
     }
+    values.emplace_back(std::move(curve), variant.labels());
   }
   return averaged_key(values);
 }
