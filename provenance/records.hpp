@@ -69,6 +69,11 @@ inline constexpr auto kNames<RunState> = names_in_order<RunState>("declared", "r
                                                                   "interrupted", "failed",
                                                                   "completed");
 
+/// Whether nothing more is computed, unless the run is asked for again.
+inline bool has_ended(RunState state) {
+  return state == RunState::completed || state == RunState::failed;
+}
+
 /// A stage of a run as its events describe it.
 struct RunRecord {
   std::string id;

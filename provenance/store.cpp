@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <system_error>
 
 #include "provenance/events.hpp"
 #include "provenance/projections.hpp"
@@ -39,7 +40,12 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
         "{}: there is no store here; create one with `shearcell run`, or name another with --store",
         name));
   }
-  fs::create_directories(folder);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw MachineError(fmt::format("{}: cannot create the store: {}; name another with --store",
+                                   name, error.message()));
+  }
   return folder;
 }
 

@@ -69,8 +69,7 @@ ExitCode exit_code_of(const std::exception& error) {
 std::string message_of(const std::exception& error) {
   const auto* of_path = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
   if (of_path == nullptr) return error.what();
-  return fmt::format("{} cannot be used: {}; name another path, or change its permissions",
-                     of_path->path1().string(), of_path->code().message());
+  return fmt::format("{}: {}", of_path->path1().string(), of_path->code().message());
 }
 
 int complain(int code, const char* what) {

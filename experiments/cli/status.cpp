@@ -311,8 +311,7 @@ constexpr std::chrono::seconds kIdle{10};
 
 bool stages_remain(const View& view) {
   return std::ranges::any_of(view.runs, [&](const SelectedRun& selected) {
-    return selected.run.state != RunState::completed && selected.run.state != RunState::failed &&
-           !view.waiting.contains(selected.run.id);
+    return !has_ended(selected.run.state) && !view.waiting.contains(selected.run.id);
   });
 }
 

@@ -193,8 +193,7 @@ std::set<std::string> waiting_for_failed(const std::vector<RunRecord>& runs) {
     if (run.state == RunState::failed) failed.insert(run.id);
   }
   for (const RunRecord& run : runs) {
-    const bool ended = run.state == RunState::completed || run.state == RunState::failed;
-    if (!ended && failed.contains(run.parent)) waiting.insert(run.id);
+    if (!has_ended(run.state) && failed.contains(run.parent)) waiting.insert(run.id);
   }
   return waiting;
 }
@@ -205,8 +204,7 @@ RemainingWork remaining_work(const Store& store, const std::vector<RunRecord>& s
   const Rates rates(all);
   const std::set<std::string> waiting = waiting_for_failed(all);
   for (const RunRecord& run : stages) {
-    if (run.state == RunState::completed || run.state == RunState::failed) continue;
-    if (waiting.contains(run.id)) continue;
+    if (has_ended(run.state) || waiting.contains(run.id)) continue;
     const StageRecord record = read_stage(run.resolved);
     PlannedRun planned;
     planned.parameters = record.parameters;

@@ -40,6 +40,13 @@ std::vector<Case> damaged_logs() {
           },
           "a store is a folder", "name another one"),
       reported("store_is_missing", "status", 2, removed, "there is no store here", "shearcell run"),
+      reported(
+          "store_cannot_be_created", "run m.yaml", 1,
+          [](const fs::path& store) {
+            fs::remove_all(store);
+            fs::create_symlink("/proc/nowhere/store", store);
+          },
+          "cannot create the store", "--store"),
       reported("of_another_program", "status", 4, sql("PRAGMA application_id=1"),
                "belongs to another program"),
       reported("newer_schema", "run m.yaml", 4, sql("PRAGMA user_version=99"), "schema 99",
