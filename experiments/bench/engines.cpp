@@ -209,7 +209,7 @@ EngineCheck check_engines(const EngineCheckOptions& options) {
   const Say say = [&](const std::string& what) {
     options.report(fmt::format("N = {}: {}", options.grains, what));
   };
-  const LammpsProgram program = find_lammps();
+  const LammpsProgram program = find_lammps(options.ranks);
   EngineCheck check;
   check.lammps_version = program.version;
   check.grains = options.grains;

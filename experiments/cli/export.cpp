@@ -17,7 +17,7 @@
 #include "core/drive.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
-#include "experiments/figures/own_part.hpp"
+#include "experiments/figures/experiment_part.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/words.hpp"
@@ -107,10 +107,10 @@ struct WantedRun : SelectedRun {
 // The checkpoints that the selected experiments ask for; of a named run, those that any asks for.
 std::vector<CheckpointRecord> asked_of(const Store& store, const WantedRun& wanted) {
   const RunRecord& run = wanted.run;
-  if (wanted.places.empty()) return own_checkpoints(store, run, asks_of(store, run.id));
+  if (wanted.places.empty()) return checkpoints_for(store, run, asks_of(store, run.id));
   std::vector<CheckpointRecord> all;
   for (const Membership& place : wanted.places) {
-    std::ranges::move(own_checkpoints(store, run, place, {}), std::back_inserter(all));
+    std::ranges::move(checkpoints_for(store, run, place, {}), std::back_inserter(all));
   }
   std::ranges::sort(all, {}, &CheckpointRecord::step);
   const auto repeated = std::ranges::unique(all, {}, &CheckpointRecord::step);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "analysis/error.hpp"
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/draw.hpp"
@@ -99,6 +100,8 @@ void figures(FigureArguments& options, Context& context) {
       take(result, list, context);
     } catch (const UsageError& problem) {
       complain_of(problem.what());
+    } catch (const AnalysisError& problem) {
+      complain_of(figure.path() + ": " + problem.what());
     } catch (const NotOurs& refused) {
       complain_of(refused.what());
     }

@@ -75,6 +75,7 @@ std::string manual(const std::vector<CommandEntry>& tree) {
   return text +
          ".SH ENVIRONMENT\n"
          ".TP\n.B SHEARCELL_STORE\nfolder of the store where \\-\\-store does not name it\n"
+         ".TP\n.B SHEARCELL_LAMMPS\nthe LAMMPS program to use instead of lmp on PATH\n"
          ".TP\n.B NO_COLOR\nset to anything: no colours\n"
          ".SH EXAMPLES AND EXIT CODES\n.nf\n" +
          escaped(program.app->get_footer()) + "\n.fi\n";
@@ -173,8 +174,9 @@ std::string reference(const std::vector<CommandEntry>& tree) {
       "compares them.\n\n" +
       manifest_reference() + measure_reference() + figure_reference() +
       "\n## Commands\n\n"
-      "Every command takes `--help`. `SHEARCELL_STORE` names the store where `--store` does not; "
-      "`NO_COLOR` turns\ncolours off.\n";
+      "Every command takes `--help`. `SHEARCELL_STORE` names the store where `--store` does not, "
+      "`SHEARCELL_LAMMPS`\nthe LAMMPS program to use instead of `lmp` on PATH; `NO_COLOR` turns "
+      "colours off.\n";
   for (std::size_t k = 1; k < tree.size(); ++k) text += command_reference(tree[k]);
   return text + fmt::format("\n## Examples and exit codes\n\n```text\n{}\n```\n",
                             tree.front().app->get_footer());

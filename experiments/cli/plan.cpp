@@ -212,7 +212,7 @@ nlohmann::json facts(const Line& line) {
           {"parent", line.stage->parent},
           {"stage", name_of(line.stage->stage)},
           {"variant", line.run->variant},
-          {"parameters", felt_parameters(line.stage->resolved)},
+          {"parameters", effective_parameters(line.stage->resolved)},
           {"seed", line.run->seed},
           {"N", line.run->parameters.grains},
           {"cycles", line.run->target_cycles},

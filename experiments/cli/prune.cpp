@@ -100,7 +100,7 @@ void prune(const PruneOptions& options, Context& context) {
   }
 }
 
-struct RegenerateWish {
+struct RegenerateOptions {
   std::vector<std::string> checkpoints;
   std::size_t threads = 1;
 };
@@ -146,10 +146,10 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
                          replay.steps));
 }
 
-void regenerate(const RegenerateWish& wish, Context& context) {
+void regenerate(const RegenerateOptions& options, Context& context) {
   Store store(context.store, Access::write);
   std::vector<CheckpointRecord> records;
-  for (const std::string& prefix : wish.checkpoints) {
+  for (const std::string& prefix : options.checkpoints) {
     const auto found = store.find_checkpoint(prefix);
     if (!found) {
       throw NotFound(fmt::format(
@@ -166,7 +166,7 @@ void regenerate(const RegenerateWish& wish, Context& context) {
       fail(context, kInterrupted);
       break;
     }
-    list.push_back(regenerate_one(store, record, wish.threads, context));
+    list.push_back(regenerate_one(store, record, options.threads, context));
   }
   if (context.json) print_json({{"checkpoints", list}});
 }
@@ -192,20 +192,21 @@ void add_prune(CLI::App& app, Context& context) {
 }
 
 void add_regenerate(CLI::App& app, Context& context) {
-  auto wish = std::make_shared<RegenerateWish>();
+  auto options = std::make_shared<RegenerateOptions>();
   CLI::App* command =
       app.add_subcommand("regenerate", "Recompute the files of pruned or damaged checkpoints");
   command
-      ->add_option("checkpoint", wish->checkpoints, "SHA-256 of checkpoints, or beginnings of them")
+      ->add_option("checkpoint", options->checkpoints,
+                   "SHA-256 of checkpoints, or beginnings of them")
       ->required();
-  add_threads_option(*command, wish->threads, "Threads, for large cells");
+  add_threads_option(*command, options->threads, "Threads, for large cells");
   add_common_options(*command, context);
   command->footer(
       R"(Steps from the nearest earlier checkpoint. If the state or the file does not have the recorded
 hash, writes nothing, records ReplayDiverged and ends with code 4.
 Examples:
   shearcell regenerate 2a2c47ca)");
-  command->callback([wish, &context] { regenerate(*wish, context); });
+  command->callback([options, &context] { regenerate(*options, context); });
 }
 
 }  // namespace shearcell::cli

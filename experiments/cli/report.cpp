@@ -41,10 +41,7 @@ void report(ReportCommand& command, Context& context) {
   write_output(command.out, html);
   if (!made.damage.empty()) fail(context, kStoreDamaged);
   for (const std::string& line : made.damage) print_stderr("left out: {}\n", line);
-  for (const std::string& line : made.notes) {
-    const bool says_so = line.find("left out") != line.npos;
-    print_stderr("{}{}\n", says_so ? "" : "left out: ", line);
-  }
+  for (const std::string& line : made.notes) print_stderr("{}\n", line);
   if (!has_front_end() && options.interactive) {
     print_stderr(
         "Figures are drawings and there are no packings: this program was built without "

@@ -98,10 +98,10 @@ void report(const CampaignResult& result, Context& context) {
                counted(result.completed, "stage"), result.already, result.failed,
                result.interrupted, result.blocked);
     if (result.elsewhere > 0) {
-      fmt::print("{} were computed by other programs meanwhile\n", result.elsewhere);
+      fmt::print("{} computed by other programs meanwhile\n", counted(result.elsewhere, "stage"));
     }
     if (result.damaged > 0) {
-      fmt::print("{} met damage of the store\n", result.damaged);
+      fmt::print("{} found damaged files in the store\n", counted(result.damaged, "stage"));
     }
   }
   if (context.exit_code == kInterrupted) {

@@ -10,9 +10,9 @@
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
+#include "experiments/figures/experiment_part.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/more_measures.hpp"
-#include "experiments/figures/own_part.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/run_end.hpp"
@@ -41,7 +41,7 @@ nlohmann::json facts_of_all(const Store& store, const RunRecord& run,
                             const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
   for (std::size_t k = 0; k < run.memberships.size(); ++k) {
-    for (const CheckpointRecord& c : own_checkpoints(store, run, run.memberships[k], {})) {
+    for (const CheckpointRecord& c : checkpoints_for(store, run, run.memberships[k], {})) {
       asked_by[c.step].push_back(k);
     }
   }
@@ -116,7 +116,7 @@ nlohmann::json run_facts(const Store& store, const RunRecord& run,
           {"kind", run.kind},
           {"state", name_of(run.state)},
           {"resolved", run.resolved},
-          {"parameters", felt_parameters(run.resolved)},
+          {"parameters", effective_parameters(run.resolved)},
           {"attempts", run.attempts},
           {"engine", engine_of_run(store, run.id)},
           {"memberships", json_list(run.memberships, member)},
@@ -154,7 +154,7 @@ void print_resolved(const nlohmann::json& resolved) {
   for (const auto& [key, value] : resolved.items()) {
     if (key != "parameters") print_text("{:<32} {}\n", key, value.dump());
   }
-  const nlohmann::json parameters = felt_parameters(resolved);
+  const nlohmann::json parameters = effective_parameters(resolved);
   for (const auto& [name, value] : parameters.items()) {
     print_text("{:<32} {}\n", name, value.dump());
   }

@@ -70,9 +70,9 @@ void print_nothing(const Proposal& proposal, Context& context) {
     fmt::print("Nothing to do: the store holds every run at its length\n");
   } else {
     fmt::print(
-        "Nothing to submit: {} runs are queued or at work already, or wait for a packing that is; "
+        "Nothing to submit: {} queued or being computed already, or waiting for a packing that is; "
         "see `shearcell status`\n",
-        proposal.left_out);
+        counted(proposal.left_out, "run"));
   }
 }
 
@@ -147,12 +147,13 @@ void queue(const Submission& submission, const Proposal& proposal, Store& store,
                                     {"folder", folder.string()}});
   }
   print_shares(proposal);
-  fmt::print("\nSubmitted as job {}; {} its stores. Logs: {}\n", job,
-             merge_job.empty() ? "nothing merges" : "job " + merge_job + " merges",
+  fmt::print("\nSubmitted as job {}; {}. Logs: {}\n", job,
+             merge_job.empty() ? "its stores are not merged automatically"
+                               : "job " + merge_job + " merges its stores",
              folder.string());
   if (proposal.left_out > 0) {
-    fmt::print("{} more runs were left out: they are queued or at work already\n",
-               proposal.left_out);
+    fmt::print("left out: {} queued or being computed already\n",
+               counted(proposal.left_out, "run"));
   }
 }
 

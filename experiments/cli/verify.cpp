@@ -140,9 +140,9 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
              counted(report.checkpoints, "checkpoint"),
              format_bytes(static_cast<double>(report.bytes)), counted(report.orphans, "orphan"),
              report.ok() ? "nothing was changed" : "DAMAGED", report.head.seq, report.head.hash);
-  if (measures.kept > 0) {
+  if (measures.cached > 0) {
     print_text("recomputed the measures of {} of {} checkpoints\n", measures.computed,
-               measures.kept);
+               measures.cached);
   }
   if (report.ok()) {
     print_text(
@@ -156,7 +156,7 @@ void verify(const VerifyOptions& options, Context& context) {
   VerifyReport report = Store(context.store, Access::read).verify(against);
   const MeasureCheck measures = audit(options, context, report);
   nlohmann::json all = facts(report);
-  all["measures"] = {{"kept", measures.kept}, {"computed_again", measures.computed}};
+  all["measures"] = {{"kept", measures.cached}, {"computed_again", measures.computed}};
   if (!context.json) print(report, measures);
   if (!report.ok()) {
     fail(context, kStoreDamaged);

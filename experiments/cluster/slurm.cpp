@@ -24,7 +24,7 @@ again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
 pass_on() {
   signalled=$1
   [ -n "$program" ] || return 0
-  # More than once: one that is just beginning is still a copy of this shell, which does not heed it.
+  # More than once: one that is just beginning is still a copy of this shell, which ignores it.
   for pause in 1 2 4; do kill -"$1" "$program" 2>/dev/null || break; sleep "$pause"; done
 }
 trap 'again=yes; pass_on USR1' USR1

@@ -235,10 +235,10 @@ std::string describe(const Submission& s) {
         "submission {}: its jobs have ended with runs unfinished; `submit` them again", s.id);
   }
   std::map<std::string, std::size_t> count;
-  bool merge_queued = false;
+  std::string merge_job;
   for (const QueuedTask& task : s.queue) {
     if (task.name == s.name()) ++count[lower(task.state)];
-    merge_queued = merge_queued || task.name == s.merge_name();
+    if (task.name == s.merge_name()) merge_job = task.job;
   }
   std::string states;
   for (const auto& [state, tasks] : count) {
@@ -247,7 +247,7 @@ std::string describe(const Submission& s) {
   return fmt::format(
       "submission {}: job {}, {} of {} tasks in the queue{}", s.id,
       s.job.empty() ? s.queue.front().job : s.job, states.empty() ? "none" : states, s.tasks.size(),
-      merge_queued ? fmt::format("; job {} will merge their stores", s.merge_job) : "");
+      merge_job.empty() ? "" : fmt::format("; job {} will merge their stores", merge_job));
 }
 
 }  // namespace shearcell

@@ -95,7 +95,7 @@ void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
     if (column.name == "cycle" || column.name == "time_s" || column.name == "checkpoint") continue;
     frame.scalars.emplace_back(column.name, value.is_null() ? std::nan("") : value.get<double>());
   }
-  const nlohmann::json parameters = felt_parameters(selected.run.resolved);
+  const nlohmann::json parameters = effective_parameters(selected.run.resolved);
   for (const auto& [key, value] : parameters.items()) {
     if (find_field(key) == nullptr) continue;  // a forged store may hold it
     if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);

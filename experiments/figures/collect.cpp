@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "analysis/own_figure.hpp"
-#include "experiments/figures/own_part.hpp"
+#include "experiments/figures/experiment_part.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -40,7 +40,7 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
   const auto [first, last] = figure.within.value_or(whole_run);
   const RunAsk ask = ask_for(store, figure, run);
   std::vector<CheckpointRecord> found =
-      own_checkpoints(store, run.run, {&ask, 1}, static_cast<double>(first),
+      checkpoints_for(store, run.run, {&ask, 1}, static_cast<double>(first),
                       std::min(run.end, static_cast<double>(last)));
   if (figure.form == FigureForm::table && !found.empty()) {
     found.erase(found.begin(), --found.end());
@@ -267,7 +267,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) name_variants(manifests, collected);
   for (CollectedRun& run : collected.runs) {
-    run.end = measured ? own_end(store, run.run, run.membership, measuring)
+    run.end = measured ? end_for(store, run.run, run.membership, measuring)
                        : static_cast<double>(run.membership.target_cycles);
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }

@@ -40,10 +40,10 @@ std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures);
 
 /// One run of a figure.
 struct CollectedRun : SelectedRun {
-  std::vector<CheckpointRecord> checkpoints = {};  ///< own_checkpoints()
+  std::vector<CheckpointRecord> checkpoints = {};  ///< checkpoints_for()
   std::string name = {};                           ///< of its variant, for people
   bool named = false;                              ///< by a label of the manifest
-  double end = 0;                                  ///< own_end()
+  double end = 0;                                  ///< end_for()
 };
 
 struct CollectedRuns {
@@ -54,7 +54,7 @@ struct CollectedRuns {
 };
 
 /// The selected newest_runs() of the experiment, at the scale declared last, with their checkpoints
-/// up to own_end(). A figure of all experiments has a run once per experiment. Runs of older
+/// up to end_for(). A figure of all experiments has a run once per experiment. Runs of older
 /// versions of a manifest have their own variants, as "fluid=cell,manifest=1f2e3d4c". Throws
 /// NotFound if there is no such run.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,

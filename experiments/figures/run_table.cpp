@@ -9,8 +9,8 @@
 #include <set>
 
 #include "analysis/onset.hpp"
+#include "experiments/figures/experiment_part.hpp"
 #include "experiments/figures/more_measures.hpp"
-#include "experiments/figures/own_part.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/registered.hpp"
@@ -164,8 +164,8 @@ json swept_value(const Field& field, const SelectedRun& selected) try {
   const auto label = selected.membership.labels.find(field.name);
   if (label != selected.membership.labels.end()) return *label;
   const StageRecord record = read_stage(selected.run.resolved);
-  const bool felt = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
-  return felt ? get_value(field, record.parameters) : json();
+  const bool has_effect = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
+  return has_effect ? get_value(field, record.parameters) : json();
 } catch (const UnreadableRecord&) {
   return nullptr;
 }
@@ -205,7 +205,7 @@ std::vector<MeasuredRun> select(const Store& store, const RunSelection& selectio
   std::vector<MeasuredRun> runs;
   for (SelectedRun& selected : newest.runs) {
     MeasuredRun& run = runs.emplace_back(MeasuredRun{std::move(selected)});
-    run.records = own_checkpoints(store, run.run, run.membership, options);
+    run.records = checkpoints_for(store, run.run, run.membership, options);
     run.measures.resize(run.records.size());
   }
   return runs;
@@ -239,7 +239,7 @@ void measure_where(const Store& store, std::span<const std::string> names,
 FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
   FigureRun history;
   history.labels = selected.membership.labels;
-  history.parameters = felt_parameters(selected.run.resolved);
+  history.parameters = effective_parameters(selected.run.resolved);
   for (const Row& row : rows) {
     if (!row.measures || row.checkpoint->cycle != std::floor(row.checkpoint->cycle)) continue;
     history.checkpoints.emplace_back().cycle = row.checkpoint->cycle;

@@ -36,7 +36,7 @@ struct VariantCheck {
     check_pause();
     check_cell();
     if (const string why = unfit_for_lammps(p, {}); !why.empty()) {
-      report("engine", why, "Leave the engine out, or shear.");
+      report("engine", why, "Leave `engine` out, or use a protocol that shears.");
     }
     check_density();
     if (!scale.checkpoints->phases.empty()) check_phases();
@@ -85,6 +85,7 @@ struct VariantCheck {
   }
 
   void check_shear_step() {
+    if (p.protocol == ProtocolKind::stiffen) return;
     const double limit = stability_limit_s(p);
     if (shear_time_step_s(p) < limit) return;
     const double enough = std::floor(p.period_s / limit) + 1;
@@ -200,17 +201,20 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
     std::vector<nlohmann::json> variants;
     for (const Variant& variant : variants_of(scale)) variants.push_back(variant.labels());
     const auto names = variant_names(variants, manifest.labels);
-    std::set<string> seen;
+    std::map<string, const VariantLabel*> named;  // the label behind a name; null: none
     for (const nlohmann::json& variant : variants) {
       const string& name = names.at(variant);
-      const bool repeated = !seen.insert(name).second;
+      const VariantLabel* chosen = nullptr;
       for (const VariantLabel& label : manifest.labels) {
         if (!selects(label, variant)) continue;
         used.insert(&label);
-        if (!repeated) continue;
-        return problems.add(label.at, "labels", "gives two variants the same name, " + name,
-                            label.name, "Give each its own.");
+        chosen = &label;
       }
+      const auto [earlier, first] = named.try_emplace(name, chosen);
+      const VariantLabel* label = chosen != nullptr ? chosen : earlier->second;
+      if (first || label == nullptr) continue;
+      return problems.add(label->at, "labels", "gives two variants the same name, " + name,
+                          label->name, "Give each its own.");
     }
   }
   for (const VariantLabel& label : manifest.labels) {
@@ -237,7 +241,7 @@ string without_effect(string_view key, const Parameters& p) {
   if (key.starts_with("wall_grain_") && p.walls == WallTexture::smooth) {
     return "has an effect only with rough walls";
   }
-  if (key == "pressure_at" && !feels_pressure_at(p)) {
+  if (key == "pressure_at" && !depends_on_pressure_at(p)) {
     return "has an effect only with gravity and a moving bottom wall";
   }
   return "";

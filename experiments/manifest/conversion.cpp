@@ -103,12 +103,12 @@ double stability_limit_s(const Parameters& p) {
   return 2 / std::sqrt(8 * p.stiffness_N_per_m / p.mass_kg);
 }
 
-bool feels_pressure_at(const Parameters& p) {
+bool depends_on_pressure_at(const Parameters& p) {
   return p.gravity_m_per_s2 != 0 && p.moving_wall == MovingWall::bottom;
 }
 
 bool pressure_lifts_column(const Parameters& p) {
-  if (!feels_pressure_at(p) || p.pressure_at == PressureAt::top) return true;
+  if (!depends_on_pressure_at(p) || p.pressure_at == PressureAt::top) return true;
   return shear_scene(p).pressure > column_weight(p);
 }
 

@@ -48,7 +48,7 @@ double shear_time_step_s(const Parameters& parameters);
 double stability_limit_s(const Parameters& parameters);
 
 /// Whether pressure_at has an effect: only if a moving bottom wall lifts grains with weight.
-bool feels_pressure_at(const Parameters& parameters);
+bool depends_on_pressure_at(const Parameters& parameters);
 
 /// Whether the pressure under a moving bottom wall can carry the grains' weight:
 /// P d^2 > 1.2 (h/d) m g, with 1.2 grains per d^3. True for a moving top wall, which lifts no

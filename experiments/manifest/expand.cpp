@@ -132,8 +132,8 @@ void warn_of_variants(const Manifest& manifest, const std::vector<Variant>& vari
 }
 
 // Warns of each stated key that has no effect on any variant.
-void warn_of_unfelt(const Manifest& manifest, const Scale& scale,
-                    const std::vector<Variant>& variants, Plan& plan) {
+void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
+                         const std::vector<Variant>& variants, Plan& plan) {
   std::map<std::string, Position> stated;
   for (const auto& [key, setting] : scale.settings) stated[key] = setting.at;
   for (const auto* axes : {&scale.sweep->grid, &scale.sweep->zip}) {
@@ -167,7 +167,7 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   run.last = last_stage(run.parameters, seed, run.prepare);
   if (run.last.stage == Stage::shear) run.ends_early = scale.until->until;
   if (run.ends_early) run.until = to_json(*run.ends_early);
-  run.places = {run};
+  run.memberships = {run};
   return run;
 }
 
@@ -212,7 +212,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     if (const std::string why = unfit_for_lammps(variant.parameters, *scale.checkpoints);
         !why.empty()) {
       refuse(manifest.file, {}, "engine", why, "lammps",
-             "Leave the option out, or what it cannot do.");
+             "Leave out `--engine`, or what LAMMPS cannot do in this manifest.");
     }
     for (const std::uint64_t seed : seeds) {
       const PlannedRun& run = plan.runs.emplace_back(planned_run(common, scale, variant, seed));
@@ -235,7 +235,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   warn_of_variants(manifest, chosen, plan);
   std::ranges::move(figure_warnings(manifest, scale, variants, seeds.size()),
                     std::back_inserter(plan.warnings));
-  warn_of_unfelt(manifest, scale, variants, plan);
+  warn_of_ineffective(manifest, scale, variants, plan);
   return plan;
 }
 
@@ -265,7 +265,7 @@ Plan joined(std::span<const Plan> plans) {
         if (std::ranges::count(known.checkpoint_phases, phase) > 0) continue;
         known.checkpoint_phases.push_back(phase);
       }
-      std::ranges::copy(run.places, std::back_inserter(known.places));
+      std::ranges::copy(run.memberships, std::back_inserter(known.memberships));
     }
   }
   all.experiment = fmt::format("{}", fmt::join(experiments, ", "));

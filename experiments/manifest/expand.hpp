@@ -30,7 +30,7 @@ struct PlannedRun : Membership {
   StageSpec last;                   ///< shear or stiffening of the packing
   std::optional<Until> ends_early;  ///< `until`, read
   Parameters parameters;
-  std::vector<Membership> places;  ///< of each of the joined plans; its own first
+  std::vector<Membership> memberships;  ///< of each of the joined plans; its own first
 };
 
 struct Plan {

@@ -22,8 +22,8 @@ using nlohmann::json;
 constexpr std::string_view kDomain = "shearcell stage 1\n";
 
 // Gives a parameter without effect one fixed value, so that equal runs have equal records.
-Parameters without_what_is_not_felt(Parameters parameters) {
-  if (!feels_pressure_at(parameters)) parameters.pressure_at = PressureAt::moving_wall;
+Parameters without_ineffective(Parameters parameters) {
+  if (!depends_on_pressure_at(parameters)) parameters.pressure_at = PressureAt::moving_wall;
   return parameters;
 }
 
@@ -33,7 +33,7 @@ json as_json(const Field& field, std::string_view text) {
 
 StageSpec stage_spec(Stage stage, const Parameters& given, std::uint64_t seed,
                      const std::string& parent) {
-  const Parameters parameters = without_what_is_not_felt(given);
+  const Parameters parameters = without_ineffective(given);
   json values = json::object();
   for (const Field& field : schema()) {
     json value = field.identity.recorded_as.empty() ? get_value(field, parameters)
@@ -157,7 +157,7 @@ StageRecord read_stage(const json& resolved) {
   if (!seed.is_number_unsigned()) throw damaged("seed", "is not a whole number >= 0");
   record.seed = seed.get<std::uint64_t>();
   record.parameters = read_parameters(record.stage, member(resolved, "parameters"));
-  if (record.parameters != without_what_is_not_felt(record.parameters)) {
+  if (record.parameters != without_ineffective(record.parameters)) {
     throw damaged("pressure_at", "has no effect on such a run, so it cannot be part of its record");
   }
   if (record.stage == Stage::stiffen) record.parameters.protocol = ProtocolKind::stiffen;
@@ -189,11 +189,11 @@ json recorded_parameters(const json& resolved) {
   return values;
 }
 
-json felt_parameters(const json& resolved) {
+json effective_parameters(const json& resolved) {
   json values;
   try {
     values = recorded_parameters(resolved);
-    if (!feels_pressure_at(read_stage(resolved).parameters)) values.erase("pressure_at");
+    if (!depends_on_pressure_at(read_stage(resolved).parameters)) values.erase("pressure_at");
   } catch (const std::exception&) {  // damaged
     values = stated_parameters(resolved);
   }

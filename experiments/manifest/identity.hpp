@@ -54,7 +54,7 @@ nlohmann::json recorded_parameters(const nlohmann::json& resolved);
 
 /// The same without those that do not affect the stage; of a damaged record, those that it states.
 /// Without constants of the record (Identity::recorded_as), which are not what the run had.
-nlohmann::json felt_parameters(const nlohmann::json& resolved);
+nlohmann::json effective_parameters(const nlohmann::json& resolved);
 
 /// The engine that a record names, even if the record is damaged otherwise.
 EngineKind engine_of(const nlohmann::json& resolved);

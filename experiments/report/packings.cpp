@@ -13,7 +13,7 @@
 #include "analysis/motion.hpp"
 #include "analysis/profiles.hpp"
 #include "analysis/voronoi.hpp"
-#include "experiments/figures/own_part.hpp"
+#include "experiments/figures/experiment_part.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/measure_sources.hpp"
@@ -70,7 +70,7 @@ std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<
   std::vector<ChosenRun> last;
   for (const auto& [run, member, newest] : runs) {
     if (member.experiment != experiment) continue;
-    std::vector<CheckpointRecord> checkpoints = own_checkpoints(store, run, asks_of(store, run.id));
+    std::vector<CheckpointRecord> checkpoints = checkpoints_for(store, run, asks_of(store, run.id));
     std::erase_if(checkpoints,
                   [](const CheckpointRecord& c) { return c.state != CheckpointState::recorded; });
     if (checkpoints.empty()) continue;

@@ -73,29 +73,15 @@ std::string stages_html(const ReportExperiment& experiment, bool prepare) {
                       {"waiting", "·", "waiting", in[RunState::declared]}});
 }
 
-/// Checkpoints that an unfinished run will record if nothing ends it early.
-std::size_t to_come(const RunRecord& run, const std::string& experiment) {
-  double most = 0;
-  for (const Membership& m : run.memberships) {
-    if (m.experiment != experiment || run.kind != "shear") continue;
-    const double every = std::max(1.0, static_cast<double>(m.checkpoint_every));
-    const double target = static_cast<double>(m.target_cycles);
-    most = std::max(most, std::ceil(target / every) - std::floor(run.cycle / every));
-  }
-  return run.state == RunState::completed ? 0 : static_cast<std::size_t>(most);
-}
-
 std::string checkpoints_html(const ReportData& data, const ReportExperiment& experiment) {
   std::map<CheckpointState, std::size_t> count;
-  std::size_t waiting = 0;
   for (const RunRecord& run : experiment.runs) {
-    waiting += to_come(run, experiment.manifest.experiment);
     for (const CheckpointHistory& c : data.runs.at(run.id).checkpoints) ++count[c.record.state];
   }
   return counts_html({{"done", "✓", "stored", count[CheckpointState::recorded]},
                       {"stopped", "‖", "pruned", count[CheckpointState::pruned]},
                       {"failed", "✗", "damaged", count[CheckpointState::rejected]},
-                      {"waiting", "·", "to come, at most", waiting}});
+                      {"waiting", "·", "to come, at most", experiment.to_come}});
 }
 
 std::string figures_html(const ReportData& data, const ReportExperiment& experiment) {
@@ -168,6 +154,9 @@ std::string figure_html(const ReportData& data, const ReportFigure& figure) {
     for (const std::string& line : *list) {
       html += fmt::format("<p class=\"warning\">Left out: {}</p>\n", escape_html(line));
     }
+  }
+  for (const std::string& line : figure.summary.notes) {
+    html += fmt::format("<p class=\"warning\">{}</p>\n", escape_html(line));
   }
   return html + lineage_html(data, figure) + "</section>\n";
 }

@@ -13,6 +13,8 @@
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
 #include "experiments/figures/collect.hpp"
+#include "experiments/manifest/identity.hpp"
+#include "experiments/runner/cost.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
@@ -100,6 +102,10 @@ void add_figures(const Store& store, const ReportOptions& options, ReportData& d
     const auto home =
         std::ranges::find(data.experiments, figure.experiment,
                           [](const ReportExperiment& e) { return e.manifest.experiment; });
+    const auto leave_out = [&](const std::string& why) {
+      notes.insert("figure " + figure.path() + ": " + why);
+      if (home != data.experiments.end()) home->unmade.push_back(figure.figure.name);
+    };
     try {
       ReportFigure one = figure_of(store, figure, options, records, data);
       const FigureSummary& summary = one.summary;
@@ -109,11 +115,33 @@ void add_figures(const Store& store, const ReportOptions& options, ReportData& d
       if (home != data.experiments.end()) home->figures.push_back(data.figures.size());
       data.figures.push_back(std::move(one));
     } catch (const UsageError& problem) {
-      notes.insert("figure " + figure.path() + ": " + problem.what());
-      if (home != data.experiments.end()) home->unmade.push_back(figure.figure.name);
+      leave_out(problem.what());
+    } catch (const AnalysisError& problem) {
+      leave_out(problem.what());
     }
   }
   data.notes.assign(notes.begin(), notes.end());
+}
+
+void add_lineage(const Store& store, const std::string& id, ReportData& data) {
+  if (data.runs.contains(id)) return;
+  for (RunLineage& stage : run_lineage(store, id)) {
+    const std::string stage_id = stage.run.id;
+    data.runs.try_emplace(stage_id, std::move(stage));
+  }
+}
+
+/// Checkpoints that a run will still record for the experiment if nothing ends it early. Those of
+/// a packing are not counted: how long it takes to settle is not known.
+std::size_t to_come(const Store& store, const RunLineage& lineage, const std::string& experiment) {
+  const RunRecord& run = lineage.run;
+  if (run.state == RunState::completed || run.kind == name_of(Stage::prepare)) return 0;
+  double most = 0;
+  for (const Membership& m : run.memberships) {
+    if (m.experiment != experiment) continue;
+    most = std::max(most, checkpoints_left(run.kind, ask_of(store, run.id, m), run.cycle));
+  }
+  return static_cast<std::size_t>(most) + (lineage.checkpoints.empty() ? 1 : 0);
 }
 
 void add_runs(const Store& store, ReportData& data) {
@@ -123,11 +151,8 @@ void add_runs(const Store& store, ReportData& data) {
       data.manifests.try_emplace(experiment.manifest.sha256, std::move(*manifest));
     }
     for (const RunRecord& run : experiment.runs) {
-      if (data.runs.contains(run.id)) continue;
-      for (RunLineage& stage : run_lineage(store, run.id)) {
-        const std::string id = stage.run.id;
-        data.runs.try_emplace(id, std::move(stage));
-      }
+      add_lineage(store, run.id, data);
+      experiment.to_come += to_come(store, data.runs.at(run.id), experiment.manifest.experiment);
     }
   }
   for (const ReportFigure& figure : data.figures) {
@@ -170,6 +195,8 @@ void add_run_tables(const Store& store, const ReportOptions& options, ReportData
     selection.experiments = {experiment.manifest.experiment};
     try {
       experiment.table = run_table(store, selection, RowPer::run, measuring);
+      // Another program may have declared runs since they were listed.
+      for (const FigureRun& run : experiment.table.histories) add_lineage(store, run.run_id, data);
       experiment.traces = traces_of(experiment.table, data.runs);
       for (const std::string& line : experiment.table.damage) {
         if (std::ranges::count(data.damage, line) == 0) data.damage.push_back(line);

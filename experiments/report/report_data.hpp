@@ -57,7 +57,8 @@ struct ReportExperiment {
   std::vector<std::size_t> figures = {};  ///< of ReportData::figures
   std::vector<std::string> unmade = {};   ///< figures that cannot be made of its runs
   std::vector<RunRecord> runs = {};
-  RunTable table = {};  ///< a row for each run, without those that settle packings
+  std::size_t to_come = 0;  ///< checkpoints of unfinished runs if nothing ends them early
+  RunTable table = {};      ///< a row for each run, without those that settle packings
   /// For the front end: [{id, kind, scale, variant, seed, cycle, phi, percent}] in the order of the
   /// rows; the last three are arrays over the checkpoints, null where a value is unknown.
   nlohmann::json traces = nlohmann::json::array();
@@ -76,7 +77,7 @@ struct ReportData {
   bool interactive = false;
   std::string drawing_trouble;      ///< why a figure has no drawing
   std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each
-  std::vector<std::string> notes;   ///< what else was left out, one line each
+  std::vector<std::string> notes;   ///< about runs, figures and tables, one line each
 };
 
 /// Collects the data. Writes nothing but measures into derived.sqlite. Throws NotFound if the store

@@ -99,16 +99,16 @@ void check_beginning(const Store& store, const RunRecord& run,
   }
 }
 
-bool nearly_equal(const json& kept, const json& computed) {
-  if (!kept.is_number() || !computed.is_number()) return kept == computed;
-  const auto a = kept.get<double>(), b = computed.get<double>();
+bool nearly_equal(const json& cached, const json& computed) {
+  if (!cached.is_number() || !computed.is_number()) return cached == computed;
+  const auto a = cached.get<double>(), b = computed.get<double>();
   return a == b || (std::isnan(a) && std::isnan(b)) ||
          std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
 }
 
 /// The first place where two results differ, with both values; "" when they are equal.
-std::string difference(const json& kept, const json& computed, const std::string& measure) {
-  const json a = kept.flatten(), b = computed.flatten();
+std::string difference(const json& cached, const json& computed, const std::string& measure) {
+  const json a = cached.flatten(), b = computed.flatten();
   for (const auto& [path, value] : b.items()) {
     if (!a.contains(path)) return measure + path + ": it is not cached";
     if (nearly_equal(a.at(path), value)) continue;
@@ -119,7 +119,7 @@ std::string difference(const json& kept, const json& computed, const std::string
 }
 
 /// Of one checkpoint, in the order of all_derived_measures().
-using Kept = std::vector<std::optional<std::vector<std::byte>>>;
+using Cached = std::vector<std::optional<std::vector<std::byte>>>;
 
 std::vector<DerivedKey> keys_of(const CheckpointRecord& record, MeasureSources& sources) {
   std::vector<DerivedKey> keys;
@@ -129,17 +129,17 @@ std::vector<DerivedKey> keys_of(const CheckpointRecord& record, MeasureSources& 
   return keys;
 }
 
-std::string wrong_measure(const Store& store, const CheckpointRecord& record, const Kept& kept,
+std::string wrong_measure(const Store& store, const CheckpointRecord& record, const Cached& cached,
                           const MeasureSources& sources) {
   try {
     const Checkpoint checkpoint = store.load_checkpoint(record);
     const Analysis analysis = analyse(checkpoint);
-    for (std::size_t m = 0; m < kept.size(); ++m) {
-      if (!kept[m]) continue;
+    for (std::size_t m = 0; m < cached.size(); ++m) {
+      if (!cached[m]) continue;
       const DerivedMeasure& measure = all_derived_measures()[m];
       const auto computed = sources.measure(record, checkpoint, analysis, measure);
       if (!computed) continue;
-      auto found = difference(decode_result(*kept[m]), *computed, measure.name);
+      auto found = difference(decode_result(*cached[m]), *computed, measure.name);
       if (!found.empty()) return found;
     }
   } catch (const AnalysisError& error) {
@@ -157,8 +157,8 @@ std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCa
   std::set<std::string> seen;
   for (const RunRecord& run : store.runs()) {
     for (CheckpointRecord& record : store.checkpoints(run.id)) {
-      const Kept kept = cache.get(keys_of(record, sources));
-      const bool any = std::ranges::any_of(kept, [](const auto& k) { return k.has_value(); });
+      const Cached cached = cache.get(keys_of(record, sources));
+      const bool any = std::ranges::any_of(cached, [](const auto& k) { return k.has_value(); });
       if (any && seen.insert(record.sha256).second) found.push_back(std::move(record));
     }
   }
@@ -171,7 +171,7 @@ void copy_measures(const Store& store, DerivedCache& from) {
   std::vector<DerivedObject> missing;
   for (const CheckpointRecord& record : measured_checkpoints(store, from, sources)) {
     const std::vector<DerivedKey> keys = keys_of(record, sources);
-    Kept there = from.get(keys), here = into.get(keys);
+    Cached there = from.get(keys), here = into.get(keys);
     for (std::size_t m = 0; m < keys.size(); ++m) {
       if (there[m] && !here[m]) missing.push_back({keys[m], std::move(*there[m])});
     }
@@ -207,9 +207,9 @@ MeasureCheck check_measures(const Store& store, const std::filesystem::path& fol
                             std::size_t count, std::uint64_t seed) {
   DerivedCache cache(folder, Access::read);
   MeasureSources sources(store);
-  const std::vector<CheckpointRecord> kept = measured_checkpoints(store, cache, sources);
-  const std::vector<CheckpointRecord> chosen = sample(kept, count, seed);
-  MeasureCheck check{.kept = kept.size(), .computed = chosen.size(), .findings = {}};
+  const std::vector<CheckpointRecord> cached = measured_checkpoints(store, cache, sources);
+  const std::vector<CheckpointRecord> chosen = sample(cached, count, seed);
+  MeasureCheck check{.cached = cached.size(), .computed = chosen.size(), .findings = {}};
   for (const CheckpointRecord& record : chosen) {
     const std::string wrong =
         wrong_measure(store, record, cache.get(keys_of(record, sources)), sources);

@@ -20,7 +20,7 @@ namespace shearcell {
 std::vector<Finding> check_runs(const Store& store);
 
 struct MeasureCheck {
-  std::size_t kept = 0;      ///< checkpoints of the store with kept measures
+  std::size_t cached = 0;    ///< checkpoints of the store with cached measures
   std::size_t computed = 0;  ///< of these, computed again
   std::vector<Finding> findings;
 };

@@ -145,9 +145,13 @@ class Campaign {
 
   void show_waiting(std::size_t held) {
     if (count(JobState::running) > 0 || held == shown_held_) return;
-    shown_held_ = held;
     std::set<std::string> holders;
-    for (const Lease& lease : store_.leases()) holders.insert(describe(lease.holder));
+    try {
+      for (const Lease& lease : store_.leases()) holders.insert(describe(lease.holder));
+    } catch (const std::exception&) {
+      return;  // the next attempt to compute one of them reports why
+    }
+    shown_held_ = held;
     progress_.note(
         fmt::format("waiting for {} that another program computes ({}); a stage is free when its "
                     "holder has ended or been silent for {} s",

@@ -9,7 +9,6 @@
 #include "core/minimizer.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/runner/asks.hpp"
 
 namespace shearcell {
 namespace {
@@ -52,14 +51,14 @@ double minimization(double grains) {
   return 18e3 * std::pow(grains / 2000, 0.7);
 }
 
-/// What the run's places ask for that the store does not know yet.
+/// What the run's memberships ask for that the store does not know yet.
 std::vector<RunAsk> planned_asks(const PlannedRun& run, const RunRecord& known) {
   std::vector<RunAsk> planned;
-  for (const Membership& place : run.places) {
+  for (const Membership& one : run.memberships) {
     const bool declared = std::ranges::any_of(
-        known.memberships, [&](const Membership& m) { return same_place(m, place); });
+        known.memberships, [&](const Membership& m) { return same_place(m, one); });
     if (declared) continue;
-    planned.push_back({place.target_cycles, {}, place.checkpoint_every, place.checkpoint_phases});
+    planned.push_back({one.target_cycles, {}, one.checkpoint_every, one.checkpoint_phases});
   }
   return planned;
 }
@@ -108,17 +107,26 @@ std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& 
   const bool completed = known->state == RunState::completed;
   if (stage.stage == Stage::prepare) return completed ? std::nullopt : std::optional(known->cycle);
   const std::vector<RunAsk> asks = asks_of(*store, known->id);
-  const bool has_its_length = std::ranges::all_of(run.places, [&](const Membership& place) {
-    return known->cycle >= static_cast<double>(place.target_cycles) ||
+  const bool has_its_length = std::ranges::all_of(run.memberships, [&](const Membership& planned) {
+    return known->cycle >= static_cast<double>(planned.target_cycles) ||
            std::ranges::any_of(asks, [&](const RunAsk& ask) {
-             return ask.until && to_json(*ask.until) == place.until &&
-                    ask.target_cycles >= place.target_cycles &&
-                    ask.checkpoint_every % place.checkpoint_every == 0;
+             return ask.until && to_json(*ask.until) == planned.until &&
+                    ask.target_cycles >= planned.target_cycles &&
+                    ask.checkpoint_every % planned.checkpoint_every == 0;
            });
   });
   const std::optional<double> replayed = cycle_to_replay(*store, *known, planned_asks(run, *known));
   if (completed && has_its_length) return replayed;
   return std::min(known->cycle, replayed.value_or(known->cycle));
+}
+
+double checkpoints_left(std::string_view kind, const RunAsk& ask, double cycle) {
+  const auto target = static_cast<double>(ask.target_cycles);
+  if (kind == name_of(Stage::stiffen)) return std::max(0.0, target - cycle);
+  const auto every = static_cast<double>(ask.checkpoint_every);
+  const double cycles = std::ceil(target / every) - std::floor(cycle / every);
+  const double whole = std::ceil(target / every) - std::ceil(cycle / every);
+  return std::max(0.0, cycles) + std::max(0.0, whole) * static_cast<double>(ask.phases.size());
 }
 
 StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle) {
@@ -131,18 +139,13 @@ StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle
                                  run.parameters.settle_time_limit_s);
     return {grains * time / run.parameters.settle_time_step_s, bytes * (1 + std::floor(time / 2))};
   }
-  if (stage.stage == Stage::stiffen) {
-    const double left = std::max(0.0, static_cast<double>(run.target_cycles) - cycle);
-    return {grains * minimization(grains) * left, bytes * (left + (cycle == 0 ? 1 : 0))};
-  }
-  const double cycles = std::max(0.0, static_cast<double>(run.target_cycles) - cycle);
-  const auto steps = static_cast<double>(cycle_steps(drive(run.parameters)));
-  const auto every = static_cast<double>(run.checkpoint_every);
-  const double begun =
-      std::ceil(static_cast<double>(run.target_cycles) / every) - std::ceil(cycle / every);
-  const double files = std::ceil(cycles / every) +
-                       std::max(0.0, begun) * static_cast<double>(run.checkpoint_phases.size());
-  return {grains * steps * cycles, bytes * (files + (cycle == 0 ? 1 : 0))};
+  const RunAsk ask = {run.target_cycles, {}, run.checkpoint_every, run.checkpoint_phases};
+  const double files = checkpoints_left(name_of(stage.stage), ask, cycle) + (cycle == 0 ? 1 : 0);
+  const double left = std::max(0.0, static_cast<double>(run.target_cycles) - cycle);
+  const double steps = stage.stage == Stage::stiffen
+                           ? minimization(grains)
+                           : static_cast<double>(cycle_steps(drive(run.parameters)));
+  return {grains * steps * left, bytes * files};
 }
 
 double most_particle_steps(const PlannedRun& run, const StageSpec& stage) {

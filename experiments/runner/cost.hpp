@@ -6,10 +6,12 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/filling.hpp"
 #include "experiments/manifest/expand.hpp"
+#include "experiments/runner/asks.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -41,6 +43,10 @@ std::size_t take_longer_targets(const std::vector<RunRecord>& known, Plan& plan)
 /// before them.
 std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& stage,
                                         const RunRecord* known, const Store* store);
+
+/// Checkpoints that a shear or stiffen stage still records from `cycle` on, without the one at its
+/// beginning. Phases at which it already recorded the cycle in progress are not counted.
+double checkpoints_left(std::string_view kind, const RunAsk& ask, double cycle);
 
 /// Cost of a planned stage from `cycle` on. Settling is estimated from what it took at N = 600 to
 /// 18200; checkpoints by checkpoint_bytes.

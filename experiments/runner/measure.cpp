@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 using Results = std::vector<json>;
 
-// Results are kept in batches: one transaction each would take longer than a small analysis.
+// Results are cached in batches: one transaction each would take longer than a small analysis.
 constexpr std::size_t kBatch = 64;
 
 class Measuring {
@@ -57,17 +57,17 @@ class Measuring {
       const bool again = options_.fresh && distinct_[i]->state != CheckpointState::pruned;
       if (again || lacks) todo_.push_back(i);
     }
-    outcome_.kept = distinct_.size() - todo_.size();
+    outcome_.cached = distinct_.size() - todo_.size();
     UnreadCheckpoints& unread = outcome_;
     try {
       unread = read_in_parallel(
           todo_.size(), options_.workers, [this](std::size_t n) { compute(todo_[n]); },
           options_.report);
     } catch (...) {
-      keep();
+      flush();
       throw;
     }
-    keep();
+    flush();
     outcome_.measured = todo_.size() - unread.damage.size() - unread.pruned.size();
     std::sort(outcome_.changed.begin(), outcome_.changed.end());
     const bool distinct = place_.size() == distinct_.size();
@@ -103,7 +103,10 @@ class Measuring {
       if (!results_[i][m].is_null()) continue;
       auto result = options_.instead ? std::optional(options_.instead(record, checkpoint))
                                      : sources_.measure(record, checkpoint, analysis, measures_[m]);
-      if (!result) continue;
+      if (!result) {
+        results_[i][m] = before[m];  // an earlier checkpoint that it needs cannot be read any more
+        continue;
+      }
       objects.push_back({keys_[i * measures_.size() + m], encode_result(*result)});
       const bool known = !before[m].is_null();
       changed = changed || (known && encode_result(before[m]) != objects.back().content);
@@ -112,10 +115,10 @@ class Measuring {
     const std::lock_guard lock(mutex_);
     if (changed) outcome_.changed.push_back(record.sha256);
     std::move(objects.begin(), objects.end(), std::back_inserter(pending_));
-    if (pending_.size() >= kBatch) keep();
+    if (pending_.size() >= kBatch) flush();
   }
 
-  void keep() {
+  void flush() {
     if (!pending_.empty()) cache_.put(pending_);
     pending_.clear();
   }

@@ -17,7 +17,7 @@ namespace shearcell {
 
 struct MeasureOptions {
   std::size_t workers = 1;
-  bool fresh = false;  ///< compute all of them again and replace the kept ones
+  bool fresh = false;  ///< compute all of them again and replace the cached ones
   /// Called as checkpoints are computed; may be empty.
   std::function<void(std::size_t done, std::size_t total)> report;
   /// If given, computes the only measure instead of an analysis.
@@ -33,10 +33,10 @@ struct UnreadCheckpoints {
 
 struct MeasureOutcome : UnreadCheckpoints {
   std::size_t measured = 0;  ///< checkpoints that were analysed now
-  std::size_t kept = 0;      ///< checkpoints whose results were kept
-  /// With `fresh`: checkpoints whose kept results were different.
+  std::size_t cached = 0;    ///< checkpoints whose results were in the cache
+  /// With `fresh`: checkpoints whose cached results were different.
   std::vector<std::string> changed;
-  std::string cache_trouble;  ///< why results cannot be kept; "" if they can
+  std::string cache_trouble;  ///< why results cannot be cached; "" if they can
 };
 
 struct MeasuredCheckpoints : MeasureOutcome {
@@ -45,8 +45,9 @@ struct MeasuredCheckpoints : MeasureOutcome {
   std::vector<std::vector<nlohmann::json>> results;
 };
 
-/// Results are kept under the checkpoint's recorded SHA-256, so for a kept result the file is not
-/// read and may be missing; `verify` checks files. Kept and computed results are the same bytes.
+/// Results are cached under the checkpoint's recorded SHA-256, so for a cached result the file is
+/// not read and may be missing; `verify` checks files. Kept and computed results are the same
+/// bytes.
 MeasuredCheckpoints measure_checkpoints(const Store& store,
                                         std::span<const CheckpointRecord> records,
                                         std::span<const DerivedMeasure> measures,
@@ -65,7 +66,7 @@ Measures read_results(std::span<const DerivedMeasure> measures,
 /// constant is the checkpoint's own if it records one (stiffening). NaN for what the store lacks.
 MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& checkpoint);
 
-/// Called after each item that succeeded, by one thread at a time; may be empty.
+/// Called after each item, by one thread at a time; may be empty.
 using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Calls work(0) .. work(count - 1), at most `workers` at once. StoreDamaged and FilePruned

@@ -16,7 +16,7 @@ using nlohmann::json;
 // Parameters and seed. The parent's id is left out: it differs because of a value that is compared
 // itself.
 json values_of(const json& resolved) {
-  json values = felt_parameters(resolved);
+  json values = effective_parameters(resolved);
   if (resolved.is_object()) values["seed"] = resolved.value("seed", json());
   return values;
 }

@@ -38,7 +38,7 @@ std::optional<Manifest> read(const RegisteredManifest& manifest) {
 
 void PackingNames::add(const Membership& place, const nlohmann::json& resolved) {
   std::vector<nlohmann::json>& known = parameters_[{place.experiment, place.scale}];
-  nlohmann::json parameters = felt_parameters(resolved);
+  nlohmann::json parameters = effective_parameters(resolved);
   if (std::ranges::find(known, parameters) == known.end()) known.push_back(std::move(parameters));
 }
 
@@ -46,7 +46,7 @@ std::string PackingNames::of(const Membership& place, const nlohmann::json& reso
   const auto known = parameters_.find({place.experiment, place.scale});
   if (known == parameters_.end() || known->second.size() < 2) return "packing";
   const auto names = variant_names(known->second, {});
-  const auto own = names.find(felt_parameters(resolved));
+  const auto own = names.find(effective_parameters(resolved));
   return own == names.end() ? "packing" : fmt::format("packing {}", own->second);
 }
 

@@ -12,14 +12,15 @@
 
 namespace shearcell {
 
-/// Calls `deed`, which must not throw, at every interval in its own thread, until it is destroyed.
+/// Calls `action`, which must not throw, at every interval in its own thread, until it is
+/// destroyed.
 class Repeated {
  public:
-  Repeated(std::chrono::duration<double> interval, std::function<void()> deed)
-      : thread_([this, interval, deed = std::move(deed)](const std::stop_token& stop) {
+  Repeated(std::chrono::duration<double> interval, std::function<void()> action)
+      : thread_([this, interval, action = std::move(action)](const std::stop_token& stop) {
           std::unique_lock lock(mutex_);
           while (!wake_.wait_for(lock, stop, interval, [&stop] { return stop.stop_requested(); })) {
-            deed();
+            action();
           }
         }) {}
 

@@ -109,7 +109,7 @@ std::optional<json> ended_early(std::span<const RunAsk> asks,
   return why;
 }
 
-double own_end(const Store& store, const RunRecord& run, const Membership& membership,
+double end_for(const Store& store, const RunRecord& run, const Membership& membership,
                const MeasureOptions& options) {
   const auto target = static_cast<double>(membership.target_cycles);
   if (run.memberships.size() < 2) return target;  // no other experiment can have continued it

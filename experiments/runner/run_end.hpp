@@ -35,7 +35,7 @@ std::optional<nlohmann::json> ended_early(std::span<const RunAsk> asks,
 /// `until` ends the run. Another experiment may have continued it; an experiment's figures and
 /// tables are the same whatever shares its runs. May measure checkpoints, and keeps the results.
 /// Throws StoreDamaged where the run's declarations are not as this program writes them.
-double own_end(const Store& store, const RunRecord& run, const Membership& membership,
+double end_for(const Store& store, const RunRecord& run, const Membership& membership,
                const MeasureOptions& options);
 
 /// What the last completion of the run records of its end; null where there is none.

@@ -97,8 +97,8 @@ TEST(Identity, OfAStiffeningHasOnlyTheParametersThatActOnIt) {
   EXPECT_EQ(record.parameters, parameters);
 
   EXPECT_TRUE(stiffen.resolved.at("parameters").contains("minimize_force_tolerance"));
-  for (const char* unfelt : {"amplitude_rad", "protocol", "engine", "pause_s", "fluid"}) {
-    EXPECT_FALSE(stiffen.resolved.at("parameters").contains(unfelt)) << unfelt;
+  for (const char* ineffective : {"amplitude_rad", "protocol", "engine", "pause_s", "fluid"}) {
+    EXPECT_FALSE(stiffen.resolved.at("parameters").contains(ineffective)) << ineffective;
   }
   // This program never records a shear with the protocol stiffen.
   expect_refused_with(last_stage({}, 1, prepare).resolved, "protocol", {"stiffen"});
@@ -157,7 +157,7 @@ TEST(Identity, HasTheFormerDefaultOfTheOverlapLimit) {
   EXPECT_EQ(read_stage(record).parameters.max_overlap_diameters, 0.02);
 }
 
-// Younger than the stores as well, and felt only where a moving bottom wall lifts grains.
+// Younger than the stores as well, and effective only where a moving bottom wall lifts grains.
 TEST(Identity, HasWhereThePressureActsOnlyIfItMatters) {
   const Parameters at_top;
   const StageSpec stage = prepare_stage(at_top, 1);
@@ -165,10 +165,10 @@ TEST(Identity, HasWhereThePressureActsOnlyIfItMatters) {
   EXPECT_EQ(read_stage(stage.resolved).parameters, at_top);
   for (const auto change : {+[](Parameters& p) { p.moving_wall = MovingWall::top; },
                             +[](Parameters& p) { p.gravity_m_per_s2 = 0; }}) {
-    Parameters unfelt = at_top, other = oldest();
-    change(unfelt);
+    Parameters ineffective = at_top, other = oldest();
+    change(ineffective);
     change(other);
-    EXPECT_EQ(prepare_stage(unfelt, 1).key, prepare_stage(other, 1).key);
+    EXPECT_EQ(prepare_stage(ineffective, 1).key, prepare_stage(other, 1).key);
     expect_refused_with(prepare_stage(other, 1).resolved, "pressure_at", {"top"});
   }
 }

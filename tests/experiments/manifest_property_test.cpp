@@ -300,8 +300,8 @@ Parameters any_parameters() {
   return parameters;
 }
 
-// Whether the last stage feels the field, beside what its packing feels.
-bool felt(const Field& field, const Parameters& before, const Parameters& after) {
+// Whether the field affects the last stage, beside what affects its packing.
+bool has_effect(const Field& field, const Parameters& before, const Parameters& after) {
   if (field.name == "protocol") return true;
   if (before.protocol == ProtocolKind::stiffen) return field.identity.stage == Stage::stiffen;
   return field.identity.stage == Stage::shear &&
@@ -325,11 +325,11 @@ PROPERTY(Identity, ChangesWithEachValueAsTheSchemaStates, 100) {
     const StageSpec other_prepare = prepare_stage(after, 1);
     const bool settling = field.identity.stage == Stage::prepare &&
                           field.identity.distinguishes_runs() &&
-                          (field.name != "pressure_at" || feels_pressure_at(before));
+                          (field.name != "pressure_at" || depends_on_pressure_at(before));
     RC_LOG() << field.name << " " << value << " " << other << "\n";
     RC_ASSERT((other_prepare.key != prepare.key) == settling);
     RC_ASSERT((last_stage(after, 1, other_prepare).key != last.key) ==
-              (settling || felt(field, before, after)));
+              (settling || has_effect(field, before, after)));
   }
 }
 

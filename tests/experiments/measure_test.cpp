@@ -188,7 +188,7 @@ TEST_F(Measure, ResultsHaveTheOrderOfTheRecordsWithAnyNumberOfWorkers) {
   ASSERT_EQ(one.results.size(), all.size());
   EXPECT_EQ(one.measured, all.size() - 1);
   EXPECT_EQ(kept.measured, 0U);
-  EXPECT_EQ(kept.kept, all.size() - 1);
+  EXPECT_EQ(kept.cached, all.size() - 1);
   EXPECT_EQ(one.results, many.results);
   EXPECT_EQ(one.results, kept.results);
   EXPECT_EQ(one.results.front(), one.results.back());

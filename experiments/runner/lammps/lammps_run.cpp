@@ -28,13 +28,6 @@ std::string read_text(const fs::path& file) {
   return read_plain(file, kLargestFile).value_or("");
 }
 
-void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  if (!out) throw ProgramError("cannot write " + file.string() + ": is the disk full?");
-}
-
 std::string last_line(std::string_view text) {
   while (text.ends_with('\n')) text.remove_suffix(1);
   const auto newline = text.rfind('\n');
@@ -127,8 +120,8 @@ LammpsRun::LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::
     : grains_(static_cast<std::size_t>(task.state.position.cols())),
       ranks_(ranks),
       step_(task.state.step) {
-  write_text(folder_.path() / "scene.data", lammps_data(task));
-  write_text(folder_.path() / "deck.in", lammps_deck(task));
+  write_output(folder_.path() / "scene.data", lammps_data(task));
+  write_output(folder_.path() / "deck.in", lammps_deck(task));
   process_ = start(program, folder_.path(), ranks);
 }
 
@@ -163,7 +156,7 @@ std::optional<State> LammpsRun::next_frame(std::chrono::milliseconds patience) {
 }
 
 void LammpsRun::ask_to_stop() {
-  write_text(folder_.path() / "stop", "");
+  write_output(folder_.path() / "stop", "");
 }
 
 std::uint64_t LammpsRun::step() {

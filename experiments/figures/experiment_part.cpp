@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/figures/own_part.hpp"
+#include "experiments/figures/experiment_part.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, 
   }
 }
 
-std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecord& run,
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecord& run,
                                               std::span<const RunAsk> asks, double first,
                                               double last) {
   std::vector<CheckpointRecord> found = store.checkpoints(run.id, Listed::and_pruned);
@@ -49,11 +49,11 @@ std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecor
   return found;
 }
 
-std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecord& run,
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecord& run,
                                               const Membership& membership,
                                               const MeasureOptions& options) {
   const RunAsk ask = ask_of(store, run.id, membership);
-  return own_checkpoints(store, run, {&ask, 1}, 0, own_end(store, run, membership, options));
+  return checkpoints_for(store, run, {&ask, 1}, 0, end_for(store, run, membership, options));
 }
 
 }  // namespace shearcell

@@ -22,12 +22,12 @@ std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, 
 /// its cadence, at its phases and at its last cycle. For another kind of run, or without `asks`,
 /// all at whole cycles. Checkpoints that interruptions and other experiments left are not included,
 /// so that figures and tables do not depend on them.
-std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecord& run,
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecord& run,
                                               std::span<const RunAsk> asks, double first = 0,
                                               double last = StoreLimits::cycles);
 
-/// The checkpoints of one experiment, up to own_end().
-std::vector<CheckpointRecord> own_checkpoints(const Store& store, const RunRecord& run,
+/// The checkpoints of one experiment, up to end_for().
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecord& run,
                                               const Membership& membership,
                                               const MeasureOptions& options);
 
