@@ -106,9 +106,9 @@ Pairs paired(RunGroup a, RunGroup b, const Values& values,
 
 std::string wait_in_words(std::span<const Waiting> runs) {
   const auto median = median_wait(runs);
-  return fmt::format("median cycle {} of {} runs, {} of which end before",
-                     median ? fmt::format("{:.3g}", *median) : "unknown", runs.size(),
-                     std::ranges::count(runs, false, &Waiting::observed));
+  return fmt::format("median cycle {} ({} of {} runs end before theirs)",
+                     median ? fmt::format("{:.3g}", *median) : "unknown",
+                     std::ranges::count(runs, false, &Waiting::observed), runs.size());
 }
 
 }  // namespace
@@ -200,7 +200,8 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
   if (pairs.any) {
     estimate = mean_of(pairs.differences);
     runs = pairs.differences.size();
-    note = fmt::format("{} pairs of runs that share a packing", runs);
+    note = fmt::format("{} pair{} of runs that share{} a packing", runs, runs == 1 ? "" : "s",
+                       runs == 1 ? "s" : "");
     if (estimate && !pairs.enough(a, b)) {
       note += "; more than a quarter of the runs have no partner";
       estimate.reset();
@@ -275,7 +276,7 @@ Verdict compare_waits(const Claim& claim, const std::string& event, std::span<co
   const std::optional<Estimate> estimate = log2_wait_ratio(a, b);
   const std::size_t runs = std::min(a.size(), b.size());
   std::string note;
-  if (runs > 0) note = wait_in_words(a) + "; " + wait_in_words(b);
+  if (runs > 0) note = "first: " + wait_in_words(a) + "; second: " + wait_in_words(b);
   if (runs == 0) {
     note = no_group;
   } else if (runs < least_runs) {

@@ -190,7 +190,7 @@ double Delaunay::face_area(std::int32_t start, std::size_t i, std::size_t j) {
   } while (k != start);
   const Eigen::Vector3d edge = point(b) - point(a);
   const double length = edge.norm();
-  if (length < same_place) {
+  if (length < coincidence_distance) {
     throw_same_place(image_[static_cast<std::size_t>(a)].site,
                      image_[static_cast<std::size_t>(b)].site, grains_);
   }

@@ -47,7 +47,7 @@ struct DualFace {
 };
 
 /// Sites closer than this count as one [d].
-inline constexpr double same_place = 1e-10;
+inline constexpr double coincidence_distance = 1e-10;
 
 /// Throws an AnalysisError that names two sites as grains (the first `grains` of them) or else as
 /// wall grains.
@@ -79,7 +79,7 @@ class Delaunay {
 
   /// The faces around the sites (no images) with `wanted[site] != 0`, each once. Every tetrahedron
   /// at those sites must be bounded. Throws AnalysisError, naming both, when two sites are closer
-  /// than `same_place`.
+  /// than `coincidence_distance`.
   std::vector<DualFace> faces(const std::vector<std::uint8_t>& wanted);
 
   /// Sites whose cells border on that of `site`, in no particular order.

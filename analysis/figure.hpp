@@ -71,6 +71,8 @@ struct Figure {
   /// Needs the checkpoints of these cycles, first to last, those at phases of a cycle included;
   /// other figures are of whole cycles.
   std::optional<std::array<std::uint64_t, 2>> within = {};
+  /// Whether it uses the run, whose checkpoints are not read yet; empty: it uses all.
+  std::function<bool(const FigureRun& run)> uses = {};
 };
 
 /// The value of a parameter, swept or not; null if the run has no such key.

@@ -74,11 +74,15 @@ Axis x_axis(const PlotSpec& plot, std::span<const FigureRun> runs) {
 /// The cycle of the plot: as stated, or the last that all runs have.
 double cycle_of(const PlotSpec& plot, std::span<const FigureRun> runs) {
   if (plot.cycle) return static_cast<double>(*plot.cycle);
-  double last = std::numeric_limits<double>::infinity();
+  std::map<double, std::size_t> count;  // of the runs with this cycle
+  std::size_t begun = 0;
   for (const FigureRun& run : runs) {
-    if (!run.checkpoints.empty()) last = std::min(last, run.checkpoints.back().cycle);
+    if (!run.checkpoints.empty()) ++begun;
+    for (const CheckpointMeasures& checkpoint : run.checkpoints) ++count[checkpoint.cycle];
   }
-  return last;
+  const auto last = std::find_if(count.rbegin(), count.rend(),
+                                 [&](const auto& cycle) { return cycle.second == begun; });
+  return last == count.rend() ? std::numeric_limits<double>::infinity() : last->first;
 }
 
 /// The checkpoint at a cycle; null if there is none.
@@ -276,15 +280,19 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
   return against_measure(plot, curves);
 }
 
+/// Whether the run has these parameters.
+bool has_parameters(const FigureRun& run, const nlohmann::json& where) {
+  return std::ranges::all_of(where.items(), [&](const auto& stated) {
+    return parameter_of(run, stated.key()) == stated.value();
+  });
+}
+
 /// The runs of the one variant with these parameters; of another engine only if they say so.
 std::vector<const FigureRun*> variant_with(const ClaimSpec& claim, const nlohmann::json& where,
                                            std::span<const FigureRun> runs) {
   std::vector<const FigureRun*> found;
   for (const FigureRun& run : runs) {
-    const bool fits = std::ranges::all_of(where.items(), [&](const auto& stated) {
-      return parameter_of(run, stated.key()) == stated.value();
-    });
-    if (fits) found.push_back(&run);
+    if (has_parameters(run, where)) found.push_back(&run);
   }
   const auto variants = [](RunGroup some) {
     std::set<std::string> distinct;
@@ -302,31 +310,31 @@ std::vector<const FigureRun*> variant_with(const ClaimSpec& claim, const nlohman
 }
 
 Scalar scalar_of(const ClaimSpec& claim) {
-  if (const RunMeasure* of_run = find_run_measure(claim.compare)) {
-    Scalar scalar = onset_phi(of_run->method);
-    if (of_run->value == &RunOnset::cycle) scalar.name = "the cycle of the onset";
-    return scalar;
-  }
+  if (const RunMeasure* of_run = find_run_measure(claim.compare)) return onset_phi(of_run->method);
   const Quantity quantity = scalar_column(claim.compare).quantity;
   return over_cycles(claim.compare, quantity, static_cast<std::int64_t>(claim.first),
                      static_cast<std::int64_t>(claim.last));
 }
 
 FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> runs) {
-  const Scalar scalar = scalar_of(claim);
+  const RunMeasure* of_run = find_run_measure(claim.compare);
+  const bool waits =
+      of_run != nullptr && of_run->value == &RunOnset::cycle;  // a run may end before
   const std::string a = words_of(claim.between[0]), b = words_of(claim.between[1]);
+  const std::string name = waits ? "the cycle of the onset" : scalar_of(claim).name;
+  const std::string more =
+      waits ? fmt::format("later by more than a factor of {:.3g}", std::exp2(claim.margin))
+            : fmt::format("higher by more than {}", claim.margin);
   const std::string text =
-      claim.higher ? fmt::format("{}: {} is higher by more than {} for {} than for {}", claim.name,
-                                 scalar.name, claim.margin, a, b)
-                   : fmt::format("{}: {} is the same for {} and {}", claim.name, scalar.name, a, b);
+      claim.higher ? fmt::format("{}: {} is {} for {} than for {}", claim.name, name, more, a, b)
+                   : fmt::format("{}: {} is the same for {} and {}", claim.name, name, a, b);
   const Claim decided{text, claim.margin, claim.higher ? Claimed::above : Claimed::within};
   const auto first = variant_with(claim, claim.between[0], runs);
   const auto second = variant_with(claim, claim.between[1], runs);
-  const bool waits = claim.compare == "onset_size_cycle";  // some runs end before their onset
   return {
       {},
       {waits ? compare_waits(decided, "the onset", waits_for_onset(first), waits_for_onset(second))
-             : compare(decided, scalar, first, second)}};
+             : compare(decided, scalar_of(claim), first, second)}};
 }
 
 }  // namespace
@@ -384,7 +392,11 @@ Figure claim_figure(const ClaimSpec& claim) {
                 [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
   if (const ScalarMeasure* one = find_measure(claim.compare)) {
     figure.needs.emplace_back(one->derived());
+    figure.within = {{claim.first, claim.last}};
   }
+  figure.uses = [claim](const FigureRun& run) {
+    return has_parameters(run, claim.between[0]) || has_parameters(run, claim.between[1]);
+  };
   return figure;
 }
 

@@ -147,6 +147,9 @@ MeasuredCurve structure_factor(const Cell& cell, const WallPose& pose,
   const Eigen::Matrix3Xd sites = selected(grains, interior);
   if (!(region.width > 0 && region.height > 0) || sites.cols() == 0) return {};
   const WaveVector most = largest_components(region);
+  // Of a packing the sum is at most a third of this. A forged cell may be far larger.
+  const double largest_sum = 60 * std::cbrt(static_cast<double>(sites.cols()));
+  if (most[0] + most[1] + most[2] > std::max(1000.0, largest_sum)) return {};
   const Eigen::ArrayXd y = sites.row(1).array() - region.bottom;
   const Eigen::ArrayXd x = sites.row(0).transpose().array() - region.left - region.tan_theta * y;
   const Waves along_x(x / region.width, most[0]);

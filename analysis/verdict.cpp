@@ -102,7 +102,8 @@ std::string numbers_of(const Verdict& verdict) {
                          ? fmt::format("{:.3g}, 90 % interval {:.3g} to {:.3g}", *verdict.estimate,
                                        verdict.interval.low, verdict.interval.high)
                          : std::string("not measured");
-  text += fmt::format(", margin {:.3g}, {} runs", verdict.margin, verdict.runs);
+  text += fmt::format(", margin {:.3g}, {} run{}", verdict.margin, verdict.runs,
+                      verdict.runs == 1 ? "" : "s");
   if (verdict.runs_needed) text += fmt::format(" of {} needed", *verdict.runs_needed);
   return text;
 }

@@ -163,7 +163,8 @@ class Dual {
     polyhedron_.reset(box_around(sites_.col(site)));
     plane_site_.clear();
     for (const auto& [distance2, other] : ranks) {
-      if (distance2 < same_place * same_place) throw_same_place(site, other.site, grains_);
+      if (distance2 < coincidence_distance * coincidence_distance)
+        throw_same_place(site, other.site, grains_);
       if (other.site == site && std::abs(other.image) == 1) continue;  // a plane of the box already
       if (polyhedron_.clip(bisector_to(delaunay_.offset(site, other))))
         plane_site_.push_back(other);

@@ -26,6 +26,9 @@ struct WallGrain {
   Eigen::Vector3d position;
 };
 
+/// The largest width or height of a cell [d]. Beyond it positions lose digits that contacts need.
+inline constexpr double kLongestCell = 1e6;
+
 /// Geometry that does not change during a run. Lengths in grain diameters d.
 ///
 /// x is the shear direction, y points up, z is the depth and periodic. In the untilted cell the

@@ -17,7 +17,6 @@ constexpr double kGrainArea = std::numbers::pi / 4;
 // Volume per area that the grains of a rough wall take from the cell: 0.66 grains per d^2, each a
 // cap of mean volume 0.17 d^3 for recesses of 0 to d/4, and the gaps behind them.
 constexpr double kRoughLayer = 0.175;
-constexpr double kLongestCell = 1e6;      // [d]
 constexpr std::uint32_t kFillStream = 4;  // after the four wall sides
 
 // Each draw has a stream per wall side. Draws after the first follow the stream of the filling,
@@ -41,15 +40,15 @@ std::array<double, 4> draw(std::uint64_t seed, std::size_t grains, std::uint32_t
   return {a[0], a[1], b[0], b[1]};
 }
 
-void look_sometimes(const Look& look, std::uint64_t attempt) {
-  if (look && attempt % 1024 == 1023) look();
+void poll_sometimes(const Poll& poll, std::uint64_t attempt) {
+  if (poll && attempt % 1024 == 1023) poll();
 }
 
 // Random sequential addition of discs of diameter d on a wall of `length` by `depth`, periodic
 // along the depth; each becomes a wall grain through `place(along, z, recess)`.
 template <class Place>
 void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side, double length,
-                     double depth, const Look& look, Place&& place) {
+                     double depth, const Poll& poll, Place&& place) {
   const double area = length * depth;
   const auto target =
       static_cast<std::size_t>(geometry.wall_grain_area_fraction * area / kGrainArea);
@@ -59,7 +58,7 @@ void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side
   LinkedCells near({.width = length, .depth = depth}, {.top = 1}, 1.0, target);
   std::vector<Eigen::Vector2d> placed;
   for (std::uint64_t attempt = 0; attempt < attempts && placed.size() < target; ++attempt) {
-    look_sometimes(look, attempt);
+    poll_sometimes(poll, attempt);
     const auto u = draw(seed, geometry.grains, stream, attempt);
     const Eigen::Vector2d p(u[0] * length, u[1] * depth);
     bool free = true;
@@ -116,7 +115,7 @@ bool too_large(const Geometry& geometry) {
            wall_grain_count(geometry) <= most_wall_grains);
 }
 
-Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Look& look) {
+Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Poll& poll) {
   Cell cell;
   cell.width = cell.depth = cell_width(geometry);
   cell.moving = geometry.moving;
@@ -138,7 +137,7 @@ Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Look& look) {
 
   const double height = cell.top;
   const auto add = [&](WallSide side, double length, auto&& centre) {
-    add_wall_grains(geometry, seed, side, length, cell.depth, look,
+    add_wall_grains(geometry, seed, side, length, cell.depth, poll,
                     [&](double along, double z, double recess) {
                       cell.wall_grains.push_back({side, centre(along, z, recess)});
                     });
@@ -152,7 +151,7 @@ Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Look& look) {
   return cell;
 }
 
-State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, const Look& look) {
+State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, const Poll& poll) {
   const double height = cell.top - cell.bottom;
   if (!(height >= 1)) {
     throw GeometryError("a cell for " + std::to_string(geometry.grains) + " grains is only " +
@@ -184,7 +183,7 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, 
                             " grains found a place in the loose filling: lower "
                             "fill_packing_fraction");
       }
-      look_sometimes(look, attempt);
+      poll_sometimes(poll, attempt);
       const auto u = draw(seed, geometry.grains, kFillStream, attempt);
       const Eigen::Vector3d p(0.5 + u[0] * (cell.width - 1.0),
                               cell.bottom + 0.5 + u[1] * (height - 1.0), u[2] * cell.depth);

@@ -35,7 +35,7 @@ struct Geometry {
 double cell_width(const Geometry& geometry);
 
 /// Called about every millisecond of a long placement; may throw to give it up.
-using Look = std::function<void()>;
+using Poll = std::function<void()>;
 
 /// Distance of the bottom and the top plane [d] at which the loose grains are placed.
 double fill_height(const Geometry& geometry);
@@ -43,18 +43,17 @@ double fill_height(const Geometry& geometry);
 /// Expected number of wall grains; 0 for smooth walls.
 double wall_grain_count(const Geometry& geometry);
 
-/// Whether the cell is too large for its grains: wider or higher than 10^6 d, where positions lose
-/// digits that contacts need, or with more wall grains than 10^4 + 1000 N. Placing those takes up
-/// to 6000 attempts each.
+/// Whether the cell is too large for its grains: wider or higher than kLongestCell, or with more
+/// wall grains than 10^4 + 1000 N. Placing those takes up to 6000 attempts each.
 bool too_large(const Geometry& geometry);
 
 /// The cell at its fill height, with its wall grains placed by random sequential addition.
 /// Throws GeometryError.
-Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Look& look = {});
+Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Poll& poll = {});
 
 /// Grains at rest at random places, none touching another, a wall grain or a plane.
 /// Throws GeometryError when they cannot be placed.
 State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed,
-                const Look& look = {});
+                const Poll& poll = {});
 
 }  // namespace shearcell

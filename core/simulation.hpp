@@ -47,6 +47,9 @@ struct Forces {
   double on_wall = 0;         ///< upwards on the moving wall: load and contacts
 };
 
+/// The largest overlap limit [d] that a run can have.
+inline constexpr double kLargestOverlapLimit = 0.5;
+
 class Simulation {
  public:
   /// Copies the state. Throws std::invalid_argument when the sizes disagree or the cell
@@ -65,6 +68,7 @@ class Simulation {
   void set_state(const State& state);
 
   /// Forces at the present positions without drag, walls upright; the same bits as in a time step.
+  /// After steps between tilted walls, call set_state() first.
   /// The reference is valid until the next call.
   const Forces& forces();
 

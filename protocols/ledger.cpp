@@ -26,16 +26,16 @@ Eigen::Matrix3Xd near_walls(const Cell& cell, const State& state, const WallPose
   return state.position(Eigen::all, near);
 }
 
-// What the walls feel, as generalized forces. A point of a side wall at height y is displaced in x
-// by (y - top) tan(theta), the horizontal walls as a whole by that of their planes' height: by
-// (y - top) for each unit of tan(theta), and with the moving wall's height by tan(theta), for a
-// moving bottom wall, or -tan(theta), for all but a moving top wall.
+// Generalized forces of the grains on the walls. A point of a wall at height y is displaced in x by
+// (y - top) tan(theta); the horizontal walls move as a whole, with the y of their planes.
 struct WallForces {
-  double on_tilt = 0;    // sum of f_x (y - top) [m d^2/s^2]
-  double on_height = 0;  // sum of f_x times that sign [m d/s^2]
+  double on_tilt = 0;  // conjugate to tan(theta): sum of f_x (y - top) [m d^2/s^2]
+  // Conjugate to the moving wall's height times tan(theta) [m d/s^2]: sum of f_x on a moving bottom
+  // wall; of -f_x on all walls but the top one if the top one moves.
+  double on_height = 0;
 };
 
-// That of a contact of the grain at `centre` with a wall, as it counts for its displacement.
+// The height y at which the wall point of a contact is displaced by (y - top) tan(theta).
 double height_of(const Cell& cell, const WallPose& pose, const Contact& c,
                  const Eigen::Vector3d& centre) {
   if (c.side == WallSide::bottom) return pose.bottom;
@@ -102,6 +102,7 @@ Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const St
     return wall_pose(cell, tilt(drive, state.step).theta, state.wall_height);
   };
   Simulation simulation(cell, scene, start);
+  simulation.set_overlap_limit(kLargestOverlapLimit);  // the run's own limit was checked before
   simulation.advance(drive, 1);
   Ledger sum;
   add_energies(cell, scene, start, simulation.state(), pose_of(start), -1, sum);

@@ -11,6 +11,7 @@ State rested(const Cell& cell, const Scene& scene, State state, double seconds) 
   const Drive pause{.amplitude = 0, .steps_per_cycle = 1, .pause_steps = steps};
   state.step = 1;
   Simulation simulation(cell, scene, state);
+  simulation.set_overlap_limit(kLargestOverlapLimit);  // the run's own limit was checked before
   simulation.advance(pause, steps);
   state = simulation.state();
   state.step = 0;

@@ -10,9 +10,8 @@
 namespace shearcell {
 namespace {
 
-constexpr std::uint64_t kLooksPerCheckpoint = 20;
-constexpr double kDenseGrains = 1.2;      // per d^3, of a packing at phi = 0.63
-constexpr double kPressingOverlap = 0.5;  // [d]
+constexpr std::uint64_t kChecksPerCheckpoint = 20;
+constexpr double kDenseGrains = 1.2;  // per d^3, of a packing at phi = 0.63
 
 std::uint64_t steps_in(double seconds, const Scene& scene) {
   return static_cast<std::uint64_t>(std::min(seconds / scene.time_step, kMostSteps));
@@ -23,33 +22,33 @@ std::uint64_t steps_in(double seconds, const Scene& scene) {
 Settle::Settle(const SettleParameters& parameters, const Scene& scene)
     : parameters_(parameters),
       scene_(scene),
-      look_steps_(std::max<std::uint64_t>(1, steps_in(kLookInterval, scene))),
+      check_steps_(std::max<std::uint64_t>(1, steps_in(kSettleCheckInterval, scene))),
       limit_steps_(steps_in(parameters.time_limit, scene)) {}
 
-std::uint64_t Settle::press_steps(const Cell& cell, std::size_t grains) const {
-  return scene_.gravity == 0 ? 0 : way_steps(cell, grains);
+std::uint64_t Settle::steps_without_gravity(const Cell& cell, std::size_t grains) const {
+  return scene_.gravity == 0 ? 0 : compaction_steps(cell, grains);
 }
 
-std::uint64_t Settle::next_look(std::uint64_t step) const {
-  return step + look_steps_ - step % look_steps_;
+std::uint64_t Settle::next_check(std::uint64_t step) const {
+  return step + check_steps_ - step % check_steps_;
 }
 
-std::uint64_t Settle::way_steps(const Cell& cell, std::size_t grains) const {
+std::uint64_t Settle::compaction_steps(const Cell& cell, std::size_t grains) const {
   if (scene_.pressure == 0) return 0;
   const double per_area = static_cast<double>(grains) / (cell.width * cell.depth);
   const double way = std::max(0.0, cell.top - cell.bottom - per_area / kDenseGrains);
   const double speed = scene_.pressure / (scene_.wall_drag + scene_.drag_rate * per_area);
-  const double looks = std::ceil((way / speed + 0.5) / kLookInterval);
-  return look_steps_ *
-         static_cast<std::uint64_t>(std::min(looks, parameters_.time_limit / kLookInterval));
+  const double checks = std::ceil((way / speed + 0.5) / kSettleCheckInterval);
+  return check_steps_ * static_cast<std::uint64_t>(
+                            std::min(checks, parameters_.time_limit / kSettleCheckInterval));
 }
 
 State pressed(const Cell& cell, const State& loose, Scene scene) {
   scene.gravity = 0;
   Simulation simulation(cell, scene, loose);
-  simulation.set_overlap_limit(kPressingOverlap);
+  simulation.set_overlap_limit(kLargestOverlapLimit);
   const Settle unlimited({.time_limit = std::numeric_limits<double>::infinity()}, scene);
-  simulation.advance(Drive{}, unlimited.way_steps(cell, simulation.grains()));
+  simulation.advance(Drive{}, unlimited.compaction_steps(cell, simulation.grains()));
   State state = simulation.state();
   state.step = 0;
   return state;
@@ -70,22 +69,24 @@ bool Settle::settled(const Simulation& simulation) const {
 }
 
 StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) const {
-  const std::uint64_t pressed = press_steps(simulation.cell(), simulation.grains());
-  const auto at_look = [&] { return simulation.step() % look_steps_ == 0; };
+  const std::uint64_t pressed = steps_without_gravity(simulation.cell(), simulation.grains());
+  const auto at_check = [&] { return simulation.step() % check_steps_ == 0; };
   const auto finished = [&] {
-    return simulation.step() > pressed && at_look() && settled(simulation);
+    return simulation.step() > pressed && at_check() && settled(simulation);
   };
-  const bool on_the_way = simulation.step() < way_steps(simulation.cell(), simulation.grains());
-  simulation.set_overlap_limit(on_the_way ? std::max(parameters_.overlap_limit, kPressingOverlap)
-                                          : parameters_.overlap_limit);
+  const bool compacting =
+      simulation.step() < compaction_steps(simulation.cell(), simulation.grains());
+  simulation.set_overlap_limit(compacting
+                                   ? std::max(parameters_.overlap_limit, kLargestOverlapLimit)
+                                   : parameters_.overlap_limit);
   // A stage that was interrupted after its last state must not continue.
   if (finished()) return {.checkpoint_due = true, .finished = true};
 
   Scene scene = scene_;
   if (simulation.step() < pressed) scene.gravity = 0;
   simulation.set_scene(scene);
-  const std::uint64_t to_look = next_look(simulation.step()) - simulation.step();
-  simulation.advance(drive(), std::min(most_steps, to_look));
+  const std::uint64_t to_check = next_check(simulation.step()) - simulation.step();
+  simulation.advance(drive(), std::min(most_steps, to_check));
 
   const bool done = finished();
   if (!done && simulation.step() >= limit_steps_) {
@@ -96,7 +97,7 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
         "Raise that limit (settle_time_limit_s) or the settling tolerances, or check that "
         "the pressure can lift the grains");
   }
-  return {.checkpoint_due = done || simulation.step() % (kLooksPerCheckpoint * look_steps_) == 0,
+  return {.checkpoint_due = done || simulation.step() % (kChecksPerCheckpoint * check_steps_) == 0,
           .finished = done};
 }
 

@@ -11,7 +11,7 @@ namespace shearcell {
 inline constexpr double kMostSteps = 1e15;
 
 /// Time between checks of whether a packing has settled [s].
-inline constexpr double kLookInterval = 0.1;
+inline constexpr double kSettleCheckInterval = 0.1;
 
 struct SettleParameters {
   double force_tolerance = 1e-3;    ///< largest |load - contact force| / (P A_w) of the moving wall
@@ -43,20 +43,20 @@ class Settle final : public Protocol {
   /// Steps, a multiple of the check interval, that the wall needs to press the grains together: the
   /// time from the fill height to a dense packing at the speed at which the drags of the wall and
   /// of all grains balance the pressure, and half a second more. 0 without pressure.
-  std::uint64_t way_steps(const Cell& cell, std::size_t grains) const;
+  std::uint64_t compaction_steps(const Cell& cell, std::size_t grains) const;
 
   /// The part of them without gravity: all, but 0 if the scene has no gravity.
-  std::uint64_t press_steps(const Cell& cell, std::size_t grains) const;
+  std::uint64_t steps_without_gravity(const Cell& cell, std::size_t grains) const;
 
   /// The first step after this one at which the tolerances are checked.
-  std::uint64_t next_look(std::uint64_t step) const;
+  std::uint64_t next_check(std::uint64_t step) const;
 
  private:
   bool settled(const Simulation& simulation) const;
 
   SettleParameters parameters_;
   Scene scene_;
-  std::uint64_t look_steps_;
+  std::uint64_t check_steps_;
   std::uint64_t limit_steps_;
 };
 

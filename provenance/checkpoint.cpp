@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "provenance/checkpoint.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -269,11 +270,21 @@ Checkpoint decode_checkpoint(std::span<const std::byte> image) {
 void require_plausible(const Checkpoint& checkpoint) {
   constexpr double kFarthest = 1e9;  // [d]; grains may drift along the period
   constexpr double kSteepest = 1.5;  // [rad]
+  constexpr double kLoosest = 1e4;   // [d^3] for each of N + 100 grains
   const Cell& cell = checkpoint.cell;
   if (!(cell.width > 0 && cell.depth > 0)) refuse("/restart/cell", "has no width or no depth");
   for (const double length :
        {cell.width, cell.depth, cell.bottom, cell.top, checkpoint.state.wall_height}) {
-    if (std::abs(length) > kFarthest) refuse("/restart/cell", "is larger than any cell");
+    if (std::abs(length) > kLongestCell) refuse("/restart/cell", "is larger than any cell");
+  }
+  // An analysis takes memory for each layer and for each periodic image that a grain may reach.
+  if (cell.depth < 0.1 * cell.width) refuse("/restart/cell", "is flatter than any cell");
+  const double moving = checkpoint.state.wall_height;
+  const double height =
+      std::max({cell.top, cell.bottom, moving}) - std::min({cell.top, cell.bottom, moving});
+  const auto grains = static_cast<double>(checkpoint.state.position.cols());
+  if (cell.width * cell.depth * height > kLoosest * (grains + 100)) {
+    refuse("/restart/cell", "is larger than any cell of so few grains");
   }
   if (std::abs(checkpoint.theta) > kSteepest) refuse("/restart/theta", "is not a tilt of a cell");
   if (!(checkpoint.state.position.array().abs() <= kFarthest).all()) {

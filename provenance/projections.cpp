@@ -102,7 +102,6 @@ class Projector {
     const RunDeclaration& d = e.run;
     const Membership& m = d.membership;
     require_cycles(d.target_cycles, m.checkpoint_every);
-    // An upsert would also count as an insert of a second ordinal.
     if (has_run(database_, id_)) {
       // A completed run may also have ended early, as other experiments asked for.
       run("UPDATE runs SET state = CASE WHEN state = 'completed' AND (target_cycles < ?2 OR "

@@ -20,6 +20,16 @@ using nlohmann::json;
 
 constexpr const char* kLogFile = "store.sqlite";
 
+/// A file or folder that a new store should not be mixed with; "" if there is none.
+std::string other_file_in(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with('.') && name != "lost+found") return name;
+  }
+  return "";
+}
+
 /// Checks the folder, or creates it, so that its log can be opened.
 std::filesystem::path prepare_folder(std::filesystem::path folder, Access access) {
   namespace fs = std::filesystem;
@@ -39,6 +49,12 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
     throw NotFound(fmt::format(
         "{}: there is no store here; create one with `shearcell run`, or name another with --store",
         name));
+  }
+  if (const std::string other = other_file_in(folder); !other.empty()) {
+    throw UsageError(fmt::format(
+        "{}: this folder is not a store and has other files ({}); name a new or empty folder with "
+        "--store",
+        name, other));
   }
   std::error_code error;
   fs::create_directories(folder, error);

@@ -80,7 +80,7 @@ inline int filled_symbol(std::size_t k) {
 /// The trace of one run.
 Series thin_line(Text title, std::string colour, int point = 0);
 
-/// Joined points with error bars for each curve. The table has a column "variant". Throws
+/// Joined points with a band of errors for each curve. The table has a column "variant". Throws
 /// AnalysisError if two curves have the same title.
 std::vector<Series> series_of(std::span<const Curve> curves, const SeriesColumns& columns);
 

@@ -69,15 +69,15 @@ struct Found {
     smallest = std::min(smallest, value);
     largest = std::max(largest, value);
   }
-  bool equals(double published) const {
+  static bool equal(double a, double b) {
     constexpr double rounding = 1e-12;
-    return std::abs(smallest - published) <= rounding * published &&
-           std::abs(largest - published) <= rounding * published;
+    return std::abs(a - b) <= rounding * std::abs(b);
   }
+  bool is_one_value() const { return equal(smallest, largest); }
   const char* beside(double published) const {
     if (runs == 0) return "none";
-    if (varied) return "varied";
-    return equals(published) ? "equal" : "differs";
+    if (varied && !is_one_value()) return "varied";
+    return equal(smallest, published) && equal(largest, published) ? "equal" : "differs";
   }
 };
 
@@ -115,7 +115,7 @@ Text number_text(double value) {
 
 Text range_text(const Found& found) {
   if (found.runs == 0) return "–";
-  if (found.smallest == found.largest) return number_text(found.smallest);
+  if (found.is_one_value()) return number_text(found.smallest);
   return number_text(found.smallest) + " – " + number_text(found.largest);
 }
 

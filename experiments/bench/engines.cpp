@@ -152,7 +152,7 @@ LammpsResult settle_by_lammps(std::size_t ranks, const LammpsProgram& program, c
     // packing has settled and which forces act now, and the watchdog checks the grains.
     Simulation check(loose.cell, loose.scene, settled.state);
     if (protocol.advance(check, 1).finished) return settled;
-    const std::uint64_t end = protocol.next_look(settled.state.step);
+    const std::uint64_t end = protocol.next_check(settled.state.step);
     const LammpsTask task{.cell = loose.cell,
                           .scene = check.scene(),
                           .drive = protocol.drive(),

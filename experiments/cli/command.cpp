@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <ranges>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -28,8 +29,15 @@ std::optional<Store> open_if_there(const std::string& folder) {
 }
 
 void print_problems(const MeasureOutcome& outcome, const char* left_out, Context& context) {
+  constexpr std::size_t most = 8;
   for (const auto* lines : {&outcome.damage, &outcome.pruned}) {
-    for (const std::string& line : *lines) print_stderr("{}: {}\n", left_out, line);
+    for (const std::string& line : *lines | std::views::take(most)) {
+      print_stderr("{}: {}\n", left_out, line);
+    }
+    if (lines->size() > most) {
+      print_stderr("{}: {} more {} checkpoints\n", left_out, lines->size() - most,
+                   lines == &outcome.damage ? "damaged" : "pruned");
+    }
   }
   for (const std::string& sha256 : outcome.changed) {
     print_stderr("checkpoint {:.12}: the cached measures differed and were replaced\n", sha256);

@@ -27,7 +27,11 @@ void complain(const FigureSummary& result, std::set<std::string>& told, Context&
   for (const std::string& note : result.notes) {
     if (told.insert(note).second) print_stderr("{}\n", note);
   }
-  print_problems(result, "left out", context);
+  MeasureOutcome problems = result;
+  const auto is_told = [&](const std::string& line) { return !told.insert(line).second; };
+  std::erase_if(problems.damage, is_told);
+  std::erase_if(problems.pruned, is_told);
+  print_problems(problems, "left out", context);
   if (!result.empty.empty()) {
     print_stderr("warning: figure {}{}{}: its runs have no values to draw in {}\n",
                  result.experiment, result.experiment.empty() ? "" : "/", result.name,
@@ -82,7 +86,11 @@ void figures(FigureArguments& options, Context& context) {
     throw NotFound(fmt::format("no experiment of the store lists {}; name one with --experiment",
                                fmt::join(options.names, " or ")));
   }
-  if (wanted.figures.empty()) print_stderr("No manifest of this store lists a figure.\n");
+  if (wanted.figures.empty()) {
+    print_stderr("{} lists a figure.\n", options.how.runs.experiments.empty()
+                                             ? "No manifest of this store"
+                                             : "None of these experiments");
+  }
   std::set<std::string> told;  // each message once, not for each figure
   const auto complain_of = [&](const std::string& problem) {
     if (told.insert(problem).second) print_stderr("shearcell: {}\n", problem);

@@ -63,8 +63,9 @@ void add_numbers(const Checkpoint& checkpoint, const CheckpointRecord& record,
                  MeasureSources& sources, Analysis& analysis) {
   for (const std::string& name : table_measures()) {
     const DerivedMeasure& measure = derived_measure(name);
-    sources.key(record, measure);
-    const auto result = sources.measure(record, checkpoint, analysis, measure);
+    sources.read_run(record.run);
+    UnreadCheckpoints unread;
+    const auto result = sources.measure(record, checkpoint, analysis, measure, unread);
     if (result) measure.read(*result, analysis.measures);
   }
 }

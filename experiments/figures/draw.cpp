@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "analysis/error.hpp"
@@ -16,19 +17,40 @@
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/host.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
 namespace {
 
+/// The run without its checkpoints. Its parameters say `pressure_at: top` where P acts equally on
+/// both walls.
+FigureRun unmeasured(const CollectedRun& input) {
+  nlohmann::json parameters = recorded_parameters(input.run.resolved);
+  if (!effective_parameters(input.run.resolved).contains("pressure_at")) {
+    parameters["pressure_at"] = name_of(PressureAt::top);
+  }
+  return {input.run.id,
+          input.run.parent,
+          input.membership.experiment,
+          input.membership.variant,
+          input.name,
+          input.named,
+          input.membership.labels,
+          std::move(parameters),
+          input.membership.seed,
+          {}};
+}
+
 /// Measures the checkpoints of the runs.
 std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
-                                   const std::vector<CollectedRun>& inputs,
-                                   const MeasureOptions& options, MeasureOutcome& outcome) {
+                                   const std::vector<CollectedRun>& inputs, MeasureOptions options,
+                                   MeasureOutcome& outcome) {
   std::vector<CheckpointRecord> records;  // of one run after the other
   for (const CollectedRun& input : inputs) {
     records.insert(records.end(), input.checkpoints.begin(), input.checkpoints.end());
+    options.cadence[input.run.id] = input.membership.checkpoint_every;
   }
   MeasuredPackings found;
   if (figure.form == FigureForm::table) {
@@ -42,16 +64,7 @@ std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
   std::vector<FigureRun> runs;
   auto measured = found.measures.begin();
   for (const CollectedRun& input : inputs) {
-    FigureRun run{input.run.id,
-                  input.run.parent,
-                  input.membership.experiment,
-                  input.membership.variant,
-                  input.name,
-                  input.named,
-                  input.membership.labels,
-                  recorded_parameters(input.run.resolved),
-                  input.membership.seed,
-                  {}};
+    FigureRun run = unmeasured(input);
     for (const CheckpointRecord& record : input.checkpoints) {
       std::optional<Measures>& one = *measured++;
       if (!one) continue;
@@ -67,6 +80,18 @@ std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
   return runs;
 }
 
+/// Puts those that are not listed, by step, before the others.
+void add_earlier(const std::map<std::uint64_t, std::string>& earlier,
+                 std::vector<std::string>& checkpoints) {
+  const std::set<std::string> listed(checkpoints.begin(), checkpoints.end());
+  std::vector<std::string> all;
+  for (const auto& [step, sha256] : earlier) {
+    if (!listed.contains(sha256)) all.push_back(sha256);
+  }
+  all.insert(all.end(), checkpoints.begin(), checkpoints.end());
+  checkpoints = std::move(all);
+}
+
 /// The figure's record, without facts that depend on the time or the host.
 nlohmann::json lineage_of(const Store& store, const FigureSummary& result,
                           const std::vector<CollectedRun>& inputs,
@@ -74,8 +99,10 @@ nlohmann::json lineage_of(const Store& store, const FigureSummary& result,
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const CollectedRun& input = inputs[r];
-    nlohmann::json checkpoints = nlohmann::json::array();
+    std::vector<std::string> checkpoints;
     for (const CheckpointMeasures& c : runs[r].checkpoints) checkpoints.push_back(c.sha256);
+    const auto earlier = result.earlier.find(input.run.id);
+    if (earlier != result.earlier.end()) add_earlier(earlier->second, checkpoints);
     list.push_back({{"run", input.run.id},
                     {"parent", input.run.parent},
                     {"experiment", input.membership.experiment},
@@ -152,13 +179,16 @@ void lay_out(std::vector<FigureTable>& tables, bool wide) {
   }
 }
 
-/// Whether the runs have no value in the table. Series that are neither traces nor columns of the
-/// table hold published points.
+/// Whether the runs have no value that the table can draw. Series that are neither traces nor
+/// columns of the table hold published points.
 bool has_no_value(const FigureTable& table) {
   if (table.chart.series.empty()) return table.rows.empty();
+  const auto is_drawn = [&](const ChartPoint& point) {
+    return (!table.chart.x.log || point.x > 0) && (!table.chart.y.log || point.y > 0);
+  };
   return std::ranges::all_of(table.chart.series, [&](const Series& series) {
     const bool of_runs = series.thin || !series.columns.x.empty();
-    return !of_runs || points_of(table, series).empty();
+    return !of_runs || std::ranges::none_of(points_of(table, series), is_drawn);
   });
 }
 
@@ -175,6 +205,11 @@ std::string caption(const FigureSummary& summary, const std::map<std::string, st
     text += fmt::format(" Selected: {}.", fmt::join(selected.variants, ", "));
   }
   if (!selected.seeds.empty()) text += fmt::format(" Seeds {}.", fmt::join(selected.seeds, ", "));
+  for (const auto& [lines, what] :
+       {std::pair(&summary.damage, "damaged"), {&summary.pruned, "pruned"}}) {
+    if (lines->empty()) continue;
+    text += fmt::format(" Left out: {}, {}.", counted(lines->size(), "checkpoint"), what);
+  }
   if (!summary.notes.empty()) text += fmt::format(" Notes: {}.", fmt::join(summary.notes, "; "));
   return text;
 }
@@ -208,6 +243,10 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   CollectedRuns collected = collect_runs(store, wanted, options.runs, options);
   summary.name = figure.name;
   summary.experiment = wanted.experiment;
+  if (figure.uses) {
+    std::erase_if(collected.runs,
+                  [&](const CollectedRun& run) { return !figure.uses(unmeasured(run)); });
+  }
   summary.notes = std::move(collected.notes);
   summary.scale = collected.scale;
   const std::vector<FigureRun> runs = figure_runs(store, figure, collected.runs, options, summary);

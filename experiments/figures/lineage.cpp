@@ -153,7 +153,8 @@ FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
       }
       if (const auto* manifest = remember_manifest(store, lineage, input.manifest)) {
         input.lines =
-            manifest_lines(manifest->text, scale, labels_of(lineage.runs.at(input.run).run, input));
+            manifest_lines(manifest->text, scale, labels_of(lineage.runs.at(input.run).run, input),
+                           figure_name(record));
       }
       lineage.inputs.push_back(std::move(input));
     }

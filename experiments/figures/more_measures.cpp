@@ -12,6 +12,7 @@
 #include "core/trigonometry.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
+#include "experiments/runner/measure_sources.hpp"
 #include "protocols/ledger.hpp"
 #include "protocols/rest.hpp"
 
@@ -23,25 +24,18 @@ constexpr double kRest = 0.1;  // [s]
 /// step.
 constexpr std::uint64_t kLedgerStride = 8;
 
-// A shear, with its checkpoints at whole cycles.
 struct Shear {
   Scene scene;
   Drive drive;
-  double unit_J = 0;                                      // m d^2/s^2 [J]
-  std::map<std::uint64_t, CheckpointRecord> begins = {};  // by step
+  double unit_J = 0;  // m d^2/s^2 [J]
 };
 
 Shear shear_of(const Store& store, const std::string& run) {
   const RunRecord record = store.run(run);
   if (record.kind != name_of(Stage::shear)) return {};
   const Parameters parameters = read_stage(record.resolved).parameters;
-  Shear shear{shear_scene(parameters), drive(parameters),
-              mechanical_units(record, CheckpointRecord()).kinetic_J};
-  for (CheckpointRecord& checkpoint : store.checkpoints(run, Listed::and_pruned)) {
-    if (checkpoint.step % cycle_steps(shear.drive) != 0) continue;
-    shear.begins.insert_or_assign(checkpoint.step, std::move(checkpoint));
-  }
-  return shear;
+  return {shear_scene(parameters), drive(parameters),
+          mechanical_units(record, CheckpointRecord()).kinetic_J};
 }
 
 /// Checkpoints to simulate from, and the measures to which each result is added.
@@ -58,6 +52,7 @@ void add_simulated(const Store& store, const DerivedMeasure& measure, const Orig
   const MeasuredCheckpoints found =
       measure_checkpoints(store, origins.from, {&measure, 1}, options);
   made.measured = std::max(made.measured, found.measured);
+  add_unread(found, made);
   for (std::size_t n = 0; n < found.results.size(); ++n) {
     const nlohmann::json& result = found.results[n].front();
     if (!result.is_null() && *origins.to[n]) read(origins.from[n], result, **origins.to[n]);
@@ -83,6 +78,7 @@ std::vector<DerivedMeasure> derived_among(std::span<const std::string> names) {
 void add_cycle_energies(const Store& store, std::span<const CheckpointRecord> records,
                         const MeasureOptions& options, MeasuredPackings& made) {
   std::map<std::string, Shear> shears;  // by run; threads must not read the log
+  MeasureSources sources(store, options.cadence);
   Origins origins;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const CheckpointRecord& record = records[i];
@@ -90,11 +86,12 @@ void add_cycle_energies(const Store& store, std::span<const CheckpointRecord> re
     if (shear == shears.end()) {
       shear = shears.emplace(record.run, shear_of(store, record.run)).first;
     }
-    const std::uint64_t whole = cycle_steps(shear->second.drive);
-    if (record.step < whole) continue;
-    const auto begin = shear->second.begins.find(record.step - whole);
-    if (begin == shear->second.begins.end()) continue;
-    origins.from.push_back(begin->second);
+    if (record.step % cycle_steps(shear->second.drive) != 0) continue;
+    sources.read_run(record.run);
+    const CheckpointRecord* begin = sources.find(record, 1);
+    if (begin == nullptr) continue;
+    made.earlier[begin->run].emplace(begin->step, begin->sha256);
+    origins.from.push_back(*begin);
     origins.to.push_back(&made.measures[i]);
   }
   MeasureOptions simulating = options;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <numeric>
 #include <set>
 
 #include "analysis/onset.hpp"
@@ -219,7 +220,11 @@ void measure_where(const Store& store, std::span<const std::string> names,
                    const Wanted& wanted, RunTable& table) {
   std::vector<CheckpointRecord> records;
   std::vector<std::optional<Measures>*> measures;
+  MeasureOptions with_cadence = options;
   for (MeasuredRun& run : runs) {
+    // A run of two experiments may use what either asks for.
+    std::uint64_t& every = with_cadence.cadence[run.run.id];
+    every = std::gcd(every, run.membership.checkpoint_every);
     for (std::size_t k = 0; k < run.records.size(); ++k) {
       if (!wanted(run, k)) continue;
       records.push_back(run.records[k]);
@@ -227,12 +232,9 @@ void measure_where(const Store& store, std::span<const std::string> names,
     }
   }
   if (records.empty()) return;
-  MeasuredPackings found = measures_of(store, records, names, options);
+  MeasuredPackings found = measures_of(store, records, names, with_cadence);
   for (std::size_t n = 0; n < measures.size(); ++n) *measures[n] = std::move(found.measures[n]);
-  std::ranges::move(found.damage, std::back_inserter(table.damage));
-  std::ranges::move(found.pruned, std::back_inserter(table.pruned));
-  std::ranges::sort(table.damage);
-  std::ranges::sort(table.pruned);
+  add_unread(found, table);
   if (!found.cache_trouble.empty()) table.cache_trouble = found.cache_trouble;
 }
 

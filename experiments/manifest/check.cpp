@@ -84,19 +84,24 @@ struct VariantCheck {
     return sound;
   }
 
+  /// Where a time step is stated; if it is a default, a key that decides the limit of stability.
+  Place place_of_step(const char* key) {
+    Place place = find(key);
+    for (const string_view cause : {"period_s", "stiffness_N_per_m", "mass_kg"}) {
+      if (cause == "period_s" && key != string_view("steps_per_cycle")) continue;
+      if (const Place other = find(cause); !place.stated && other.stated) {
+        place = {other.at, place.got};
+      }
+    }
+    return place;
+  }
+
   void check_shear_step() {
     if (p.protocol == ProtocolKind::stiffen) return;
     const double limit = stability_limit_s(p);
     if (shear_time_step_s(p) < limit) return;
     const double enough = std::floor(p.period_s / limit) + 1;
-    Place place = find("steps_per_cycle");
-    // If steps_per_cycle is a default, blame the key that the manifest states.
-    for (const char* cause : {"period_s", "stiffness_N_per_m", "mass_kg"}) {
-      if (const Place other = find(cause); !place.stated && other.stated) {
-        place = {other.at, place.got};
-      }
-    }
-    report("steps_per_cycle", place,
+    report("steps_per_cycle", place_of_step("steps_per_cycle"),
            fmt::format("the time step period_s/steps_per_cycle = {:.4g} s is over the stability "
                        "limit 2/sqrt(8 k/m) = {:.4g} s",
                        shear_time_step_s(p), limit),
@@ -108,13 +113,13 @@ struct VariantCheck {
   void check_settle_steps() {
     const double limit = stability_limit_s(p);
     if (p.settle_time_step_s >= limit) {
-      report("settle_time_step_s",
+      report("settle_time_step_s", place_of_step("settle_time_step_s"),
              fmt::format("the time step {:.4g} s is over the stability limit 2/sqrt(8 k/m) = "
                          "{:.4g} s",
                          p.settle_time_step_s, limit),
              fmt::format("Use less than {:.4g} s, or `auto`.", limit));
     }
-    const double seconds = std::max(p.settle_time_limit_s, kLookInterval);
+    const double seconds = std::max(p.settle_time_limit_s, kSettleCheckInterval);
     if (seconds / p.settle_time_step_s <= kMostSteps) return;
     report("settle_time_step_s",
            fmt::format("settling takes up to {:.3g} time steps, more than {:g}",

@@ -27,7 +27,7 @@ std::string text_of_line(std::string_view text, int line) {
 }  // namespace
 
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
-                                         const nlohmann::json& labels) {
+                                         const nlohmann::json& labels, std::string_view figure) {
   std::vector<ManifestLine> found;
   const auto add = [&](std::string key, const Position& at) {
     found.push_back({std::move(key), at.line, text_of_line(text, at.line)});
@@ -57,10 +57,24 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
     add_labels(swept.sweep->grid, "grid.");
     add_labels(swept.sweep->zip, "zip.");
     if (own == nullptr || !add_cycles(*own, path)) add_cycles(manifest.base, "base");
-    if (own != nullptr && own->seeds) {
-      add(path + ".seeds", own->seeds->at);
-    } else if (manifest.base.seeds->at.line > 0) {
-      add("seeds", manifest.base.seeds->at);
+    const auto add_stated = [&](const std::string& key, auto Scale::*member) {
+      if (own != nullptr && own->*member) {
+        add(path + "." + key, (own->*member)->at);
+      } else if (manifest.base.*member && (manifest.base.*member)->at.line > 0) {
+        add(key, (manifest.base.*member)->at);
+      }
+    };
+    add_stated("seeds", &Scale::seeds);
+    add_stated("checkpoints", &Scale::checkpoints);
+    add_stated("until", &Scale::until);
+    for (const VariantLabel& label : manifest.labels) {
+      if (selects(label, labels)) add("labels", label.at);
+    }
+    for (const auto& plot : manifest.plots) {
+      if (plot.name == figure) add("plots", plot.at);
+    }
+    for (const auto& claim : manifest.claims) {
+      if (claim.name == figure) add("claims", claim.at);
     }
   } catch (const ManifestError&) {
     found.clear();  // a manifest of another version of the schema

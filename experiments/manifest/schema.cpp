@@ -145,7 +145,10 @@ std::span<const Field> schema() {
           "area fraction of a rough wall covered by wall grains; random sequential addition jams "
           "at 0.547"),
       row("wall_grain_recess_diameters", "", "d", &P::wall_grain_recess_diameters, from(0, 0.5),
-          kPrepare, "wall grain centres lie up to this depth behind the wall plane"),
+          kPrepare,
+          "wall grain centres lie up to this depth behind the wall plane; measures assume 0.25 for "
+          "the "
+          "walls' surface"),
       row("wall_grain_draw", "", "1", &P::wall_grain_draw, from(0, 1e6),
           {.stage = Stage::prepare, .omitted_at = "0"},
           "other values give other random places of the wall grains for the same seed"),
@@ -167,8 +170,8 @@ std::span<const Field> schema() {
           "settling also needs a kinetic energy per grain over P d^3 below this"),
       row("settle_time_limit_s", "", "s", &P::settle_time_limit_s, above(0, 1e6), kPrepare,
           "simulated time after which a packing that has not settled is a failure"),
-      row("max_overlap_diameters", "", "d", &P::max_overlap_diameters, above(0, 0.5),
-          {.stage = Stage::prepare, .recorded_as = "0.1"},
+      row("max_overlap_diameters", "", "d", &P::max_overlap_diameters,
+          above(0, kLargestOverlapLimit), {.stage = Stage::prepare, .recorded_as = "0.1"},
           "a stage whose largest overlap exceeds this stops as failed; a larger value continues "
           "it"),
       // Shear.

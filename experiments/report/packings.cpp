@@ -300,7 +300,7 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
   MeasureSources sources(store);
   for (const ChosenRun& run : runs) {
     for (const CheckpointRecord& record : run.checkpoints) {
-      sources.key(record, derived_measure("motion"));
+      sources.read_run(record.run);
       records.push_back(record);
       of_run.push_back(&run.run);
     }

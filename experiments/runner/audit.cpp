@@ -137,7 +137,8 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record, co
     for (std::size_t m = 0; m < cached.size(); ++m) {
       if (!cached[m]) continue;
       const DerivedMeasure& measure = all_derived_measures()[m];
-      const auto computed = sources.measure(record, checkpoint, analysis, measure);
+      UnreadCheckpoints unread;
+      const auto computed = sources.measure(record, checkpoint, analysis, measure, unread);
       if (!computed) continue;
       auto found = difference(decode_result(*cached[m]), *computed, measure.name);
       if (!found.empty()) return found;

@@ -32,7 +32,7 @@ class Measuring {
   Measuring(const Store& store, std::span<const CheckpointRecord> records,
             std::span<const DerivedMeasure> measures, const MeasureOptions& options)
       : store_(store),
-        sources_(store),
+        sources_(store, options.cadence),
         measures_(measures),
         options_(options),
         cache_(store.folder()) {
@@ -43,8 +43,13 @@ class Measuring {
       place_.push_back(entry->second);
     }
     for (const CheckpointRecord* record : distinct_) {
-      for (const DerivedMeasure& measure : measures_)
+      for (const DerivedMeasure& measure : measures_) {
         keys_.push_back(sources_.key(*record, measure));
+        for (const std::uint64_t cycles : measure.earlier) {
+          const CheckpointRecord* other = sources_.find(*record, cycles);
+          if (other != nullptr) outcome_.earlier[other->run].emplace(other->step, other->sha256);
+        }
+      }
     }
     results_.assign(distinct_.size(), Results(measures_.size()));
   }
@@ -69,6 +74,7 @@ class Measuring {
     }
     flush();
     outcome_.measured = todo_.size() - unread.damage.size() - unread.pruned.size();
+    add_unread(unread_earlier_, outcome_);
     std::sort(outcome_.changed.begin(), outcome_.changed.end());
     const bool distinct = place_.size() == distinct_.size();
     for (const std::size_t i : place_) {
@@ -98,13 +104,15 @@ class Measuring {
     const Checkpoint checkpoint = store_.load_checkpoint(record);
     const Analysis analysis = options_.instead ? Analysis() : analyse_stored(record, checkpoint);
     std::vector<DerivedObject> objects;
+    UnreadCheckpoints unread;
     bool changed = false;
     for (std::size_t m = 0; m < measures_.size(); ++m) {
       if (!results_[i][m].is_null()) continue;
-      auto result = options_.instead ? std::optional(options_.instead(record, checkpoint))
-                                     : sources_.measure(record, checkpoint, analysis, measures_[m]);
+      auto result = options_.instead
+                        ? std::optional(options_.instead(record, checkpoint))
+                        : sources_.measure(record, checkpoint, analysis, measures_[m], unread);
       if (!result) {
-        results_[i][m] = before[m];  // an earlier checkpoint that it needs cannot be read any more
+        results_[i][m] = before[m];
         continue;
       }
       objects.push_back({keys_[i * measures_.size() + m], encode_result(*result)});
@@ -113,6 +121,7 @@ class Measuring {
       results_[i][m] = std::move(*result);
     }
     const std::lock_guard lock(mutex_);
+    add_unread(unread, unread_earlier_);
     if (changed) outcome_.changed.push_back(record.sha256);
     std::move(objects.begin(), objects.end(), std::back_inserter(pending_));
     if (pending_.size() >= kBatch) flush();
@@ -136,9 +145,19 @@ class Measuring {
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;
   MeasuredCheckpoints outcome_;
+  UnreadCheckpoints unread_earlier_;
 };
 
 }  // namespace
+
+void add_unread(const UnreadCheckpoints& more, UnreadCheckpoints& all) {
+  for (const auto lines : {&UnreadCheckpoints::damage, &UnreadCheckpoints::pruned}) {
+    (all.*lines).insert((all.*lines).end(), (more.*lines).begin(), (more.*lines).end());
+    std::ranges::sort(all.*lines);
+    const auto repeated = std::ranges::unique(all.*lines);
+    (all.*lines).erase(repeated.begin(), repeated.end());
+  }
+}
 
 UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
                                    const std::function<void(std::size_t)>& work,

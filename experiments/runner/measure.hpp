@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -23,6 +25,9 @@ struct MeasureOptions {
   /// If given, computes the only measure instead of an analysis.
   std::function<nlohmann::json(const CheckpointRecord& record, const Checkpoint& checkpoint)>
       instead = {};
+  /// Cycles between the checkpoints that the experiment asks of a run, by its id; 1 for others.
+  /// Measures over two checkpoints do not use those that interruptions and other experiments left.
+  std::map<std::string, std::uint64_t> cadence = {};
 };
 
 /// A line for each checkpoint that could not be read; sorted.
@@ -36,6 +41,8 @@ struct MeasureOutcome : UnreadCheckpoints {
   std::size_t cached = 0;    ///< checkpoints whose results were in the cache
   /// With `fresh`: checkpoints whose cached results were different.
   std::vector<std::string> changed;
+  /// SHA-256 of the earlier checkpoints that measures were taken from too, by run and step.
+  std::map<std::string, std::map<std::uint64_t, std::string>> earlier;
   std::string cache_trouble;  ///< why results cannot be cached; "" if they can
 };
 
@@ -68,6 +75,9 @@ MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& c
 
 /// Called after each item, by one thread at a time; may be empty.
 using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
+
+/// Adds lines; `all` stays sorted and without repetitions.
+void add_unread(const UnreadCheckpoints& more, UnreadCheckpoints& all);
 
 /// Calls work(0) .. work(count - 1), at most `workers` at once. StoreDamaged and FilePruned
 /// become lines; the first other exception ends the work and is rethrown.

@@ -27,10 +27,14 @@ MeasureSources::Shear MeasureSources::read_shear(const std::string& id) const {
   return shear;
 }
 
+void MeasureSources::read_run(const std::string& run) {
+  const auto [entry, first] = runs_.try_emplace(run);
+  if (first) entry->second = read_shear(run);
+}
+
 DerivedKey MeasureSources::key(const CheckpointRecord& record, const DerivedMeasure& measure) {
   if (measure.earlier.empty()) return {record.sha256, measure.key(), analysis_version};
-  const auto [run, first] = runs_.try_emplace(record.run);
-  if (first) run->second = read_shear(record.run);
+  read_run(record.run);
   std::string text = measure.key();
   for (const std::uint64_t cycles : measure.earlier) {
     const CheckpointRecord* other = find(record, cycles);
@@ -46,14 +50,19 @@ const CheckpointRecord* MeasureSources::find(const CheckpointRecord& record,
   const Shear& shear = run->second;
   const std::uint64_t back = cycles * shear.cycle_steps;
   if (shear.cycle_steps == 0 || record.step < back) return nullptr;
-  const auto found = shear.checkpoints.find(record.step - back);
+  const auto every = cadence_.find(record.run);
+  const std::uint64_t step = record.step - back, cycle = step / shear.cycle_steps;
+  const bool whole = step % shear.cycle_steps == 0;
+  if (whole && every != cadence_.end() && cycle % every->second != 0) return nullptr;
+  const auto found = shear.checkpoints.find(step);
   return found == shear.checkpoints.end() ? nullptr : &found->second;
 }
 
 std::optional<nlohmann::json> MeasureSources::measure(const CheckpointRecord& record,
                                                       const Checkpoint& checkpoint,
                                                       const Analysis& analysis,
-                                                      const DerivedMeasure& measure) const {
+                                                      const DerivedMeasure& measure,
+                                                      UnreadCheckpoints& unread) const {
   Checkpoint other;
   const auto load = [&](std::uint64_t cycles) -> const Checkpoint* {
     const CheckpointRecord* found = find(record, cycles);
@@ -63,8 +72,10 @@ std::optional<nlohmann::json> MeasureSources::measure(const CheckpointRecord& re
   };
   try {
     return measure.from({analysis, &checkpoint, load});
-  } catch (const FilePruned&) {
-  } catch (const StoreDamaged&) {
+  } catch (const FilePruned& pruned) {
+    unread.pruned.emplace_back(pruned.what());
+  } catch (const StoreDamaged& damage) {
+    unread.damage.emplace_back(damage.what());
   }
   return std::nullopt;
 }

@@ -170,8 +170,8 @@ TEST(CompareWaits, CountsRunsThatEndBefore) {
                                         waits_for_onset(pointers(b)));
   EXPECT_EQ(
       verdict.note,
-      "median cycle 16 of 4 runs, 1 of which end before; median cycle 16 of 4 runs, 0 of which "
-      "end before");
+      "first: median cycle 16 (1 of 4 runs end before theirs); second: median cycle 16 (0 of 4 "
+      "runs end before theirs)");
   const std::vector<Waiting> waits = waits_for(pointers(a), &Measures::crystalline_percent, 5);
   EXPECT_FALSE(waits[0].observed);
   EXPECT_EQ(waits[0].cycle, 11);

@@ -215,7 +215,7 @@ TEST(OwnPlot, OfTheOnsetOfEachRunWithAClaim) {
   EXPECT_EQ(phi.ruling, Ruling::differs);
   claim.compare = "onset_size_cycle";
   const Verdict cycle = claim_figure(claim).make(runs).verdicts.at(0);
-  EXPECT_TRUE(has(cycle.note, "of 5 runs, 1 of which end before"));
+  EXPECT_TRUE(has(cycle.note, "(1 of 5 runs end before theirs)"));
 }
 
 TEST(OwnPlot, NamesTheStepsOfAStiffening) {

@@ -64,8 +64,8 @@ TEST_F(LammpsSettling, GivesASimilarPacking) {
     EXPECT_GT(s->bytes, 1e4);
   }
   const Settle protocol({}, settle_scene(loose.parameters));
-  EXPECT_EQ(protocol.next_look(theirs.state.step - 1), theirs.state.step) << "ended at a look";
-  EXPECT_GT(theirs.state.step, protocol.press_steps(loose.cell, 300)) << "gravity was on";
+  EXPECT_EQ(protocol.next_check(theirs.state.step - 1), theirs.state.step) << "ended at a look";
+  EXPECT_GT(theirs.state.step, protocol.steps_without_gravity(loose.cell, 300)) << "gravity was on";
   EXPECT_GT((ours.state.position - theirs.state.position).colwise().norm().maxCoeff(), 1e-3);
   EXPECT_NEAR(ours.numbers.phi, theirs.numbers.phi, 0.02);
   EXPECT_NEAR(ours.numbers.contacts_per_grain, theirs.numbers.contacts_per_grain, 0.3);
@@ -83,7 +83,7 @@ TEST_F(LammpsSettling, StopsAtTheTimeLimitIfAWallNeverRests) {
   const bench::Packing loose = bench::loose_packing(heavy, 1);
   const Settle endless({}, settle_scene(heavy));
   SettleParameters settle;
-  const auto pressed = static_cast<double>(endless.press_steps(loose.cell, 300));
+  const auto pressed = static_cast<double>(endless.steps_without_gravity(loose.cell, 300));
   settle.time_limit = pressed * heavy.settle_time_step_s + 0.35;
   const LammpsProgram program = find_lammps();
   const auto message = [&](const auto& settling) -> std::string {

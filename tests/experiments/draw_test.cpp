@@ -132,7 +132,9 @@ TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {
   const auto verdict = nlohmann::json::parse(files.at("same.verdict.json"));
   EXPECT_EQ(verdict.at("claims").at(0).at("claim"),
             "same: phi at cycle 2 is the same for fluid=still and fluid=cell");
-  EXPECT_EQ(verdict.at("claims").at(0).at("note").get<std::string>().find("1 pairs"), 0U);
+  EXPECT_EQ(
+      verdict.at("claims").at(0).at("note").get<std::string>().find("1 pair of runs that shares"),
+      0U);
   EXPECT_TRUE(files.contains("same.lineage.json"));
   EXPECT_THROW(wanted_figures(store_, {"overlaps"}), NotFound);
 }

@@ -150,21 +150,27 @@ TEST(ManifestLines, FollowTheScale) {
   const std::string text =
       "experiment: e\nquestion: q\nbase:\n  grains: 300\nsweep:\n  grid:\n    fluid:\n"
       "      - still\n      - cell\nseeds: 3\nscales:\n  small:\n    seeds: 2\n"
-      "  other: {sweep: {zip: {amplitude_rad: [0.05, 0.08]}}}\n";
-  const auto at = [&](const std::string& scale, const nlohmann::json& labels) {
+      "  other: {sweep: {zip: {amplitude_rad: [0.05, 0.08]}}}\n"
+      "checkpoints: {every_cycles: 2}\nlabels: {fluid=cell: moving}\nplots:\n"
+      "  - {name: p, y: phi}\n";
+  const auto at = [&](const std::string& scale, const nlohmann::json& labels,
+                      const std::string& figure = "S2") {
     std::string found;
-    for (const ManifestLine& line : manifest_lines(text, scale, labels)) {
+    for (const ManifestLine& line : manifest_lines(text, scale, labels, figure)) {
       found += line.key + ":" + std::to_string(line.line) + " ";
     }
     return found;
   };
-  EXPECT_EQ(at("", {{"fluid", "cell"}}), "experiment:1 sweep.grid.fluid:9 seeds:10 ");
-  EXPECT_EQ(at("small", {{"fluid", "still"}}),
-            "experiment:1 scales.small:12 sweep.grid.fluid:8 scales.small.seeds:13 ");
+  EXPECT_EQ(at("", {{"fluid", "cell"}}),
+            "experiment:1 sweep.grid.fluid:9 seeds:10 checkpoints:15 labels:16 ");
+  EXPECT_EQ(
+      at("small", {{"fluid", "still"}}),
+      "experiment:1 scales.small:12 sweep.grid.fluid:8 scales.small.seeds:13 checkpoints:15 ");
   EXPECT_EQ(at("other", {{"amplitude_rad", 0.08}}),
-            "experiment:1 scales.other:14 scales.other.sweep.zip.amplitude_rad:14 seeds:10 ");
-  EXPECT_EQ(at("gone", {{"gone", 1}}), "experiment:1 seeds:10 ");
-  EXPECT_TRUE(manifest_lines("not: [a", "", nlohmann::json::object()).empty());
+            "experiment:1 scales.other:14 scales.other.sweep.zip.amplitude_rad:14 seeds:10 "
+            "checkpoints:15 ");
+  EXPECT_EQ(at("gone", {{"gone", 1}}, "p"), "experiment:1 seeds:10 checkpoints:15 plots:18 ");
+  EXPECT_TRUE(manifest_lines("not: [a", "", nlohmann::json::object(), "").empty());
 }
 
 }  // namespace

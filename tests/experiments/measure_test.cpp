@@ -109,6 +109,52 @@ TEST_F(Measure, CurvesAndMotionArePlotted) {
   EXPECT_TRUE(moved.starts_with(head + "fluid=cell,0,,,0\nfluid=cell,1,0.")) << moved;
 }
 
+const std::string kBothAmplitudes = "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\n";
+
+std::size_t inputs_of(const std::string& lineage) {
+  std::size_t count = 0;
+  for (const auto& input : nlohmann::json::parse(lineage).at("inputs")) {
+    count += input.at("checkpoints").size();
+  }
+  return count;
+}
+
+// The values at cycle 2 come from the checkpoints of cycles 1 and 2.
+TEST_F(Measure, EarlierCheckpointsAreInTheLineageAndMissedIfTheyAreGone) {
+  const std::string plots =
+      "plots: [{name: moved, y: msd_1_cycle_d2, x: amplitude_rad, at_cycle: 2}, "
+      "{name: work, y: work_of_walls_per_cycle_J, x: amplitude_rad, at_cycle: 2}]\n"
+      "claims: [{name: same, compare: phi, at_cycle: 1, margin: 1, "
+      "between: [{amplitude_rad: 0.05}, {amplitude_rad: 0.1}]}]\n";
+  compute(store_, tiny_manifest("", kBothAmplitudes + plots));
+  for (const char* name : {"moved", "work", "same"}) draw("own", name);
+  auto files = contents("own");
+  EXPECT_EQ(inputs_of(files.at("moved.lineage.json")), 4U);
+  EXPECT_EQ(inputs_of(files.at("work.lineage.json")), 4U);
+  EXPECT_EQ(inputs_of(files.at("same.lineage.json")), 2U) << "a claim has what it compares";
+
+  for (const CheckpointRecord& record : records()) {
+    if (record.cycle == 1) std::filesystem::remove(store_.folder() / record.file);
+  }
+  EXPECT_TRUE(draw("own", "moved").damage.empty()) << "cached";
+  std::filesystem::remove(cache());
+  for (const char* name : {"moved", "work"}) {
+    const FigureSummary result = draw("own", name);
+    EXPECT_EQ(result.damage.size(), 2U) << name;
+    EXPECT_TRUE(has(contents("own").at(std::string(name) + ".caption.txt"),
+                    "Left out: 2 checkpoints, damaged."));
+  }
+}
+
+// Another experiment of the same runs has a checkpoint at cycle 1.
+TEST_F(Measure, EarlierCheckpointsAreThoseOfTheExperiment) {
+  const std::string plots =
+      "plots: [{name: moved, y: msd_1_cycle_d2, x: amplitude_rad, at_cycle: 2}]\n";
+  compute(store_, renamed(tiny_manifest("", kBothAmplitudes), "other"));
+  compute(store_, tiny_manifest("", kBothAmplitudes + "checkpoints: {every_cycles: 2}\n" + plots));
+  EXPECT_EQ(draw("own", "moved").empty.size(), 1U);
+}
+
 TEST_F(Measure, OneAnalysisServesAllFiguresMadeTogether) {
   std::string text = tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\n");
   text.replace(text.find("[S2]"), 4, "[S7, walls]");

@@ -11,6 +11,8 @@
 #include "analysis/growth.hpp"
 #include "analysis/measures.hpp"
 #include "analysis/nucleation.hpp"
+#include "analysis/pair_structure.hpp"
+#include "analysis/profiles.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/lines.hpp"
@@ -69,7 +71,7 @@ void take_manifest(Input input) {
       const Plan plan = expand(manifest, {.scale = scale, .cycles = {}, .seeds = 1});
       if (plan.runs.size() > kExpanded) continue;
       check_plan(plan);
-      for (const PlannedRun& run : plan.runs) manifest_lines(text, run.scale, run.labels);
+      for (const PlannedRun& run : plan.runs) manifest_lines(text, run.scale, run.labels, "");
     }
   } catch (const ManifestError& error) {
     require(!error.problems().empty(), "an error says what is wrong");
@@ -112,7 +114,13 @@ void take_checkpoint(Input input) {
     require(state_hash(decode_checkpoint(encode_checkpoint(checkpoint))) == state_hash(checkpoint),
             "a checkpoint that is read, written and read again is the same");
     require_plausible(checkpoint);
-    attempt<AnalysisError>([&] { analyse(checkpoint); });
+    attempt<AnalysisError>([&] {
+      const Analysis found = analyse(checkpoint);
+      profiles(checkpoint, found.grains);
+      phi_by_depth(checkpoint, found.grains);
+      structure_factor(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position,
+                       found.grains.interior);
+    });
   });
 }
 

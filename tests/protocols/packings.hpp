@@ -41,7 +41,7 @@ inline void settle(Packing& packing, const SettleParameters& parameters = {},
                    std::uint64_t most_steps = kAtOnce) {
   const Settle protocol(parameters, packing.scene);
   Simulation simulation(packing.cell, packing.scene, packing.state);
-  packing.pressed = protocol.press_steps(packing.cell, simulation.grains());
+  packing.pressed = protocol.steps_without_gravity(packing.cell, simulation.grains());
   while (!protocol.advance(simulation, most_steps).finished) {
   }
   packing.state = simulation.state();

@@ -165,7 +165,7 @@ TEST(Settle, AllowsLargeOverlapsWhileTheWallMovesIn) {
   Simulation early(packing.cell, table_1(), packing.state);
   EXPECT_NO_THROW(protocol.advance(early, 1));
 
-  packing.state.step = protocol.press_steps(packing.cell, 300);
+  packing.state.step = protocol.steps_without_gravity(packing.cell, 300);
   Simulation late(packing.cell, table_1(), packing.state);
   const NumericalFailure failure = test::failure_of([&] { protocol.advance(late, 1); });
   EXPECT_EQ(failure.limit, 0.1);
@@ -175,7 +175,7 @@ TEST(Settle, AllowsLargeOverlapsWhileTheWallMovesIn) {
 TEST(Settle, PressesUntilTheWallHasMovedIn) {
   const Packing packing = loose(rough_geometry(600), table_1());
   const auto pressed = [&](const Scene& scene, const SettleParameters& parameters = {}) {
-    return Settle(parameters, scene).press_steps(packing.cell, 600);
+    return Settle(parameters, scene).steps_without_gravity(packing.cell, 600);
   };
   const std::uint64_t usual = pressed(table_1());
   EXPECT_GT(usual, 0U);

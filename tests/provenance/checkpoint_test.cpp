@@ -53,6 +53,19 @@ TEST(Checkpoint, HoldsACellWithoutWallGrainsGrainsOrObservables) {
   expect_same(decode_checkpoint(encode_checkpoint(bare)), bare);
 }
 
+// An analysis of such a cell would take memory for each of its layers or periodic images.
+TEST(Checkpoint, OfACellThatNoRunCanHaveIsRefused) {
+  const Checkpoint sound = sample_checkpoint("", 0, 20);
+  EXPECT_NO_THROW(require_plausible(sound));
+  Checkpoint tall = sound, flat = sound, wide = sound;
+  tall.cell.top = 5e5;
+  flat.cell.depth = 1e-3 * flat.cell.width;
+  wide.cell.width = wide.cell.depth = 1e5;
+  for (const Checkpoint& forged : {tall, flat, wide}) {
+    EXPECT_THROW(require_plausible(forged), StoreDamaged);
+  }
+}
+
 TEST(Checkpoint, GivesTheSameBytesEachTime) {
   const Checkpoint c = hard_checkpoint();
   const std::vector<std::byte> first = encode_checkpoint(c);

@@ -34,6 +34,16 @@ class StoreTest : public ::testing::Test {
   Store store_{path_, Access::create};  ///< with run 1 declared
 };
 
+TEST_F(StoreTest, IsNotMixedWithOtherFiles) {
+  const fs::path other = folder_.path() / "other";
+  fs::create_directory(other);
+  write_bytes(other / ".hidden", "");
+  EXPECT_NO_THROW(Store(other, Access::create)) << "as empty";
+  EXPECT_NO_THROW(Store(other, Access::create)) << "a store";
+  expect_refused<UsageError>([&] { Store(folder_.path(), Access::create); },
+                             {"not a store and has other files", "new or empty folder"});
+}
+
 TEST_F(StoreTest, FollowsARunFromItsDeclarationToItsEnd) {
   EXPECT_EQ(store_.run(id_).state, RunState::declared);
   EXPECT_EQ(store_.start_run(id_, {{"cpu", "test"}}), 1u);
