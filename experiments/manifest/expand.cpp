@@ -102,6 +102,17 @@ std::vector<std::string> warnings_of(const Parameters& p) {
                     "max_overlap_diameters ({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
                     overlap, p.max_overlap_diameters));
   }
+  if (p.drag_kg_per_s == 0) {
+    warnings.push_back(
+        fmt::format("without drag the grains do not come to rest, so settling fails at "
+                    "settle_time_limit_s ({:g} s). Use a drag_kg_per_s above 0.",
+                    p.settle_time_limit_s));
+  } else if (const double time = damping_time_s(p); time > p.settle_time_limit_s) {
+    warnings.push_back(
+        fmt::format("with a drag of {:g} kg/s the grains come to rest after about {:.2g} s, so "
+                    "settling fails at settle_time_limit_s ({:g} s). Raise one of them.",
+                    p.drag_kg_per_s, time, p.settle_time_limit_s));
+  }
   if (p.protocol != ProtocolKind::stiffen) {
     if (auto advice = time_step_advice(shear_time_step(p), "steps_per_cycle")) {
       warnings.push_back(*std::move(advice));
