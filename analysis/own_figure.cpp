@@ -11,10 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/claims.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/onset.hpp"
-#include "provenance/errors.hpp"
 
 namespace shearcell {
 namespace {
@@ -54,10 +52,13 @@ Axis axis_of(const std::string& key) {
   return named_axis(key, "1");
 }
 
-bool all_stiffen(std::span<const FigureRun> runs) {
-  return !runs.empty() && std::ranges::all_of(runs, [](const FigureRun& run) {
+/// "cycle" of a shear, "step" of a stiffening, or both if the runs are of both.
+std::string_view word_for_cycle(std::span<const FigureRun> runs) {
+  const auto stiffens = [](const FigureRun& run) {
     return !run.checkpoints.empty() && std::isfinite(run.checkpoints.front().stiffness_N_per_m);
-  });
+  };
+  if (std::ranges::none_of(runs, stiffens)) return "cycle";
+  return std::ranges::all_of(runs, stiffens) ? "step" : "cycle or step";
 }
 
 Axis x_axis(const PlotSpec& plot, std::span<const FigureRun> runs) {
@@ -67,8 +68,9 @@ Axis x_axis(const PlotSpec& plot, std::span<const FigureRun> runs) {
             .unit = plot.x_unit.empty() ? Text() : Text(plot.x_unit)};
   }
   if (!plot.x_unit.empty()) return named_axis(plot.x, plot.x_unit);
-  if (plot.x != "cycle" || !all_stiffen(runs)) return axis_of(plot.x);
-  return {.name = "step of the stiffening", .whole = true};
+  const std::string_view word = word_for_cycle(runs);
+  if (plot.x != "cycle" || word == "cycle") return axis_of(plot.x);
+  return {.name = fmt::format("{} of the stiffening", word), .whole = true};
 }
 
 /// The cycle of the plot: as stated, or the last that all runs have.
@@ -192,7 +194,7 @@ Points points_of(const PlotSpec& plot, const Curve& curve, double cycle) {
 std::string note_of(const PlotSpec& plot, std::optional<double> cycle,
                     std::span<const FigureRun> runs, std::size_t with_value) {
   if (cycle && std::isfinite(*cycle)) {
-    return fmt::format("At {} {}{}", all_stiffen(runs) ? "step" : "cycle", *cycle,
+    return fmt::format("At {} {}{}", word_for_cycle(runs), *cycle,
                        plot.cycle ? "" : ", the last that all runs have");
   }
   if (cycle || with_value == runs.size()) return "";
@@ -276,59 +278,6 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
   return against_measure(plot, curves);
 }
 
-/// The runs of the one variant with these parameters; of another engine only if they say so.
-std::vector<const FigureRun*> variant_with(const ClaimSpec& claim, const nlohmann::json& where,
-                                           std::span<const FigureRun> runs) {
-  std::vector<const FigureRun*> found;
-  for (const FigureRun& run : runs) {
-    const bool fits = std::ranges::all_of(where.items(), [&](const auto& stated) {
-      return parameter_of(run, stated.key()) == stated.value();
-    });
-    if (fits) found.push_back(&run);
-  }
-  const auto variants = [](RunGroup some) {
-    std::set<std::string> distinct;
-    for (const FigureRun* run : some) distinct.insert(run->variant);
-    return distinct.size();
-  };
-  if (variants(found) == 1) return found;
-  std::vector<const FigureRun*> as_stated = found;
-  std::erase_if(as_stated, [](const FigureRun* run) { return sweeps_engine(*run); });
-  if (variants(as_stated) == 1) return as_stated;
-  throw UsageError(
-      fmt::format("claim {}: {} variants have {}; `between` must name one on each "
-                  "side",
-                  claim.name, variants(found), words_of(where)));
-}
-
-Scalar scalar_of(const ClaimSpec& claim) {
-  if (const RunMeasure* of_run = find_run_measure(claim.compare)) {
-    Scalar scalar = onset_phi(of_run->method);
-    if (of_run->value == &RunOnset::cycle) scalar.name = "the cycle of the onset";
-    return scalar;
-  }
-  const Quantity quantity = scalar_column(claim.compare).quantity;
-  return over_cycles(claim.compare, quantity, static_cast<std::int64_t>(claim.first),
-                     static_cast<std::int64_t>(claim.last));
-}
-
-FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> runs) {
-  const Scalar scalar = scalar_of(claim);
-  const std::string a = words_of(claim.between[0]), b = words_of(claim.between[1]);
-  const std::string text =
-      claim.higher ? fmt::format("{}: {} is higher by more than {} for {} than for {}", claim.name,
-                                 scalar.name, claim.margin, a, b)
-                   : fmt::format("{}: {} is the same for {} and {}", claim.name, scalar.name, a, b);
-  const Claim decided{text, claim.margin, claim.higher ? Claimed::above : Claimed::within};
-  const auto first = variant_with(claim, claim.between[0], runs);
-  const auto second = variant_with(claim, claim.between[1], runs);
-  const bool waits = claim.compare == "onset_size_cycle";  // some runs end before their onset
-  return {
-      {},
-      {waits ? compare_waits(decided, "the onset", waits_for_onset(first), waits_for_onset(second))
-             : compare(decided, scalar, first, second)}};
-}
-
 }  // namespace
 
 std::string words_of(const nlohmann::json& values) {
@@ -375,15 +324,6 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   if (!plot.by.empty()) {
     figure.form = FigureForm::groups;
     figure.keys = {plot.by, x};
-  }
-  return figure;
-}
-
-Figure claim_figure(const ClaimSpec& claim) {
-  Figure figure{claim.name, "",
-                [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
-  if (const ScalarMeasure* one = find_measure(claim.compare)) {
-    figure.needs.emplace_back(one->derived());
   }
   return figure;
 }
