@@ -182,6 +182,22 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   return run;
 }
 
+// `place`: manifest, experiment and scale.
+void take_declared_lengths(const Membership& place, std::span<const RunRecord> known,
+                           std::vector<Variant>& variants) {
+  std::map<std::string, std::uint64_t> longest;  // by variant
+  for (const RunRecord& run : known) {
+    for (const Membership& m : run.memberships) {
+      if (m.experiment != place.experiment || m.scale != place.scale) continue;
+      if (m.manifest != place.manifest) continue;
+      longest[m.variant] = std::max(longest[m.variant], m.target_cycles);
+    }
+  }
+  for (Variant& variant : variants) {
+    variant.parameters.cycles = std::max(variant.parameters.cycles, longest[variant.name()]);
+  }
+}
+
 void name_variants(const Manifest& manifest, Plan& plan) {
   std::vector<nlohmann::json> variants;
   for (const PlannedRun& run : plan.runs) variants.push_back(run.labels);
@@ -206,7 +222,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
            "Use fewer seeds.");
   }
 
-  const std::vector<Variant> variants = variants_of(scale);
+  std::vector<Variant> variants = variants_of(scale);
   Plan plan{manifest.experiment, scale.name, {}, {}};
   const Membership common = {.experiment = plan.experiment,
                              .scale = plan.scale,
@@ -244,6 +260,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   }
   name_variants(manifest, plan);
   warn_of_variants(manifest, chosen, plan);
+  take_declared_lengths(common, options.known, variants);
   std::ranges::move(figure_warnings(manifest, scale, variants, seeds.size()),
                     std::back_inserter(plan.warnings));
   warn_of_ineffective(manifest, scale, variants, plan);
