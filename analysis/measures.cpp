@@ -118,34 +118,36 @@ std::span<const ScalarMeasure> kept_scalar_measures() {
       {"core_phi", "1", "volume fraction of those grains (Eq. S4)", NumberOf{"core"}},
       {"msd_1_cycle_d2", "d^2",
        "mean squared displacement of interior grains over 1 cycle, in the frame of the walls",
-       NumberOf{"motion"}},
-      {"msd_10_cycles_d2", "d^2", "the same over 10 cycles", NumberOf{"motion"}},
-      {"msd_100_cycles_d2", "d^2", "the same over 100 cycles", NumberOf{"motion"}},
+       NumberOf{"motion", 1}},
+      {"msd_10_cycles_d2", "d^2", "the same over 10 cycles", NumberOf{"motion", 10}},
+      {"msd_100_cycles_d2", "d^2", "the same over 100 cycles", NumberOf{"motion", 100}},
       {"d2min_1_cycle_d2", "d^2",
        "mean non-affine squared displacement D^2_min of interior grains over 1 cycle",
-       NumberOf{"motion"}},
-      {"d2min_10_cycles_d2", "d^2", "the same over 10 cycles", NumberOf{"motion"}},
-      {"d2min_100_cycles_d2", "d^2", "the same over 100 cycles", NumberOf{"motion"}},
+       NumberOf{"motion", 1}},
+      {"d2min_10_cycles_d2", "d^2", "the same over 10 cycles", NumberOf{"motion", 10}},
+      {"d2min_100_cycles_d2", "d^2", "the same over 100 cycles", NumberOf{"motion", 100}},
       {"reversible_percent", "%",
-       "interior grains at most 0.01 d from where they were a cycle before", NumberOf{"motion"}},
+       "interior grains at most 0.01 d from where they were a cycle before", NumberOf{"motion", 1}},
       {"msd_inside_crystal_d2", "d^2",
        "mean squared displacement over 1 cycle of crystalline grains among crystalline ones",
-       NumberOf{"motion"}},
+       NumberOf{"motion", 1}},
       {"msd_crystal_boundary_d2", "d^2", "the same of crystalline grains with other neighbours",
-       NumberOf{"motion"}},
+       NumberOf{"motion", 1}},
       {"msd_disordered_d2", "d^2", "the same of grains that are not crystalline",
-       NumberOf{"motion"}},
+       NumberOf{"motion", 1}},
       {"shear_strain", "1", "tan(theta), theta the tilt of the side walls", NumberOf{"drive"}},
       {"shear_rate_per_s", "1/s",
        "rate of change of shear_strain; after a pause, of the shear that follows",
        NumberOf{"drive"}},
       {"work_of_walls_per_cycle_J", "J",
-       "work of the tilting walls on all grains in the cycle that ends here", NumberOf{"ledger"}},
+       "work of the tilting walls on all grains in the cycle that ends here",
+       NumberOf{"ledger", 1}},
       {"dissipation_per_cycle_J", "J",
-       "energy that all grains and the moving wall lost by drag in that cycle", NumberOf{"ledger"}},
+       "energy that all grains and the moving wall lost by drag in that cycle",
+       NumberOf{"ledger", 1}},
       {"energy_stored_per_cycle_J", "J",
        "change of all elastic, kinetic and gravitational energy and of the load's in that cycle",
-       NumberOf{"ledger"}}};
+       NumberOf{"ledger", 1}}};
   return measures;
 }
 
@@ -156,6 +158,11 @@ std::span<const ScalarMeasure> all_scalar_measures() {
 std::string_view ScalarMeasure::derived() const {
   if (const auto* number = std::get_if<NumberOf>(&member)) return number->derived;
   return std::holds_alternative<MechanicalMember>(member) ? "mechanics" : "scalars";
+}
+
+std::uint64_t ScalarMeasure::cycles_back() const {
+  const auto* number = std::get_if<NumberOf>(&member);
+  return number == nullptr ? 0 : number->cycles_back;
 }
 
 std::span<const CurveMeasure> all_curve_measures() {

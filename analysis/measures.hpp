@@ -59,6 +59,7 @@ struct NumberOf {
   /// The DerivedMeasure that has it; "drive" and "ledger" are not taken from an Analysis
   /// (experiments/figures/more_measures.hpp).
   std::string_view derived;
+  std::uint64_t cycles_back = 0;  ///< to the earlier checkpoint that it needs too; 0 for none
 };
 
 /// A scalar of Measures, by the name that tables, plots and exports give it.
@@ -70,6 +71,7 @@ struct ScalarMeasure {
 
   /// Name of the DerivedMeasure that it is kept in.
   std::string_view derived() const;
+  std::uint64_t cycles_back() const;  ///< as NumberOf::cycles_back
   /// In `unit`; not a number where it is unknown.
   double of(const Measures& measures) const;
 };

@@ -11,10 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/claims.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/onset.hpp"
-#include "provenance/errors.hpp"
 
 namespace shearcell {
 namespace {
@@ -54,10 +52,13 @@ Axis axis_of(const std::string& key) {
   return named_axis(key, "1");
 }
 
-bool all_stiffen(std::span<const FigureRun> runs) {
-  return !runs.empty() && std::ranges::all_of(runs, [](const FigureRun& run) {
+/// "cycle" of a shear, "step" of a stiffening, or both if the runs are of both.
+std::string_view word_for_cycle(std::span<const FigureRun> runs) {
+  const auto stiffens = [](const FigureRun& run) {
     return !run.checkpoints.empty() && std::isfinite(run.checkpoints.front().stiffness_N_per_m);
-  });
+  };
+  if (std::ranges::none_of(runs, stiffens)) return "cycle";
+  return std::ranges::all_of(runs, stiffens) ? "step" : "cycle or step";
 }
 
 Axis x_axis(const PlotSpec& plot, std::span<const FigureRun> runs) {
@@ -67,8 +68,9 @@ Axis x_axis(const PlotSpec& plot, std::span<const FigureRun> runs) {
             .unit = plot.x_unit.empty() ? Text() : Text(plot.x_unit)};
   }
   if (!plot.x_unit.empty()) return named_axis(plot.x, plot.x_unit);
-  if (plot.x != "cycle" || !all_stiffen(runs)) return axis_of(plot.x);
-  return {.name = "step of the stiffening", .whole = true};
+  const std::string_view word = word_for_cycle(runs);
+  if (plot.x != "cycle" || word == "cycle") return axis_of(plot.x);
+  return {.name = fmt::format("{} of the stiffening", word), .whole = true};
 }
 
 /// The cycle of the plot: as stated, or the last that all runs have.
@@ -196,7 +198,7 @@ Points points_of(const PlotSpec& plot, const Curve& curve, double cycle) {
 std::string note_of(const PlotSpec& plot, std::optional<double> cycle,
                     std::span<const FigureRun> runs, std::size_t with_value) {
   if (cycle && std::isfinite(*cycle)) {
-    return fmt::format("At {} {}{}", all_stiffen(runs) ? "step" : "cycle", *cycle,
+    return fmt::format("At {} {}{}", word_for_cycle(runs), *cycle,
                        plot.cycle ? "" : ", the last that all runs have");
   }
   if (cycle || with_value == runs.size()) return "";
@@ -280,63 +282,6 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
   return against_measure(plot, curves);
 }
 
-/// Whether the run has these parameters.
-bool has_parameters(const FigureRun& run, const nlohmann::json& where) {
-  return std::ranges::all_of(where.items(), [&](const auto& stated) {
-    return parameter_of(run, stated.key()) == stated.value();
-  });
-}
-
-/// The runs of the one variant with these parameters; of another engine only if they say so.
-std::vector<const FigureRun*> variant_with(const ClaimSpec& claim, const nlohmann::json& where,
-                                           std::span<const FigureRun> runs) {
-  std::vector<const FigureRun*> found;
-  for (const FigureRun& run : runs) {
-    if (has_parameters(run, where)) found.push_back(&run);
-  }
-  const auto variants = [](RunGroup some) {
-    std::set<std::string> distinct;
-    for (const FigureRun* run : some) distinct.insert(run->variant);
-    return distinct.size();
-  };
-  if (variants(found) == 1) return found;
-  std::vector<const FigureRun*> as_stated = found;
-  std::erase_if(as_stated, [](const FigureRun* run) { return sweeps_engine(*run); });
-  if (variants(as_stated) == 1) return as_stated;
-  throw UsageError(
-      fmt::format("claim {}: {} variants have {}; `between` must name one on each "
-                  "side",
-                  claim.name, variants(found), words_of(where)));
-}
-
-Scalar scalar_of(const ClaimSpec& claim) {
-  if (const RunMeasure* of_run = find_run_measure(claim.compare)) return onset_phi(of_run->method);
-  const Quantity quantity = scalar_column(claim.compare).quantity;
-  return over_cycles(claim.compare, quantity, static_cast<std::int64_t>(claim.first),
-                     static_cast<std::int64_t>(claim.last));
-}
-
-FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> runs) {
-  const RunMeasure* of_run = find_run_measure(claim.compare);
-  const bool waits =
-      of_run != nullptr && of_run->value == &RunOnset::cycle;  // a run may end before
-  const std::string a = words_of(claim.between[0]), b = words_of(claim.between[1]);
-  const std::string name = waits ? "the cycle of the onset" : scalar_of(claim).name;
-  const std::string more =
-      waits ? fmt::format("later by more than a factor of {:.3g}", std::exp2(claim.margin))
-            : fmt::format("higher by more than {}", claim.margin);
-  const std::string text =
-      claim.higher ? fmt::format("{}: {} is {} for {} than for {}", claim.name, name, more, a, b)
-                   : fmt::format("{}: {} is the same for {} and {}", claim.name, name, a, b);
-  const Claim decided{text, claim.margin, claim.higher ? Claimed::above : Claimed::within};
-  const auto first = variant_with(claim, claim.between[0], runs);
-  const auto second = variant_with(claim, claim.between[1], runs);
-  return {
-      {},
-      {waits ? compare_waits(decided, "the onset", waits_for_onset(first), waits_for_onset(second))
-             : compare(decided, scalar_of(claim), first, second)}};
-}
-
 }  // namespace
 
 std::string words_of(const nlohmann::json& values) {
@@ -384,19 +329,6 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
     figure.form = FigureForm::groups;
     figure.keys = {plot.by, x};
   }
-  return figure;
-}
-
-Figure claim_figure(const ClaimSpec& claim) {
-  Figure figure{claim.name, "",
-                [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
-  if (const ScalarMeasure* one = find_measure(claim.compare)) {
-    figure.needs.emplace_back(one->derived());
-    figure.within = {{claim.first, claim.last}};
-  }
-  figure.uses = [claim](const FigureRun& run) {
-    return has_parameters(run, claim.between[0]) || has_parameters(run, claim.between[1]);
-  };
   return figure;
 }
 

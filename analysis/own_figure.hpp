@@ -63,8 +63,9 @@ using NameVariants = std::function<std::map<nlohmann::json, std::string>(
 /// called "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
-/// No panel and one verdict (analysis/claims.hpp). Its function throws UsageError unless each
-/// side of `between` fits exactly one variant.
+/// No panel and one verdict (analysis/claims.hpp), undecided if a side of `between` has no runs.
+/// Its function throws UsageError if a side fits several variants, or if both sides are the same
+/// runs.
 Figure claim_figure(const ClaimSpec& claim);
 
 }  // namespace shearcell

@@ -3,12 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <exception>
 #include <filesystem>
+#include <map>
 #include <ranges>
 #include <set>
 #include <system_error>
 #include <utility>
 
+#include "experiments/runner/registered.hpp"
+#include "experiments/runner/words.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/io/read_number.hpp"
 
 namespace shearcell::cli {
@@ -99,17 +105,81 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
       ->check(one_of<RunState>());
 }
 
-LoadedManifests load_manifests(const std::vector<std::string>& paths,
-                               const ExpandOptions& options) {
-  LoadedManifests loaded;
-  std::set<std::string> known;
-  for (const std::string& path : paths) {
-    if (!known.insert(path).second) continue;
-    loaded.manifests.push_back(load_manifest(path));
-    loaded.plans.push_back(expand(loaded.manifests.back(), options));
-    for (const std::string& warning : loaded.plans.back().warnings) {
-      print_stderr("warning: {}\n", warning);
+namespace {
+
+// A later one would replace the earlier one in the store.
+void require_names_of_their_own(const std::vector<Manifest>& manifests) {
+  std::map<std::string, const Manifest*> known;
+  for (const Manifest& manifest : manifests) {
+    const Manifest& first = *known.try_emplace(manifest.experiment, &manifest).first->second;
+    if (first.text == manifest.text) continue;
+    throw UsageError(
+        fmt::format("{} and {} are different manifests of one experiment, {}, and figures show "
+                    "only the one that was run last. Give each its own `experiment`.",
+                    first.file, manifest.file, manifest.experiment));
+  }
+}
+
+// What the store has, for warnings.
+struct Known {
+  std::vector<RunRecord> runs;
+  std::vector<RegisteredManifest> manifests;  // in the order of registration
+};
+
+Known known_to(const Context& context) {
+  try {
+    if (const auto store = open_if_there(context.store)) {
+      return {store->runs(), registered_manifests(*store)};
     }
+  } catch (const std::exception&) {
+    // The command opens the store next, or creates it, and reports what is wrong.
+  }
+  return {};
+}
+
+// Figures show the version that was registered last, of those that have runs at the scale.
+void warn_of_other_version(const Manifest& manifest, const Plan& plan, const Known& known) {
+  std::set<std::string> planned;
+  for (const PlannedRun& run : plan.runs) planned.insert(run.last.key);
+  for (auto version = known.manifests.rbegin(); version != known.manifests.rend(); ++version) {
+    if (version->experiment != plan.experiment) continue;
+    std::size_t runs = 0, left_out = 0;
+    for (const RunRecord& run : known.runs) {
+      const bool has = std::ranges::any_of(run.memberships, [&](const Membership& m) {
+        return m.experiment == plan.experiment && m.scale == plan.scale &&
+               m.manifest == version->sha256;
+      });
+      if (!has || run.kind == name_of(Stage::prepare)) continue;
+      ++runs;
+      left_out += planned.contains(run.id) ? 0 : 1;
+    }
+    if (runs == 0) continue;
+    if (left_out == 0 || version->text == manifest.text) return;
+    return print_stderr(
+        "warning: {}: the store's newest manifest of experiment {} is another text, with {} that "
+        "this plan does not have. Once this manifest is run, figures show its version alone "
+        "(--all-versions adds others).\n",
+        manifest.file, plan.experiment, counted(left_out, "run"));
+  }
+}
+
+}  // namespace
+
+LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options,
+                               const Context& context) {
+  LoadedManifests loaded;
+  std::set<std::string> read;
+  for (const std::string& path : paths) {
+    if (read.insert(path).second) loaded.manifests.push_back(load_manifest(path));
+  }
+  require_names_of_their_own(loaded.manifests);
+  const Known known = known_to(context);
+  ExpandOptions with_known = options;
+  with_known.known = known.runs;
+  for (const Manifest& manifest : loaded.manifests) {
+    const Plan& plan = loaded.plans.emplace_back(expand(manifest, with_known));
+    for (const std::string& warning : plan.warnings) print_stderr("warning: {}\n", warning);
+    warn_of_other_version(manifest, plan, known);
   }
   return loaded;
 }

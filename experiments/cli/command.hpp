@@ -81,8 +81,10 @@ struct LoadedManifests {
   std::vector<Plan> plans;  ///< one for each manifest
 };
 
-/// Reads and expands each manifest once, and prints warnings.
-LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options);
+/// Reads and expands each manifest once, and prints warnings, also of what the store has. Throws
+/// UsageError if two different manifests have one `experiment`.
+LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options,
+                               const Context& context);
 
 /// --experiment, --scale, --variant and --seed, and with `states` --state; all can be repeated.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);

@@ -247,7 +247,7 @@ void print_stages(const std::vector<Line>& lines, bool of_several_experiments) {
 
 void plan(const std::vector<std::string>& manifests, const ExpandOptions& options,
           Context& context) {
-  Plan expanded = joined(load_manifests(manifests, options).plans);
+  Plan expanded = joined(load_manifests(manifests, options, context).plans);
   const std::optional<Store> store = open_if_there(context.store);
   const auto runs = store ? store->runs() : std::vector<RunRecord>{};
   const KnownRuns known(runs);

@@ -46,7 +46,7 @@ void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& 
 
 void run(const RunOptions& options, Context& context) {
   // Reads all manifests before it writes anything.
-  const auto [manifests, plans] = load_manifests(options.inputs, options.expand);
+  const auto [manifests, plans] = load_manifests(options.inputs, options.expand, context);
   const bool lammps = std::ranges::any_of(plans, asks_for_lammps);
   require_lammps_for_ranks(options, lammps);
   if (lammps) find_lammps(options.parallel.ranks);  // throws if it is not installed

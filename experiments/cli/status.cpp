@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -29,7 +30,7 @@ namespace {
 
 /// A run in its first place.
 struct ListedRun : SelectedRun {
-  std::vector<SelectedRun> places = {};  // one for each experiment and scale
+  std::vector<SelectedRun> places = {};  // one for each experiment, scale and variant
 };
 
 /// The selected runs, with their holders and their places in the queue.
@@ -51,19 +52,21 @@ struct View {
       return {s.membership.experiment, s.membership.scale, s.run.id};
     };
     const std::vector<SelectedRun> selected = select_runs(store, selection);
-    std::map<Place, Membership> newest;
-    for (const SelectedRun& one : newest_runs(selected, false).runs) {
-      newest.emplace(place_of(one), one.membership);
+    std::map<Place, std::vector<SelectedRun>> newest;  // one for each variant that the run is
+    for (SelectedRun& one : newest_runs(selected, false).runs) {
+      newest[place_of(one)].push_back(std::move(one));
     }
     for (const SelectedRun& found : selected) {  // the places of a run follow each other
       if (runs.empty() || runs.back().run.id != found.run.id) runs.push_back({found});
-      const auto of_newest = newest.find(place_of(found));
-      SelectedRun place = found;
-      place.of_newest_version = of_newest != newest.end() || found.run.kind == "prepare";
-      if (of_newest != newest.end()) place.membership = of_newest->second;
-      // If versions of a manifest named the variant differently, the last one is kept.
       std::vector<SelectedRun>& places = runs.back().places;
       const auto known = std::ranges::find(places, place_of(found), place_of);
+      if (const auto variants = newest.find(place_of(found)); variants != newest.end()) {
+        if (known == places.end()) std::ranges::copy(variants->second, std::back_inserter(places));
+        continue;
+      }
+      // If versions of a manifest named the variant differently, the last one is kept.
+      SelectedRun place = found;
+      place.of_newest_version = found.run.kind == "prepare";
       if (known == places.end()) {
         places.push_back(std::move(place));
       } else {

@@ -208,7 +208,7 @@ void submit_really(const SubmitOptions& options, const LoadedManifests& loaded, 
 }
 
 void submit(const SubmitOptions& options, Context& context) {
-  const LoadedManifests loaded = load_manifests(options.manifests, options.expand);
+  const LoadedManifests loaded = load_manifests(options.manifests, options.expand, context);
   if (!options.dry_run) return submit_really(options, loaded, context);
   const std::optional<Store> store = open_if_there(context.store);
   std::set<std::string> busy;

@@ -84,26 +84,37 @@ void note_never_made(const Store& store, const Figure& figure, CollectedRuns& co
   }
 }
 
+/// Whether the experiment asks for a checkpoint of the run that the figure takes, made or not.
+bool asks_for_one(const Store& store, const Figure& figure, const CollectedRun& run) {
+  if (!figure.within || run.run.kind != name_of(Stage::shear)) return true;
+  const RunAsk ask = ask_for(store, figure, run);
+  const auto [first, last] = *figure.within;
+  return !asked_steps(run.run, ask, static_cast<double>(first),
+                      static_cast<double>(std::min(last, ask.target_cycles)))
+              .empty();
+}
+
 /// Removes the runs without a checkpoint for the figure; notes those and the unfinished ones.
-void leave_out_not_begun(const Figure& figure, CollectedRuns& collected) {
-  std::set<std::string> not_begun, going_on;
+void leave_out_not_begun(const Store& store, const Figure& figure, CollectedRuns& collected) {
+  std::set<std::string> not_begun, never, going_on;
   for (const CollectedRun& run : collected.runs) {
     const std::string name = fmt::format("{} seed {}", run.name, run.membership.seed);
     if (run.checkpoints.empty()) {
-      not_begun.insert(name);
+      (asks_for_one(store, figure, run) ? not_begun : never).insert(name);
     } else if (run.run.state != RunState::completed && run.checkpoints.back().cycle < run.end) {
       going_on.insert(name);
     }
   }
   std::erase_if(collected.runs, [](const CollectedRun& run) { return run.checkpoints.empty(); });
-  if (!not_begun.empty()) {
-    const std::string which =
-        figure.within
-            ? fmt::format(" in cycles {} to {}", figure.within->at(0), figure.within->at(1))
-            : "";
-    collected.notes.push_back(fmt::format("left out: {} without a checkpoint{} yet: {}",
-                                          counted(not_begun.size(), "run"), which,
-                                          some_of(not_begun)));
+  for (const auto* names : {&not_begun, &never}) {
+    if (names->empty()) continue;
+    const auto [first, last] = figure.within.value_or(whole_run);
+    const std::string which = !figure.within  ? ""
+                              : first == last ? fmt::format(" at cycle {}", first)
+                                              : fmt::format(" in cycles {} to {}", first, last);
+    collected.notes.push_back(fmt::format("left out: {} without a checkpoint{}{}: {}",
+                                          counted(names->size(), "run"), which,
+                                          names == &never ? "" : " yet", some_of(*names)));
   }
   if (!going_on.empty()) {
     collected.notes.push_back(
@@ -265,14 +276,21 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     collected.runs.push_back({std::move(run)});
   }
   const bool measured = wanted.figure.form != FigureForm::table;
-  if (measured) name_variants(manifests, collected);
+  if (measured) {
+    name_variants(manifests, collected);
+  } else {
+    std::set<std::pair<std::string, std::string>> known;
+    std::erase_if(collected.runs, [&](const CollectedRun& run) {
+      return !known.emplace(run.membership.experiment, run.run.id).second;
+    });
+  }
   for (CollectedRun& run : collected.runs) {
     run.end = measured ? end_for(store, run.run, run.membership, measuring)
                        : static_cast<double>(run.membership.target_cycles);
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }
   if (measured) {
-    leave_out_not_begun(wanted.figure, collected);
+    leave_out_not_begun(store, wanted.figure, collected);
     note_never_made(store, wanted.figure, collected);
   }
   return collected;

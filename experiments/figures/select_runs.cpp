@@ -136,7 +136,11 @@ NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
                                            std::mem_fn(&SelectedRun::of_newest_version));
   const auto newest = static_cast<std::size_t>(older - selected.begin());
   NewestRuns chosen;
-  std::set<std::pair<ExperimentScale, std::string>> taken;  // with the run's id
+  struct Taken {
+    std::string manifest;
+    std::set<nlohmann::json> variants;
+  };
+  std::map<std::pair<ExperimentScale, std::string>, Taken> taken;  // by the run's id
   using Seed = std::tuple<ExperimentScale, std::string, std::string, std::uint64_t>;
   std::map<Seed, std::size_t> places;                        // by manifest, variant and seed
   std::map<ExperimentScale, std::vector<std::string>> left;  // variants
@@ -148,7 +152,10 @@ NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
       left[experiment_scale(m)].push_back(m.variant);
       continue;
     }
-    if (!taken.emplace(experiment_scale(m), run.run.id).second) continue;
+    // A run that is several variants of one manifest is listed for each of them.
+    Taken& of_run =
+        taken.try_emplace({experiment_scale(m), run.run.id}, Taken{m.manifest, {}}).first->second;
+    if (of_run.manifest != m.manifest || !of_run.variants.insert(m.labels).second) continue;
     const auto [place, first] = places.try_emplace(
         {experiment_scale(m), m.manifest, m.variant, m.seed}, chosen.runs.size());
     if (first) {

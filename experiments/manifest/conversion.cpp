@@ -142,6 +142,10 @@ double expected_overlap(const Parameters& p) {
   return of_pressure * std::max(scene.pressure + half_weight, 0.0) / scene.stiffness;
 }
 
+double damping_time_s(const Parameters& p) {
+  return 18 * p.mass_kg / p.drag_kg_per_s;
+}
+
 double expected_interior_grains(const Parameters& p) {
   const double margin =
       interior_distance + (p.walls == WallTexture::rough ? rough_wall_surface : 0.0);

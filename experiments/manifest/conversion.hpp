@@ -81,6 +81,13 @@ void resolve_auto(std::string_view key, Parameters& parameters);
 /// grains' weight per area if P acts on a moving bottom wall, P plus that if P acts at the top.
 double expected_overlap(const Parameters& parameters);
 
+/// Time [s] in which drag brings the grains to rest: 18 m/b, since the energy of weakly damped
+/// vibrations falls by exp(-b t/m), and from pressing to the default settle_kinetic_tolerance by
+/// about exp(18). At the time step of Table I, 300 grains take 18.8 s at m/b = 1 s and 3.0 s at
+/// 0.156 s; larger steps heat the grains (6.6 s at 0.81 of the stability limit). Infinite without
+/// drag; there the energy only rises (twofold in 16 s).
+double damping_time_s(const Parameters& parameters);
+
 /// Expected number of interior grains (analysis/packing_fraction.hpp) at the nominal height; 0 in a
 /// cell that is too small for any.
 double expected_interior_grains(const Parameters& parameters);

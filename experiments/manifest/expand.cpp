@@ -102,6 +102,17 @@ std::vector<std::string> warnings_of(const Parameters& p) {
                     "max_overlap_diameters ({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
                     overlap, p.max_overlap_diameters));
   }
+  if (p.drag_kg_per_s == 0) {
+    warnings.push_back(
+        fmt::format("without drag the grains do not come to rest, so settling fails at "
+                    "settle_time_limit_s ({:g} s). Use a drag_kg_per_s above 0.",
+                    p.settle_time_limit_s));
+  } else if (const double time = damping_time_s(p); time > p.settle_time_limit_s) {
+    warnings.push_back(
+        fmt::format("with a drag of {:g} kg/s the grains come to rest after about {:.2g} s, so "
+                    "settling fails at settle_time_limit_s ({:g} s). Raise one of them.",
+                    p.drag_kg_per_s, time, p.settle_time_limit_s));
+  }
   if (p.protocol != ProtocolKind::stiffen) {
     if (auto advice = time_step_advice(shear_time_step(p), "steps_per_cycle")) {
       warnings.push_back(*std::move(advice));
@@ -171,6 +182,22 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   return run;
 }
 
+// `place`: manifest, experiment and scale.
+void take_declared_lengths(const Membership& place, std::span<const RunRecord> known,
+                           std::vector<Variant>& variants) {
+  std::map<std::string, std::uint64_t> longest;  // by variant
+  for (const RunRecord& run : known) {
+    for (const Membership& m : run.memberships) {
+      if (m.experiment != place.experiment || m.scale != place.scale) continue;
+      if (m.manifest != place.manifest) continue;
+      longest[m.variant] = std::max(longest[m.variant], m.target_cycles);
+    }
+  }
+  for (Variant& variant : variants) {
+    variant.parameters.cycles = std::max(variant.parameters.cycles, longest[variant.name()]);
+  }
+}
+
 void name_variants(const Manifest& manifest, Plan& plan) {
   std::vector<nlohmann::json> variants;
   for (const PlannedRun& run : plan.runs) variants.push_back(run.labels);
@@ -195,7 +222,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
            "Use fewer seeds.");
   }
 
-  const std::vector<Variant> variants = variants_of(scale);
+  std::vector<Variant> variants = variants_of(scale);
   Plan plan{manifest.experiment, scale.name, {}, {}};
   const Membership common = {.experiment = plan.experiment,
                              .scale = plan.scale,
@@ -233,6 +260,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   }
   name_variants(manifest, plan);
   warn_of_variants(manifest, chosen, plan);
+  take_declared_lengths(common, options.known, variants);
   std::ranges::move(figure_warnings(manifest, scale, variants, seeds.size()),
                     std::back_inserter(plan.warnings));
   warn_of_ineffective(manifest, scale, variants, plan);

@@ -21,6 +21,9 @@ struct ExpandOptions {
   std::optional<std::uint64_t> seeds = {};   ///< how many; of listed seeds the first ones
   std::vector<std::string> variants = {};  ///< only those with these swept values, as "fluid=cell"
   std::optional<std::string> engine = {};  ///< instead of the manifest's; named in the variant
+  /// Runs of the store. Warnings then assume the lengths that this manifest gave them before, if
+  /// those are longer.
+  std::span<const RunRecord> known = {};
 };
 
 /// Its scale is empty when the manifest has none, and its variant "base" when nothing is swept.

@@ -166,6 +166,9 @@ PlotSpec read_plot(const Entry& in, const Manifest& manifest) {
     x->reject_value(fmt::format("does not go with {}", curve->name),
                     fmt::format("Leave it out: {} is drawn against {}.", curve->name, curve->x));
   }
+  if (x && !plot.y.empty() && plot.y == plot.x) {
+    x->reject_value("is also the y of this plot", "Name another one.");
+  }
   const bool against_parameter = !plot.x.empty() && is_parameter(plot.x);
   if (find_run_measure(plot.y) != nullptr && !against_parameter && !plot.x.empty()) {
     in.reject(fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");

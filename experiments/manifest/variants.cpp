@@ -247,10 +247,14 @@ bool selects(const VariantLabel& label, const json& variant) {
 std::map<json, std::string> variant_names(const std::vector<json>& variants,
                                           std::span<const VariantLabel> labels) {
   std::vector<std::string> all = swept_keys(variants);
-  std::stable_partition(all.begin(), all.end(), [&](const std::string& key) {
+  const auto some = std::ranges::stable_partition(all, [&](const std::string& key) {
     return std::ranges::all_of(variants, [&](const json& v) { return v.contains(key); });
   });
-  std::vector<std::string> keys = keys_telling_apart(variants, all);
+  // A key that some variants lack must not replace one that all have: that would not be named.
+  std::vector<std::string> keys = keys_telling_apart(variants, {all.begin(), some.begin()});
+  for (const std::string& key : keys_telling_apart(variants, all)) {
+    if (std::ranges::find(some, key) != some.end()) keys.push_back(key);
+  }
   if (keys.empty() && !all.empty()) keys = {all.front()};
   std::vector<const VariantLabel*> longest_first;
   for (const VariantLabel& label : labels) longest_first.push_back(&label);

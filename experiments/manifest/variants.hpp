@@ -78,8 +78,9 @@ std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& ch
 
 /// A warning for each figure, plot and claim that `shearcell figures` would refuse, leave without
 /// data or not decide: a figure or plot that averages over a swept key, cycles beyond the end of
-/// the runs, `at_cycle` in a plot of every cycle, shear_strain at whole cycles alone, a side of
-/// `between` that is not one variant, fewer than least_runs seeds. `variants`: those of the scale.
+/// the runs or without a checkpoint, `at_cycle` in a plot of every cycle, shear_strain at whole
+/// cycles alone, a side of `between` that is not one variant, sides that are the same runs, fewer
+/// than least_runs seeds. `variants`: those of the scale.
 std::vector<std::string> figure_warnings(const Manifest& manifest, const Scale& scale,
                                          const std::vector<Variant>& variants, std::size_t seeds);
 

@@ -135,7 +135,8 @@ StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle
   const double bytes = checkpoint_bytes(shape);
   const auto grains = static_cast<double>(run.parameters.grains);
   if (stage.stage == Stage::prepare) {
-    const double time = std::min(settling_time(shape.height_over_width * width),
+    const double settling = settling_time(shape.height_over_width * width);
+    const double time = std::min(std::max(settling, damping_time_s(run.parameters)),
                                  run.parameters.settle_time_limit_s);
     return {grains * time / run.parameters.settle_time_step_s, bytes * (1 + std::floor(time / 2))};
   }

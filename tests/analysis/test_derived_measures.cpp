@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -119,6 +120,21 @@ TEST(DerivedMeasures, InconsistentCrystallitesAreRejected) {
   bad = good;
   bad["width_d"] = 0;
   EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a cell without width";
+}
+
+TEST(DerivedMeasures, AScalarSaysWhichEarlierCheckpointItNeeds) {
+  for (const ScalarMeasure& scalar : all_scalar_measures()) {
+    const std::uint64_t back = scalar.cycles_back();
+    if (scalar.derived() == "drive" || scalar.derived() == "ledger") {
+      EXPECT_EQ(back, scalar.derived() == "ledger" ? 1U : 0U) << scalar.name;
+      continue;
+    }
+    const std::vector<std::uint64_t>& earlier = derived_measure(scalar.derived()).earlier;
+    EXPECT_EQ(back == 0, earlier.empty()) << scalar.name;
+    EXPECT_EQ(std::ranges::count(earlier, back), earlier.empty() ? 0 : 1) << scalar.name;
+  }
+  EXPECT_EQ(find_measure("d2min_10_cycles_d2")->cycles_back(), 10U);
+  EXPECT_EQ(find_measure("msd_100_cycles_d2")->cycles_back(), 100U);
 }
 
 TEST(DerivedMeasures, OtherBytesAreRejected) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "experiments/manifest/identity.hpp"
+#include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -49,6 +50,21 @@ TEST_F(CampaignTest, NamesPackingsByTheirDifferences) {
                                           "tiny N=200 seed=1", "tiny N=300 seed=1"};
   EXPECT_EQ(names(jobs), expected);
   EXPECT_EQ(names(unfinished(store_, {})), expected);
+}
+
+// Without gravity, pressure_at has no effect and is not named.
+TEST_F(CampaignTest, NamesPackingsByKeysThatAllHaveFirst) {
+  declared(store_, tiny_manifest("",
+                                 "sweep: {grid: {gravity_m_per_s2: [0, 9.81], pressure_at: [top, "
+                                 "moving_wall]}}\n"));
+  const VariantNames names(store_);
+  std::set<std::string> found;
+  for (const RunRecord& packing : runs_of_kind(store_, "prepare")) {
+    found.insert(names.of(packing, packing.memberships.front()));
+  }
+  EXPECT_EQ(found, (std::set<std::string>{"packing g=0 m/s^2",
+                                          "packing g=9.81 m/s^2, pressure_at=moving_wall",
+                                          "packing g=9.81 m/s^2, pressure_at=top"}));
 }
 
 TEST_F(CampaignTest, ComputesEachPackingOnceForBothFluids) {

@@ -140,6 +140,27 @@ TEST_F(Commands, StatusListsASharedRunUnderEachExperiment) {
   EXPECT_EQ(json({"status", "--json"}).at("runs").size(), 4U) << "each once";
 }
 
+TEST_F(Commands, AnExperimentHasOneManifestAtATime) {
+  campaign(tiny_manifest(), {"--cycles", "0"});  // of m.yaml
+  write("same.yaml", tiny_manifest());
+  write("other.yaml", tiny_manifest("  pressure_Pa: 700\n"));
+  write("comment.yaml", "# a comment\n" + tiny_manifest("  pressure_Pa: 700\n"));
+  for (const char* command : {"plan", "run", "submit"}) {
+    expect_refused({command, "m.yaml", "other.yaml"},
+                   {"m.yaml and other.yaml are different manifests of one experiment, tiny",
+                    "Give each its own `experiment`."});
+  }
+  expect(0, {"plan", "m.yaml", "same.yaml"}, {"1 run,"});
+  const std::string warning =
+      "newest manifest of experiment tiny is another text, with 1 run that this plan does not have";
+  expect(0, {"plan", "other.yaml"}, {warning});
+  expect(0, {"run", "other.yaml", "--cycles", "0", "-q"}, {warning});
+  for (const char* manifest : {"other.yaml", "comment.yaml"}) {
+    EXPECT_FALSE(has(expect(0, {"plan", manifest}).err, warning)) << manifest;
+  }
+  expect(0, {"plan", "m.yaml"}, {warning});
+}
+
 TEST_F(Commands, NamesIncludeValuesThatARecordLeavesOut) {
   const auto swept = [](const std::string& zip) {
     return tiny_manifest("", "sweep: {zip: {" + zip + "}}\n");

@@ -165,6 +165,20 @@ TEST_F(CostOfARun, IsNearTheMeasuredDiskSpaceAndSettlingTime) {
   }
 }
 
+TEST_F(CostOfARun, CountsTheTimeThatAWeakDragTakesToSettle) {
+  const std::string text =
+      tiny_manifest("  drag_kg_per_s: 1.28e-4\n  settle_time_step_s: 4.4e-5\n");
+  compute(store_, text);
+  const PlannedRun run = only_run(text);
+  const double steps = store_.run(run.prepare.key).particle_steps;
+  const double expected = stage_cost(run, run.prepare, 0).particle_steps;
+  std::printf("%.4g particle-steps, expected %.4g\n", steps, expected);
+  EXPECT_NEAR(expected / steps, 1, 0.3);
+  const PlannedRun undamped = only_run(tiny_manifest("  drag_kg_per_s: 0\n"));
+  EXPECT_EQ(stage_cost(undamped, undamped.prepare, 0).particle_steps,
+            most_particle_steps(undamped, undamped.prepare));
+}
+
 TEST(Cost, UsesTheRateMeasuredInTheStore) {
   RunRecord run;
   run.particle_steps = 3e8;

@@ -191,6 +191,18 @@ TEST(Expand, WarnsOfACellThatThePressureCannotLift) {
   EXPECT_TRUE(warnings("grains: 30000, moving_wall: top").empty());
 }
 
+TEST(Expand, WarnsOfADragTooSmallToSettle) {
+  const auto warnings = [](const std::string& base) { return plan_of(base).warnings; };
+  for (const auto& [base, says] :
+       {std::pair{"drag_kg_per_s: 0", "without drag the grains do not come to rest"},
+        {"drag_kg_per_s: 2e-6", "come to rest after about 1.8e+02 s"}}) {
+    ASSERT_EQ(warnings(base).size(), 1U) << base;
+    EXPECT_TRUE(has(warnings(base)[0], says) &&
+                has(warnings(base)[0], "settling fails at settle_time_limit_s (60 s)"));
+  }
+  EXPECT_TRUE(warnings("drag_kg_per_s: 2e-5").empty());
+}
+
 TEST(Expand, WarnsOnceOfWhatSeveralVariantsHave) {
   const auto warnings = [](const std::string& amplitudes) {
     return plan_of("grains: 600, steps_per_cycle: 20000",

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Claims that a manifest states.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "analysis/claims.hpp"
+#include "analysis/figure.hpp"
+#include "analysis/onset.hpp"
+#include "analysis/own_figure.hpp"
+#include "provenance/errors.hpp"
+
+namespace shearcell {
+namespace {
+
+/// Whether the run has these parameters.
+bool has_parameters(const FigureRun& run, const nlohmann::json& where) {
+  return std::ranges::all_of(where.items(), [&](const auto& stated) {
+    return parameter_of(run, stated.key()) == stated.value();
+  });
+}
+
+/// The runs of the one variant with these parameters; of another engine only if they say so. Empty
+/// if there are none yet.
+std::vector<const FigureRun*> variant_with(const ClaimSpec& claim, const nlohmann::json& where,
+                                           std::span<const FigureRun> runs) {
+  std::vector<const FigureRun*> found;
+  for (const FigureRun& run : runs) {
+    if (has_parameters(run, where)) found.push_back(&run);
+  }
+  const auto variants = [](RunGroup some) {
+    std::set<std::string> distinct;
+    for (const FigureRun* run : some) distinct.insert(run->variant);
+    return distinct.size();
+  };
+  if (variants(found) <= 1) return found;
+  std::vector<const FigureRun*> as_stated = found;
+  std::erase_if(as_stated, [](const FigureRun* run) { return sweeps_engine(*run); });
+  if (variants(as_stated) == 1) return as_stated;
+  throw UsageError(
+      fmt::format("claim {}: {} variants have {}; `between` must name one on each "
+                  "side",
+                  claim.name, variants(found), words_of(where)));
+}
+
+Scalar scalar_of(const ClaimSpec& claim) {
+  if (const RunMeasure* of_run = find_run_measure(claim.compare)) return onset_phi(of_run->method);
+  const ScalarMeasure& measure = *find_measure(claim.compare);
+  const auto quantity = [&measure](const Measures& m) { return measure.of(m); };
+  return over_cycles(claim.compare, quantity, static_cast<std::int64_t>(claim.first),
+                     static_cast<std::int64_t>(claim.last));
+}
+
+FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> runs) {
+  const RunMeasure* of_run = find_run_measure(claim.compare);
+  const bool waits =
+      of_run != nullptr && of_run->value == &RunOnset::cycle;  // a run may end before
+  const std::string a = words_of(claim.between[0]), b = words_of(claim.between[1]);
+  const std::string name = waits ? "the cycle of the onset" : scalar_of(claim).name;
+  const std::string more =
+      waits ? fmt::format("later by more than a factor of {:.3g}", std::exp2(claim.margin))
+            : fmt::format("higher by more than {}", claim.margin);
+  const std::string text =
+      claim.higher ? fmt::format("{}: {} is {} for {} than for {}", claim.name, name, more, a, b)
+                   : fmt::format("{}: {} is the same for {} and {}", claim.name, name, a, b);
+  const Claim decided{text, claim.margin, claim.higher ? Claimed::above : Claimed::within};
+  const auto first = variant_with(claim, claim.between[0], runs);
+  const auto second = variant_with(claim, claim.between[1], runs);
+  for (const auto& [side, words] : {std::pair(&first, &a), {&second, &b}}) {
+    if (!side->empty()) continue;
+    return {{},
+            {decide(decided, "difference in " + name, std::nullopt, 0,
+                    fmt::format("no run with {} is computed so far", *words))}};
+  }
+  if (first.front()->run_id == second.front()->run_id) {
+    throw UsageError(fmt::format(
+        "claim {}: {} and {} are the same runs, so their difference is exactly zero; compare "
+        "variants that differ",
+        claim.name, a, b));
+  }
+  return {
+      {},
+      {waits ? compare_waits(decided, "the onset", waits_for_onset(first), waits_for_onset(second))
+             : compare(decided, scalar_of(claim), first, second)}};
+}
+
+}  // namespace
+
+Figure claim_figure(const ClaimSpec& claim) {
+  Figure figure{claim.name, "",
+                [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
+  if (const ScalarMeasure* one = find_measure(claim.compare)) {
+    figure.needs.emplace_back(one->derived());
+    figure.within = {{claim.first, claim.last}};
+  }
+  figure.uses = [claim](const FigureRun& run) {
+    return has_parameters(run, claim.between[0]) || has_parameters(run, claim.between[1]);
+  };
+  return figure;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plan warns of plots and claims that the runs will give no value for.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "provenance/sha256.hpp"
+#include "tests/experiments/plan_of.hpp"
+#include "tests/support/text.hpp"
+
+namespace shearcell::test {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+const std::string kThreeSeeds = "seeds: 3\nsweep: {grid: {fluid: [still, cell]}}\n";
+
+std::string claim(const std::string& what) {
+  return fmt::format(
+      "claims: [{{name: own, margin: 1, between: [{{fluid: still}}, {{fluid: cell}}], {}}}]\n",
+      what);
+}
+
+std::string plot(const std::string& what) {
+  return fmt::format("plots: [{{name: own, {}}}]\n", what);
+}
+
+Strings warnings(int cycles, const std::string& own) {
+  return plan_of(fmt::format("cycles: {}", cycles),
+                 kThreeSeeds + "checkpoints: {every_cycles: 2}\n" + own)
+      .warnings;
+}
+
+// With 4 cycles there are checkpoints at 0, 2 and 4; with 5 cycles also at 5, the last one.
+TEST(FigureWarnings, OfCyclesWithoutACheckpoint) {
+  const std::string against_drag = "y: phi, x: drag_kg_per_s, at_cycle: ";
+  for (const std::string& good :
+       {plot(against_drag + "2"), plot(against_drag + "4"), claim("compare: phi, at_cycle: 2"),
+        plot("y: phi, show: traces, cycles: [1, 2]"), plot("y: phi, x: drag_kg_per_s"),
+        claim("compare: onset_size_phi")}) {
+    EXPECT_EQ(warnings(4, good), Strings{}) << good;
+  }
+  for (const auto& [bad, says] :
+       {std::pair{plot(against_drag + "3"), "plot own: no run has a checkpoint at cycle 3, so phi"},
+        {plot("y: pair_correlation, at_cycle: 3"), "no run has a checkpoint at cycle 3"},
+        {plot("y: phi, show: traces, cycles: [3, 3]"), "no run has a checkpoint in cycles 3 to 3"},
+        {claim("compare: phi, at_cycle: 3"), "claim own: it needs a checkpoint at cycle 3, which"},
+        {claim("compare: phi, cycles: [2, 4]"), "it needs a checkpoint at cycle 3"},
+        {claim("compare: phi, at_cycle: 5"), "it asks for cycle 5, and the runs have 4"}}) {
+    const Strings found = warnings(4, bad);
+    ASSERT_EQ(found.size(), 1U) << bad;
+    EXPECT_TRUE(has(found[0], says)) << found[0];
+  }
+  EXPECT_EQ(warnings(5, claim("compare: phi, cycles: [4, 5]")), Strings{}) << "the last cycle";
+}
+
+TEST(FigureWarnings, OfMeasuresThatNeedAnEarlierCheckpoint) {
+  for (const auto& [bad, says] :
+       {std::pair{plot("y: msd_1_cycle_d2"),
+                  "no run has a checkpoint with another one 1 cycle before it, so msd_1_cycle_d2"},
+        {plot("y: phi, x: reversible_percent"), "so reversible_percent has no value"},
+        {plot("y: msd_10_cycles_d2"), "with another one 10 cycles before it"},
+        {plot("y: work_of_walls_per_cycle_J, x: drag_kg_per_s"), "a checkpoint at cycle 4 with"},
+        {claim("compare: d2min_1_cycle_d2, at_cycle: 4"), "at cycle 4 with another one 1 cycle"}}) {
+    const Strings found = warnings(4, bad);
+    ASSERT_EQ(found.size(), 1U) << bad;
+    EXPECT_TRUE(has(found[0], says)) << found[0];
+  }
+  EXPECT_EQ(warnings(12, plot("y: msd_10_cycles_d2")), Strings{});
+  EXPECT_EQ(warnings(5, plot("y: msd_1_cycle_d2")), Strings{}) << "at the last cycle";
+  EXPECT_EQ(warnings(5, claim("compare: d2min_1_cycle_d2, at_cycle: 5")), Strings{});
+}
+
+// Each side of a claim has the length of its own variant.
+TEST(FigureWarnings, OfAClaimBeyondTheEndOfOneSide) {
+  const auto found =
+      plan_of("", "seeds: 3\nsweep: {zip: {fluid: [still, cell], cycles: [10, 4]}}\n" +
+                      claim("compare: phi, at_cycle: 8"))
+          .warnings;
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(has(found[0], "it asks for cycle 8, and the runs have 4"));
+}
+
+// `run --cycles 2` after `run --cycles 5` leaves the runs with 5 cycles.
+TEST(FigureWarnings, TakeTheLengthThatTheStoreHas) {
+  const std::string text =
+      "experiment: a\nbase: {cycles: 3}\n" + kThreeSeeds + claim("compare: phi, at_cycle: 3");
+  const Manifest manifest = parse_manifest(text, "test.yaml");
+  const auto warned = [&](const std::vector<RunRecord>& known) {
+    return expand(manifest, {.cycles = 2, .known = known}).warnings.size();
+  };
+  EXPECT_EQ(warned({}), 1U);
+  std::vector<RunRecord> known;
+  for (const char* variant : {"fluid=still", "fluid=cell"}) {
+    known.emplace_back().memberships = {{.experiment = "a",
+                                         .scale = "",
+                                         .variant = variant,
+                                         .seed = 1,
+                                         .manifest = sha256_hex(text),
+                                         .target_cycles = 5}};
+  }
+  EXPECT_EQ(warned(known), 0U);
+  known[0].memberships[0].manifest = sha256_hex("another text");
+  EXPECT_EQ(warned(known), 1U) << "figures take what their own manifest asks for";
+}
+
+// Without gravity, pressure_at has no effect.
+TEST(FigureWarnings, OfAClaimBetweenVariantsThatAreTheSameRuns) {
+  const auto found = [](const std::string& between) {
+    return plan_of("cycles: 1",
+                   "seeds: 3\nsweep: {grid: {gravity_m_per_s2: [0, 9.81], pressure_at: [top, "
+                   "moving_wall]}}\nclaims: [{name: own, margin: 1, compare: phi, at_cycle: 1, "
+                   "between: [" +
+                       between + "]}]\n")
+        .warnings;
+  };
+  const std::string top = "{gravity_m_per_s2: 0, pressure_at: top}";
+  const Strings same = found(top + ", {gravity_m_per_s2: 0, pressure_at: moving_wall}");
+  ASSERT_EQ(same.size(), 2U);
+  EXPECT_TRUE(has(same[0], "are the same runs, computed once"));
+  EXPECT_TRUE(has(same[1], "claim own: both sides of `between` are the same runs"));
+  EXPECT_EQ(found(top + ", {gravity_m_per_s2: 9.81, pressure_at: top}").size(), 1U);
+}
+
+}  // namespace
+}  // namespace shearcell::test
