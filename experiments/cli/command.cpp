@@ -50,7 +50,8 @@ void add_json_option(CLI::App& command, Context& context) {
 
 void add_common_options(CLI::App& command, Context& context) {
   command.add_option("--store", context.store, "Folder of the store; else $SHEARCELL_STORE")
-      ->capture_default_str()
+      ->default_str(
+          Context{}.store)  // not the variable's, so that the manual is the same everywhere
       ->check(unnamed)
       ->type_name("DIR");
   add_json_option(command, context);
@@ -91,17 +92,20 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
       ->check(one_of<RunState>());
 }
 
-LoadedManifests load_manifests(const std::vector<std::string>& paths,
-                               const ExpandOptions& options) {
+void warn(Context& context, const std::string& warning) {
+  print_stderr("warning: {}\n", warning);
+  context.warnings.push_back(warning);
+}
+
+LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options,
+                               Context& context) {
   LoadedManifests loaded;
   std::set<std::string> known;
   for (const std::string& path : paths) {
     if (!known.insert(path).second) continue;
     loaded.manifests.push_back(load_manifest(path));
     loaded.plans.push_back(expand(loaded.manifests.back(), options));
-    for (const std::string& warning : loaded.plans.back().warnings) {
-      print_stderr("warning: {}\n", warning);
-    }
+    for (const std::string& warning : loaded.plans.back().warnings) warn(context, warning);
   }
   return loaded;
 }

@@ -12,6 +12,7 @@
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/stop.hpp"
 #include "experiments/runner/words.hpp"
+#include "provenance/io/child_process.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -46,7 +47,7 @@ void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& 
 
 void run(const RunOptions& options, Context& context) {
   // Reads all manifests before it writes anything.
-  const auto [manifests, plans] = load_manifests(options.inputs, options.expand);
+  const auto [manifests, plans] = load_manifests(options.inputs, options.expand, context);
   const bool lammps = std::ranges::any_of(plans, asks_for_lammps);
   require_lammps_for_ranks(options, lammps);
   if (lammps) find_lammps(options.parallel.ranks);  // throws if it is not installed
@@ -88,7 +89,8 @@ void report(const CampaignResult& result, Context& context) {
                 {"interrupted", result.interrupted},
                 {"not_begun", result.blocked},
                 {"damaged", result.damaged},
-                {"messages", result.messages}});
+                {"messages", result.messages},
+                {"warnings", context.warnings}});
   } else if (result.completed + result.already + result.elsewhere + result.failed +
                  result.interrupted + result.blocked + result.damaged ==
              0) {
@@ -105,7 +107,8 @@ void report(const CampaignResult& result, Context& context) {
     }
   }
   if (context.exit_code == kInterrupted) {
-    print_stderr("Interrupted. Continue with: shearcell resume --store {}\n", context.store);
+    print_stderr("Interrupted. Continue with: shearcell resume --store {}\n",
+                 shell_word(context.store));
   }
 }
 
