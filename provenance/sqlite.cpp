@@ -123,8 +123,9 @@ void Database::fail(int code, std::string_view doing) const {
     case SQLITE_ERROR:  // our SQL is fixed: it fails only on tables that are not ours
     case SQLITE_MISMATCH:
       throw StoreDamaged(
-          fmt::format("{}: the database is damaged (cannot {}: {}); restore it from a backup",
-                      name_, doing, reason));
+          fmt::format("{}: the database is damaged ({}); restore it from a backup, or see by "
+                      "`shearcell verify` whether its log is readable",
+                      name_, reason));
     default:
       throw std::runtime_error(fmt::format("{}: cannot {}: {}", name_, doing, reason));
   }

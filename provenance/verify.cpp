@@ -56,6 +56,13 @@ void add_error(VerifyReport& report, const std::string& subject, const std::stri
   report.findings.push_back({Severity::error, subject, run, message});
 }
 
+/// The message of an error about the subject, without the path of the subject at its beginning.
+std::string without_path(const std::string& subject, const std::string& message) {
+  const std::size_t at = message.find(subject + ": ");
+  if (at == message.npos || (at > 0 && message[at - 1] != '/')) return message;
+  return message.substr(at + subject.size() + 2);
+}
+
 void check_file(sqlite::Database& database, VerifyReport& report) {
   sqlite::Statement query(database, "PRAGMA integrity_check(1)");
   if (!query.step() || query.text(0) == "ok") return;
@@ -186,9 +193,9 @@ void check_objects(const std::vector<CheckpointRecord>& records,
       read_checkpoint(bytes, record, runs.at(record.run));
     } catch (const std::exception& problem) {
       if (!pruned && pruned_meanwhile(database, record)) continue;
-      report.findings.push_back(
-          {rejected ? Severity::note : Severity::error, record.file, record.run,
-           rejected ? std::string(problem.what()) + " (rejected already)" : problem.what()});
+      const std::string message = without_path(record.file, problem.what());
+      report.findings.push_back({rejected ? Severity::note : Severity::error, record.file,
+                                 record.run, message + (rejected ? " (rejected already)" : "")});
     }
   }
   for (const std::string& file : objects.strangers(known)) {
@@ -248,11 +255,10 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
     compare_tables(fresh, projection_rows(database_), projection_rows(fresh), report);
   } catch (const StoreDamaged& damage) {
     add_error(report, database_.name(),
-              log_was_read
-                  ? fmt::format("{}; the log is readable, so `shearcell merge` copies what "
-                                "it records into a new store",
-                                damage.what())
-                  : damage.what());
+              without_path(database_.name(), damage.what()) +
+                  (log_was_read ? "; the log is readable, so `shearcell merge` copies what it "
+                                  "records into a new store"
+                                : "; the rest was not read"));
   }
   if (!log_was_read) return report;  // nothing says which files belong to the store
   check_reproduced(records, report);

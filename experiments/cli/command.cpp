@@ -64,7 +64,8 @@ void add_json_option(CLI::App& command, Context& context) {
 
 void add_common_options(CLI::App& command, Context& context) {
   command.add_option("--store", context.store, "Folder of the store; else $SHEARCELL_STORE")
-      ->capture_default_str()
+      ->default_str(
+          Context{}.store)  // not the variable's, so that the manual is the same everywhere
       ->check(unnamed)
       ->type_name("DIR");
   add_json_option(command, context);
@@ -105,6 +106,11 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
       ->check(one_of<RunState>());
 }
 
+void warn(Context& context, const std::string& warning) {
+  print_stderr("warning: {}\n", warning);
+  context.warnings.push_back(warning);
+}
+
 namespace {
 
 // A later one would replace the earlier one in the store.
@@ -138,7 +144,8 @@ Known known_to(const Context& context) {
 }
 
 // Figures show the version that was registered last, of those that have runs at the scale.
-void warn_of_other_version(const Manifest& manifest, const Plan& plan, const Known& known) {
+void warn_of_other_version(const Manifest& manifest, const Plan& plan, const Known& known,
+                           Context& context) {
   std::set<std::string> planned;
   for (const PlannedRun& run : plan.runs) planned.insert(run.last.key);
   for (auto version = known.manifests.rbegin(); version != known.manifests.rend(); ++version) {
@@ -155,18 +162,20 @@ void warn_of_other_version(const Manifest& manifest, const Plan& plan, const Kno
     }
     if (runs == 0) continue;
     if (left_out == 0 || version->text == manifest.text) return;
-    return print_stderr(
-        "warning: {}: the store's newest manifest of experiment {} is another text, with {} that "
-        "this plan does not have. Once this manifest is run, figures show its version alone "
-        "(--all-versions adds others).\n",
-        manifest.file, plan.experiment, counted(left_out, "run"));
+    return warn(
+        context,
+        fmt::format(
+            "{}: the store's newest manifest of experiment {} is another text, with {} that "
+            "this plan does not have. Once this manifest is run, figures show its version alone "
+            "(--all-versions adds others).",
+            manifest.file, plan.experiment, counted(left_out, "run")));
   }
 }
 
 }  // namespace
 
 LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options,
-                               const Context& context) {
+                               Context& context) {
   LoadedManifests loaded;
   std::set<std::string> read;
   for (const std::string& path : paths) {
@@ -178,8 +187,8 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths, const Expa
   with_known.known = known.runs;
   for (const Manifest& manifest : loaded.manifests) {
     const Plan& plan = loaded.plans.emplace_back(expand(manifest, with_known));
-    for (const std::string& warning : plan.warnings) print_stderr("warning: {}\n", warning);
-    warn_of_other_version(manifest, plan, known);
+    for (const std::string& warning : plan.warnings) warn(context, warning);
+    warn_of_other_version(manifest, plan, known, context);
   }
   return loaded;
 }

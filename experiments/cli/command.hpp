@@ -35,7 +35,11 @@ struct Context {
   std::string store = "shearcell-store";
   bool json = false;
   int exit_code = kDone;
+  std::vector<std::string> warnings = {};  ///< of warn()
 };
+
+/// Prints a warning to standard error, and keeps it for the command's JSON.
+void warn(Context& context, const std::string& warning);
 
 /// Sets the exit code, unless a more serious one is set. Most serious first: 4, 3, 2, 1, 85.
 void fail(Context& context, ExitCode code);
@@ -81,10 +85,10 @@ struct LoadedManifests {
   std::vector<Plan> plans;  ///< one for each manifest
 };
 
-/// Reads and expands each manifest once, and prints warnings, also of what the store has. Throws
-/// UsageError if two different manifests have one `experiment`.
+/// Reads and expands each manifest once; warn() gets the warnings, also of what the store has.
+/// Throws UsageError if two different manifests have one `experiment`.
 LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options,
-                               const Context& context);
+                               Context& context);
 
 /// --experiment, --scale, --variant and --seed, and with `states` --state; all can be repeated.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);

@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -56,10 +58,11 @@ Check disk(const fs::path& place) {
   const double free = static_cast<double>(fs::space(place).available);
   Geometry shape;  // rough walls, as by default
   shape.grains = 5200;
-  return {
-      "disk", fmt::format("{} free in {}", format_bytes(free), place.string()),
-      free > 1e9 ? "ok" : "low",
-      fmt::format("room for {:.1e} checkpoints of 5200 grains", free / checkpoint_bytes(shape))};
+  return {"disk", fmt::format("{} free in {}", format_bytes(free), place.string()),
+          free > 1e9 ? "ok" : "low",
+          free > 0 ? fmt::format("room for {:.1e} checkpoints of 5200 grains",
+                                 free / checkpoint_bytes(shape))
+                   : ""};
 }
 
 Check filesystem(const fs::path& place) {
@@ -80,7 +83,8 @@ Check sync_time(const fs::path& place) {
   std::string name = (place / "shearcell-doctor-XXXXXX").string();
   const int file = mkstemp(name.data());
   if (file < 0) {
-    return {"writing", "not allowed in " + place.string(), "missing", "name another --store"};
+    return {"writing", fmt::format("not possible in {} ({})", place.string(), std::strerror(errno)),
+            "missing", "no store can be written there; name another folder with --store"};
   }
   constexpr int count = 10;
   const auto begin = std::chrono::steady_clock::now();
@@ -136,8 +140,10 @@ std::vector<Check> examine(const std::string& store, bool with_speed) {
   return found;
 }
 
-void doctor(const Context& context, bool with_speed) {
+void doctor(Context& context, bool with_speed) {
   const std::vector<Check> findings = examine(context.store, with_speed);
+  const auto no_store = [](const Check& f) { return f.what == "writing" && f.state == "missing"; };
+  if (std::ranges::any_of(findings, no_store)) fail(context, kOtherError);
   if (context.json) {
     const auto facts = [](const Check& f) -> nlohmann::json {
       return {{"what", f.what}, {"found", f.found}, {"state", f.state}, {"advice", f.advice}};
@@ -160,7 +166,9 @@ void add_doctor(CLI::App& app, Context& context) {
   add_common_options(*command, context);
   auto no_speed = std::make_shared<bool>(false);
   command->add_flag("--no-speed", *no_speed, "Do not measure (about five seconds)");
-  command->footer("Examples:\n  shearcell doctor\n  shearcell doctor --store /data/store --json");
+  command->footer(
+      "The exit code is 1 if no store can be written in the folder of --store.\n"
+      "Examples:\n  shearcell doctor\n  shearcell doctor --store /data/store --json");
   command->callback([no_speed, &context] { doctor(context, !*no_speed); });
 }
 

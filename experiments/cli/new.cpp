@@ -13,6 +13,8 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "provenance/errors.hpp"
+#include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 
 namespace shearcell::cli {
@@ -120,11 +122,20 @@ void write_new(const std::filesystem::path& file, const std::string& text) {
 }
 
 void make(std::filesystem::path file) {
-  if (file.extension() != ".yaml") file += ".yaml";
-  const std::string text = text_of(file.stem().string());
-  parse_manifest(text, file.string());  // refuses a bad name
+  const bool whole = file.extension() == ".yaml" || file.extension() == ".yml";
+  const std::string experiment = (whole ? file.stem() : file.filename()).string();
+  if (!whole) file += ".yaml";
+  if (!is_name(experiment)) {
+    throw UsageError(
+        fmt::format("'{}' cannot name an experiment. A name has 1 to {} letters, "
+                    "digits, - and _, and does not begin with -.",
+                    experiment, kLongestName));
+  }
+  const std::string text = text_of(experiment);
+  parse_manifest(text, file.string());  // a check of text_of()
   write_new(file, text);
-  print_text("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(), file.string());
+  print_text("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(),
+             shell_word(file.string()));
 }
 
 }  // namespace

@@ -207,8 +207,13 @@ Left left_of(const std::vector<Line>& lines, const std::vector<RunRecord>& known
   return left;
 }
 
+nlohmann::json experiment_facts(const Plan& plan) {
+  return {{"experiment", plan.experiment}, {"scale", plan.scale}, {"runs", plan.runs.size()}};
+}
+
 nlohmann::json facts(const Line& line) {
   return {{"id", line.stage->key},
+          {"experiment", line.run->experiment},
           {"parent", line.stage->parent},
           {"stage", name_of(line.stage->stage)},
           {"variant", line.run->variant},
@@ -247,7 +252,8 @@ void print_stages(const std::vector<Line>& lines, bool of_several_experiments) {
 
 void plan(const std::vector<std::string>& manifests, const ExpandOptions& options,
           Context& context) {
-  Plan expanded = joined(load_manifests(manifests, options, context).plans);
+  const std::vector<Plan> plans = load_manifests(manifests, options, context).plans;
+  Plan expanded = joined(plans);
   const std::optional<Store> store = open_if_there(context.store);
   const auto runs = store ? store->runs() : std::vector<RunRecord>{};
   const KnownRuns known(runs);
@@ -264,7 +270,9 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
   if (context.json) {
     return print_json({{"experiment", expanded.experiment},
                        {"scale", expanded.scale},
+                       {"experiments", json_list(plans, experiment_facts)},
                        {"notes", notes},
+                       {"warnings", context.warnings},
                        {"runs", expanded.runs.size()},
                        {"stages", json_list(lines, [](const Line& line) { return facts(line); })},
                        {"particle_steps_left", left.work.particle_steps},

@@ -12,6 +12,7 @@
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/stop.hpp"
 #include "experiments/runner/words.hpp"
+#include "provenance/io/child_process.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -88,7 +89,8 @@ void report(const CampaignResult& result, Context& context) {
                 {"interrupted", result.interrupted},
                 {"not_begun", result.blocked},
                 {"damaged", result.damaged},
-                {"messages", result.messages}});
+                {"messages", result.messages},
+                {"warnings", context.warnings}});
   } else if (result.completed + result.already + result.elsewhere + result.failed +
                  result.interrupted + result.blocked + result.damaged ==
              0) {
@@ -105,7 +107,8 @@ void report(const CampaignResult& result, Context& context) {
     }
   }
   if (context.exit_code == kInterrupted) {
-    print_stderr("Interrupted. Continue with: shearcell resume --store {}\n", context.store);
+    print_stderr("Interrupted. Continue with: shearcell resume --store {}\n",
+                 shell_word(context.store));
   }
 }
 

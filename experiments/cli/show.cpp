@@ -277,6 +277,8 @@ void add_show(CLI::App& app, Context& context) {
 SHA-256 of every checkpoint in it. For a file (CSV, SVG or lineage): checks that it is what the
 store recorded and that every checkpoint behind it is intact; exit code 4 if not. Pruned
 checkpoints are counted and are not an error.
+With --json, `parameters` of a run are those that affect it; `resolved` is the stored record,
+whose hash is the run's id, and has fixed values for some that do not (max_overlap_diameters).
 Examples:
   shearcell show 3f9a
   shearcell show drag/S2

@@ -353,7 +353,7 @@ void watch(const RunSelection& selection, const Context& context, double interva
 void add_status(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand("status", "List the runs of the store");
   add_common_options(*command, context);
-  auto selection = std::make_shared<RunSelection>();
+  auto selection = std::make_shared<RunSelection>(RunSelection{.packings = true});
   add_selection_options(*command, *selection, true);
   auto interval = std::make_shared<std::string>();
   CLI::Option* watched = command->add_option("--watch", *interval, "Repeat every so many seconds")

@@ -35,7 +35,7 @@ struct SubmitOptions {
 };
 
 /// Prints the proposal and `more` as JSON.
-void print_json_of(const Proposal& proposal, const nlohmann::json& more) {
+void print_json_of(const Proposal& proposal, const Context& context, const nlohmann::json& more) {
   const auto task = [&](const Share& share) -> nlohmann::json {
     return {{"runs", share.runs},
             {"packings", share.packings.size()},
@@ -44,7 +44,8 @@ void print_json_of(const Proposal& proposal, const nlohmann::json& more) {
   };
   nlohmann::json all = {{"tasks", json_list(proposal.shares, task)},
                         {"cpus_per_task", proposal.job.cpus},
-                        {"left_out", proposal.left_out}};
+                        {"left_out", proposal.left_out},
+                        {"warnings", context.warnings}};
   all.update(more);
   print_json(all);
 }
@@ -65,7 +66,7 @@ void print_shares(const Proposal& proposal) {
 }
 
 void print_nothing(const Proposal& proposal, Context& context) {
-  if (context.json) return print_json_of(proposal, {{"submission", nullptr}});
+  if (context.json) return print_json_of(proposal, context, {{"submission", nullptr}});
   if (proposal.left_out == 0) {
     fmt::print("Nothing to do: the store holds every run at its length\n");
   } else {
@@ -99,7 +100,7 @@ void dry_run(const Proposal& proposal, Context& context) {
   const std::string script = array_script(proposal.job, places, proposal.shares.size());
   const std::string merging = merge_script(proposal.job, places, proposal.shares.size());
   if (context.json) {
-    return print_json_of(proposal, {{"script", script}, {"fold_script", merging}});
+    return print_json_of(proposal, context, {{"script", script}, {"fold_script", merging}});
   }
   print_shares(proposal);
   fmt::print("\nNothing was submitted. The array job:\n\n{}\nand, when all of it has ended:\n\n{}",
@@ -133,18 +134,18 @@ void queue(const Submission& submission, const Proposal& proposal, Store& store,
     words.push_back("--dependency=afterany:" + job);
     merge_job = queue_job(folder, "fold.sh", submission.merge_name(), words);
   } catch (const ProgramError& error) {
-    print_stderr(
-        "warning: {}\nThe stores of the tasks are not merged by themselves: `shearcell "
-        "submit` again, or `merge` them, when the job has ended\n",
-        error.what());
+    warn(context, fmt::format("{}\nThe stores of the tasks are not merged by themselves: "
+                              "`shearcell submit` again, or `merge` them, when the job has ended",
+                              error.what()));
   }
   store.record_submission("JobQueued",
                           {{"submission", submission.id}, {"job", job}, {"fold_job", merge_job}});
   if (context.json) {
-    return print_json_of(proposal, {{"submission", submission.id},
-                                    {"job", job},
-                                    {"fold_job", merge_job},
-                                    {"folder", folder.string()}});
+    return print_json_of(proposal, context,
+                         {{"submission", submission.id},
+                          {"job", job},
+                          {"fold_job", merge_job},
+                          {"folder", folder.string()}});
   }
   print_shares(proposal);
   fmt::print("\nSubmitted as job {}; {}. Logs: {}\n", job,
@@ -217,7 +218,7 @@ void submit(const SubmitOptions& options, Context& context) {
     try {
       ask_queue(open);
     } catch (const ProgramError& error) {
-      print_stderr("warning: runs that are queued already are not left out: {}\n", error.what());
+      warn(context, fmt::format("runs that are queued already are not left out: {}", error.what()));
     }
     busy = busy_runs(*store, open);
   }

@@ -31,8 +31,9 @@ void table(const TableOptions& options, Context& context) {
                             ? curve_table(store, options.selection, *curve, how)
                             : run_table(store, options.selection,
                                         value_of<RowPer>(options.per).value(), how, options.ledger);
-  const bool json = context.json || options.format == "json";
-  const std::string text = json ? to_json(made) : to_csv(made);
+  const std::string text = context.json               ? to_json_with_notes(made)
+                           : options.format == "json" ? to_json(made)
+                                                      : to_csv(made);
   if (options.out.empty()) {
     // Only a terminal gets escaped text.
     fmt::print("{}", terminal_columns(stdout) ? for_terminal(text) : text);
@@ -84,7 +85,8 @@ void add_table(CLI::App& app, Context& context) {
   command->add_option("--out", options->out, "File to write (default: standard output)")
       ->type_name("FILE");
   add_common_options(*command, context);
-  command->get_option("--json")->excludes(format)->description("The same as --format json");
+  command->get_option("--json")->excludes(format)->description(
+      "One JSON object: `rows`, as of --format json, and `notes` on what is left out");
   command->footer(
       "Columns (one more for each swept parameter after the seed, named as in a manifest; an empty "
       "field\nis unknown or does not apply):\n" +

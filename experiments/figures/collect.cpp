@@ -161,14 +161,12 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRu
   }
 }
 
-/// The selected runs of any version of the manifest, without packings. Throws NotFound if there are
-/// none.
+/// The selected runs of any version of the manifest. Throws NotFound if there are none.
 std::vector<SelectedRun> runs_of(const Store& store, const WantedFigure& wanted,
                                  const RunSelection& selection) {
   std::vector<SelectedRun> found = select_runs(store, selection);
   std::erase_if(found, [&](const SelectedRun& s) {
-    return s.run.kind == "prepare" ||
-           (!wanted.experiment.empty() && s.membership.experiment != wanted.experiment);
+    return !wanted.experiment.empty() && s.membership.experiment != wanted.experiment;
   });
   if (found.empty()) {
     throw NotFound(

@@ -67,6 +67,10 @@ std::string to_csv(const RunTable& table);
 /// An array of objects, one for each row, keys in the order of the columns.
 std::string to_json(const RunTable& table);
 
+/// An object: `rows`, those of to_json(); `notes` on runs that were left out; `damage` and
+/// `pruned`, the checkpoints that were not measured.
+std::string to_json_with_notes(const RunTable& table);
+
 /// Whether a file begins like the CSV or the JSON.
 bool is_table(std::string_view beginning);
 

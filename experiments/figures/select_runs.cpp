@@ -106,6 +106,7 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
   std::map<ExperimentScale, std::size_t> newest;  // version that has runs, selected or not
   for (const RunRecord& run : store.runs()) {
     const bool packing = run.kind == name_of(Stage::prepare);
+    if (packing && !selection.packings) continue;
     for (const Membership& m : newest_memberships(run, versions)) {
       std::size_t& known = newest[experiment_scale(m)];
       if (!packing) known = std::max(known, versions[m.manifest]);

@@ -20,6 +20,7 @@ struct RunSelection {
   std::vector<std::uint64_t> seeds = {};
   std::vector<std::string> states = {};  ///< names of RunState
   bool all_versions = false;  ///< newest_runs(): those of older versions of a manifest too
+  bool packings = false;      ///< settled packings too, whose variant is "packing"
 };
 
 struct SelectedRun {

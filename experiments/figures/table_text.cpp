@@ -13,12 +13,26 @@ namespace shearcell {
 namespace {
 
 using nlohmann::json;
+using nlohmann::ordered_json;
 
 std::string csv_cell(const json& value) {
   if (value.is_null()) return "";
   if (value.is_number_float()) return fmt::format("{}", value.get<double>());
   if (!value.is_string()) return value.dump();
   return csv_field(value.get<std::string>());
+}
+
+ordered_json rows_of(const RunTable& table) {
+  ordered_json rows = ordered_json::array();
+  for (const std::vector<json>& row : table.rows) {
+    ordered_json& object = rows.emplace_back(ordered_json::object());
+    for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].name] = row[c];
+  }
+  return rows;
+}
+
+std::string text_of(const ordered_json& value) {
+  return value.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace
@@ -32,17 +46,20 @@ std::string to_csv(const RunTable& table) {
 }
 
 std::string to_json(const RunTable& table) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const std::vector<json>& row : table.rows) {
-    nlohmann::ordered_json& object = rows.emplace_back(nlohmann::ordered_json::object());
-    for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].name] = row[c];
-  }
-  return rows.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
+  return text_of(rows_of(table));
+}
+
+std::string to_json_with_notes(const RunTable& table) {
+  return text_of({{"rows", rows_of(table)},
+                  {"notes", table.notes},
+                  {"damage", table.damage},
+                  {"pruned", table.pruned}});
 }
 
 bool is_table(std::string_view beginning) {
   return beginning.starts_with("experiment,scale,variant,run,seed,") || beginning == "[]\n" ||
-         beginning.starts_with("[\n {\n  \"experiment\": ");
+         beginning.starts_with("[\n {\n  \"experiment\": ") ||
+         beginning.starts_with("{\n \"rows\": [");
 }
 
 }  // namespace shearcell

@@ -21,6 +21,13 @@ namespace {
 using std::string;
 using std::string_view;
 
+// In a shallower cell a grain could touch another one across both periodic boundaries.
+constexpr double kSmallestDepth = 3;
+
+bool is_wide_enough(const Parameters& p) {
+  return cell_width(geometry(p)) >= kSmallestDepth;
+}
+
 // Checks one variant at one scale. The scale is complete (whole_scale()).
 struct VariantCheck {
   const Manifest& manifest;
@@ -140,14 +147,12 @@ struct VariantCheck {
   }
 
   void check_cell() {
-    // In a shallower cell a grain could touch another one across both periodic boundaries.
-    constexpr double smallest_depth = 3;
     const Geometry shape = geometry(p);
-    if (cell_width(shape) < smallest_depth) {
+    if (!is_wide_enough(p)) {
       report("grains",
              fmt::format("the cell for so few grains is {:.3g} d wide and deep, less than {} d",
-                         cell_width(shape), smallest_depth),
-             "Use more grains.");
+                         cell_width(shape), kSmallestDepth),
+             advise_more_grains(p, is_wide_enough));
     }
     if (!too_large(shape)) return;
     report(p.fill_packing_fraction < 0.1 * p.nominal_packing_fraction ? "fill_packing_fraction"
@@ -256,6 +261,22 @@ string unfit_for_lammps(const Parameters& p, const Checkpoints& checkpoints) {
   if (p.engine != EngineKind::lammps) return "";
   if (p.protocol == ProtocolKind::stiffen) return "LAMMPS cannot do the protocol stiffen";
   return checkpoints.phases.empty() ? "" : "LAMMPS makes no checkpoints within a cycle";
+}
+
+string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
+  const auto fits = [&](std::uint64_t grains) {
+    p.grains = grains;
+    return enough(p);
+  };
+  const auto& range = find_field("grains")->range;
+  std::uint64_t few = p.grains, many = 2 * few;
+  for (; !fits(many) && range.contains(static_cast<double>(many)); many *= 2) few = many;
+  while (many - few > 1) {
+    const std::uint64_t middle = few + (many - few) / 2;
+    (fits(middle) ? many : few) = middle;
+  }
+  return range.contains(static_cast<double>(many)) ? fmt::format("Use at least {} grains.", many)
+                                                   : "Use more grains.";
 }
 
 void check_variants(const Manifest& manifest) {

@@ -80,6 +80,10 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
+bool has_interior(const Parameters& p) {
+  return expected_interior_grains(p) >= 1;
+}
+
 // What is sound but unlikely to be meant.
 std::vector<std::string> warnings_of(const Parameters& p) {
   std::vector<std::string> warnings;
@@ -90,11 +94,11 @@ std::vector<std::string> warnings_of(const Parameters& p) {
         "lower cell (height_over_width).",
         p.pressure_Pa, p.grains));
   }
-  if (expected_interior_grains(p) < 1) {
+  if (!has_interior(p)) {
     warnings.push_back(
         fmt::format("the cell of {} grains is too small for interior grains, at least 1.5 d from "
-                    "the walls: phi and other measures of these have no value. Use more grains.",
-                    p.grains));
+                    "the walls: phi and other measures of these have no value. {}",
+                    p.grains, advise_more_grains(p, has_interior)));
   }
   if (const double overlap = expected_overlap(p); overlap > p.max_overlap_diameters) {
     warnings.push_back(

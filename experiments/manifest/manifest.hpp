@@ -166,8 +166,10 @@ struct Manifest {
   std::vector<Scale> scales;  ///< in the order of the text; whole_scale() completes them
 };
 
-/// Whether the text can name an experiment, its folder and its figures: 1 to 64 letters, digits,
-/// '-' and '_', the first not a '-'.
+inline constexpr std::size_t kLongestName = 64;
+
+/// Whether the text can name an experiment, its folder and its figures: 1 to kLongestName letters,
+/// digits, '-' and '_', the first not a '-'.
 bool is_name(std::string_view text);
 
 /// Reads a file. Throws ManifestError.

@@ -18,7 +18,6 @@ namespace {
 using std::string;
 using std::string_view;
 
-constexpr std::size_t kLongestName = 64;
 constexpr std::size_t kLongestQuestion = 2'000;
 
 void read_question(const Entry& in, Manifest& manifest) {

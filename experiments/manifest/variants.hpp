@@ -76,6 +76,10 @@ std::string without_effect(std::string_view key, const Parameters& parameters);
 /// Why LAMMPS cannot compute such a run; "" if it can, or if the engine is another one.
 std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& checkpoints);
 
+/// "Use at least N grains.", the fewest with which `enough` holds; it must hold for all larger N.
+/// "Use more grains." if N is beyond the range of `grains`.
+std::string advise_more_grains(Parameters parameters, bool (*enough)(const Parameters&));
+
 /// A warning for each figure, plot and claim that `shearcell figures` would refuse, leave without
 /// data or not decide: a figure or plot that averages over a swept key, cycles beyond the end of
 /// the runs or without a checkpoint, `at_cycle` in a plot of every cycle, shear_strain at whole

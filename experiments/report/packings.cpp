@@ -14,10 +14,12 @@
 #include "analysis/profiles.hpp"
 #include "analysis/voronoi.hpp"
 #include "experiments/figures/experiment_part.hpp"
+#include "experiments/manifest/suggest.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/registered.hpp"
+#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
@@ -131,10 +133,16 @@ std::size_t bytes_with(const std::vector<ChosenRun>& runs, std::size_t frames) {
 }
 
 void fit(std::vector<ChosenRun>& runs, const PackingChoice& choice, Packings& packings) {
+  std::vector<std::string> left_out;
   while (!runs.empty() && bytes_with(runs, 1) > choice.budget) {
-    packings.notes.push_back(fmt::format("run {:.12} of {}: no room for its packings",
-                                         runs.back().run.id, runs.back().membership.experiment));
+    left_out.push_back(
+        fmt::format("{:.8} of {}", runs.back().run.id, runs.back().membership.experiment));
     runs.pop_back();
+  }
+  if (!left_out.empty()) {
+    packings.notes.push_back(
+        fmt::format("no room for the packings of {} ({}); a larger --packings-mb has room for them",
+                    counted(left_out.size(), "run"), some_of(left_out)));
   }
   std::size_t frames = std::max<std::size_t>(1, choice.frames);
   while (frames > 1 && bytes_with(runs, frames) > choice.budget) --frames;

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "experiments/manifest/identity.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/page.hpp"
 #include "provenance/json_text.hpp"
@@ -151,7 +152,9 @@ std::string run_html(const RunLineage& stage) {
                                          escape_html(member.variant), member.seed));
   }
   if (!run.error.empty()) html += row("error", escape_html(run.error));
-  html += row("parameters", code(run.resolved.dump()));
+  nlohmann::json shown = run.resolved;
+  if (shown.contains("parameters")) shown["parameters"] = effective_parameters(run.resolved);
+  html += row("parameters", code(shown.dump()));
   html += "</dl>\n" + attempts_html(stage);
   html += fmt::format("<details><summary>{} checkpoints</summary><pre tabindex=\"0\">",
                       stage.checkpoints.size());

@@ -75,6 +75,14 @@ std::string shell_quoted(std::string_view text) {
   return quoted + "'";
 }
 
+std::string shell_word(std::string_view text) {
+  const auto plain = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+           std::string_view("./-_+=,:@").find(c) != std::string_view::npos;
+  };
+  return !text.empty() && std::ranges::all_of(text, plain) ? std::string(text) : shell_quoted(text);
+}
+
 std::optional<fs::path> find_program(const std::string& name) {
   const auto usable = [](const fs::path& file) {
     std::error_code ignored;

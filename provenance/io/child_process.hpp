@@ -24,6 +24,9 @@ class ProgramError : public std::runtime_error {
 /// The text in single quotes: one word for a POSIX shell and for fish.
 std::string shell_quoted(std::string_view text);
 
+/// The same, without quotes where a shell needs none.
+std::string shell_word(std::string_view text);
+
 /// The executable file of this name: the name itself if it has a slash, else the first on PATH.
 /// Nothing when there is no such file.
 std::optional<std::filesystem::path> find_program(const std::string& name);

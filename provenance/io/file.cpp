@@ -117,9 +117,13 @@ void require_ours(const fs::path& path, const Recognize& ours) {
   const fs::file_type type = fs::symlink_status(path, failure).type();
   if (type == fs::file_type::not_found) return;
   if (failure) throw std::system_error(failure, path.string() + ": cannot write");
+  if (type == fs::file_type::directory) {
+    throw NotOurs(path.string() +
+                  ": this is a folder, and the output is a file; name another path with --out");
+  }
   if (type != fs::file_type::regular) {
     throw NotOurs(path.string() +
-                  ": this is a folder, link or device; remove it, or write elsewhere with --out");
+                  ": this is a link or device; remove it, or write elsewhere with --out");
   }
   const auto beginning = beginning_of(path, 4096);
   if (beginning && ours(*beginning)) return;

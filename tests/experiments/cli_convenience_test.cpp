@@ -75,7 +75,28 @@ TEST_F(Convenience, NewOverwritesNothing) {
   write("mine.yaml", "mine");
   expect_refused({"new", "mine"}, {"mine.yaml: the file exists already"});
   EXPECT_EQ(read_bytes(path("mine.yaml")), "mine");
-  expect_refused({"new", "no name"}, {});
+  for (const std::string name : {"no name", "folder/a.b", "-x.yaml", "folder/"}) {
+    expect_refused({"new", "--", name}, {"cannot name an experiment. A name has 1 to 64 letters"});
+  }
+}
+
+TEST_F(Convenience, NewPrintsACommandThatCanBePasted) {
+  const std::string said = run({"new", "a folder/softer.yml"}).out;
+  EXPECT_EQ(listing(), (std::set<std::string>{"a folder", "a folder/softer.yml"}));
+  const std::string next = "Next: shearcell ";
+  ASSERT_TRUE(has(said, next + "plan 'a folder/softer.yml' --scale smoke\n")) << said;
+  shell_output("\"$0\" " + said.substr(said.find(next) + next.size()));
+  expect(0, {"new", "plain"}, {"shearcell plan plain.yaml --scale"});
+}
+
+// The manual of a machine is that of all: experiments/REFERENCE.md is compared with it.
+TEST_F(Convenience, TheManualDoesNotDependOnTheEnvironment) {
+  for (const Arguments& page : {Arguments{"manual"}, Arguments{"manual", "--markdown"}}) {
+    const std::string usual = run(page).out;
+    name_store("elsewhere");
+    EXPECT_EQ(run(page).out, usual);
+    name_store("");
+  }
 }
 
 TEST_F(Convenience, ShellsCompleteCommandsAndOptions) {
@@ -137,6 +158,9 @@ TEST_F(Convenience, DoctorReportsTheMachine) {
     EXPECT_TRUE(seen.contains(what)) << what;
   }
   EXPECT_TRUE(listing().empty()) << "it left something behind";
+  const Outcome nowhere =
+      expect(1, {"doctor", "--no-speed", "--store", "/proc/x"}, {"no store can be written there"});
+  EXPECT_FALSE(has(nowhere.out, "room for"));
 }
 
 TEST_F(Convenience, TablesFitTheTerminalAndHaveColoursOnlyThere) {
@@ -251,6 +275,10 @@ TEST_F(BenchAccuracy, PlanPrintsTimeStepsAndWarns) {
   const std::string stiffened =
       write("stiffen.yaml", "experiment: a\nbase: {grains: 600, protocol: stiffen}\n");
   expect(0, {"plan", small}, {"below 0.15"});
+  const nlohmann::json both = json({"plan", small, sound, "--json"});
+  ASSERT_EQ(both.at("warnings").size(), 1U);
+  EXPECT_TRUE(has(both.at("warnings")[0].get<std::string>(), "below 0.15"));
+  EXPECT_EQ(both.at("experiments").size(), 2U);
   EXPECT_EQ(json({"plan", stiffened, "--json"}).at("stages").at(1).at("time_step"), nullptr);
 }
 

@@ -16,7 +16,7 @@ class CommandLineTable : public ProgramTest {
   void SetUp() override { campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"}); }
 
   nlohmann::json table(const Arguments& options) {
-    return json(joined({"table", "--json"}, options));
+    return json(joined({"table", "--format", "json"}, options));
   }
 };
 
@@ -148,6 +148,11 @@ TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
   EXPECT_FALSE(rows[0].contains("manifest"));
   const Outcome said = expect(0, {"table", "--per", "run"});
   EXPECT_TRUE(has(said.err, "left out: 2 runs of another version"));
+  const nlohmann::json with_notes = json({"table", "--per", "run", "--json"});
+  EXPECT_EQ(with_notes.at("rows"), rows);
+  ASSERT_EQ(with_notes.at("notes").size(), 1U);
+  EXPECT_TRUE(
+      has(with_notes.at("notes")[0].get<std::string>(), "left out: 2 runs of another version"));
   const Outcome report = expect(0, {"report", "--out", "report.html"}, {"tiny: left out: 2 runs"});
   EXPECT_FALSE(has(report.err, "left out: experiment"));
   const nlohmann::json all = table({"--per", "run", "--all-versions"});
@@ -184,6 +189,9 @@ TEST_F(CommandLineTable, OverwritesOnlyItsOwnCsvFiles) {
     expect(0, {"table", "--per", "run", "--out", "runs.csv"});
     EXPECT_EQ(read_bytes(path("runs.csv")), printed.out);
   }
+  expect_refused({"table", "--out", "/"}, {"/: this is a folder, and the output is a file"});
+  for (int k = 0; k < 2; ++k) expect(0, {"table", "--json", "--out", "runs.json"});
+  expect(0, {"table", "--format", "json", "--out", "runs.json"});
   write("mine.csv", "a,b\n");
   expect_refused({"table", "--out", "mine.csv"}, {"mine.csv"});
   EXPECT_EQ(read_bytes(path("mine.csv")), "a,b\n");
@@ -205,6 +213,8 @@ TEST_F(CommandLineTable, SelectsRuns) {
     EXPECT_EQ(sheared, c.runs);
   }
   expect_refused({"table", "--variant", "fluid=cel"}, {"did you mean fluid=cell?"});
+  expect_refused({"table", "--variant", "packing"}, {"known are fluid=still, fluid=cell\n"});
+  EXPECT_EQ(json({"status", "--json", "--variant", "packing"}).at("runs").size(), 1U);
   expect_refused({"status", "--experiment", "other"}, {"other"});
   expect_refused({"status", "--state", "lost"}, {"lost"});
 }

@@ -288,7 +288,10 @@ TEST_F(VerifyTest, FindsAChangedByteOfACheckpoint) {
 
 TEST_F(VerifyTest, ReportsALostRejectedObject) {
   fs::remove(path_ / records_.back().file);
-  EXPECT_EQ(only(verify()).severity, Finding::Severity::note);
+  const Finding finding = only(verify());
+  EXPECT_EQ(finding.severity, Finding::Severity::note);
+  EXPECT_EQ(finding.subject, records_.back().file);
+  EXPECT_FALSE(has(finding.message, finding.subject)) << finding.message;
 }
 
 TEST_F(VerifyTest, NamesOrphans) {

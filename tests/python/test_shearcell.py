@@ -104,7 +104,32 @@ class Package(unittest.TestCase):
             self.assertTrue(np.all(np.isnan(run.checkpoint(0).d2min)))
             self.assertTrue(np.all(state.d2min[~np.isnan(state.d2min)] >= 0))
             self.assertEqual(run.parameters["fluid"], run.variant.split("=")[1])
+            self.assertNotIn("max_overlap_diameters", run.parameters)
             self.assertEqual([c.cycle for c in run.checkpoints()], run.cycles)
+
+    def test_a_shared_run_has_the_cycles_of_its_experiment(self):
+        copy = self.folder / "shared"
+        shutil.copytree(self.path, copy)
+        text = pathlib.Path(source, "experiments/drag.yaml").read_text()
+        other = self.folder / "other.yaml"
+        other.write_text(text.replace("experiment: drag", "experiment: other"))
+        subprocess.run([program, "run", str(other), "--scale", "smoke", "-q", "--seeds", "1", "--cycles", "3",
+                        "--store", str(copy)], check=True)
+        store = Store(copy)
+        for experiment, cycles in (("drag", [0, 1, 2]), ("other", [0, 1, 2, 3])):
+            run = store.runs(experiment=experiment)[0]
+            table = store.table(experiment=experiment, variant=run.variant)
+            self.assertEqual(run.cycles, cycles)
+            self.assertEqual(run.cycles, list(table["cycle"]))
+            self.assertEqual(run.checkpoint().cycle, cycles[-1])
+            self.assertEqual([c.cycle for c in run.checkpoints()], cycles)
+            self.assertEqual(run.checkpoint(3).cycle, 3)
+            self.assertEqual(len(run.records()), 4)
+        store.call("prune", "--keep-every", "2", "--yes")
+        run = store.runs(experiment="drag")[0]
+        self.assertEqual(run.cycles, [0, 2])
+        with self.assertRaisesRegex(KeyError, "at cycle 1 was pruned; `shearcell regenerate [0-9a-f]+`"):
+            run.checkpoint(1)
 
     def test_own_measure_is_kept_beside_the_store(self):
         global calls

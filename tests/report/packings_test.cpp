@@ -69,7 +69,10 @@ TEST_F(PackingsOf, KeepToTheirBudget) {
   EXPECT_EQ(one.notes.size(), 1U);
 
   choice.budget = 0;
-  EXPECT_TRUE(collect(choice).runs.empty());
+  const Packings none = collect(choice);
+  EXPECT_TRUE(none.runs.empty());
+  ASSERT_EQ(none.notes.size(), 1U);
+  EXPECT_TRUE(has(none.notes[0], "no room for the packings of 2 runs"));
 }
 
 TEST_F(PackingsOf, CanBeSelectedByName) {

@@ -66,7 +66,9 @@ class Store:
                 for place in facts["places"] if all_versions or place["newest"]]
 
     def run(self, prefix: str) -> "Run":
-        """The run whose id begins so. Raises KeyError if it is none or several."""
+        """The run whose id begins so. A run that several experiments share is that of the one which
+        declared it last; `runs(experiment=...)` gives it as another's. Raises KeyError if it is none
+        or several."""
         found = {run.id: run for run in self.runs(all_versions=True) if run.id.startswith(prefix)}
         if len(found) != 1:
             raise KeyError(f"{len(found)} runs begin with {prefix!r}")
@@ -117,9 +119,7 @@ class Store:
         rows = []
         try:
             for run in self.runs(all_versions=all_versions, **select):
-                for record in run.records():
-                    if run._place not in record["asked_by"]:
-                        continue
+                for record in run._of_experiment():
                     result = kept.of(record["sha256"], lambda: Checkpoint(run, record))
                     rows.append({"experiment": run.experiment, "scale": run.scale,
                                  "variant": run.facts["name"], "run": run.id, "seed": run.seed,
@@ -134,7 +134,11 @@ class Store:
 
 
 class Run:
-    """One run: a variant with a seed.
+    """One run: a variant with a seed, as a part of one experiment.
+
+    Several experiments may share a run and ask for different checkpoints of it. `cycles`,
+    `checkpoints()` and the newest `checkpoint()` are those of `experiment`, as in `Store.table`;
+    `records()` has all.
 
     Attributes:
         store, id, experiment, scale, variant, seed, state: as `shearcell status` has them.
@@ -164,30 +168,41 @@ class Run:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """Every parameter of the run, by its key in a manifest (units are in the keys)."""
-        return self._shown["resolved"]["parameters"]
+        """Every parameter that affects the run, by its key in a manifest (units are in the keys)."""
+        return self._shown["parameters"]
 
     def records(self) -> list[dict[str, Any]]:
         """What the store recorded of each checkpoint whose file it has, by cycle. `asked_by` is
         empty for those that no experiment has in its figures."""
         return [c for c in self._shown["checkpoints"] if c["state"] == "recorded"]
 
+    def _of_experiment(self) -> list[dict[str, Any]]:
+        return [record for record in self.records() if self._place in record["asked_by"]]
+
     @property
     def cycles(self) -> list[float]:
-        """Cycles that have a checkpoint."""
-        return [record["cycle"] for record in self.records()]
+        """Cycles at which the experiment has a checkpoint whose file is stored."""
+        return [record["cycle"] for record in self._of_experiment()]
 
     def checkpoint(self, cycle: float | None = None) -> Checkpoint:
-        """The checkpoint at that cycle, or the newest. Raises KeyError if there is none."""
-        found = [c for c in self.records() if cycle is None or c["cycle"] == cycle]
-        if not found:
-            raise KeyError(f"run {self.id[:12]} has no checkpoint at cycle {cycle}; it has those of "
-                           f"cycles {self.cycles}")
-        return Checkpoint(self, found[-1])
+        """The checkpoint at that cycle, which may be any of `records()`, or the newest of `cycles`.
+        Raises KeyError if there is none."""
+        found = (self._of_experiment() if cycle is None
+                 else [c for c in self.records() if c["cycle"] == cycle])
+        if found:
+            return Checkpoint(self, found[-1])
+        pruned = [c["sha256"][:12] for c in self._shown["checkpoints"]
+                  if c["state"] == "pruned" and c["cycle"] == cycle]
+        if pruned:
+            raise KeyError(f"the checkpoint of run {self.id[:12]} at cycle {cycle:g} was pruned; "
+                           f"`shearcell regenerate {pruned[-1]}` brings it back")
+        which = "" if cycle is None else f" at cycle {cycle:g}"
+        raise KeyError(f"run {self.id[:12]} has no checkpoint{which}; it has those of cycles "
+                       f"{self.cycles}")
 
     def checkpoints(self) -> Iterator[Checkpoint]:
-        """All checkpoints by cycle, read one after the other."""
-        return (Checkpoint(self, record) for record in self.records())
+        """The checkpoints at `cycles`, read one after the other."""
+        return (Checkpoint(self, record) for record in self._of_experiment())
 
     def __repr__(self) -> str:
         return f"<Run {self.id[:12]} {self.experiment} {self.variant} seed {self.seed}>"
