@@ -113,16 +113,15 @@ void warn(Context& context, const std::string& warning) {
 
 namespace {
 
-// A later one would replace the earlier one in the store.
-void require_names_of_their_own(const std::vector<Manifest>& manifests) {
+void warn_of_equal_names(const std::vector<Manifest>& manifests, Context& context) {
   std::map<std::string, const Manifest*> known;
   for (const Manifest& manifest : manifests) {
     const Manifest& first = *known.try_emplace(manifest.experiment, &manifest).first->second;
     if (first.text == manifest.text) continue;
-    throw UsageError(
-        fmt::format("{} and {} are different manifests of one experiment, {}, and figures show "
-                    "only the one that was run last. Give each its own `experiment`.",
-                    first.file, manifest.file, manifest.experiment));
+    warn(context,
+         fmt::format("{} and {} are different manifests of one experiment, {}: figures show only "
+                     "the one that is run last. Give each its own `experiment`.",
+                     first.file, manifest.file, manifest.experiment));
   }
 }
 
@@ -181,7 +180,7 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths, const Expa
   for (const std::string& path : paths) {
     if (read.insert(path).second) loaded.manifests.push_back(load_manifest(path));
   }
-  require_names_of_their_own(loaded.manifests);
+  warn_of_equal_names(loaded.manifests, context);
   const Known known = known_to(context);
   ExpandOptions with_known = options;
   with_known.known = known.runs;

@@ -112,10 +112,12 @@ std::vector<std::string> warnings_of(const Parameters& p) {
                     "settle_time_limit_s ({:g} s). Use a drag_kg_per_s above 0.",
                     p.settle_time_limit_s));
   } else if (const double time = damping_time_s(p); time > p.settle_time_limit_s) {
+    const std::string when =
+        time < 1e6 ? fmt::format("only after about {:.2g} s", time) : "too late";
     warnings.push_back(
-        fmt::format("with a drag of {:g} kg/s the grains come to rest after about {:.2g} s, so "
-                    "settling fails at settle_time_limit_s ({:g} s). Raise one of them.",
-                    p.drag_kg_per_s, time, p.settle_time_limit_s));
+        fmt::format("with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
+                    "settle_time_limit_s ({:g} s). Raise one of them.",
+                    p.drag_kg_per_s, when, p.settle_time_limit_s));
   }
   if (p.protocol != ProtocolKind::stiffen) {
     if (auto advice = time_step_advice(shear_time_step(p), "steps_per_cycle")) {

@@ -195,7 +195,7 @@ TEST(Expand, WarnsOfADragTooSmallToSettle) {
   const auto warnings = [](const std::string& base) { return plan_of(base).warnings; };
   for (const auto& [base, says] :
        {std::pair{"drag_kg_per_s: 0", "without drag the grains do not come to rest"},
-        {"drag_kg_per_s: 2e-6", "come to rest after about 1.8e+02 s"}}) {
+        {"drag_kg_per_s: 2e-6", "come to rest only after about 1.8e+02 s"}}) {
     ASSERT_EQ(warnings(base).size(), 1U) << base;
     EXPECT_TRUE(has(warnings(base)[0], says) &&
                 has(warnings(base)[0], "settling fails at settle_time_limit_s (60 s)"));

@@ -113,9 +113,8 @@ const std::string kBothAmplitudes = "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}
 
 std::size_t inputs_of(const std::string& lineage) {
   std::size_t count = 0;
-  for (const auto& input : nlohmann::json::parse(lineage).at("inputs")) {
-    count += input.at("checkpoints").size();
-  }
+  const auto facts = nlohmann::json::parse(lineage);
+  for (const auto& input : facts.at("inputs")) count += input.at("checkpoints").size();
   return count;
 }
 
