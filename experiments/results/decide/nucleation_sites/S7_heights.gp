@@ -1,0 +1,73 @@
+set terminal svg size 325,230 enhanced font 'Helvetica,10.67' background '#ffffff'
+set encoding utf8
+set datafile separator ','
+set border 15 lw 0.8
+set xtics in mirror scale 0.9,0.5
+set ytics in mirror scale 0.9,0.5
+set mxtics 2
+set mytics 2
+set autoscale noextend
+set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
+set bars 0.5
+set output 'S7_heights.svg'
+set label '(b)' at screen 0.015, screen 0.96 left front
+set xlabel 'position  {/:Italic y}/{/:Italic h},  {/:Italic y}/1.675 {/:Italic L}'
+set ylabel 'probability density  {/:Italic P}'
+set xtics 0.2
+set format x '%.1f'
+set ytics 0.5
+set format y '%.1f'
+set xrange [0:1]
+set yrange [*:*]
+set offsets 0, 0, graph 0.05, graph 0.05
+$series0 << EOD
+0.025,0,,0
+0.075,0.0498132005,,0.0492434127
+0.125,1.27023661,,0.248093455
+0.175,1.91780822,,0.350357986
+0.225,1.17061021,,0.305554097
+0.275,1.54420922,,0.395805132
+0.325,1.59402242,,0.333294532
+0.375,0.921544209,,0.281974551
+0.425,1.91780822,,0.431824164
+0.475,1.17061021,,0.311669411
+0.525,1.04607721,,0.241927537
+0.575,1.17061021,,0.290424377
+0.625,1.34495641,,0.292568514
+0.675,0.697384807,,0.175244465
+0.725,1.04607721,,0.344594777
+0.775,0.597758406,,0.20314607
+0.825,1.44458281,,0.508594898
+0.875,1.04607721,,0.289838707
+0.925,0.0498132005,,0.0541628634
+0.975,0,,0
+EOD
+$series1 << EOD
+0.025,0,,0
+0.075,0.099626401,,0.0984868254
+0.125,1.36986301,,0.26297834
+0.175,1.91780822,,0.336100458
+0.225,1.44458281,,0.345576971
+0.275,1.44458281,,0.353443415
+0.325,1.49439601,,0.31740311
+0.375,1.12079701,,0.238200804
+0.425,1.79327522,,0.375903038
+0.475,1.14570361,,0.29636154
+0.525,1.09589041,,0.287536355
+0.575,1.39476961,,0.354262757
+0.625,0.99626401,,0.275353771
+0.675,1.17061021,,0.353434004
+0.725,0.697384807,,0.233428887
+0.775,0.871731009,,0.267302741
+0.825,1.56911582,,0.444748092
+0.875,0.373599004,,0.168454434
+0.925,0,,0
+0.975,0,,0
+EOD
+plot keyentry with points lc rgb '#000000' lw 1.2 pt 4 ps 0.4 title '{/:Italic P}({/:Italic y}/{/:Italic h})', \
+     keyentry with points lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 title '{/:Italic P}({/:Italic y}/1.675 {/:Italic L})', \
+     $series1 every 1 using 1:2:4 with yerrorbars lc rgb '#d55e00' lw 0.7 pt 0 notitle, \
+     $series1 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 notitle, \
+     $series0 every 1 using 1:2:4 with yerrorbars lc rgb '#000000' lw 0.7 pt 0 notitle, \
+     $series0 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 4 ps 0.4 notitle
+set output
