@@ -156,6 +156,9 @@ std::filesystem::path write_csv(const FigureTable& table, const std::filesystem:
 /// left out.
 std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series);
 
+/// Whether the point can be drawn: its coordinates on logarithmic axes are positive.
+bool is_on_log_axes(const Chart& chart, const ChartPoint& point);
+
 /// Nine significant digits, as in the CSV.
 std::string digits(double value);
 

@@ -183,9 +183,7 @@ void lay_out(std::vector<FigureTable>& tables, bool wide) {
 /// columns of the table hold published points.
 bool has_no_value(const FigureTable& table) {
   if (table.chart.series.empty()) return table.rows.empty();
-  const auto is_drawn = [&](const ChartPoint& point) {
-    return (!table.chart.x.log || point.x > 0) && (!table.chart.y.log || point.y > 0);
-  };
+  const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };
   return std::ranges::all_of(table.chart.series, [&](const Series& series) {
     const bool of_runs = series.thin || !series.columns.x.empty();
     return !of_runs || std::ranges::none_of(points_of(table, series), is_drawn);
@@ -197,9 +195,11 @@ std::string caption(const FigureSummary& summary, const std::map<std::string, st
                     const std::vector<FigureTable>& tables, const RunSelection& selected) {
   std::vector<std::string> counts;
   for (const auto& [variant, count] : runs) counts.push_back(fmt::format("{}: {}", variant, count));
+  // The title of an own plot says what its axes say.
+  const std::string title = find_figure(summary.name) == nullptr ? "" : ". " + summary.title;
   std::string text =
       fmt::format("{} Runs: {}. Experiment {}, scale {}.",
-                  caption_of(fmt::format("Figure {}. {}", summary.name, summary.title), tables),
+                  caption_of(fmt::format("Figure {}{}", summary.name, title), tables),
                   fmt::join(counts, ", "), summary.experiment, scale_name(summary.scale));
   if (!selected.variants.empty()) {
     text += fmt::format(" Selected: {}.", fmt::join(selected.variants, ", "));
