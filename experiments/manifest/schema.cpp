@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/simulation.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/io/read_number.hpp"
 
