@@ -25,7 +25,7 @@ bool has_parameters(const FigureRun& run, const nlohmann::json& where) {
 }
 
 /// The runs of the one variant with these parameters; of another engine only if they say so. Empty
-/// if there are none yet.
+/// if no such run has a checkpoint.
 std::vector<const FigureRun*> variant_with(const ClaimSpec& claim, const nlohmann::json& where,
                                            std::span<const FigureRun> runs) {
   std::vector<const FigureRun*> found;

@@ -61,10 +61,10 @@ void add_columns(const Checkpoint& c, const WallPose& pose, const GrainMeasures&
 /// Adds the measures of `table` that analyse_stored() does not give.
 void add_numbers(const Checkpoint& checkpoint, const CheckpointRecord& record,
                  MeasureSources& sources, Analysis& analysis) {
+  sources.read_run(record.run);
+  UnreadCheckpoints unread;
   for (const std::string& name : table_measures()) {
     const DerivedMeasure& measure = derived_measure(name);
-    sources.read_run(record.run);
-    UnreadCheckpoints unread;
     const auto result = sources.measure(record, checkpoint, analysis, measure, unread);
     if (result) measure.read(*result, analysis.measures);
   }

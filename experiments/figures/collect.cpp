@@ -161,7 +161,7 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRu
   }
 }
 
-/// The selected runs of any version of the manifest. Throws NotFound if there are none.
+/// The selected runs of any version of the manifest, at least one. Throws NotFound.
 std::vector<SelectedRun> runs_of(const Store& store, const WantedFigure& wanted,
                                  const RunSelection& selection) {
   std::vector<SelectedRun> found = select_runs(store, selection);

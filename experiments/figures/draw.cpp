@@ -84,12 +84,11 @@ std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
 void add_earlier(const std::map<std::uint64_t, std::string>& earlier,
                  std::vector<std::string>& checkpoints) {
   const std::set<std::string> listed(checkpoints.begin(), checkpoints.end());
-  std::vector<std::string> all;
+  std::vector<std::string> first;
   for (const auto& [step, sha256] : earlier) {
-    if (!listed.contains(sha256)) all.push_back(sha256);
+    if (!listed.contains(sha256)) first.push_back(sha256);
   }
-  all.insert(all.end(), checkpoints.begin(), checkpoints.end());
-  checkpoints = std::move(all);
+  checkpoints.insert(checkpoints.begin(), first.begin(), first.end());
 }
 
 /// The figure's record, without facts that depend on the time or the host.

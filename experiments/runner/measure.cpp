@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -121,7 +122,8 @@ class Measuring {
       results_[i][m] = std::move(*result);
     }
     const std::lock_guard lock(mutex_);
-    add_unread(unread, unread_earlier_);
+    std::ranges::move(unread.damage, std::back_inserter(unread_earlier_.damage));
+    std::ranges::move(unread.pruned, std::back_inserter(unread_earlier_.pruned));
     if (changed) outcome_.changed.push_back(record.sha256);
     std::move(objects.begin(), objects.end(), std::back_inserter(pending_));
     if (pending_.size() >= kBatch) flush();
