@@ -142,8 +142,9 @@ json profiles_of(const MeasureInput& input) {
           {"crystalline_profile_percent", against_height(found.crystalline_percent)}};
 }
 
-json depth_of(const MeasureInput& input) {
-  return {{"phi_by_depth", to_json(phi_by_depth(*input.checkpoint, input.analysis.grains))}};
+json by_wall_distance(const MeasureInput& input) {
+  return {{"phi_by_wall_distance",
+           to_json(phi_by_wall_distance(*input.checkpoint, input.analysis.grains))}};
 }
 
 json core_of(const MeasureInput& input) {
@@ -235,7 +236,7 @@ std::span<const DerivedMeasure> all_derived_measures() {
        with(interior(), {{"bin_per_d", wave_bin_per_d}, {"largest_per_d", largest_wave_per_d}}),
        structure_factor_of, checked<read_curves>},
       {"profiles", criteria(), profiles_of, checked<read_curves>},
-      {"depth", surface(), depth_of, checked<read_curves>},
+      {"wall_distance", surface(), by_wall_distance, checked<read_curves>},
       {"core", with(surface(), {{"core_distance_d", core_distance}}), core_of,
        checked<read_numbers>},
       {"sensitivity", criteria(), sensitivity_of, checked<read_curves>}};

@@ -40,7 +40,8 @@ Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd
   return result;
 }
 
-std::vector<double> depths(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains) {
+std::vector<double> distances_from_walls(const Cell& cell, const WallPose& pose,
+                                         const Eigen::Matrix3Xd& grains) {
   std::vector<double> found;
   for (const auto& centre : grains.colwise()) {
     found.push_back(wall_distances(cell, pose, centre).minCoeff() - wall_surface(cell));
@@ -51,8 +52,8 @@ std::vector<double> depths(const Cell& cell, const WallPose& pose, const Eigen::
 std::vector<std::uint8_t> interior_grains(const Cell& cell, const WallPose& pose,
                                           const Eigen::Matrix3Xd& grains) {
   std::vector<std::uint8_t> interior;
-  for (const double depth : depths(cell, pose, grains)) {
-    interior.push_back(depth >= interior_distance ? 1 : 0);
+  for (const double distance : distances_from_walls(cell, pose, grains)) {
+    interior.push_back(distance >= interior_distance ? 1 : 0);
   }
   return interior;
 }

@@ -41,9 +41,10 @@ Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd
 /// Distance of each grain's centre from the nearest wall surface in x and y [d], from a tilted wall
 /// along its normal. The surface is `rough_wall_surface` inside the plane when the cell has wall
 /// grains, else the plane itself.
-std::vector<double> depths(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains);
+std::vector<double> distances_from_walls(const Cell& cell, const WallPose& pose,
+                                         const Eigen::Matrix3Xd& grains);
 
-/// 1 for grains whose depth is at least `interior_distance`.
+/// 1 for grains at least `interior_distance` from the walls.
 std::vector<std::uint8_t> interior_grains(const Cell& cell, const WallPose& pose,
                                           const Eigen::Matrix3Xd& grains);
 

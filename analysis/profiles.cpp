@@ -28,11 +28,11 @@ std::vector<std::size_t> layers_of(const Checkpoint& checkpoint, const WallPose&
   return found;
 }
 
-/// phi of the grains whose depth is in [low, high).
-double phi_between(const GrainMeasures& grains, std::span<const double> depth, double low,
+/// phi of the grains whose distance from the walls is in [low, high).
+double phi_between(const GrainMeasures& grains, std::span<const double> distance, double low,
                    double high) {
   std::vector<std::uint8_t> inside;
-  for (const double d : depth) inside.push_back(d >= low && d < high ? 1 : 0);
+  for (const double d : distance) inside.push_back(d >= low && d < high ? 1 : 0);
   return packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi;
 }
 
@@ -75,25 +75,25 @@ Profiles profiles(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   return found;
 }
 
-MeasuredCurve phi_by_depth(const Checkpoint& checkpoint, const GrainMeasures& grains) {
+MeasuredCurve phi_by_wall_distance(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   constexpr double layer = 0.5;
-  const std::vector<double> depth =
-      depths(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
-  const double deepest = depth.empty() ? 0 : std::ranges::max(depth);
+  const std::vector<double> distance =
+      distances_from_walls(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
+  const double farthest = distance.empty() ? 0 : std::ranges::max(distance);
   MeasuredCurve found;
-  for (double low = 0; low <= deepest; low += layer) {
+  for (double low = 0; low <= farthest; low += layer) {
     found.x.push_back(low + layer / 2);
-    found.y.push_back(phi_between(grains, depth, low, low + layer));
+    found.y.push_back(phi_between(grains, distance, low, low + layer));
   }
   return found;
 }
 
 Core core(const Checkpoint& checkpoint, const GrainMeasures& grains) {
-  const std::vector<double> depth =
-      depths(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
-  const auto count = std::ranges::count_if(depth, [](double d) { return d >= core_distance; });
+  const std::vector<double> distance =
+      distances_from_walls(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
+  const auto count = std::ranges::count_if(distance, [](double d) { return d >= core_distance; });
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  return {static_cast<double>(count), phi_between(grains, depth, core_distance, infinite)};
+  return {static_cast<double>(count), phi_between(grains, distance, core_distance, infinite)};
 }
 
 MeasuredCurve crystalline_by_window(const GrainMeasures& grains) {

@@ -22,11 +22,11 @@ struct Profiles {
 
 Profiles profiles(const Checkpoint& checkpoint, const GrainMeasures& grains);
 
-/// phi (Eq. S4) of layers of half a diameter against the depth of their middle [d]: the distance
-/// from the nearest wall surface. Not a number for a layer without grains.
-MeasuredCurve phi_by_depth(const Checkpoint& checkpoint, const GrainMeasures& grains);
+/// phi (Eq. S4) of layers of half a diameter against the distance of their middle from the nearest
+/// wall surface [d]. Not a number for a layer without grains.
+MeasuredCurve phi_by_wall_distance(const Checkpoint& checkpoint, const GrainMeasures& grains);
 
-/// The grains at least core_distance deep.
+/// The grains at least core_distance from the walls.
 struct Core {
   double grains = 0;
   double phi = 0;  ///< Eq. S4; not a number without any

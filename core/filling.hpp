@@ -25,7 +25,7 @@ struct Geometry {
   double fill_packing_fraction = 0.28;     ///< of the loose initial grains; sets the fill height
   WallTexture walls = WallTexture::rough;
   double wall_grain_area_fraction = 0.52;  ///< target of the sequential addition
-  double wall_grain_recess = 0.25;         ///< largest depth of a centre behind its plane [d]
+  double wall_grain_recess = 0.25;         ///< largest distance of a centre behind its plane [d]
   std::uint32_t wall_grain_draw = 0;  ///< other values give other wall grains for the same seed
   MovingWall moving = MovingWall::bottom;
 };

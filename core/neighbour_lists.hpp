@@ -14,7 +14,7 @@
 
 #include "core/aligned.hpp"
 #include "core/cell.hpp"
-#include "core/cell_grid.hpp"
+#include "core/cell_order.hpp"
 #include "core/kernel.hpp"
 #include "core/team.hpp"
 #include "core/walls.hpp"

@@ -15,7 +15,7 @@
 
 #include "core/aligned.hpp"
 #include "core/cell.hpp"
-#include "core/cell_grid.hpp"
+#include "core/cell_order.hpp"
 #include "core/drive.hpp"
 #include "core/kernel.hpp"
 #include "core/neighbour_lists.hpp"

@@ -147,7 +147,7 @@ std::span<const Field> schema() {
           "at 0.547"),
       row("wall_grain_recess_diameters", "", "d", &P::wall_grain_recess_diameters, from(0, 0.5),
           kPrepare,
-          "wall grain centres lie up to this depth behind the wall plane; measures assume 0.25 for "
+          "wall grain centres lie up to this far behind the wall plane; measures assume 0.25 for "
           "the "
           "walls' surface"),
       row("wall_grain_draw", "", "1", &P::wall_grain_draw, from(0, 1e6),

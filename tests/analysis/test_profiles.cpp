@@ -56,7 +56,7 @@ TEST(Profiles, ALatticeIsTheSameInEveryLayer) {
 }
 
 // Volumes of grains and cells by the distance from the nearest of the four planes, by hand.
-TEST(Depth, LayersAndCoreAreSumsOverGrains) {
+TEST(WallDistance, LayersAndCoreAreSumsOverGrains) {
   const Checkpoint checkpoint = checkpoint_of(jammed(3000, true, 0.05, 1));
   const GrainMeasures grains = analyse(checkpoint).grains;
   const WallPose pose = pose_of(checkpoint);
@@ -69,7 +69,7 @@ TEST(Depth, LayersAndCoreAreSumsOverGrains) {
     const Eigen::Vector3d r = checkpoint.state.position.col(i);
     const double left = (r.y() - pose.top) * pose.tan_theta;
     const double side = std::min(r.x() - left, left + checkpoint.cell.width - r.x());
-    const double depth =
+    const double distance =
         std::min({side * pose.cos_theta, r.y() - pose.bottom, pose.top - r.y()}) - 0.375;
     const auto k = static_cast<std::size_t>(i);
     const auto add = [&](Sums& sums) {
@@ -77,10 +77,10 @@ TEST(Depth, LayersAndCoreAreSumsOverGrains) {
       sums.hard += std::numbers::pi / 6 * std::pow(1 - grains.largest_overlap[k], 3);
       sums.cells += grains.cell_volume[k];
     };
-    add(layers[static_cast<int>(std::floor(2 * depth))]);
-    if (depth >= 4) add(inner);
+    add(layers[static_cast<int>(std::floor(2 * distance))]);
+    if (distance >= 4) add(inner);
   }
-  const MeasuredCurve found = phi_by_depth(checkpoint, grains);
+  const MeasuredCurve found = phi_by_wall_distance(checkpoint, grains);
   ASSERT_GT(found.x.size(), 8U);
   for (std::size_t l = 0; l < found.x.size(); ++l) {
     EXPECT_EQ(found.x[l], 0.25 + 0.5 * static_cast<double>(l));
@@ -97,7 +97,7 @@ TEST(Depth, LayersAndCoreAreSumsOverGrains) {
   EXPECT_NEAR(measured.phi, inner.hard / inner.cells, 1e-12);
 }
 
-TEST(Depth, ASmallCellHasNoCore) {
+TEST(WallDistance, ASmallCellHasNoCore) {
   const Checkpoint checkpoint = checkpoint_of(jammed(300, true, 0, 1));
   const Core none = core(checkpoint, analyse(checkpoint).grains);
   EXPECT_EQ(none.grains, 0);

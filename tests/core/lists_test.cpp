@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "core/cell_grid.hpp"
+#include "core/cell_order.hpp"
 #include "core/contact.hpp"
 #include "core/linked_cells.hpp"
 #include "core/neighbour_lists.hpp"

@@ -43,7 +43,7 @@ HEADLINES = [
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper minus the lower third", "more near the top"),
 ]
 # Folders of results; a claim is shown as the first of them measured it.
-SOURCES = ("decide", "volume", "paper", "desk")
+SOURCES = ("decide", "larger_step", "volume", "paper", "desk")
 FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "nucleation_core",
            "walls", "choices")
 

@@ -117,7 +117,7 @@ void take_checkpoint(Input input) {
     attempt<AnalysisError>([&] {
       const Analysis found = analyse(checkpoint);
       profiles(checkpoint, found.grains);
-      phi_by_depth(checkpoint, found.grains);
+      phi_by_wall_distance(checkpoint, found.grains);
       structure_factor(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position,
                        found.grains.interior);
     });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/cell_grid.hpp"
+#include "core/cell_order.hpp"
 
 #include <algorithm>
 #include <cmath>
