@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <set>
@@ -58,6 +59,15 @@ std::vector<Membership> newest_memberships(const RunRecord& run, Versions& versi
   }
   if (newest.empty()) newest.emplace_back();
   return newest;
+}
+
+/// By experiment, scale, variant and seed, so that the order does not depend on the store's
+/// history.
+bool in_order(const SelectedRun& a, const SelectedRun& b) {
+  const auto key = [](const Membership& m) {
+    return std::tie(m.experiment, m.scale, m.labels, m.seed);
+  };
+  return key(a.membership) < key(b.membership);
 }
 
 using ExperimentScale = std::pair<std::string, std::string>;
@@ -172,6 +182,9 @@ NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
     known = std::move(run);
   }
   if (newest == selected.size()) chosen.newest = chosen.runs.size();
+  const auto end_of_newest = chosen.runs.begin() + static_cast<std::ptrdiff_t>(chosen.newest);
+  std::stable_sort(chosen.runs.begin(), end_of_newest, in_order);
+  std::stable_sort(end_of_newest, chosen.runs.end(), in_order);
   note_shortened(chosen.runs, chosen.notes);
   for (const auto& [where, variants] : left) {
     chosen.notes.push_back(fmt::format(

@@ -44,7 +44,8 @@ struct NewestRuns {
 /// Of each experiment at each scale the runs of the newest version of its manifest that has any
 /// there; with `all_versions` those of older versions too. Settled packings are left out.
 /// Each seed of a variant is listed once: a run counted twice would make errors too small. A run is
-/// listed once, or once for each variant of its manifest that is this run.
+/// listed once, or once for each variant of its manifest that is this run. They are in the order of
+/// experiment, scale, variant and seed, whatever the order of declaration.
 NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions);
 
 /// A run that no experiment declared, as a damaged store may hold it, has an empty membership.

@@ -83,6 +83,18 @@ TEST_F(DrawFigure, UsesTheNewestVersionOfTheManifest) {
       << "no run comes twice";
 }
 
+// Bootstraps draw from the runs in their order, so it is part of what a figure's bytes depend on.
+TEST_F(DrawFigure, TheOrderOfRunsDoesNotDependOnTheirDeclaration) {
+  const std::string text = tiny_manifest("", kBothFluids + "seeds: 2\n");
+  compute(store_, text, {.cycles = 1, .variants = {"fluid=still"}});
+  compute(store_, text, {.cycles = 1});
+  std::string order;
+  for (const CollectedRun& run : collect_runs(store_, kS2, {}).runs) {
+    order += run.membership.variant + std::to_string(run.membership.seed) + " ";
+  }
+  EXPECT_EQ(order, "fluid=cell1 fluid=cell2 fluid=still1 fluid=still2 ");
+}
+
 TEST_F(DrawFigure, EditingAManifestForOneScaleKeepsTheRunsOfOtherScales) {
   const std::string scales = "scales: {short: {cycles: 1}, long: {cycles: 2}}\n";
   compute(store_, tiny_manifest("", kBothFluids + scales), {.scale = "long"});

@@ -9,9 +9,9 @@ set mytics 2
 set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set bars 0.5
-set output 'depth.svg'
-set xlabel 'depth  [d]'
-set ylabel 'phi by depth'
+set output 'wall_distance.svg'
+set xlabel 'wall distance  [d]'
+set ylabel 'phi by wall distance'
 set xtics 2
 set format x '%.0f'
 set ytics 0.01
