@@ -34,6 +34,7 @@ HEADLINES = [
     ("C", "C: the critical size at A = 0.0833", "critical size [grains], A = 0.0833", "about 16"),
     ("C", "C: the critical size at A = 0.1", "critical size [grains], A = 0.1", "about 20"),
     ("S6", "D: the onset at A = 0.05 rad is the same", "phi at the onset, A = 0.05, without minus with gravity", "equal at A = 0.04, 0.05"),
+    ("S5a", "C: the onset at A = 0.04 rad", "phi at the onset, N = 7900, A = 0.04", "0.646 +- 0.001"),
     ("S5a", "C: the onset at A = 0.05 rad", "phi at the onset, N = 7900, A = 0.05", "0.646 +- 0.001"),
     ("S5b", "C: the onset at N = 11400", "phi at the onset, N = 11400, A = 0.05", "0.646 +- 0.001"),
     ("S5b", "C: the onset at N = 18200", "phi at the onset, N = 18200, A = 0.05", "0.646 +- 0.001"),

@@ -25,10 +25,10 @@ $series0 << EOD
 0.01,0.645,,
 EOD
 $series1 << EOD
-0.04,0.64545266,,0.00167183965
+0.04,0.645886233,,0.000545350465
 EOD
 $series2 << EOD
-0.041,0.646360471,,0.000228366315
+0.041,0.644248363,,0.00083681576
 EOD
 plot keyentry with points lc rgb '#e69f00' lw 1.2 pt 7 ps 0.4 title 'experiment', \
      keyentry with points lc rgb '#0072b2' lw 1.2 pt 9 ps 0.4 title 'largest crystallite is critical', \

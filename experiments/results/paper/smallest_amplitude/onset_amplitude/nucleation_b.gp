@@ -17,14 +17,15 @@ set xtics 0.001
 set format x '%.3f'
 set logscale y
 unset mytics
-set ytics (9e-07,1e-06,1.1e-06,1.2e-06,1.3e-06)
+set ytics (6e-07,8e-07,1e-06,1.2e-06,1.4e-06)
 set xrange [*:*]
 set yrange [*:*]
 set offsets graph 0.03, graph 0.03, graph 0.05, graph 0.05
 $series0 << EOD
 0.643,1.32043445e-06,,
-0.647,8.37734464e-07,,
+0.647,9.38376209e-07,,4.69188104e-07
 EOD
 plot keyentry with points lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.04, {/:Italic N} = 7900', \
+     $series0 every 1 using 1:2:4 with yerrorbars lc rgb '#0072b2' lw 0.7 pt 0 notitle, \
      $series0 every 1 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle
 set output
