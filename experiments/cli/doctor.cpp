@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <system_error>
 
 #include "core/machine.hpp"
 #include "experiments/bench/speed.hpp"
@@ -79,7 +80,11 @@ Check filesystem(const fs::path& place) {
       "keep the store on a local disk: SQLite's locks are not safe over a network; `merge` later"};
 }
 
-Check sync_time(const fs::path& place) {
+Check writing(const std::string& store, const fs::path& place) {
+  if (std::error_code none; fs::exists(store, none) && !fs::is_directory(store, none)) {
+    return {"writing", store + " is a file", "missing",
+            "a store is a folder; name another one with --store"};
+  }
   std::string name = (place / "shearcell-doctor-XXXXXX").string();
   const int file = mkstemp(name.data());
   if (file < 0) {
@@ -130,7 +135,7 @@ std::vector<Check> examine(const std::string& store, bool with_speed) {
                               memory(),
                               disk(place),
                               filesystem(place),
-                              sync_time(place),
+                              writing(store, place),
                               {"SQLite", version("sqlite"), "ok", "the log"},
                               {"HDF5", version("hdf5"), "ok", "checkpoints"},
                               program("gnuplot", "draws figures", "gnuplot-nox"),

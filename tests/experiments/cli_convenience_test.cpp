@@ -161,6 +161,8 @@ TEST_F(Convenience, DoctorReportsTheMachine) {
   const Outcome nowhere =
       expect(1, {"doctor", "--no-speed", "--store", "/proc/x"}, {"no store can be written there"});
   EXPECT_FALSE(has(nowhere.out, "room for"));
+  write("plain", "");
+  expect(1, {"doctor", "--no-speed", "--store", "plain"}, {"plain is a file"});
 }
 
 TEST_F(Convenience, TablesFitTheTerminalAndHaveColoursOnlyThere) {
