@@ -89,9 +89,8 @@ TEST_F(DrawFigure, TheOrderOfRunsDoesNotDependOnTheirDeclaration) {
   compute(store_, text, {.cycles = 1, .variants = {"fluid=still"}});
   compute(store_, text, {.cycles = 1});
   std::string order;
-  for (const CollectedRun& run : collect_runs(store_, kS2, {}).runs) {
-    order += run.membership.variant + std::to_string(run.membership.seed) + " ";
-  }
+  for (const auto& [run, membership, newest] : newest_runs(select_runs(store_, {}), false).runs)
+    order += membership.variant + std::to_string(membership.seed) + " ";
   EXPECT_EQ(order, "fluid=cell1 fluid=cell2 fluid=still1 fluid=still2 ");
 }
 
