@@ -29,6 +29,7 @@ HEADLINES = [
     ("S3", "time step: the onset is the same for steps of 1.0e-4", "phi at the onset, time step 1.0e-4 s minus 4.4e-5 s", "not asked"),
     ("B5", "B.5: at cycles", "phi gained by pauses, at rest", "grows more rapidly"),
     ("S4", "B.6: phi is the same at cycles", "phi, moving top minus moving bottom wall", "nearly the same"),
+    ("C", "C: the critical size at A = 0.04", "critical size [grains], A = 0.04", "about 10"),
     ("C", "C: the critical size at A = 0.05", "critical size [grains], A = 0.05", "about 10"),
     ("C", "C: the critical size at A = 0.0667", "critical size [grains], A = 0.0667", "about 13"),
     ("C", "C: the critical size at A = 0.0833", "critical size [grains], A = 0.0833", "about 16"),
