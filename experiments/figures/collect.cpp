@@ -267,7 +267,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   collected.notes = std::move(newest.notes);
   for (SelectedRun& run : newest.runs) {
     Membership& m = run.membership;
-    if (collected.runs.size() >= newest.newest) {
+    if (!run.of_newest_version) {
       m.labels["manifest"] = m.manifest.substr(0, 8);
       m.variant += fmt::format(",manifest={:.8}", m.manifest);
     }

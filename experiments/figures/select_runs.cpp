@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <functional>
 #include <map>
 #include <set>
 #include <tuple>
@@ -61,9 +60,10 @@ std::vector<Membership> newest_memberships(const RunRecord& run, Versions& versi
   return newest;
 }
 
-/// By experiment, scale, variant and seed, so that the order does not depend on the store's
-/// history.
+/// Newest versions first, then by experiment, scale, variant and seed, so that the order does not
+/// depend on the store's history.
 bool in_order(const SelectedRun& a, const SelectedRun& b) {
+  if (a.of_newest_version != b.of_newest_version) return a.of_newest_version;
   const auto key = [](const Membership& m) {
     return std::tie(m.experiment, m.scale, m.labels, m.seed);
   };
@@ -143,9 +143,7 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
 
 NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
   std::erase_if(selected, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
-  const auto older = std::stable_partition(selected.begin(), selected.end(),
-                                           std::mem_fn(&SelectedRun::of_newest_version));
-  const auto newest = static_cast<std::size_t>(older - selected.begin());
+  std::ranges::stable_partition(selected, &SelectedRun::of_newest_version);
   NewestRuns chosen;
   struct Taken {
     std::string manifest;
@@ -155,11 +153,9 @@ NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
   using Seed = std::tuple<ExperimentScale, std::string, std::string, std::uint64_t>;
   std::map<Seed, std::size_t> places;                        // by manifest, variant and seed
   std::map<ExperimentScale, std::vector<std::string>> left;  // variants
-  for (std::size_t k = 0; k < selected.size(); ++k) {
-    SelectedRun& run = selected[k];
+  for (SelectedRun& run : selected) {
     const Membership& m = run.membership;
-    if (k == newest) chosen.newest = chosen.runs.size();
-    if (k >= newest && !all_versions) {
+    if (!run.of_newest_version && !all_versions) {
       left[experiment_scale(m)].push_back(m.variant);
       continue;
     }
@@ -181,10 +177,7 @@ NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
         m.experiment, known.run.id, m.variant, m.seed, run.run.id));
     known = std::move(run);
   }
-  if (newest == selected.size()) chosen.newest = chosen.runs.size();
-  const auto end_of_newest = chosen.runs.begin() + static_cast<std::ptrdiff_t>(chosen.newest);
-  std::stable_sort(chosen.runs.begin(), end_of_newest, in_order);
-  std::stable_sort(end_of_newest, chosen.runs.end(), in_order);
+  std::ranges::stable_sort(chosen.runs, in_order);
   note_shortened(chosen.runs, chosen.notes);
   for (const auto& [where, variants] : left) {
     chosen.notes.push_back(fmt::format(

@@ -2,7 +2,6 @@
 // Selects runs of a store by the filters --experiment, --scale, --variant, --seed, --state.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -36,15 +35,14 @@ struct SelectedRun {
 std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& selection);
 
 struct NewestRuns {
-  std::vector<SelectedRun> runs;
-  std::size_t newest = 0;          ///< how many are of newest versions; the others are behind them
+  std::vector<SelectedRun> runs;   ///< those of newest versions first
   std::vector<std::string> notes;  ///< what was left out
 };
 
 /// Of each experiment at each scale the runs of the newest version of its manifest that has any
 /// there; with `all_versions` those of older versions too. Settled packings are left out.
 /// Each seed of a variant is listed once: a run counted twice would make errors too small. A run is
-/// listed once, or once for each variant of its manifest that is this run. They are in the order of
+/// listed once, or once for each variant of its manifest that is this run. Runs are in the order of
 /// experiment, scale, variant and seed, whatever the order of declaration.
 NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions);
 
