@@ -40,7 +40,7 @@ struct RunTable : MeasureOutcome {
   }
 };
 
-/// The table of the selected newest_runs(), in the order of declaration, then by cycle. It has
+/// The table of the selected newest_runs(), in their order, then by cycle. It has
 /// their checkpoints_for() up to end_for(). Onsets come from the checkpoints at whole cycles, as in
 /// the figures. `ledger` adds the energies of each cycle, which is simulated again for that. Throws
 /// NotFound as select_runs().
