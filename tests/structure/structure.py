@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks the structure of the sources: python3 structure.py REPOSITORY
-Includes follow the table below, no file includes itself through others, and no file is too long."""
+Includes follow the table below, no file includes itself through others, no file is too long, and the tables of files and
+folders in each README name what is there."""
 
 import pathlib
 import re
@@ -22,6 +23,7 @@ for folder in ("bench", "cluster", "export"):
     BELOW[f"experiments/{folder}"] = BELOW["experiments/report"]
 BELOW["experiments/cli"] = ["experiments/bench", "experiments/cluster", "experiments/export", "experiments/report",
                             *BELOW["experiments/report"]]
+TOP = ("core", "protocols", "provenance", "analysis", "experiments", "tests")
 GENERATED = {"experiments/runner/build_facts.hpp"}  # by CMake
 LONGEST = 400  # lines
 LONGER = {}  # file: reason
@@ -44,9 +46,19 @@ def cycle(file, includes, path, done):
     return None
 
 
+def named_in_tables(readme):
+    """(line, name) of each file or folder in the first column of tables with such a heading."""
+    heading = ""
+    for number, line in enumerate(readme.read_text().splitlines(), 1):
+        first = line.split("|")[1].strip() if line.startswith("|") else ""
+        heading = (heading or first) if first else ""
+        if heading in ("file", "files", "folder") and first != heading:
+            yield from ((number, name.strip("/")) for name in re.findall(r"`([\w./-]+)`", first))
+
+
 root = pathlib.Path(sys.argv[1])
 faults, includes = [], {}
-for top in ("core", "protocols", "provenance", "analysis", "experiments", "tests"):
+for top in TOP:
     for file in sorted(root.joinpath(top).rglob("*.[ch]pp")):
         name = str(file.relative_to(root))
         if "node_modules" in name:
@@ -68,6 +80,13 @@ for top in ("core", "protocols", "provenance", "analysis", "experiments", "tests
                 faults.append(f"{name}:{number}: includes {other}, which does not exist; name it from the repository's root")
             elif own and group(other) != own and not {group(other), other} & set(BELOW[own]):
                 faults.append(f"{name}:{number}: {own} may not include {other}")
+for readme in [root / "README.md", *(page for top in TOP for page in sorted((root / top).rglob("README.md")))]:
+    if "node_modules" in readme.parts:
+        continue
+    there = {name for file in readme.parent.glob("*") for name in (file.name, file.stem)}
+    for number, name in named_in_tables(readme):
+        if name not in there and not (readme.parent / name).exists():
+            faults.append(f"{readme.relative_to(root)}:{number}: there is no {name}")
 done = set()
 for file in includes:
     if found := cycle(file, includes, [], done):
