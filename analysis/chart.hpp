@@ -156,9 +156,6 @@ std::filesystem::path write_csv(const FigureTable& table, const std::filesystem:
 /// left out.
 std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series);
 
-/// Whether the point can be drawn: its coordinates on logarithmic axes are positive.
-bool is_on_log_axes(const Chart& chart, const ChartPoint& point);
-
 /// Nine significant digits, as in the CSV.
 std::string digits(double value);
 
@@ -166,7 +163,7 @@ std::string digits(double value);
 std::string plain_text(const Text& text);
 
 /// Whether the chart can draw the point: a logarithmic axis has positive values only.
-bool is_on_log_axes(const Chart& chart, const ChartPoint& p);
+bool is_on_log_axes(const Chart& chart, const ChartPoint& point);
 
 /// The caption of a figure: what each panel shows, what the errors are, and what the reference
 /// lines are. One paragraph that begins with `title`.

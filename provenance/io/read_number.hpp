@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers from untrusted text, independent of the locale.
 #pragma once
 
 #include <charconv>
