@@ -131,10 +131,11 @@ Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t firs
       sum += quantity(checkpoint.measures);
       ++count;
     }
-    if (run.checkpoints.empty() || run.checkpoints.back().cycle < static_cast<double>(last)) {
-      return {0, Missing::too_short};
+    if (count != last - first + 1) {
+      const double end = run.checkpoints.empty() ? 0 : run.checkpoints.back().cycle;
+      const bool ended = std::max(run.end, end) < static_cast<double>(last);
+      return {0, ended ? Missing::too_short : Missing::checkpoint};
     }
-    if (count != last - first + 1) return {0, Missing::checkpoint};
     return measured(sum / static_cast<double>(count));
   };
   if (first == last) {

@@ -23,13 +23,13 @@ using nlohmann::json;
 /// Scalars that are kept together: those of Measures itself, or of its Mechanics.
 enum class Scalars { own, mechanics };
 
-/// Calls visit(kept name, value) for each.
+/// Calls visit(kept name, value) for each; mechanics must exist.
 template <Scalars kWhich, class AnyMeasures, class Visit>
 void for_each_kept(AnyMeasures& measures, const Visit& visit) {
   for (const auto& [name, unit, meaning, member] : kept_scalar_measures()) {
     if constexpr (kWhich == Scalars::mechanics) {
       const auto* mechanical = std::get_if<MechanicalMember>(&member);
-      if (mechanical != nullptr) visit(mechanical->kept, measures.mechanics.*mechanical->value);
+      if (mechanical != nullptr) visit(mechanical->kept, (*measures.mechanics).*mechanical->value);
     } else {
       if (const auto* value = std::get_if<double Measures::*>(&member)) {
         visit(name, measures.**value);
@@ -161,6 +161,7 @@ json sensitivity_of(const MeasureInput& input) {
 
 template <Scalars kWhich>
 void read_scalars(const json& result, Measures& measures) {
+  if (kWhich == Scalars::mechanics && !measures.mechanics) measures.mechanics.emplace();
   for_each_kept<kWhich>(measures,
                         [&](std::string_view name, auto& value) { result.at(name).get_to(value); });
   if (measures.phi < 0 || measures.phi > 1) throw AnalysisError("a kept phi is not in 0 to 1");

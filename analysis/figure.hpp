@@ -38,7 +38,8 @@ struct FigureRun {
   nlohmann::json labels;      ///< the swept parameters of the run
   nlohmann::json parameters;  ///< of all its stages, by their keys in a manifest
   std::uint64_t seed = 0;
-  std::vector<CheckpointMeasures> checkpoints;  ///< by cycle
+  std::vector<CheckpointMeasures> checkpoints;  ///< by cycle; those that the figure takes
+  double end = 0;  ///< its last cycle so far, whether the figure takes that or not
 };
 
 using RunGroup = std::span<const FigureRun* const>;

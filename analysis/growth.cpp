@@ -216,8 +216,8 @@ std::optional<double> GrowthFit::critical_size() const {
   return std::exp(-intercept / slope);
 }
 
-std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs, Vanished vanished) {
-  const Cases cases = cases_of(runs, vanished);
+std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs) {
+  const Cases cases = cases_of(runs, Vanished::shrank);
   return fit(cases.log_size, cases.grew.rowwise().sum(), cases.shrank.rowwise().sum());
 }
 
@@ -235,8 +235,10 @@ std::optional<Estimate> monotone_critical_size(std::span<const GrowthBySize> run
     return std::optional<double>(
         first_that_grows(sum_over(cases.grew, selection), sum_over(cases.shrank, selection)));
   });
-  if (!found || !(found->value > 1)) return std::nullopt;
-  return found;
+  if (!found) return std::nullopt;
+  const Eigen::ArrayXd all = (cases.grew + cases.shrank).rowwise().sum();
+  const bool some_do_not = (all.head(static_cast<Eigen::Index>(found->value) - 1) > 0).any();
+  return some_do_not ? found : std::nullopt;
 }
 
 std::vector<std::optional<Estimate>> fitted_delta_rho(std::span<const GrowthBySize> runs,

@@ -70,8 +70,7 @@ struct GrowthFit {
 };
 
 /// None if all grew or all shrank, or if there is one size only.
-std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs,
-                                    Vanished vanished = Vanished::shrank);
+std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs);
 
 /// Over runs; the interval is the bootstrap's with runs as its unit, since one crystallite is
 /// followed over many cycles. None for fewer than least_bootstrap_runs, if the fit has no critical

@@ -210,7 +210,8 @@ const CurveMeasure* find_curve_measure(std::string_view name) {
 
 double ScalarMeasure::of(const Measures& measures) const {
   if (const auto* mechanical = std::get_if<MechanicalMember>(&member)) {
-    const double value = measures.mechanics.*mechanical->value;
+    if (!measures.mechanics) return std::nan("");
+    const double value = (*measures.mechanics).*mechanical->value;
     return mechanical->unit == nullptr ? value : value * (measures.units.*mechanical->unit);
   }
   if (const auto* count = std::get_if<std::size_t Measures::*>(&member)) {

@@ -39,7 +39,7 @@ struct Measures {
   std::size_t largest_crystallite = 0;  ///< grains in it
   /// phi after a rest (protocols/rest.hpp); not a number unless a figure asked for it.
   double phi_at_rest = std::numeric_limits<double>::quiet_NaN();
-  Mechanics mechanics;  ///< zeros where nothing asked for it
+  std::optional<Mechanics> mechanics;  ///< of a checkpoint, where asked for
   MechanicalUnits units;
   /// What else was asked for (derived_measures.hpp), by the names of the measures.
   std::map<std::string, double, std::less<>> numbers;

@@ -15,8 +15,8 @@ namespace shearcell {
 /// not need to know; MechanicalUnits has their values. Stress is positive in compression and is
 /// that of the interior grains over their Voronoi cells:
 ///   sigma = 1/V sum_i sum_j f_ij (x) l_ij,  l_ij from the contact to the grain's centre,
-/// (Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48, 339 (1981)). A positive shear
-/// strain, du_x/dy > 0, is resisted by a negative sigma_xy. Means over no grain are not a number.
+/// (Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48, 339 (1981)). A growing shear
+/// strain du_x/dy is resisted by a negative sigma_xy. Means over no grain are not a number.
 struct Mechanics {
   double stress_xx = 0, stress_yy = 0, stress_zz = 0;  ///< of contacts [k/d]
   double stress_xy = 0, stress_xz = 0, stress_yz = 0;  ///< [k/d]

@@ -5,6 +5,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -86,6 +87,7 @@ Interval poisson_interval(std::size_t events) {
 
 /// One run's share of the likelihood in one stratum: an amplitude and a bin of phi.
 struct Share {
+  double grains;  ///< N
   double cycles;
   double log_size;
   bool event;
@@ -116,6 +118,17 @@ Likelihood likelihood(const Strata& strata, double exponent) {
     sum.score += logs - events * weighted / weights;
   }
   return sum;
+}
+
+/// Whether some stratum with an event has runs of two sizes. Seeds of one size differ a little in
+/// their number of interior grains, which says nothing about the size.
+bool has_two_sizes(const Strata& strata) {
+  return std::ranges::any_of(strata, [](const auto& entry) {
+    const std::vector<Share>& shares = entry.second;
+    const bool event = std::ranges::any_of(shares, &Share::event);
+    const auto other = [&](const Share& share) { return share.grains != shares.front().grains; };
+    return event && std::ranges::any_of(shares, other);
+  });
 }
 
 /// The point between the ends from which on `holds` is true.
@@ -208,13 +221,14 @@ std::optional<Estimate> size_exponent(RunGroup runs, Region region) {
     for (const auto& [bin, stay] : stays) {
       if (!(stay.grain_cycles > 0)) continue;
       strata[{number_of(*run, "amplitude_rad"), bin}].push_back(
-          {stay.cycles, std::log(stay.grain_cycles / stay.cycles), stay.events > 0});
+          {number_of(*run, "grains"), stay.cycles, std::log(stay.grain_cycles / stay.cycles),
+           stay.events > 0});
     }
   }
   constexpr double widest = 30;  // N^30 is still a number
   const bool bounded =
       likelihood(strata, -widest).score > 1e-9 && likelihood(strata, widest).score < -1e-9;
-  if (counted < least_runs || !bounded) return std::nullopt;
+  if (counted < least_runs || !bounded || !has_two_sizes(strata)) return std::nullopt;
   const double value = bisected(
       -widest, widest, [&](double exponent) { return likelihood(strata, exponent).score < 0; });
   const boost::math::chi_squared one_parameter(1);
@@ -223,9 +237,12 @@ std::optional<Estimate> size_exponent(RunGroup runs, Region region) {
   const auto unlikely = [&](double exponent) {
     return likelihood(strata, exponent).logarithm < least;
   };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   const Interval interval = {
-      bisected(-widest, value, [&](double exponent) { return !unlikely(exponent); }),
-      bisected(value, widest, unlikely)};
+      unlikely(-widest)
+          ? bisected(-widest, value, [&](double exponent) { return !unlikely(exponent); })
+          : -infinity,
+      unlikely(widest) ? bisected(value, widest, unlikely) : infinity};
   return estimate_with(value, interval, normal_quantile((1 + confidence_level) / 2), counted);
 }
 

@@ -74,7 +74,8 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> run
     if (!side->empty()) continue;
     return {{},
             {decide(decided, "difference in " + name, std::nullopt, 0,
-                    fmt::format("no run with {} is computed so far", *words))}};
+                    fmt::format("no run with {} has a checkpoint{}", *words,
+                                of_run != nullptr ? "" : " of " + scalar_of(claim).reach))}};
   }
   if (first.front()->run_id == second.front()->run_id) {
     throw UsageError(fmt::format(

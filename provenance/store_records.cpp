@@ -41,8 +41,9 @@ bool chosen(const PruneChoice& choice, const RunRecord& run) {
          (!choice.state || run.state == *choice.state);
 }
 
+/// Settling has no cycles, so of its checkpoints only the first is one of cycle 0.
 bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) {
-  return choice.keep_every > 0 &&
+  return choice.keep_every > 0 && (record.cycle > 0 || record.step == 0) &&
          std::fmod(record.cycle, static_cast<double>(choice.keep_every)) == 0;
 }
 

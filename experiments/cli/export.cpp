@@ -18,8 +18,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
 #include "experiments/figures/experiment_part.hpp"
-#include "experiments/manifest/conversion.hpp"
-#include "experiments/manifest/identity.hpp"
+#include "experiments/runner/asks.hpp"
 #include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
@@ -123,10 +122,8 @@ std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& select
   const RunRecord& run = selected.run;
   const std::string& cycles = options.cycles;
   const CycleRange range = parse_cycles(cycles);
-  const bool shears = run.kind == name_of(Stage::shear);
-  const double near =
-      shears ? 0.5 / static_cast<double>(cycle_steps(drive(read_stage(run.resolved).parameters)))
-             : 0;
+  const std::optional<Drive> motion = shear_drive(run);
+  const double near = motion ? 0.5 / static_cast<double>(cycle_steps(*motion)) : 0;
   std::vector<CheckpointRecord> records;
   std::size_t pruned = 0;
   // A single cycle may also be a checkpoint that an interruption left.
@@ -139,11 +136,14 @@ std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& select
     if (record.state == CheckpointState::recorded) records.push_back(record);
   }
   if (records.empty()) {
-    throw std::invalid_argument(
-        all.empty() ? fmt::format("run {:.8} has no checkpoint yet", run.id)
-                    : fmt::format("run {:.8} has no stored checkpoint{}{} (pruned ones: `shearcell "
-                                  "regenerate`)",
-                                  run.id, cycles.empty() ? "" : " in cycles ", cycles));
+    if (all.empty()) {
+      throw std::invalid_argument(fmt::format("run {:.8} has no checkpoint yet", run.id));
+    }
+    throw std::invalid_argument(fmt::format(
+        "run {:.8} has no stored checkpoint{}{}; {}", run.id, cycles.empty() ? "" : " in cycles ",
+        cycles,
+        pruned > 0 ? "`shearcell regenerate` makes those that were pruned again"
+                   : fmt::format("it has cycles {} to {}", all.front().cycle, all.back().cycle)));
   }
   if (pruned > 0) {
     print_stderr("run {:.8}: left out: {} (pruned; `shearcell regenerate` makes them again)\n",

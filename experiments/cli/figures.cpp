@@ -67,7 +67,7 @@ void print_verdicts(const FigureSummary& result) {
 
 /// Adds the figure's summary to the list, and prints it unless --json is given.
 void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
-  if (!result.plot_error.empty() || !result.pruned.empty()) fail(context, kOtherError);
+  if (!result.plot_error.empty()) fail(context, kOtherError);
   list.push_back(facts(result));
   if (context.json) return;
   print_text("{}{}{} ({} scale): {}, {}, {} of them newly measured\n", result.experiment,

@@ -77,7 +77,7 @@ int complain(int code, const char* what) {
   return code;
 }
 
-/// Names the unexpected arguments, and the known word nearest to the first.
+/// Names the unknown command or the unexpected arguments, and the known word nearest to the first.
 std::string describe_extras(const CLI::App& app) {
   const CLI::App* at = &app;
   while (at->remaining().empty() && !at->get_subcommands().empty()) {
@@ -97,6 +97,10 @@ std::string describe_extras(const CLI::App& app) {
     }
   }
   const std::vector<std::string_view> names(known.begin(), known.end());
+  if (at == &app && !words.empty() && !words.front().starts_with('-')) {
+    return fmt::format("There is no command {}; {}", words.front(),
+                       did_you_mean(words.front(), names));
+  }
   return words.empty() ? problem : with_nearest(problem, words.front(), names);
 }
 

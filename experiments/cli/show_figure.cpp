@@ -206,8 +206,11 @@ void print_check(const std::filesystem::path& file, const PublishedFile& found,
     print_text("inputs    {}, all present and right\n\n", counted(inputs, "checkpoint"));
     return;
   }
-  print_text("inputs    {}, {} of them not as they were\n", counted(inputs, "checkpoint"),
-             faults.size());
+  const auto pruned = std::ranges::count(faults, "pruned", &InputFault::what);
+  const auto changed = std::ssize(faults) - pruned;
+  print_text("inputs    {}: {} present and right{}{}\n", counted(inputs, "checkpoint"),
+             inputs - faults.size(), pruned > 0 ? fmt::format(", {} pruned", pruned) : "",
+             changed > 0 ? fmt::format(", {} missing or changed", changed) : "");
   for (const InputFault& fault : faults) print_text("  {}\n  {}\n", fault.checkpoint, fault.what);
   print_text("\n");
 }

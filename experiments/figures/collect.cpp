@@ -27,21 +27,25 @@ namespace {
 constexpr std::array<std::uint64_t, 2> whole_run = {0, StoreLimits::cycles};
 
 /// What the experiment asks of the run, without phases of a cycle unless the figure names cycles.
-RunAsk ask_for(const Store& store, const Figure& figure, const CollectedRun& run) {
-  return figure.within ? ask_of(store, run.run.id, run.membership)
-                       : RunAsk{.target_cycles = run.membership.target_cycles,
-                                .checkpoint_every = run.membership.checkpoint_every};
+RunAsk ask_for(const Figure& figure, const CollectedRun& run) {
+  RunAsk ask = run.ask;
+  if (!figure.within) ask.phases.clear();
+  return ask;
+}
+
+/// The last cycle that the figure takes of the run.
+double last_cycle(const Figure& figure, const CollectedRun& run) {
+  return std::min(run.end, static_cast<double>(figure.within.value_or(whole_run)[1]));
 }
 
 /// The run's checkpoints for the figure, up to the run's end for this experiment. A figure that
 /// measures nothing gets only the last one.
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
                                              const CollectedRun& run) {
-  const auto [first, last] = figure.within.value_or(whole_run);
-  const RunAsk ask = ask_for(store, figure, run);
+  const auto first = static_cast<double>(figure.within.value_or(whole_run)[0]);
+  const RunAsk ask = ask_for(figure, run);
   std::vector<CheckpointRecord> found =
-      checkpoints_for(store, run.run, {&ask, 1}, static_cast<double>(first),
-                      std::min(run.end, static_cast<double>(last)));
+      checkpoints_for(store, run.run, {&ask, 1}, first, last_cycle(figure, run));
   if (figure.form == FigureForm::table && !found.empty()) {
     found.erase(found.begin(), --found.end());
   }
@@ -50,24 +54,24 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
 
 /// The number of checkpoints that the figure asks for, up to the end of the run, and that are
 /// missing.
-std::size_t missing_of(const Store& store, const Figure& figure, const CollectedRun& run) {
-  const auto [first, last] = figure.within.value_or(whole_run);
-  const double end = std::min({run.run.cycle, run.end, static_cast<double>(last)});
-  auto asked = asked_steps(run.run, ask_for(store, figure, run), static_cast<double>(first), end);
+std::size_t missing_of(const Figure& figure, const CollectedRun& run) {
+  const auto first = static_cast<double>(figure.within.value_or(whole_run)[0]);
+  const double end = std::min(run.run.cycle, last_cycle(figure, run));
+  auto asked = asked_steps(run.run, ask_for(figure, run), first, end);
   for (const CheckpointRecord& record : run.checkpoints) std::erase(asked, record.step);
   return asked.size();
 }
 
 /// Notes how many checkpoints are missing up to the end of the runs: a manifest may state a denser
 /// cadence than that of the runs.
-void note_never_made(const Store& store, const Figure& figure, CollectedRuns& collected) {
+void note_never_made(const Figure& figure, CollectedRuns& collected) {
   struct Lack {
     std::size_t checkpoints = 0;
     std::set<std::string> runs;
   };
   std::map<bool, Lack> lacks;  // of our runs, and of those of LAMMPS
   for (const CollectedRun& run : collected.runs) {
-    const std::size_t missing = missing_of(store, figure, run);
+    const std::size_t missing = missing_of(figure, run);
     if (missing == 0) continue;
     Lack& lack = lacks[engine_of(run.run.resolved) == EngineKind::lammps];
     lack.checkpoints += missing;
@@ -84,24 +88,25 @@ void note_never_made(const Store& store, const Figure& figure, CollectedRuns& co
   }
 }
 
-/// Whether the experiment asks for a checkpoint of the run that the figure takes, made or not.
-bool asks_for_one(const Store& store, const Figure& figure, const CollectedRun& run) {
+/// Whether the experiment asks for a checkpoint of the run that the figure takes, and that is made
+/// or can still be made.
+bool asks_for_one(const Figure& figure, const CollectedRun& run) {
   if (!figure.within || run.run.kind != name_of(Stage::shear)) return true;
-  const RunAsk ask = ask_for(store, figure, run);
-  const auto [first, last] = *figure.within;
-  return !asked_steps(run.run, ask, static_cast<double>(first),
-                      static_cast<double>(std::min(last, ask.target_cycles)))
+  const bool ended = run.run.state == RunState::completed;
+  const double last = std::min(last_cycle(figure, run), ended ? run.run.cycle : run.end);
+  return !asked_steps(run.run, ask_for(figure, run), static_cast<double>((*figure.within)[0]), last)
               .empty();
 }
 
 /// Removes the runs without a checkpoint for the figure; notes those and the unfinished ones.
-void leave_out_not_begun(const Store& store, const Figure& figure, CollectedRuns& collected) {
+void leave_out_not_begun(const Figure& figure, CollectedRuns& collected) {
   std::set<std::string> not_begun, never, going_on;
   for (const CollectedRun& run : collected.runs) {
     const std::string name = fmt::format("{} seed {}", run.name, run.membership.seed);
     if (run.checkpoints.empty()) {
-      (asks_for_one(store, figure, run) ? not_begun : never).insert(name);
-    } else if (run.run.state != RunState::completed && run.checkpoints.back().cycle < run.end) {
+      (asks_for_one(figure, run) ? not_begun : never).insert(name);
+    } else if (run.run.state != RunState::completed &&
+               run.checkpoints.back().cycle < last_cycle(figure, run)) {
       going_on.insert(name);
     }
   }
@@ -190,6 +195,24 @@ std::string last_scale(const std::vector<SelectedRun>& runs,
 
 }  // namespace
 
+FigureRun unmeasured(const CollectedRun& input) {
+  nlohmann::json parameters = recorded_parameters(input.run.resolved);
+  if (!effective_parameters(input.run.resolved).contains("pressure_at")) {
+    parameters["pressure_at"] = name_of(PressureAt::top);
+  }
+  return {input.run.id,
+          input.run.parent,
+          input.membership.experiment,
+          input.membership.variant,
+          input.name,
+          input.named,
+          input.membership.labels,
+          std::move(parameters),
+          input.membership.seed,
+          {},
+          std::min(input.end, input.run.cycle)};
+}
+
 std::string WantedFigure::path() const {
   return experiment.empty() ? figure.name : experiment + "/" + figure.name;
 }
@@ -267,15 +290,19 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   collected.notes = std::move(newest.notes);
   for (SelectedRun& run : newest.runs) {
     Membership& m = run.membership;
+    RunAsk ask = ask_of(store, run.run.id, m);
     if (!run.of_newest_version) {
       m.labels["manifest"] = m.manifest.substr(0, 8);
       m.variant += fmt::format(",manifest={:.8}", m.manifest);
     }
-    collected.runs.push_back({std::move(run)});
+    collected.runs.push_back({std::move(run), std::move(ask)});
   }
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) {
     name_variants(manifests, collected);
+    std::erase_if(collected.runs, [&](const CollectedRun& run) {
+      return wanted.figure.uses && !wanted.figure.uses(unmeasured(run));
+    });
   } else {
     std::set<std::pair<std::string, std::string>> known;
     std::erase_if(collected.runs, [&](const CollectedRun& run) {
@@ -283,13 +310,13 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     });
   }
   for (CollectedRun& run : collected.runs) {
-    run.end = measured ? end_for(store, run.run, run.membership, measuring)
+    run.end = measured ? end_for(store, run.run, run.ask, measuring)
                        : static_cast<double>(run.membership.target_cycles);
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }
   if (measured) {
-    leave_out_not_begun(store, wanted.figure, collected);
-    note_never_made(store, wanted.figure, collected);
+    leave_out_not_begun(wanted.figure, collected);
+    note_never_made(wanted.figure, collected);
   }
   return collected;
 }

@@ -7,6 +7,7 @@
 
 #include "analysis/figure.hpp"
 #include "experiments/figures/select_runs.hpp"
+#include "experiments/runner/asks.hpp"
 #include "experiments/runner/measure.hpp"
 #include "provenance/store.hpp"
 
@@ -40,11 +41,16 @@ std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures);
 
 /// One run of a figure.
 struct CollectedRun : SelectedRun {
+  RunAsk ask = {};                                 ///< what the experiment asks of it
   std::vector<CheckpointRecord> checkpoints = {};  ///< checkpoints_for()
   std::string name = {};                           ///< of its variant, for people
   bool named = false;                              ///< by a label of the manifest
   double end = 0;                                  ///< end_for()
 };
+
+/// The run without its checkpoints. Its parameters say `pressure_at: top` where P acts equally on
+/// both walls.
+FigureRun unmeasured(const CollectedRun& run);
 
 struct CollectedRuns {
   std::string scale;  ///< one figure never mixes scales
@@ -53,10 +59,10 @@ struct CollectedRuns {
   std::vector<std::string> notes;
 };
 
-/// The selected newest_runs() of the experiment, at the scale declared last, with their checkpoints
-/// up to end_for(). A figure of all experiments has a run once per experiment. Runs of older
-/// versions of a manifest have their own variants, as "fluid=cell,manifest=1f2e3d4c". Throws
-/// NotFound if there is no such run.
+/// The selected newest_runs() of the experiment that the figure uses, at the scale declared last,
+/// with their checkpoints up to end_for(). A figure of all experiments has a run once per
+/// experiment. Runs of older versions of a manifest have their own variants, as
+/// "fluid=cell,manifest=1f2e3d4c". Throws NotFound if there is no such run.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring = {});
 

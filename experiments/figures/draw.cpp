@@ -13,7 +13,6 @@
 #include "analysis/plot.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/more_measures.hpp"
-#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/host.hpp"
@@ -23,25 +22,6 @@
 
 namespace shearcell {
 namespace {
-
-/// The run without its checkpoints. Its parameters say `pressure_at: top` where P acts equally on
-/// both walls.
-FigureRun unmeasured(const CollectedRun& input) {
-  nlohmann::json parameters = recorded_parameters(input.run.resolved);
-  if (!effective_parameters(input.run.resolved).contains("pressure_at")) {
-    parameters["pressure_at"] = name_of(PressureAt::top);
-  }
-  return {input.run.id,
-          input.run.parent,
-          input.membership.experiment,
-          input.membership.variant,
-          input.name,
-          input.named,
-          input.membership.labels,
-          std::move(parameters),
-          input.membership.seed,
-          {}};
-}
 
 /// Measures the checkpoints of the runs.
 std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
@@ -242,10 +222,6 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   CollectedRuns collected = collect_runs(store, wanted, options.runs, options);
   summary.name = figure.name;
   summary.experiment = wanted.experiment;
-  if (figure.uses) {
-    std::erase_if(collected.runs,
-                  [&](const CollectedRun& run) { return !figure.uses(unmeasured(run)); });
-  }
   summary.notes = std::move(collected.notes);
   summary.scale = collected.scale;
   const std::vector<FigureRun> runs = figure_runs(store, figure, collected.runs, options, summary);

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
-#include <stdexcept>
 #include <vector>
 
-#include "core/drive.hpp"
-#include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/run_end.hpp"
 
@@ -16,12 +14,9 @@ namespace shearcell {
 
 std::vector<std::uint64_t> asked_steps(const RunRecord& run, const RunAsk& ask, double first,
                                        double last) {
-  if (run.kind != name_of(Stage::shear)) return {};
-  try {
-    return checkpoint_steps(ask, drive(read_stage(run.resolved).parameters), first, last);
-  } catch (const std::runtime_error&) {
-    return {};  // `verify` names it
-  }
+  const std::optional<Drive> motion = shear_drive(run);
+  if (!motion) return {};
+  return checkpoint_steps(ask, *motion, first, last);
 }
 
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecord& run,
@@ -53,7 +48,7 @@ std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecor
                                               const Membership& membership,
                                               const MeasureOptions& options) {
   const RunAsk ask = ask_of(store, run.id, membership);
-  return checkpoints_for(store, run, {&ask, 1}, 0, end_for(store, run, membership, options));
+  return checkpoints_for(store, run, {&ask, 1}, 0, end_for(store, run, ask, options));
 }
 
 }  // namespace shearcell

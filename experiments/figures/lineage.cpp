@@ -32,8 +32,9 @@ FigureInput read_input(const json& input) {
 json labels_of(const RunRecord& run, const FigureInput& input) {
   for (const Membership& member : run.memberships) {
     // The variant of an older version ends in that version (collect.hpp).
-    if (member.manifest == input.manifest && input.variant.starts_with(member.variant))
-      return member.labels;
+    const bool same =
+        input.variant == member.variant || input.variant.starts_with(member.variant + ",manifest=");
+    if (member.manifest == input.manifest && same) return member.labels;
   }
   return json::object();
 }

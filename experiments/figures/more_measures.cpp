@@ -53,6 +53,10 @@ void add_simulated(const Store& store, const DerivedMeasure& measure, const Orig
       measure_checkpoints(store, origins.from, {&measure, 1}, options);
   made.measured = std::max(made.measured, found.measured);
   add_unread(found, made);
+  for (const std::string& sha256 : found.changed) {
+    if (std::ranges::count(made.changed, sha256) == 0) made.changed.push_back(sha256);
+  }
+  if (made.cache_trouble.empty()) made.cache_trouble = found.cache_trouble;
   for (std::size_t n = 0; n < found.results.size(); ++n) {
     const nlohmann::json& result = found.results[n].front();
     if (!result.is_null() && *origins.to[n]) read(origins.from[n], result, **origins.to[n]);

@@ -173,7 +173,7 @@ std::vector<std::string> problems_of(const ClaimSpec& claim, const Scale& scale,
                                      const std::vector<Variant>& variants, std::size_t seeds) {
   std::vector<std::string> found;
   if (claim.between[0] == claim.between[1]) {
-    found.emplace_back("both sides of `between` are the same. Name two variants.");
+    return {"both sides of `between` are the same. Name two variants."};
   }
   std::vector<const Variant*> sides;
   for (const nlohmann::json& side : claim.between) {

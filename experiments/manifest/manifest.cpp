@@ -103,7 +103,9 @@ Until until_from_json(const nlohmann::json& json) {
 
 std::string describe(const Until& until) {
   std::string text = fmt::format("{} >= {}", name_of(until.measure), until.value);
-  if (until.extra_cycles > 0) text += fmt::format(" and {} cycles more", until.extra_cycles);
+  if (until.extra_cycles > 0)
+    text +=
+        fmt::format(" and {} more cycle{}", until.extra_cycles, until.extra_cycles == 1 ? "" : "s");
   return text;
 }
 

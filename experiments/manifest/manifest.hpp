@@ -111,7 +111,7 @@ nlohmann::json to_json(const Until& until);
 /// The inverse. The JSON is not trusted: throws std::runtime_error.
 Until until_from_json(const nlohmann::json& json);
 
-/// "crystalline_percent >= 10 and 15 cycles more".
+/// "crystalline_percent >= 10 and 15 more cycles".
 std::string describe(const Until& until);
 
 /// `until`, or `until: none` in a scale, and where it was written.

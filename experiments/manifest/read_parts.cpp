@@ -96,10 +96,11 @@ void check_zip(const std::vector<SweepAxis>& zip, const Entry& in) {
   const std::size_t rows = first.values.size();
   for (const SweepAxis& axis : zip) {
     if (axis.values.size() == rows) continue;
-    return in.problems.add(axis.at, path + "." + axis.key,
-                           fmt::format("differs in length from {}, which has {}", first.key, rows),
-                           fmt::format("{} values", axis.values.size()),
-                           "The lists of a zip advance together; make them equally long.");
+    return in.problems.add(
+        axis.at, path + "." + axis.key,
+        fmt::format("differs in length from {}, which has {}", first.key, rows),
+        fmt::format("{} value{}", axis.values.size(), axis.values.size() == 1 ? "" : "s"),
+        "The lists of a zip advance together; make them equally long.");
   }
   std::set<json> seen;
   for (std::size_t row = 0; row < rows; ++row) {

@@ -109,8 +109,8 @@ std::span<const ManifestKey> manifest_keys() {
       {"question", "Does the fluid matter?", "what the experiment is to find out, for people",
        read_question},
       {"figures", "[S2]", "figures of the supplement to draw", read_figures},
-      {"labels", "{\"fluid=still\": fluid at rest}", "names of variants in figures and tables",
-       read_labels},
+      {"labels", "{\"fluid=still\": fluid at rest}",
+       "names of variants in drawings, captions, progress, `status` and `table`", read_labels},
       {"plots", "[{name: compaction, y: phi, x: cycle}]", "figures of your own", read_plots},
       {"claims",
        "[{name: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: cell}], "

@@ -57,6 +57,15 @@ std::map<Place, RunAsk> asks_by_place(const Store& store, const std::string& run
 
 }  // namespace
 
+std::optional<Drive> shear_drive(const RunRecord& run) {
+  if (run.kind != name_of(Stage::shear)) return std::nullopt;
+  try {
+    return drive(read_stage(run.resolved).parameters);
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+}
+
 std::vector<RunAsk> asks_of(const Store& store, const std::string& run) {
   std::vector<RunAsk> list;
   for (auto& [place, ask] : asks_by_place(store, run)) list.push_back(std::move(ask));

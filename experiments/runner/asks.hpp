@@ -24,6 +24,10 @@ struct RunAsk {
   std::vector<double> phases = {};     ///< more checkpoints in each cycle after one of these
 };
 
+/// The motion of the walls in a shear; nothing for another kind of run, and for a record that this
+/// program cannot read (`verify` names it).
+std::optional<Drive> shear_drive(const RunRecord& run);
+
 /// One for each membership of the run, from its declarations. Throws StoreDamaged when a
 /// declaration is not as this program writes it.
 std::vector<RunAsk> asks_of(const Store& store, const std::string& run);

@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/measure_sources.hpp"
 
-#include <stdexcept>
 #include <utility>
 
 #include "core/drive.hpp"
-#include "experiments/manifest/conversion.hpp"
-#include "experiments/manifest/identity.hpp"
+#include "experiments/runner/asks.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
 
 MeasureSources::Shear MeasureSources::read_shear(const std::string& id) const {
   Shear shear;
-  const RunRecord run = store_.run(id);
-  if (run.kind != name_of(Stage::shear)) return shear;
-  try {
-    shear.cycle_steps = cycle_steps(drive(read_stage(run.resolved).parameters));
-  } catch (const std::runtime_error&) {
-    return shear;  // not a run of this program
-  }
+  const std::optional<Drive> motion = shear_drive(store_.run(id));
+  if (!motion) return shear;
+  shear.cycle_steps = cycle_steps(*motion);
   for (CheckpointRecord& one : store_.checkpoints(id, Listed::and_pruned)) {
     const std::uint64_t step = one.step;
     shear.checkpoints.insert_or_assign(step, std::move(one));

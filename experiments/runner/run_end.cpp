@@ -9,6 +9,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "experiments/runner/words.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -109,12 +110,11 @@ std::optional<json> ended_early(std::span<const RunAsk> asks,
   return why;
 }
 
-double end_for(const Store& store, const RunRecord& run, const Membership& membership,
+double end_for(const Store& store, const RunRecord& run, const RunAsk& ask,
                const MeasureOptions& options) {
-  const auto target = static_cast<double>(membership.target_cycles);
-  if (run.memberships.size() < 2) return target;  // no other experiment can have continued it
-  const RunAsk ask = ask_of(store, run.id, membership);
-  if (!ask.until) return target;
+  const auto target = static_cast<double>(ask.target_cycles);
+  // With one membership no other experiment can have continued it.
+  if (run.memberships.size() < 2 || !ask.until) return target;
   std::vector<CheckpointRecord> records = store.checkpoints(run.id, Listed::and_pruned);
   std::erase_if(records, [&](const CheckpointRecord& record) {
     return std::fmod(record.cycle, static_cast<double>(ask.checkpoint_every)) != 0;
@@ -151,7 +151,7 @@ std::string describe_end(const json& ended) {
   std::string why =
       fmt::format("{} >= {} at cycle {}{}", ended.at("measure").get<std::string>(),
                   ended.at("value").get<double>(), ended.at("reached_at_cycle").get<double>(),
-                  extra > 0 ? fmt::format(" and {} cycles more", extra) : "");
+                  extra > 0 ? fmt::format(" and {}", counted(extra, "more cycle")) : "");
   if (const json asked = member_of(ended, "cycles_asked"); !asked.is_null()) {
     why = fmt::format("an experiment asks for {} cycles; {}", asked.get<double>(), why);
   }

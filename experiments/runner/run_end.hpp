@@ -31,11 +31,11 @@ struct MeasuredCycle {
 std::optional<nlohmann::json> ended_early(std::span<const RunAsk> asks,
                                           std::span<const MeasuredCycle> measured, double now);
 
-/// The last cycle of the run that counts for this experiment: its number of cycles, or where its
-/// `until` ends the run. Another experiment may have continued it; an experiment's figures and
-/// tables are the same whatever shares its runs. May measure checkpoints, and keeps the results.
-/// Throws StoreDamaged where the run's declarations are not as this program writes them.
-double end_for(const Store& store, const RunRecord& run, const Membership& membership,
+/// The last cycle of the run that counts for the experiment that asks: its number of cycles, or
+/// where its `until` ends the run. Another experiment may have continued it; an experiment's
+/// figures and tables are the same whatever shares its runs. May measure checkpoints, and keeps the
+/// results. Throws StoreDamaged where the run's declarations are not as this program writes them.
+double end_for(const Store& store, const RunRecord& run, const RunAsk& ask,
                const MeasureOptions& options);
 
 /// What the last completion of the run records of its end; null where there is none.
@@ -45,7 +45,7 @@ nlohmann::json recorded_end(const Store& store, const std::string& run);
 /// With "cycles_asked" where the run ended later, at the length that another experiment asked for.
 nlohmann::json end_of(const Store& store, const RunRecord& run);
 
-/// "crystalline_percent >= 10 at cycle 25 and 15 cycles more"; "" for null.
+/// "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.
 std::string describe_end(const nlohmann::json& ended);
 
 /// Mean cycle at which runs of the store with this `until` ended by it; empty if there are no such

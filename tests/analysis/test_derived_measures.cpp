@@ -60,7 +60,7 @@ TEST(DerivedMeasures, EveryScalarIsRestoredBitByBit) {
     ++scalars;
   }
   // Each but phi_at_rest, which is kept by itself.
-  EXPECT_EQ((scalars + 1) * sizeof(double), sizeof(Measures) - sizeof(Mechanics) -
+  EXPECT_EQ((scalars + 1) * sizeof(double), sizeof(Measures) - sizeof(m.mechanics) -
                                                 sizeof(MechanicalUnits) - sizeof(m.numbers) -
                                                 sizeof(m.curves) - sizeof(m.crystallite_map))
       << "a scalar has no entry";

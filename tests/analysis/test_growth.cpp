@@ -113,8 +113,8 @@ TEST(GrowthFit, IsMissingWithoutATurn) {
 
 TEST(GrowthFit, VanishedOnesMayBeLeftOut) {
   const GrowthBySize counts = {{4, {1, 6, 3}}, {16, {3, 1, 0}}};
-  EXPECT_NEAR(fit_growth(std::vector{counts}, Vanished::left_out)->critical_size().value(), 8,
-              1e-9);
+  const std::vector<GrowthBySize> runs(least_bootstrap_runs, counts);
+  EXPECT_NEAR(critical_size(runs, Vanished::left_out)->value, 8, 1e-9);
   EXPECT_GT(fit_growth(std::vector{counts})->critical_size().value(), 8);
 }
 
@@ -152,6 +152,7 @@ TEST(MonotoneCriticalSize, IsWhereTheShareThatGrowsPassesAHalf) {
   EXPECT_EQ(size({{1, {1, 9, 0}}, {2, {7, 3, 0}}, {3, {4, 6, 0}}, {5, {8, 2, 0}}})->value, 2)
       << "2 and 3 together: 11 of 20";
   EXPECT_FALSE(size({{1, {6, 4, 0}}, {2, {7, 3, 0}}}).has_value()) << "all sizes grow";
+  EXPECT_FALSE(size({{5, {3, 0, 0}}, {6, {3, 0, 0}}}).has_value()) << "and no smaller ones";
   EXPECT_FALSE(size({{1, {4, 6, 0}}, {2, {5, 5, 0}}}).has_value()) << "none grows";
   std::vector<GrowthBySize> runs;
   for (int run = 0; run < 6; ++run) runs.push_back(logistic_growth(15, 2));

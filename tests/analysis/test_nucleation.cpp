@@ -209,6 +209,12 @@ TEST(SizeExponent, NeedsTwoSizesAtOnePhi) {
   const std::vector<FigureRun> apart = {waiting(1000, 1, 5, 30), waiting(1000, 2, 6, 30),
                                         waiting(3000, 3, 7, 30, 0.6501)};
   EXPECT_FALSE(size_exponent(pointers(apart), Region::interior));
+  std::vector<FigureRun> seeds;
+  for (const int interior : {990, 1010, 1000, 1005, 995}) {
+    seeds.push_back(waiting(interior, seeds.size(), 3 + interior % 7, 30));
+    seeds.back().labels["grains"] = seeds.back().parameters["grains"] = 2000;
+  }
+  EXPECT_FALSE(size_exponent(pointers(seeds), Region::interior)) << "seeds of one size";
 }
 
 // By one onset of six small runs, and none.

@@ -111,7 +111,7 @@ TEST_F(Submitted, TasksEndRunsByUntil) {
   const RunRecord run = runs_of_kind(store_, "shear").front();
   EXPECT_EQ(run.state, RunState::completed);
   EXPECT_EQ(run.cycle, 1);
-  EXPECT_EQ(describe_end(end_of(store_, run)), "phi >= 0.1 at cycle 0 and 1 cycles more");
+  EXPECT_EQ(describe_end(end_of(store_, run)), "phi >= 0.1 at cycle 0 and 1 more cycle");
   EXPECT_TRUE(work_left({plan}, &store_).empty());
   const Plan edited = expand(parse_manifest(text + "# edited\n", "tiny.yaml"));
   EXPECT_TRUE(work_left({edited}, &store_).empty()) << "its `until` is the same";

@@ -129,7 +129,8 @@ def headlines(page, results):
                  if of == figure and claim["claim"].startswith(beginning) and "(P on" not in claim["claim"]]
         if not found:
             continue
-        _, drawing, claim = best_of(found)
+        place, drawing, claim = best_of(found)
+        name += ", time step 1.0e-4 s" if place.startswith("larger_step") else ""
         text += row([name, supplement, measured(claim), runs(claim), link(claim["verdict"], drawing, page)])
     return text
 

@@ -66,6 +66,24 @@ TEST_F(FigureLineageTest, NamesEveryCheckpointAndItsOrigin) {
   EXPECT_EQ(all.at("outputs").size(), lineage.outputs.size());
 }
 
+// Continuous shear has no pauses, so both variants are one run; the name of one begins the other's.
+TEST_F(FigureLineageTest, NamesTheLineOfItsOwnVariant) {
+  compute(store_, renamed(tiny_manifest("",
+                                        "sweep:\n  grid:\n    pause_s:\n      - 0.1\n"
+                                        "      - 0.15\n"),
+                          "pauses"));
+  draw("out", {*find_figure("S2"), "pauses"});
+  const auto records = figure_records(store_);
+  std::map<std::string, std::string> lines;
+  for (const FigureInput& input : figure_lineage(store_, records.back()).inputs) {
+    for (const ManifestLine& line : input.lines) {
+      if (line.key == "sweep.grid.pause_s") lines[input.variant] = line.text;
+    }
+  }
+  EXPECT_EQ(lines, (std::map<std::string, std::string>{{"pause_s=0.1", "- 0.1"},
+                                                       {"pause_s=0.15", "- 0.15"}}));
+}
+
 TEST_F(FigureLineageTest, FindsTheRecordOfAFile) {
   const std::string old = read_bytes(file("out/tiny/S2a.csv"));
   const std::string old_lineage = read_bytes(file("out/tiny/S2.lineage.json"));

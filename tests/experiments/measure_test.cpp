@@ -244,6 +244,31 @@ TEST_F(Measure, ResultsHaveTheOrderOfTheRecordsWithAnyNumberOfWorkers) {
   }
 }
 
+TEST_F(Measure, AnotherKeptRestIsReplacedAndNamed) {
+  compute(store_, tiny_manifest("", "sweep: {grid: {protocol: [continuous, paused]}}\n"));
+  FigureOptions fresh;
+  fresh.fresh = true;
+  const WantedFigure b5{*find_figure("B5"), "tiny"};
+  draw("first", b5);
+  DerivedKey key;
+  key.version = analysis_version;
+  {
+    sqlite::Database database(cache(), Access::read);
+    sqlite::Statement kept(database,
+                           "SELECT checkpoint, measure FROM derived WHERE measure LIKE "
+                           "'scalars_at_rest%' ORDER BY checkpoint");
+    ASSERT_TRUE(kept.step());
+    kept.get(key.checkpoint, key.measure);
+  }
+  DerivedCache kept(store_.folder());
+  nlohmann::json other = decode_result(kept.get(std::span(&key, 1)).front().value());
+  other["phi"] = other["phi"].get<double>() + 0.001;
+  const DerivedObject object{key, encode_result(other)};
+  kept.put(std::span(&object, 1));
+  EXPECT_EQ(draw("second", b5, fresh).changed, std::vector<std::string>{key.checkpoint});
+  EXPECT_TRUE(draw("third", b5, fresh).changed.empty());
+}
+
 TEST_F(Measure, WorksWithoutAWritableCache) {
   make("first");
   std::filesystem::remove(cache());

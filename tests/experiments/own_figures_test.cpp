@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "experiments/figures/collect.hpp"
+#include "experiments/figures/run_table.hpp"
+#include "experiments/runner/replay.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
@@ -77,7 +79,49 @@ TEST_F(OwnFigures, AClaimOnRunsThatAreNotComputedIsUndecided) {
   draw("own", "same");
   const auto verdict = nlohmann::json::parse(contents("own").at("same.verdict.json"));
   EXPECT_EQ(verdict.at("verdict"), "undecided");
-  EXPECT_EQ(verdict.at("claims").at(0).at("note"), "no run with fluid=still is computed so far");
+  EXPECT_EQ(verdict.at("claims").at(0).at("note"),
+            "no run with fluid=still has a checkpoint of cycle 1");
+}
+
+// Its scalars are cached for S2; its stress is unknown and not zero.
+TEST_F(OwnFigures, LeaveOutWhatAPrunedCheckpointCannotGive) {
+  compute(store_, tiny_manifest("", "plots: [{name: xy, y: stress_xy_Pa}]\n"));
+  draw("own");
+  const CheckpointRecord middle = store_.checkpoints(sheared(store_).id).at(1);
+  store_.prune({middle});
+  EXPECT_EQ(draw("own", "xy").pruned.size(), 1U);
+  const std::string without = contents("own").at("xy.csv");
+  EXPECT_FALSE(has(without, "\nbase,1,0,")) << without;
+  EXPECT_TRUE(has(without, "\nbase,1,,")) << without;
+  EXPECT_TRUE(has(to_csv(run_table(store_, {}, RowPer::checkpoint, {})), ",,,,,,"))
+      << "a table too";
+  regenerate_checkpoint(store_, middle);
+  draw("own", "xy");
+  EXPECT_FALSE(has(contents("own").at("xy.csv"), "\nbase,1,,"));
+}
+
+TEST_F(OwnFigures, AClaimSaysWhatItsRunsLack) {
+  const std::string claim =
+      "claims: [{name: same, compare: phi, cycles: [2, 3], margin: 1,"
+      " between: [{fluid: still}, {fluid: cell}]}]\n";
+  compute(store_,
+          tiny_manifest("  cycles: 4\n",
+                        kBothFluids + "seeds: 3\ncheckpoints: {every_cycles: 2}\n" + claim));
+  const FigureSummary summary = draw("own", "same");
+  EXPECT_TRUE(has(summary.verdicts.at(0).note, "6 of 6 runs lack a checkpoint of cycles 2 to 3"))
+      << summary.verdicts.at(0).note;
+}
+
+// One variant has ended, and of the other pair of variants nothing is computed.
+TEST_F(OwnFigures, AClaimSaysNothingOfOtherRuns) {
+  const std::string text = tiny_manifest(
+      "",
+      "sweep: {grid: {fluid: [still, cell], amplitude_rad: [0.05, 0.1]}}\nseeds: 3\n"
+      "claims: [{name: same, compare: phi, at_cycle: 1, margin: 1, between: [{fluid: still, "
+      "amplitude_rad: 0.05}, {fluid: cell, amplitude_rad: 0.05}]}]\n");
+  compute(store_, text, {.cycles = 1, .variants = {"amplitude_rad=0.05"}});
+  declared(store_, text, {.cycles = 3});  // they go on, beyond what the claim takes
+  EXPECT_EQ(draw("own", "same").notes, std::vector<std::string>());
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(RunEnd, IsDescribed) {
   const auto why = ended_early(std::vector{ask(9, Until{StopMeasure::crystalline_percent, 10, 2})},
                                measured({1, 10, 20}), 4);
   ASSERT_TRUE(why);
-  EXPECT_EQ(describe_end(*why), "crystalline_percent >= 10 at cycle 2 and 2 cycles more");
+  EXPECT_EQ(describe_end(*why), "crystalline_percent >= 10 at cycle 2 and 2 more cycles");
   EXPECT_EQ(describe_end(nullptr), "");
 }
 
@@ -237,6 +237,17 @@ TEST_F(UntilTest, EndsRunsInFiguresToo) {
   EXPECT_EQ(rows(), table);
   std::filesystem::remove(store_.folder() / DerivedCache::kFile);
   EXPECT_EQ(compute_figure(store_, s2, {}).lineage, alone) << "measured again";
+}
+
+TEST_F(UntilTest, EndsRunsOfAnOlderVersionInFiguresToo) {
+  compute(store_, manifest(until()));
+  compute(store_, renamed(manifest(""), "twin"));
+  compute(store_, tiny_manifest("  drag_kg_per_s: 2.0e-3\n"));
+  const auto runs = collect_runs(store_, {*find_figure("S2"), "tiny"}, {.all_versions = true}).runs;
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_TRUE(has(runs[1].membership.variant, ",manifest="));
+  EXPECT_EQ(runs[1].run.cycle, 6);
+  EXPECT_EQ(runs[1].checkpoints.back().cycle, static_cast<double>(end_));
 }
 
 TEST_F(UntilTest, AnExperimentKeepsItsCadenceInTables) {

@@ -57,6 +57,22 @@ TEST_F(PruneTest, ChoosesByCadenceRunAndState) {
   EXPECT_EQ(store_.events().size(), 16u) << "choosing recorded something";
 }
 
+// They have no cycles, so a cadence keeps the first and the last.
+TEST_F(PruneTest, ACadenceFreesCheckpointsOfSettling) {
+  store_.declare_run(sample_run(2, 6));
+  store_.start_run(run_id(2), {});
+  for (std::uint64_t part = 0; part <= 3; ++part) {
+    Checkpoint checkpoint = sample_checkpoint(run_id(2), part * kCycle);
+    checkpoint.cycle = 0;
+    store_.record_checkpoint(run_id(2), checkpoint);
+  }
+  std::vector<std::uint64_t> steps;
+  for (const CheckpointRecord& record : store_.prunable({{run_id(2)}, {}, 100})) {
+    steps.push_back(record.step);
+  }
+  EXPECT_EQ(steps, (std::vector<std::uint64_t>{kCycle, 2 * kCycle}));
+}
+
 TEST_F(PruneTest, FreesTheFilesAndKeepsTheRecords) {
   const auto chosen = store_.prunable({{}, {}, 3});
   ASSERT_EQ(cycles(chosen), (std::vector<double>{1, 2, 4, 5, 1}));
