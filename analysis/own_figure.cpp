@@ -255,9 +255,15 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
   return table;
 }
 
-/// Means of both measures over the runs at each cycle.
+/// Means of both measures at each cycle, over the runs that have both.
 FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves) {
-  const std::array<MeasureColumn, 2> both = {scalar_column(plot.y), scalar_column(plot.x)};
+  std::array<MeasureColumn, 2> both = {scalar_column(plot.y), scalar_column(plot.x)};
+  const std::array<Quantity, 2> quantities = {both[0].quantity, both[1].quantity};
+  for (std::size_t k = 0; k < 2; ++k) {
+    both[k].quantity = [own = quantities[k], other = quantities[1 - k]](const Measures& m) {
+      return std::isfinite(other(m)) ? own(m) : std::nan("");
+    };
+  }
   FigureTable table = against_cycle(plot.name, curves, both, {});
   table.chart.series = series_of(curves, columns_against(column_name(both[1], "mean"), both[0]));
   table.chart.note.clear();  // of lines that are not drawn

@@ -192,7 +192,7 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
       database_,
       "SELECT stream FROM events WHERE stream >= 'manifest/' AND stream < 'manifest0' "
       "AND json_valid(payload) AND json_extract(payload, '$.info.experiment') = ? "
-      "ORDER BY seq DESC LIMIT 1",
+      "ORDER BY recorded_at DESC, seq DESC LIMIT 1",
       experiment);
   if (log_.version(stream) > 0 && (!newest.step() || newest.text(0) == stream)) return sha256;
   append(stream,

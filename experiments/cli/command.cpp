@@ -75,7 +75,9 @@ namespace {
 
 CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const char* help,
                       const char* type) {
-  return command.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
+  return command.add_option(name, values, std::string(help) + "; may be repeated")
+      ->type_name(type)
+      ->allow_extra_args(false);
 }
 
 void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {

@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -182,7 +183,9 @@ std::vector<std::string> write_run(const Store& store, const WantedRun& run,
   if (folder) fs::create_directory(out);
   std::vector<FrameWriter> writers = {format.writer(options, out, records.size())};
   if (folder) writers.push_back(facts_writer(out, records.size()));
-  MeasureSources sources(store);
+  std::uint64_t every = run.places.empty() ? checkpoint_cadence(run.run) : 0;
+  for (const Membership& place : run.places) every = std::gcd(every, place.checkpoint_every);
+  MeasureSources sources(store, {{run.run.id, every}});
   for (const CheckpointRecord& record : records) {
     const Frame frame = frame_of(store.load_checkpoint(record), record, run, &sources);
     for (const FrameWriter& write : writers) write(frame);

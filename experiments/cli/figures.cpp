@@ -146,7 +146,7 @@ void add_figures(CLI::App& app, Context& context) {
   command->get_option("--experiment")
       ->description("Only of this experiment, which need not list the figures named");
   command->get_option("--scale")->description(
-      "Scale of the runs (default: the one added to the store last)");
+      "Scale of the runs (default: that of the run that was added to the store last)");
   command->add_flag("--all-versions", how.runs.all_versions,
                     "Runs of older versions of a manifest too, as variants of their own");
   command

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <numeric>
+#include <map>
 #include <set>
 
 #include "analysis/onset.hpp"
@@ -218,24 +218,27 @@ template <class Wanted>
 void measure_where(const Store& store, std::span<const std::string> names,
                    const MeasureOptions& options, std::vector<MeasuredRun>& runs,
                    const Wanted& wanted, RunTable& table) {
-  std::vector<CheckpointRecord> records;
-  std::vector<std::optional<Measures>*> measures;
-  MeasureOptions with_cadence = options;
-  for (MeasuredRun& run : runs) {
-    // A run of two experiments may use what either asks for.
-    std::uint64_t& every = with_cadence.cadence[run.run.id];
-    every = std::gcd(every, run.membership.checkpoint_every);
-    for (std::size_t k = 0; k < run.records.size(); ++k) {
-      if (!wanted(run, k)) continue;
-      records.push_back(run.records[k]);
-      measures.push_back(&run.measures[k]);
+  // By cadence: experiments that share a run may ask for different ones.
+  std::map<std::uint64_t, std::vector<MeasuredRun*>> groups;
+  for (MeasuredRun& run : runs) groups[run.membership.checkpoint_every].push_back(&run);
+  for (const auto& [every, group] : groups) {
+    std::vector<CheckpointRecord> records;
+    std::vector<std::optional<Measures>*> measures;
+    MeasureOptions with_cadence = options;
+    for (MeasuredRun* run : group) {
+      with_cadence.cadence[run->run.id] = every;
+      for (std::size_t k = 0; k < run->records.size(); ++k) {
+        if (!wanted(*run, k)) continue;
+        records.push_back(run->records[k]);
+        measures.push_back(&run->measures[k]);
+      }
     }
+    if (records.empty()) continue;
+    MeasuredPackings found = measures_of(store, records, names, with_cadence);
+    for (std::size_t n = 0; n < measures.size(); ++n) *measures[n] = std::move(found.measures[n]);
+    add_unread(found, table);
+    if (!found.cache_trouble.empty()) table.cache_trouble = found.cache_trouble;
   }
-  if (records.empty()) return;
-  MeasuredPackings found = measures_of(store, records, names, with_cadence);
-  for (std::size_t n = 0; n < measures.size(); ++n) *measures[n] = std::move(found.measures[n]);
-  add_unread(found, table);
-  if (!found.cache_trouble.empty()) table.cache_trouble = found.cache_trouble;
 }
 
 FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {

@@ -75,28 +75,28 @@ ExperimentScale experiment_scale(const Membership& m) {
   return {m.experiment, m.scale};
 }
 
-/// Says where an edited manifest asks for fewer cycles than `run --cycles` gave an older version.
+/// Says where an edited manifest asks for fewer cycles than an older version made.
 void note_shortened(const std::vector<SelectedRun>& runs, std::vector<std::string>& notes) {
   struct Shortened {
     std::size_t runs = 0;
-    std::uint64_t asked = 0, had = 0;
+    double had = 0;
   };
   std::map<ExperimentScale, Shortened> shortened;
   for (const auto& [run, m, newest] : runs) {
-    for (const Membership& older : run.memberships) {
-      if (place(older) != place(m) || older.target_cycles <= m.target_cycles) continue;
-      Shortened& found = shortened[experiment_scale(m)];
-      ++found.runs;
-      found.asked = m.target_cycles;
-      found.had = std::max(found.had, older.target_cycles);
-    }
+    const bool asked_for_more = std::ranges::any_of(run.memberships, [&](const Membership& older) {
+      return place(older) == place(m) && older.target_cycles > m.target_cycles;
+    });
+    if (!asked_for_more || run.cycle <= static_cast<double>(m.target_cycles)) continue;
+    Shortened& found = shortened[experiment_scale(m)];
+    ++found.runs;
+    found.had = std::max(found.had, run.cycle);
   }
   for (const auto& [where, found] : shortened) {
     notes.push_back(fmt::format(
-        "experiment {}: {} at cycle {}, which its newest manifest asks for, and the store has up "
-        "to {}; `run MANIFEST --cycles {}` adds the others",
-        where.first, found.runs == 1 ? "1 run ends" : fmt::format("{} runs end", found.runs),
-        found.asked, found.had, found.had));
+        "experiment {}: {} shown shorter than stored (up to cycle {}), because the newest version "
+        "of its manifest asks for fewer cycles; raise its `cycles` to show more",
+        where.first, found.runs == 1 ? "1 run is" : fmt::format("{} runs are", found.runs),
+        found.had));
   }
 }
 

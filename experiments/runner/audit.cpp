@@ -151,13 +151,13 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record, co
   return "";
 }
 
-/// Checkpoints with files of which the cache keeps a measure, each once.
+/// Checkpoints of which the cache keeps a measure, each once.
 std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache,
-                                                   MeasureSources& sources) {
+                                                   MeasureSources& sources, Listed listed) {
   std::vector<CheckpointRecord> found;
   std::set<std::string> seen;
   for (const RunRecord& run : store.runs()) {
-    for (CheckpointRecord& record : store.checkpoints(run.id)) {
+    for (CheckpointRecord& record : store.checkpoints(run.id, listed)) {
       const Cached cached = cache.get(keys_of(record, sources));
       const bool any = std::ranges::any_of(cached, [](const auto& k) { return k.has_value(); });
       if (any && seen.insert(record.sha256).second) found.push_back(std::move(record));
@@ -170,7 +170,8 @@ void copy_measures(const Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
   std::vector<DerivedObject> missing;
-  for (const CheckpointRecord& record : measured_checkpoints(store, from, sources)) {
+  for (const CheckpointRecord& record :
+       measured_checkpoints(store, from, sources, Listed::and_pruned)) {
     const std::vector<DerivedKey> keys = keys_of(record, sources);
     Cached there = from.get(keys), here = into.get(keys);
     for (std::size_t m = 0; m < keys.size(); ++m) {
@@ -208,7 +209,8 @@ MeasureCheck check_measures(const Store& store, const std::filesystem::path& fol
                             std::size_t count, std::uint64_t seed) {
   DerivedCache cache(folder, Access::read);
   MeasureSources sources(store);
-  const std::vector<CheckpointRecord> cached = measured_checkpoints(store, cache, sources);
+  const std::vector<CheckpointRecord> cached =
+      measured_checkpoints(store, cache, sources, Listed::recorded);
   const std::vector<CheckpointRecord> chosen = sample(cached, count, seed);
   MeasureCheck check{.cached = cached.size(), .computed = chosen.size(), .findings = {}};
   for (const CheckpointRecord& record : chosen) {

@@ -170,6 +170,8 @@ class Campaign {
       note(job, &CampaignResult::blocked, error.what());
     } catch (const ProgramError& error) {
       note(job, &CampaignResult::blocked, error.what());  // LAMMPS is missing
+    } catch (const FilePruned& error) {
+      note(job, &CampaignResult::blocked, error.what());  // a checkpoint that decides its end
     } catch (const TooLittleMemory& error) {
       note(job, &CampaignResult::failed, error.what());
     } catch (const std::exception& error) {
@@ -266,7 +268,8 @@ class Campaign {
     const std::string line = fmt::format("{} ({:.12}): {}", job.name, job.id, why);
     progress_.say(line);
     const std::lock_guard lock(mutex_);
-    ++(result_.*count);
+    const bool again = count == &CampaignResult::damaged && !damaged_.insert(job.id).second;
+    if (!again) ++(result_.*count);
     result_.messages.push_back(line);
   }
 
@@ -279,6 +282,7 @@ class Campaign {
   std::vector<Job> states_;
   std::size_t shown_held_ = 0;
   CampaignResult result_;
+  std::set<std::string> damaged_;  // ids of the stages that count as such in result_
   std::exception_ptr error_;
 };
 

@@ -13,7 +13,10 @@ namespace shearcell {
 
 std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   std::vector<RegisteredManifest> found;
-  for (const Event& event : store.events("", "ManifestRegistered")) {
+  std::vector<Event> events = store.events("", "ManifestRegistered");
+  // Not in the order of the log, which a merge decides.
+  std::ranges::stable_sort(events, {}, &Event::recorded_at);
+  for (const Event& event : events) {
     try {
       const nlohmann::json body = event.body();
       const nlohmann::json& info = body.at("info");

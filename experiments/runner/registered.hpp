@@ -23,7 +23,7 @@ struct RegisteredManifest {
   std::string text;
 };
 
-/// In the order of registration. A version that was registered again after another one appears
+/// By the time of registration. A version that was registered again after another one appears
 /// again. Throws StoreDamaged for an event that does not hold a manifest.
 std::vector<RegisteredManifest> registered_manifests(const Store& store);
 

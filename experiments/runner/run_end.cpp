@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/runner/words.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -17,15 +18,29 @@ namespace {
 
 using nlohmann::json;
 
-/// The first checkpoint on the cadence of `ask` at which its `until` is reached; null without one.
+/// The first checkpoint on the cadence of `ask` at which its `until` is reached, or, if it is
+/// unread, may be; null without one.
 const MeasuredCycle* first_reached(std::span<const MeasuredCycle> measured, const RunAsk& ask) {
   if (!ask.until) return nullptr;
   const ScalarMeasure* measure = find_measure(name_of(ask.until->measure));
   const auto every = static_cast<double>(ask.checkpoint_every);
   const auto found = std::ranges::find_if(measured, [&](const MeasuredCycle& m) {
-    return std::fmod(m.cycle, every) == 0 && measure->of(m.measures) >= ask.until->value;
+    return std::fmod(m.cycle, every) == 0 &&
+           (m.unread || measure->of(m.measures) >= ask.until->value);
   });
   return found == measured.end() ? nullptr : &*found;
+}
+
+[[noreturn]] void refuse_unread(const CheckpointRecord& record) {
+  const bool pruned = record.state == CheckpointState::pruned;
+  const std::string why = fmt::format(
+      "checkpoint {:.12} of run {:.12} (cycle {:g}), which may decide where the run ends "
+      "(`until`), "
+      "{}; `shearcell regenerate {:.12}` restores it",
+      record.sha256, record.run, record.cycle, pruned ? "was pruned" : "cannot be read",
+      record.sha256);
+  if (pruned) throw FilePruned(why);
+  throw StoreDamaged(why);
 }
 
 /// The cycle at which the run ends for this experiment alone: its number of cycles, or the first
@@ -44,15 +59,18 @@ bool all_reached(std::span<const RunAsk> asks, std::span<const MeasuredCycle> me
       asks, [&](const RunAsk& ask) { return !ask.until || first_reached(measured, ask); });
 }
 
-/// The measures of those checkpoints that can be read.
 std::vector<MeasuredCycle> measure(const Store& store, std::span<const CheckpointRecord> records,
                                    std::span<const DerivedMeasure> measures,
                                    const MeasureOptions& options) {
   const auto results = measure_checkpoints(store, records, measures, options).results;
   std::vector<MeasuredCycle> measured;
   for (std::size_t k = 0; k < records.size(); ++k) {
-    if (results[k].front().is_null()) continue;
-    measured.push_back({records[k].cycle, read_results(measures, results[k])});
+    MeasuredCycle& one = measured.emplace_back(MeasuredCycle{.cycle = records[k].cycle});
+    if (results[k].front().is_null()) {
+      one.unread = records[k];
+    } else {
+      one.measures = read_results(measures, results[k]);
+    }
   }
   return measured;
 }
@@ -87,6 +105,18 @@ double longest_length(const Store& store, const RunRecord& run, const json& ende
   return longest;
 }
 
+/// The cycle at which the run reached the `until` of `ask`, as a completion records it; nothing
+/// without such a completion.
+std::optional<double> recorded_reach(const Store& store, const RunRecord& run, const RunAsk& ask) {
+  for (const Event& event : store.events(run_stream(run.id), "RunCompleted")) {
+    const json ended = member_of(member_of(event.body(), "summary"), "ended");
+    if (!is_early_end(ended) || !ended_by(ended, *ask.until)) continue;
+    const auto cycle = ended["reached_at_cycle"].get<double>();
+    if (std::fmod(cycle, static_cast<double>(ask.checkpoint_every)) == 0) return cycle;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<json> ended_early(std::span<const RunAsk> asks,
@@ -95,6 +125,7 @@ std::optional<json> ended_early(std::span<const RunAsk> asks,
   json why;
   for (const RunAsk& ask : asks) {
     const MeasuredCycle* reached = first_reached(measured, ask);
+    if (reached != nullptr && reached->unread) refuse_unread(*reached->unread);
     const double own = asked_end(ask, reached);
     if (now < own) return std::nullopt;
     if (own <= end || reached == nullptr) continue;
@@ -122,7 +153,12 @@ double end_for(const Store& store, const RunRecord& run, const RunAsk& ask,
   const DerivedMeasure scalars = derived_measure("scalars");
   const auto measured = measure(store, records, {&scalars, 1},
                                 {.workers = options.workers, .report = options.report});
-  return asked_end(ask, first_reached(measured, ask));
+  const MeasuredCycle* reached = first_reached(measured, ask);
+  if (reached == nullptr || !reached->unread) return asked_end(ask, reached);
+  const std::optional<double> recorded = recorded_reach(store, run, ask);
+  if (!recorded) refuse_unread(*reached->unread);
+  const MeasuredCycle there{.cycle = *recorded};
+  return asked_end(ask, &there);
 }
 
 json recorded_end(const Store& store, const std::string& run) {

@@ -21,20 +21,24 @@ namespace shearcell {
 
 struct MeasuredCycle {
   double cycle = 0;
-  Measures measures;
+  Measures measures = {};
+  std::optional<CheckpointRecord> unread = {};  ///< the checkpoint, if it cannot be measured
 };
 
 /// Why the run ends at cycle `now`, that of its last checkpoint: every experiment that shares it
 /// has reached the end that it asks for, by `measured`, its checkpoints on the cadence in order.
 /// Nothing while the run continues.
 /// {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle", "memberships"}.
+/// Throws FilePruned or StoreDamaged, with the remedy, where an unread checkpoint may decide it.
 std::optional<nlohmann::json> ended_early(std::span<const RunAsk> asks,
                                           std::span<const MeasuredCycle> measured, double now);
 
 /// The last cycle of the run that counts for the experiment that asks: its number of cycles, or
 /// where its `until` ends the run. Another experiment may have continued it; an experiment's
 /// figures and tables are the same whatever shares its runs. May measure checkpoints, and keeps the
-/// results. Throws StoreDamaged where the run's declarations are not as this program writes them.
+/// results. If an unread checkpoint may decide it, the recorded end does, or else it throws as
+/// ended_early(). Throws StoreDamaged where the run's declarations are not as this program writes
+/// them.
 double end_for(const Store& store, const RunRecord& run, const RunAsk& ask,
                const MeasureOptions& options);
 
@@ -56,8 +60,7 @@ std::optional<double> expected_end(const Store& store, const Until& until);
 /// store's derived.sqlite, where figures find them.
 class RunEnd {
  public:
-  /// Takes the checkpoints up to `step` that are recorded already; those that can no longer be read
-  /// are left out.
+  /// Takes the checkpoints up to `step` that are recorded already.
   RunEnd(const Store& store, const RunRecord& run, std::uint64_t step);
 
   /// A checkpoint that has just been recorded.

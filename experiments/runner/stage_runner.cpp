@@ -40,10 +40,10 @@ class StageAttempt {
     }
     start(beginning, facts);
     if (options_.begun) options_.begun();
-    if (may_end_early(store_, id()))
-      end_.emplace(store_, plan_.run, fresh ? 0 : beginning.from->step);
-    if (ends_early()) return StageOutcome::completed;
     return guarded([&] {
+      if (may_end_early(store_, id()))
+        end_.emplace(store_, plan_.run, fresh ? 0 : beginning.from->step);
+      if (ends_early()) return StageOutcome::completed;
       const auto engine = make_engine(plan_, std::move(beginning), options_.parallel, lammps);
       first_step_ = engine->step();
       // The settled packing is cycle 0 of what follows.

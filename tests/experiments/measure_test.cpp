@@ -269,6 +269,19 @@ TEST_F(Measure, AnotherKeptRestIsReplacedAndNamed) {
   EXPECT_TRUE(draw("third", b5, fresh).changed.empty());
 }
 
+// What was measured before is all that is left of it.
+TEST_F(Measure, OfAPrunedCheckpointIsMergedToo) {
+  make("first");
+  store_.prune(store_.prunable({}));
+  Store into(folder_.path() / "into", Access::create);
+  merge_stores(into, {store_.folder()});
+  FigureOptions options;
+  options.folder = folder_.path() / "second";
+  const FigureSummary figure = draw_figure(into, kS2, options);
+  EXPECT_TRUE(figure.pruned.empty());
+  EXPECT_EQ(csv("second"), csv("first"));
+}
+
 TEST_F(Measure, WorksWithoutAWritableCache) {
   make("first");
   std::filesystem::remove(cache());

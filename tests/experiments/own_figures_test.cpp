@@ -100,6 +100,27 @@ TEST_F(OwnFigures, LeaveOutWhatAPrunedCheckpointCannotGive) {
   EXPECT_FALSE(has(contents("own").at("xy.csv"), "\nbase,1,,"));
 }
 
+// The version that was run last is the newest one, whichever store is merged first.
+TEST_F(OwnFigures, AreThoseOfTheVersionThatWasRunLast) {
+  std::vector<std::filesystem::path> stores;
+  for (const char* name : {"first", "last"}) {
+    stores.push_back(folder_.path() / name);
+    Store store(stores.back(), Access::create);
+    compute(store, tiny_manifest("", "plots: [{name: " + std::string(name) + ", y: phi}]\n"),
+            {.cycles = 0});
+  }
+  for (const auto& order : {stores, {stores[1], stores[0]}}) {
+    Store merged(folder_.path() / ("of_" + order[0].filename().string()), Access::create);
+    merged.merge(order);
+    const auto figures = wanted_figures(merged).figures;
+    EXPECT_TRUE(std::ranges::any_of(
+        figures, [](const WantedFigure& wanted) { return wanted.figure.name == "last"; }));
+    const std::size_t events = merged.events().size();
+    declared(merged, tiny_manifest("", "plots: [{name: last, y: phi}]\n"), {.cycles = 0});
+    EXPECT_EQ(merged.events().size(), events) << "it is registered as the newest";
+  }
+}
+
 TEST_F(OwnFigures, AClaimSaysWhatItsRunsLack) {
   const std::string claim =
       "claims: [{name: same, compare: phi, cycles: [2, 3], margin: 1,"

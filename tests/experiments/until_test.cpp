@@ -7,8 +7,10 @@
 #include "experiments/figures/draw.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/cost.hpp"
+#include "experiments/runner/replay.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/derived.hpp"
+#include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
 
@@ -239,6 +241,39 @@ TEST_F(UntilTest, EndsRunsInFiguresToo) {
   EXPECT_EQ(compute_figure(store_, s2, {}).lineage, alone) << "measured again";
 }
 
+// A checkpoint that may decide the end is neither readable nor cached. The recorded end is known.
+TEST_F(UntilTest, IsNotDecidedWithoutTheCheckpointsThatDecideIt) {
+  compute(store_, manifest(until()));
+  const auto prune_and_forget = [&] {
+    store_.prune(store_.prunable({}));
+    std::filesystem::remove(store_.folder() / DerivedCache::kFile);
+  };
+  prune_and_forget();
+  const CampaignResult result = compute(store_, manifest(until(3)));
+  EXPECT_EQ(result.blocked, 1U);
+  ASSERT_EQ(result.messages.size(), 1U);
+  EXPECT_TRUE(has(result.messages[0],
+                  "may decide where the run ends (`until`), was pruned; "
+                  "`shearcell regenerate"))
+      << result.messages[0];
+  EXPECT_EQ(sheared(store_).cycle, static_cast<double>(end_));
+  for (const CheckpointRecord& record : replayable(store_)) {
+    if (record.state == CheckpointState::pruned) regenerate_checkpoint(store_, record);
+  }
+  compute(store_, renamed(manifest(""), "twin"));
+  const RunRecord run = sheared(store_);
+  const auto end = [&](std::size_t extra) {
+    RunAsk ask = asks_of(store_, run.id).front();
+    ask.target_cycles = 6;
+    ask.until = Until{StopMeasure::phi, value_, extra};
+    return end_for(store_, run, ask, {});
+  };
+  EXPECT_EQ(end(1), static_cast<double>(end_));
+  prune_and_forget();
+  EXPECT_EQ(end(1), static_cast<double>(end_)) << "as recorded";
+  EXPECT_THROW(end(2), FilePruned) << "this was never recorded";
+}
+
 TEST_F(UntilTest, EndsRunsOfAnOlderVersionInFiguresToo) {
   compute(store_, manifest(until()));
   compute(store_, renamed(manifest(""), "twin"));
@@ -248,6 +283,16 @@ TEST_F(UntilTest, EndsRunsOfAnOlderVersionInFiguresToo) {
   EXPECT_TRUE(has(runs[1].membership.variant, ",manifest="));
   EXPECT_EQ(runs[1].run.cycle, 6);
   EXPECT_EQ(runs[1].checkpoints.back().cycle, static_cast<double>(end_));
+}
+
+TEST_F(UntilTest, MeasuresOverTwoCheckpointsKeepTheCadenceOfTheirExperiment) {
+  compute(store_, tiny_manifest("  cycles: 4\n", "checkpoints: {every_cycles: 2}\n"));
+  compute(store_, renamed(tiny_manifest("  cycles: 4\n"), "twin"));
+  const RunTable table = run_table(store_, {}, RowPer::checkpoint, {});
+  const std::size_t experiment = table.place("experiment"), moved = table.place("msd_1_cycle_d2");
+  std::map<std::string, int> known;
+  for (const auto& row : table.rows) known[row[experiment]] += row[moved].is_null() ? 0 : 1;
+  EXPECT_EQ(known, (std::map<std::string, int>{{"tiny", 0}, {"twin", 4}}));
 }
 
 TEST_F(UntilTest, AnExperimentKeepsItsCadenceInTables) {
