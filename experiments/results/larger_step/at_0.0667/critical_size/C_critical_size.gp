@@ -1,0 +1,34 @@
+set terminal svg size 325,230 enhanced font 'Helvetica,10.67' background '#ffffff'
+set encoding utf8
+set datafile separator ','
+set border 15 lw 0.8
+set xtics in mirror scale 0.9,0.5
+set ytics in mirror scale 0.9,0.5
+set mxtics 2
+set mytics 2
+set autoscale noextend
+set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
+set bars 0.5
+set output 'C_critical_size.svg'
+set label '(b)' at screen 0.015, screen 0.96 left front
+set xlabel 'amplitude  {/:Italic A}  [rad]'
+set ylabel 'critical size  [grains]'
+set xtics 0.02
+set format x '%.2f'
+set ytics 2
+set format y '%.0f'
+set xrange [0:0.12]
+set yrange [0:*]
+set offsets 0, 0, graph 0.05, 0
+$series0 << EOD
+0.0667,13,,
+EOD
+$series1 << EOD
+0.0667,11.4481147,,2.94879227
+EOD
+plot keyentry with linespoints lc rgb '#888888' lw 1.2 dt 2 pt 6 ps 0.4 title 'supplement', \
+     keyentry with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'simulated', \
+     $series1 every 1 using 1:2:4 with yerrorbars lc rgb '#000000' lw 0.7 pt 0 notitle, \
+     $series1 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series0 every 1 using 1:2 with linespoints lc rgb '#888888' lw 1.2 dt 2 pt 6 ps 0.4 notitle
+set output

@@ -1,0 +1,37 @@
+set terminal svg size 325,230 enhanced font 'Helvetica,10.67' background '#ffffff'
+set encoding utf8
+set datafile separator ','
+set border 15 lw 0.8
+set xtics in mirror scale 0.9,0.5
+set ytics in mirror scale 0.9,0.5
+set mxtics 2
+set mytics 2
+set autoscale noextend
+set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
+set bars 0.5
+set output 'C_followed.svg'
+set label '(d)' at screen 0.015, screen 0.96 left front
+set xlabel 'cycles that crystallites are followed'
+set ylabel 'critical size  [grains]'
+set logscale x
+set format x '10^{%T}'
+set mxtics 10
+set logscale y
+unset mytics
+set ytics (10,20)
+set xrange [*:*]
+set yrange [*<13:13<*]
+set offsets graph 0.03, graph 0.03, graph 0.05, graph 0.05
+set arrow from graph 0, first 13 to graph 1, first 13 nohead dt 2 lc rgb '#6a3d9a'
+$series0 << EOD
+1,33.8193128,,1.86462661
+2,30.0694935,,1.85499731
+5,25.2302303,,1.94148845
+10,21.3822536,,2.29210186
+20,16.7424572,,2.54514427
+40,11.4481147,,2.94879227
+EOD
+plot keyentry with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.0667', \
+     $series0 every 1 using 1:2:4 with yerrorbars lc rgb '#6a3d9a' lw 0.7 pt 0 notitle, \
+     $series0 every 1 using 1:2 with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 notitle
+set output
