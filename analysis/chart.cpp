@@ -187,7 +187,7 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
                         bars && bands ? "Bars and bands"
                         : bars        ? "Bars"
                                       : "Bands",
-                        own_errors ? ", but where stated" : "");
+                        own_errors ? ", except where stated" : "");
   }
   for (const std::string& note : notes) text += " " + note + ".";
   if (!lines.empty()) text += fmt::format(" Reference lines: {}.", fmt::join(lines, "; "));
