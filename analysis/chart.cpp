@@ -74,14 +74,16 @@ json to_json(const FigureTable& table, const Series& series) {
     points.push_back(
         {rounded(p.x + series.shift), rounded(p.y), to_json(p.x_error), to_json(p.y_error)});
   }
-  return {{"title", to_json(series.title)},
-          {"colour", series.colour},
-          {"point", series.point},
-          {"line", series.join != Join::none},
-          {"dashed", series.join == Join::dashes},
-          {"band", series.band},
-          {"shift", series.shift},
-          {"points", std::move(points)}};
+  json facts = {{"title", to_json(series.title)},
+                {"colour", series.colour},
+                {"point", series.point},
+                {"line", series.join != Join::none},
+                {"dashed", series.join == Join::dashes},
+                {"band", series.band},
+                {"shift", series.shift},
+                {"points", std::move(points)}};
+  if (series.thin) facts["thin"] = true;
+  return facts;
 }
 
 }  // namespace

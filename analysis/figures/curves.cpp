@@ -27,8 +27,8 @@ bool matches(const nlohmann::json& a, const nlohmann::json& b) {
   return a == b;
 }
 
-/// gnuplot's strcol() ends a field at every comma and does not read quotes as RFC 4180 does.
-/// Variants of manifests have no other special characters; those of another program's store may.
+/// A variant as one field without quotes, for readers that do not know RFC 4180. Variants of
+/// manifests have no special characters but the comma; those of another program's store may.
 std::string plain_field(std::string variant) {
   const auto odd = [](char c) {
     const auto byte = static_cast<unsigned char>(c);

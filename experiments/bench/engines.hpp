@@ -50,8 +50,9 @@ struct EngineMean {
 };
 
 struct EngineMeans {
-  std::vector<EngineMean> means;  ///< for each quantity, ours first; empty for a single seed
-  double limit = 0;               ///< of `apart`, by Student's t, shared among all comparisons
+  std::vector<EngineMean>
+      means;         ///< for each quantity that all packings have, ours first; empty for one seed
+  double limit = 0;  ///< of `apart`, by Student's t, shared among all comparisons
 
   bool agree() const;
 };

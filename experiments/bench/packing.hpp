@@ -46,7 +46,7 @@ State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive =
 void settle(Simulation& simulation, const SettleParameters& parameters, const Scene& scene);
 
 struct PackingNumbers : Measures {
-  double imbalance = 0;  ///< |P A_w - F| / (P A_w) of the moving wall
+  double imbalance = 0;  ///< |load - contact force| / (P A_w) of the moving wall
   double height = 0;     ///< of the cell [d]
 };
 

@@ -18,6 +18,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/host.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "provenance/io/child_process.hpp"
 
 namespace shearcell::cli {
@@ -140,7 +141,7 @@ std::vector<Check> examine(const std::string& store, bool with_speed) {
                               {"HDF5", version("hdf5"), "ok", "checkpoints"},
                               program("gnuplot", "draws figures", "gnuplot-nox"),
                               program("rsvg-convert", "figures as PDF", "librsvg2-bin"),
-                              program("lmp", "`run --engine lammps`", "lammps")};
+                              program(lammps_name(), "`run --engine lammps`", "lammps")};
   if (with_speed) found.push_back(speed());
   return found;
 }

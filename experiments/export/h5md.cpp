@@ -21,6 +21,7 @@ using hdf5::Shape;
 // MDAnalysis does not know metres, and reads units only as text of variable length. Velocities have
 // the same numbers in nm/ns as in m/s.
 constexpr double nm_per_m = 1e9;
+constexpr std::size_t kHashDigits = 64;  // of a checkpoint's SHA-256
 
 void put_unit(const Handle& object, const std::string& unit) {
   if (unit.empty()) return;
@@ -53,7 +54,9 @@ class Trajectory {
     element("particles/all/position", H5T_IEEE_F64LE, {particles_, 3}, position.data(), "nm");
     element("particles/all/velocity", H5T_IEEE_F64LE, {particles_, 3}, frame.velocity.data(),
             "nm ns-1");
-    element("particles/all/image", H5T_STD_I32LE, {particles_}, frame.image.data());
+    Eigen::Matrix3Xi image = Eigen::Matrix3Xi::Zero(3, static_cast<Eigen::Index>(particles_));
+    image.row(2) = Eigen::Map<const Eigen::RowVectorXi>(frame.image.data(), image.cols());
+    element("particles/all/image", H5T_STD_I32LE, {particles_, 3}, image.data());
     for (const FrameColumn& column : frame.columns) {
       const hid_t type = column.values.index() == 0 ? H5T_IEEE_F64LE : H5T_STD_I32LE;
       const auto write = [&](const auto& values) {
@@ -61,6 +64,11 @@ class Trajectory {
       };
       std::visit(write, column.values);
     }
+    const Handle hash(require(H5Tcopy(H5T_C_S1), "a text type"), H5Tclose);
+    require(H5Tset_size(hash.get(), kHashDigits), "a text type");
+    std::string checkpoint = frame.checkpoint;
+    checkpoint.resize(kHashDigits, '\0');
+    element("observables/checkpoint", hash.get(), {}, checkpoint.data());
     element("observables/cycle", H5T_IEEE_F64LE, {}, &frame.cycle);
     element("observables/theta", H5T_IEEE_F64LE, {}, &frame.theta, "rad");
     for (const auto& [name, value] : frame.scalars) {
@@ -112,7 +120,7 @@ class Trajectory {
     put_unit(put_dataset(all, "mass", H5T_IEEE_F64LE, mass.data(), {particles_}), "kg");
     const std::vector<double> radius(particles_, frame.radius * nm_per_m);
     put_unit(put_dataset(all, "radius", H5T_IEEE_F64LE, radius.data(), {particles_}), "nm");
-    make_group(file_, "observables", 2 + frame.scalars.size());
+    make_group(file_, "observables", 3 + frame.scalars.size());
     const Handle parameters =
         make_group(file_, "parameters", 0, frame.run.size() + frame.parameters.size());
     for (const auto* facts : {&frame.run, &frame.parameters}) {

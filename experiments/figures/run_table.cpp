@@ -98,17 +98,18 @@ std::vector<Column> measures(bool ledger) {
   }
   columns.push_back(of_checkpoint("time_s", "simulated time since the stage began",
                                   [](const CheckpointRecord& c) { return number(c.time_s); }));
-  columns.insert(columns.end(),
-                 {observable("cell_height_d", "distance of the bottom and top wall"),
-                  observable("largest_overlap_d",
-                             "largest overlap of two grains, or of a grain and a wall grain"),
-                  observable("kinetic_energy_per_grain_m_d2_per_s2",
-                             "mean kinetic energy; m is the mass of a grain"),
-                  observable("wall_force_imbalance", "net force on the moving wall over its load"),
-                  observable("raised_stiffness_N_per_m", "spring constant of a stiffening",
-                             "stiffness_N_per_m"),
-                  observable("force_residual_P_d2",
-                             "largest net force on a grain of a stiffening over P d^2")});
+  columns.insert(
+      columns.end(),
+      {observable("cell_height_d", "distance of the bottom and top wall"),
+       observable("largest_overlap_d",
+                  "largest overlap of two grains, or of a grain and a wall grain"),
+       observable("kinetic_energy_per_grain_m_d2_per_s2",
+                  "mean kinetic energy; m is the mass of a grain"),
+       observable("wall_force_imbalance", "load less contact force on the moving wall, over P A_w"),
+       observable("raised_stiffness_N_per_m", "spring constant of a stiffening",
+                  "stiffness_N_per_m"),
+       observable("force_residual_P_d2",
+                  "largest net force on a grain of a stiffening over P d^2")});
   return columns;
 }
 

@@ -265,7 +265,7 @@ TEST(OwnClaim, IsDecidedLikeThoseOfTheSupplement) {
   EXPECT_THROW(verdict(), UsageError) << "the same runs";
   claim.between = {hard, nlohmann::json{{"drag_kg_per_s", 0.008}}};
   EXPECT_EQ(verdict().ruling, Ruling::undecided);
-  EXPECT_EQ(verdict().note, "no run with drag_kg_per_s=0.008 is computed so far");
+  EXPECT_EQ(verdict().note, "no run with drag_kg_per_s=0.008 has a checkpoint of cycles 1 to 2");
 }
 
 }  // namespace

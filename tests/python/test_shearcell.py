@@ -39,6 +39,13 @@ def spread(state):
     return {"x_d": state.position[:, 0].std(), "y_d": state.position[:, 1].mean()}
 
 
+def unknown(state):
+    """As a measure over two checkpoints where the earlier one is missing."""
+    global calls
+    calls += 1
+    return np.nan
+
+
 def bytes_of(folder):
     """Every file of the record; derived.sqlite is the program's cache."""
     files = sorted(p for p in folder.rglob("*") if p.is_file() and p.name != "derived.sqlite")
@@ -141,8 +148,14 @@ class Package(unittest.TestCase):
         self.assertEqual(set(kept["checkpoints"]), set(first["checkpoint"]))
         self.assertTrue(first.equals(self.store.measure(spread)))
         self.assertEqual(calls, 6, "nothing is computed twice")
-        self.store.measure(spread, fresh=True)
-        self.assertEqual(calls, 12)
+        seed = self.store.measure(spread, fresh=True, seed=first["seed"][0])
+        self.assertEqual(calls, 6 + len(seed))
+        self.assertTrue(first.equals(self.store.measure(spread)))
+        self.assertEqual(calls, 6 + len(seed), "those of other runs stay")
+        calls = 0
+        for times in (1, 2):
+            self.assertTrue(self.store.measure(unknown)["unknown"].isna().all())
+            self.assertEqual(calls, 6 * times, "it may become known")
 
         # Another function of that name.
         other = self.folder / "other.py"

@@ -57,6 +57,7 @@ export function runChecks({open, expect, shots}) {
       expect((await shown(`seed=1 phi<=${limit}`)).length > 0, "filtering: two conditions");
       expect((await column("seed")).every((seed) => seed === "1"), "filtering: another seed");
       expect((await shown("nothing like it")).length === 0, "filtering: a text of no row");
+      expect((await shown("seed")).length === 0, "filtering: a word of a heading");
       expect((await shown("")).length === all.length, "filtering: an empty filter hides rows");
     },
 

@@ -6,6 +6,7 @@ import hashlib
 import inspect
 import io
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -51,6 +52,11 @@ class Store:
         if done.returncode != 0:
             raise ShearcellError(done.stderr.strip() or f"exit code {done.returncode}")
         return done.stdout
+
+    def version(self) -> str:
+        """The first line of `shearcell --version`."""
+        done = subprocess.run([self.program, "--version"], capture_output=True, text=True, check=True)
+        return done.stdout.splitlines()[0]
 
     def runs(self, *, all_versions: bool = False, **select: Any) -> list["Run"]:
         """Runs in the order of their declaration, without the packings that they start from; a run
@@ -103,8 +109,8 @@ class Store:
         or one for each key; needs pandas.
 
         Results are kept beside the store, in PATH.measures/NAME.json, with the SHA-256 of the
-        function's source and that of each checkpoint, and are computed again when either is
-        another. Only the function's own source is looked at: after a change in a function that it
+        function's source, that of each checkpoint and the program's version, and are computed
+        again when one of these is another; results that are not finite are not kept. Only the function's own source is looked at: after a change in a function that it
         calls, use fresh=True.
 
         Args:
@@ -115,7 +121,7 @@ class Store:
         """
         import pandas
 
-        kept = _KeptMeasure(self.path, function, fresh)
+        kept = _KeptMeasure(self, function, fresh)
         rows = []
         try:
             for run in self.runs(all_versions=all_versions, **select):
@@ -211,8 +217,9 @@ class Run:
 class _KeptMeasure:
     """Results of one function, in a file beside the store."""
 
-    def __init__(self, store: Path, function: Measure, fresh: bool) -> None:
+    def __init__(self, store: Store, function: Measure, fresh: bool) -> None:
         self.function = function
+        self.fresh = fresh
         self.name: str = function.__name__
         try:
             source = textwrap.dedent(inspect.getsource(function))
@@ -223,23 +230,32 @@ class _KeptMeasure:
             raise ValueError(f"{self.name} cannot name a measure; define a function with `def`")
         self.facts: dict[str, Any] = {
             "measure": self.name, "source": source,
-            "source_sha256": hashlib.sha256(source.encode()).hexdigest()}
-        store = store.resolve()
-        self.file = store.with_name(store.name + ".measures") / f"{self.name}.json"
+            "source_sha256": hashlib.sha256(source.encode()).hexdigest(),
+            "program": store.version()}
+        folder = store.path.resolve()
+        self.file = folder.with_name(folder.name + ".measures") / f"{self.name}.json"
         self.values: dict[str, dict[str, float]] = {}
-        if not fresh and self.file.is_file():
+        if self.file.is_file():
             known = json.loads(self.file.read_text())
-            if known.get("source_sha256") == self.facts["source_sha256"]:
+            if all(known.get(key) == self.facts[key] for key in ("source_sha256", "program")):
                 self.values = known["checkpoints"]
-        self.changed = fresh
+        self.done: set[str] = set()
+        self.changed = False
 
     def of(self, sha256: str, load: Callable[[], Checkpoint]) -> dict[str, float]:
-        if sha256 not in self.values:
-            result = self.function(load())
-            named = result if isinstance(result, Mapping) else {self.name: result}
-            self.values[sha256] = {str(key): float(value) for key, value in named.items()}
-            self.changed = True
-        return self.values[sha256]
+        if sha256 in self.values and (not self.fresh or sha256 in self.done):
+            return self.values[sha256]
+        result = self.function(load())
+        named = result if isinstance(result, Mapping) else {self.name: result}
+        found = {str(key): float(value) for key, value in named.items()}
+        # A measure over two checkpoints is not a number where the earlier one is missing, which
+        # may be made later.
+        self.values.pop(sha256, None)
+        if all(math.isfinite(value) for value in found.values()):
+            self.values[sha256] = found
+        self.done.add(sha256)
+        self.changed = True
+        return found
 
     def save(self) -> None:
         if not self.changed:

@@ -85,9 +85,13 @@ std::string help_of(const fs::path& program, const fs::path& folder) {
 
 }  // namespace
 
-LammpsProgram find_lammps(std::size_t ranks) {
+std::string lammps_name() {
   const char* named = std::getenv("SHEARCELL_LAMMPS");
-  const std::string name = named == nullptr || *named == '\0' ? "lmp" : named;
+  return named == nullptr || *named == '\0' ? "lmp" : named;
+}
+
+LammpsProgram find_lammps(std::size_t ranks) {
+  const std::string name = lammps_name();
   const auto path = find_program(name);
   if (!path) {
     throw ProgramError("LAMMPS is not installed: there is no program " + name +

@@ -19,7 +19,10 @@ struct LammpsProgram {
   std::string version;  ///< "29 Sep 2021 - Update 2"
 };
 
-/// The program `lmp` on PATH, or the one that $SHEARCELL_LAMMPS names. Throws ProgramError when
+/// Name of the program: $SHEARCELL_LAMMPS, or "lmp".
+std::string lammps_name();
+
+/// The program of that name, on PATH if it has no slash. Throws ProgramError when
 /// there is none, it lacks the package GRANULAR or does not answer, or when there is no mpirun for
 /// several ranks, and Interrupted when it does not answer and a stop is requested. Deletes the
 /// folders of killed runs.

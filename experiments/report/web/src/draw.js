@@ -27,6 +27,10 @@ export function dress(element, colour) {
   element.style.setProperty("--on-dark", onDark(known));
 }
 
+export function lineClass(one) {
+  return ["line", one.dashed && "dashed", one.thin && "thin"].filter(Boolean).join(" ");
+}
+
 // One symbol of the plot or of the legend.
 export function drawSymbol(parent, point, x, y) {
   if (point === 0) return;
@@ -122,7 +126,7 @@ export function drawSeries(root, one, scales) {
   if (bars) svg("path", {class: "bars", d: bars}, group);
   if (one.line && drawn.length > 1) {
     const path = line((p) => scales.x(p[0]), (p) => scales.y(p[1]));
-    svg("path", {class: one.dashed ? "line dashed" : "line", d: path(drawn)}, group);
+    svg("path", {class: lineClass(one), d: path(drawn)}, group);
   }
   for (const [x, y] of marks) drawSymbol(group, one.point, scales.x(x), scales.y(y));
 }

@@ -2,7 +2,7 @@
 // One interactive plot: keeps which series and which part of the axes are visible, and redraws when
 // either changes.
 import {button, element, svg} from "./dom.js";
-import {drawFrame, drawReferenceLines, drawSeries, drawSymbol, dress} from "./draw.js";
+import {drawFrame, drawReferenceLines, drawSeries, drawSymbol, dress, lineClass} from "./draw.js";
 import {addGestures} from "./gestures.js";
 import {addReadout} from "./readout.js";
 import {saveSvg} from "./save.js";
@@ -123,19 +123,12 @@ export class Plot {
 
   addLegend() {
     const legend = element("div", {className: "legend"});
-    // A series without a title belongs to the entry before it.
-    const groups = [];
-    this.chart.series.forEach((one, index) => {
-      if (one.title.length > 0 || groups.length === 0) groups.push([]);
-      groups.at(-1).push(index);
-    });
-    for (const group of groups) {
+    for (const group of entries(this.chart.series)) {
       const one = this.chart.series[group[0]];
-      if (one.title.length === 0) continue;
       const empty = group.every((index) => this.chart.series[index].points.length === 0);
       const key = svg("svg", {class: "key", width: 26, height: 14, "aria-hidden": "true"});
       dress(key, one.colour);
-      if (one.line) svg("path", {class: one.dashed ? "line dashed" : "line", d: "M0 7H26"}, key);
+      if (one.line) svg("path", {class: lineClass(one), d: "M0 7H26"}, key);
       drawSymbol(key, one.point, 13, 7);
       const entry = button({
         "aria-pressed": "true", title: "Show or hide this curve", className: empty ? "without-data" : ""
@@ -149,6 +142,20 @@ export class Plot {
     }
     this.host.append(legend);
   }
+}
+
+// The series of each entry, that with the title first. One without a title belongs to the last
+// entry before it that has its colour, or else to the first one after it.
+export function entries(series) {
+  const titled = [...series.keys()].filter((index) => series[index].title.length > 0);
+  const groups = new Map(titled.map((index) => [index, [index]]));
+  series.forEach((one, index) => {
+    if (one.title.length > 0) return;
+    const same = titled.filter((other) => series[other].colour === one.colour);
+    const owner = same.filter((other) => other < index).at(-1) ?? same[0];
+    groups.get(owner)?.push(index);
+  });
+  return [...groups.values()];
 }
 
 // Appends a plot for each of {name, chart}.

@@ -11,6 +11,12 @@ const compare = {
   "=": (a, b) => a === b
 };
 
+// The text of a cell without the heading that narrow pages show in it.
+function wordsOf(cell) {
+  return [...cell.childNodes].filter((node) => !node.classList?.contains("card-label"))
+    .map((node) => node.textContent).join(" ");
+}
+
 export class RunTable {
   constructor(host, runs) {
     this.host = host;
@@ -28,7 +34,7 @@ export class RunTable {
     const values = cells.map(({dataset: {value}}) => value);
     const row = {
       body, values, run: this.runs[Number(body.dataset.row)],
-      words: cells.map((cell) => cell.textContent).concat(values).join(" ").toLowerCase()
+      words: cells.map(wordsOf).concat(values).join(" ").toLowerCase()
     };
     row.button = element("button", {
       type: "button", className: "disclosure", "aria-expanded": "false",

@@ -38,7 +38,7 @@ export class Viewer {
     on("cycle", "input", () => this.showFrame(Number(this.part("cycle").value)));
     on("play", "click", () => this.play(!this.playing));
     for (const name of looks) on(name, "input", () => this.apply());
-    on("reset", "click", () => this.panes[0].scene.resetView());
+    on("reset", "click", () => this.shown().forEach((pane) => pane.scene.resetView()));
     on("save", "click", () => this.shown().forEach((pane) => this.savePicture(pane)));
   }
 
