@@ -33,6 +33,11 @@ RunAsk ask_for(const Figure& figure, const CollectedRun& run) {
   return ask;
 }
 
+/// The first cycle that the figure takes.
+double first_cycle(const Figure& figure) {
+  return static_cast<double>(figure.within.value_or(whole_run)[0]);
+}
+
 /// The last cycle that the figure takes of the run.
 double last_cycle(const Figure& figure, const CollectedRun& run) {
   return std::min(run.end, static_cast<double>(figure.within.value_or(whole_run)[1]));
@@ -42,10 +47,9 @@ double last_cycle(const Figure& figure, const CollectedRun& run) {
 /// measures nothing gets only the last one.
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
                                              const CollectedRun& run) {
-  const auto first = static_cast<double>(figure.within.value_or(whole_run)[0]);
   const RunAsk ask = ask_for(figure, run);
   std::vector<CheckpointRecord> found =
-      checkpoints_for(store, run.run, {&ask, 1}, first, last_cycle(figure, run));
+      checkpoints_for(store, run.run, {&ask, 1}, first_cycle(figure), last_cycle(figure, run));
   if (figure.form == FigureForm::table && !found.empty()) {
     found.erase(found.begin(), --found.end());
   }
@@ -55,9 +59,8 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
 /// The number of checkpoints that the figure asks for, up to the end of the run, and that are
 /// missing.
 std::size_t missing_of(const Figure& figure, const CollectedRun& run) {
-  const auto first = static_cast<double>(figure.within.value_or(whole_run)[0]);
   const double end = std::min(run.run.cycle, last_cycle(figure, run));
-  auto asked = asked_steps(run.run, ask_for(figure, run), first, end);
+  auto asked = asked_steps(run.run, ask_for(figure, run), first_cycle(figure), end);
   for (const CheckpointRecord& record : run.checkpoints) std::erase(asked, record.step);
   return asked.size();
 }
@@ -92,10 +95,9 @@ void note_never_made(const Figure& figure, CollectedRuns& collected) {
 /// or can still be made.
 bool asks_for_one(const Figure& figure, const CollectedRun& run) {
   if (!figure.within || run.run.kind != name_of(Stage::shear)) return true;
-  const bool ended = run.run.state == RunState::completed;
-  const double last = std::min(last_cycle(figure, run), ended ? run.run.cycle : run.end);
-  return !asked_steps(run.run, ask_for(figure, run), static_cast<double>((*figure.within)[0]), last)
-              .empty();
+  double last = last_cycle(figure, run);
+  if (run.run.state == RunState::completed) last = std::min(last, run.run.cycle);
+  return !asked_steps(run.run, ask_for(figure, run), first_cycle(figure), last).empty();
 }
 
 /// Removes the runs without a checkpoint for the figure; notes those and the unfinished ones.

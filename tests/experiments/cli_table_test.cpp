@@ -136,6 +136,7 @@ TEST_F(CommandLineTable, ReportsThatAnEditedManifestHasFewerCyclesThanTheStore) 
   expect(0, {"run", "m.yaml", "--cycles", "1", "-q"});
   const Outcome said = expect(0, {"table"});
   EXPECT_TRUE(has(said.err, "2 runs are shown shorter than stored (up to cycle 2)"));
+  EXPECT_TRUE(has(said.err, "raise its `cycles` to show more"));
 }
 
 TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {

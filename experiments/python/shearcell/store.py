@@ -110,8 +110,9 @@ class Store:
 
         Results are kept beside the store, in PATH.measures/NAME.json, with the SHA-256 of the
         function's source, that of each checkpoint and the program's version, and are computed
-        again when one of these is another; results that are not finite are not kept. Only the function's own source is looked at: after a change in a function that it
-        calls, use fresh=True.
+        again when one of these is another; results that are not finite are not kept. Only the
+        function's own source is looked at: after a change in a function that it calls, use
+        fresh=True.
 
         Args:
             function: from a Checkpoint to a number, or to a mapping of names to numbers.
