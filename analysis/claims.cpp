@@ -11,6 +11,7 @@
 
 #include "analysis/binning.hpp"
 #include "analysis/published.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -201,7 +202,7 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
   if (pairs.any) {
     estimate = mean_of(pairs.differences);
     runs = pairs.differences.size();
-    note = fmt::format("{} pair{} of runs that share{} a packing", runs, runs == 1 ? "" : "s",
+    note = fmt::format("{} of runs that share{} a packing", counted(runs, "pair"),
                        runs == 1 ? "s" : "");
     if (estimate && !pairs.enough(a, b)) {
       note += "; more than a quarter of the runs have no partner";

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "analysis/figures/figures.hpp"
+#include "core/named.hpp"
 
 namespace shearcell {
 
@@ -108,9 +109,7 @@ std::span<const Figure> all_figures() {
 }
 
 const Figure* find_figure(std::string_view name) {
-  const auto all = all_figures();
-  const auto found = std::ranges::find(all, name, &Figure::name);
-  return found == all.end() ? nullptr : &*found;
+  return find_named(all_figures(), name);
 }
 
 }  // namespace shearcell

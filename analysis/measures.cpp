@@ -10,6 +10,7 @@
 #include "analysis/error.hpp"
 #include "analysis/packing_fraction.hpp"
 #include "analysis/voronoi.hpp"
+#include "core/named.hpp"
 
 namespace shearcell {
 namespace {
@@ -203,9 +204,7 @@ MeasuredCurve CurveMeasure::of(const Measures& measures) const {
 }
 
 const CurveMeasure* find_curve_measure(std::string_view name) {
-  const auto all = all_curve_measures();
-  const auto found = std::ranges::find(all, name, &CurveMeasure::name);
-  return found == all.end() ? nullptr : &*found;
+  return find_named(all_curve_measures(), name);
 }
 
 double ScalarMeasure::of(const Measures& measures) const {
@@ -225,9 +224,7 @@ double ScalarMeasure::of(const Measures& measures) const {
 }
 
 const ScalarMeasure* find_measure(std::string_view name) {
-  const auto all = all_scalar_measures();
-  const auto found = std::ranges::find(all, name, &ScalarMeasure::name);
-  return found == all.end() ? nullptr : &*found;
+  return find_named(all_scalar_measures(), name);
 }
 
 Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions) {

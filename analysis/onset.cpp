@@ -112,9 +112,7 @@ std::span<const RunMeasure> all_run_measures() {
 }
 
 const RunMeasure* find_run_measure(std::string_view name) {
-  const auto all = all_run_measures();
-  const auto found = std::ranges::find(all, name, &RunMeasure::name);
-  return found == all.end() ? nullptr : &*found;
+  return find_named(all_run_measures(), name);
 }
 
 Onset onset(RunGroup runs, OnsetMethod method) {

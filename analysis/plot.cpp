@@ -4,7 +4,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "analysis/error.hpp"
 #include "provenance/io/child_process.hpp"

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "provenance/words.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -102,8 +104,7 @@ std::string numbers_of(const Verdict& verdict) {
                          ? fmt::format("{:.3g}, 90 % interval {:.3g} to {:.3g}", *verdict.estimate,
                                        verdict.interval.low, verdict.interval.high)
                          : std::string("not measured");
-  text += fmt::format(", margin {:.3g}, {} run{}", verdict.margin, verdict.runs,
-                      verdict.runs == 1 ? "" : "s");
+  text += fmt::format(", margin {:.3g}, {}", verdict.margin, counted(verdict.runs, "run"));
   if (verdict.runs_needed) text += fmt::format(" of {} needed", *verdict.runs_needed);
   return text;
 }

@@ -28,6 +28,9 @@ struct WallGrain {
 
 /// The largest width or height of a cell [d]. Beyond it positions lose digits that contacts need.
 inline constexpr double kLongestCell = 1e6;
+/// The largest volume of a cell for each of N + 100 grains [d^3]. An analysis takes memory for each
+/// layer of the cell.
+inline constexpr double kLoosestCell = 1e4;
 
 /// Geometry that does not change during a run. Lengths in grain diameters d.
 ///

@@ -110,9 +110,11 @@ double wall_grain_count(const Geometry& geometry) {
 }
 
 bool too_large(const Geometry& geometry) {
-  const double most_wall_grains = 1e4 + 1e3 * static_cast<double>(geometry.grains);
-  return !(std::max(cell_width(geometry), fill_height(geometry)) <= kLongestCell &&
-           wall_grain_count(geometry) <= most_wall_grains);
+  const auto grains = static_cast<double>(geometry.grains);
+  const double width = cell_width(geometry), height = fill_height(geometry);
+  return !(std::max(width, height) <= kLongestCell &&
+           width * width * height <= 0.5 * kLoosestCell * (grains + 100) &&
+           wall_grain_count(geometry) <= 1e4 + 1e3 * grains);
 }
 
 Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Poll& poll) {

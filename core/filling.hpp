@@ -43,8 +43,9 @@ double fill_height(const Geometry& geometry);
 /// Expected number of wall grains; 0 for smooth walls.
 double wall_grain_count(const Geometry& geometry);
 
-/// Whether the cell is too large for its grains: wider or higher than kLongestCell, or with more
-/// wall grains than 10^4 + 1000 N. Placing those takes up to 6000 attempts each.
+/// Whether the cell is too large for its grains: wider or higher than kLongestCell, with more than
+/// half of kLoosestCell for each grain (its wall may yet move outwards), or with more wall grains
+/// than 10^4 + 1000 N. Placing those takes up to 6000 attempts each.
 bool too_large(const Geometry& geometry);
 
 /// The cell at its fill height, with its wall grains placed by random sequential addition.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Enumerations and the names of their values in manifests, records, tables and messages.
+// Enumerations and the names of their values in manifests, records, tables and messages, and tables
+// whose items have a name.
 //
 // Each enumeration has one table beside its definition:
 //   template <>
@@ -54,6 +55,13 @@ constexpr std::optional<Enum> value_of(std::string_view name) {
   const auto found = std::ranges::find(kNames<Enum>, name);
   if (found == kNames<Enum>.end()) return std::nullopt;
   return static_cast<Enum>(found - kNames<Enum>.begin());
+}
+
+/// The item whose member `name` is `name`; null when there is none. A span may be temporary.
+const auto* find_named(const auto& items, std::string_view name) {
+  const auto found =
+      std::ranges::find_if(items, [&](const auto& item) { return item.name == name; });
+  return found == items.end() ? nullptr : &*found;
 }
 
 }  // namespace shearcell

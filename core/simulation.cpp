@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
@@ -103,7 +104,8 @@ void Simulation::advance(const Drive& drive, std::uint64_t steps) {
   if (counts_.builds == 0 || was_set_) {
     refresh_lists(drive);
     was_set_ = false;
-    watch(scene_.time_step);  // an error in the initial state may be hidden by the next check
+    // An error in the initial state may be hidden by the next check.
+    if (step_ == 0) watch(settings_.limits, scene_.time_step);
   }
   for (std::uint64_t n = 0; n < steps; ++n) step_once(drive);
 }
@@ -201,7 +203,9 @@ void Simulation::step_once(const Drive& drive) {
   if (!lists_.inner_valid(excess, pose_)) refresh_lists(drive);
   if (step_ % kWatchInterval == 0) {
     zero_slowest_velocities();
-    watch(scene_.time_step);
+    watch(settings_.limits, scene_.time_step);
+  } else if (drive.amplitude != 0 && step_ % cycle_steps(drive) == 0) {
+    watch(settings_.limits, 0);  // a run may be shorter than the interval
   }
 }
 
@@ -216,14 +220,21 @@ void Simulation::zero_slowest_velocities() {
 }
 
 void Simulation::check() const {
-  if (counts_.builds > 0) watch(0);  // without lists the state is still the one that was loaded
+  // Without lists the state is still the one that was loaded.
+  if (counts_.builds > 0) watch(settings_.limits, 0);
 }
 
-void Simulation::watch(double time_step) const {
+void Simulation::check_recordable() const {
+  WatchdogLimits limits = settings_.limits;
+  limits.overlap = std::numeric_limits<double>::infinity();
+  if (counts_.builds > 0) watch(limits, 0);
+}
+
+void Simulation::watch(const WatchdogLimits& limits, double time_step) const {
   check_grains({.cell = cell_,
                 .scene = scene_,
                 .planes = wall_planes(cell_, pose_),
-                .limits = settings_.limits,
+                .limits = limits,
                 .rows = rows_[0].data(),
                 .velocity = {velocity_[0].data(), velocity_[1].data(), velocity_[2].data()},
                 .id = id_,

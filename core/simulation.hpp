@@ -56,12 +56,17 @@ class Simulation {
   /// is too shallow for the cutoffs.
   Simulation(Cell cell, const Scene& scene, const State& state, EngineSettings settings = {});
 
-  /// Advances by `steps` time steps. The watchdog checks a new state before its first step, and
-  /// every 1024th step. Throws NumericalFailure (watchdog.hpp).
+  /// Advances by `steps` time steps. The watchdog checks step 0, every 1024th step and, except for
+  /// the time-step check, the end of each cycle. It checks no other step: whether a run fails must
+  /// not depend on where it was recorded or continued. Throws NumericalFailure (watchdog.hpp).
   void advance(const Drive& drive, std::uint64_t steps);
 
   /// Runs all watchdog checks now, except the time-step check. Throws NumericalFailure.
   void check() const;
+
+  /// Checks that all numbers are finite and all grains inside the cell, without which a state
+  /// cannot be recorded. Throws NumericalFailure.
+  void check_recordable() const;
 
   /// Continues from another state of the same grains, between upright walls. Throws
   /// std::invalid_argument when their number differs.
@@ -105,7 +110,7 @@ class Simulation {
   double force_on_wall() const;
   void move_wall();
   void zero_slowest_velocities();
-  void watch(double time_step) const;
+  void watch(const WatchdogLimits& limits, double time_step) const;
   WallPose pose_at(const Drive& drive, std::uint64_t step) const;
   double shear_rate(const Drive& drive) const;
   Snapshot snapshot(const Drive& drive);

@@ -87,6 +87,7 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
   simulation.set_scene(scene);
   const std::uint64_t to_check = next_check(simulation.step()) - simulation.step();
   simulation.advance(drive(), std::min(most_steps, to_check));
+  if (at_check()) simulation.check();
 
   const bool done = finished();
   if (!done && simulation.step() >= limit_steps_) {

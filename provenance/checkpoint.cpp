@@ -270,7 +270,6 @@ Checkpoint decode_checkpoint(std::span<const std::byte> image) {
 void require_plausible(const Checkpoint& checkpoint) {
   constexpr double kFarthest = 1e9;  // [d]; grains may drift along the period
   constexpr double kSteepest = 1.5;  // [rad]
-  constexpr double kLoosest = 1e4;   // [d^3] for each of N + 100 grains
   const Cell& cell = checkpoint.cell;
   if (!(cell.width > 0 && cell.depth > 0)) refuse("/restart/cell", "has no width or no depth");
   for (const double length :
@@ -283,7 +282,7 @@ void require_plausible(const Checkpoint& checkpoint) {
   const double height =
       std::max({cell.top, cell.bottom, moving}) - std::min({cell.top, cell.bottom, moving});
   const auto grains = static_cast<double>(checkpoint.state.position.cols());
-  if (cell.width * cell.depth * height > kLoosest * (grains + 100)) {
+  if (cell.width * cell.depth * height > kLoosestCell * (grains + 100)) {
     refuse("/restart/cell", "is larger than any cell of so few grains");
   }
   if (std::abs(checkpoint.theta) > kSteepest) refuse("/restart/theta", "is not a tilt of a cell");

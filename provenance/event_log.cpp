@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <map>
 #include <set>
@@ -199,7 +200,7 @@ Event EventLog::append(const sqlite::WriteTransaction& lock, std::string_view st
   complete.stream = stream;
   complete.type = event.type;
   complete.schema = events::newest_schema(event.type);
-  complete.recorded_at = utc_text(static_cast<std::int64_t>(now_ms()));
+  complete.recorded_at = std::max(utc_text(static_cast<std::int64_t>(now_ms())), event.not_before);
   // Bytes that are not UTF-8, as in a path, become U+FFFD.
   complete.payload = event.payload.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return append_copy(lock, std::move(complete));

@@ -49,7 +49,8 @@ std::optional<std::string> run_of(const Event& event);
 
 struct NewEvent {
   std::string type;
-  nlohmann::json payload;  ///< in the newest layout of its type
+  nlohmann::json payload;       ///< in the newest layout of its type
+  std::string not_before = {};  ///< recorded_at is not earlier, even if the clock was set back
 };
 
 /// Identifies the content of a log: equal heads mean equal logs.

@@ -190,14 +190,17 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   const std::string experiment = info.is_object() ? info.value("experiment", "") : "";
   sqlite::Statement newest(
       database_,
-      "SELECT stream FROM events WHERE stream >= 'manifest/' AND stream < 'manifest0' "
+      "SELECT stream, recorded_at FROM events WHERE stream >= 'manifest/' AND stream < 'manifest0' "
       "AND json_valid(payload) AND json_extract(payload, '$.info.experiment') = ? "
       "ORDER BY recorded_at DESC, seq DESC LIMIT 1",
       experiment);
-  if (log_.version(stream) > 0 && (!newest.step() || newest.text(0) == stream)) return sha256;
-  append(stream,
-         encode(events::ManifestRegistered{sha256, std::string(path), std::string(text), info}),
-         lock);
+  const bool known = newest.step();
+  if (log_.version(stream) > 0 && (!known || newest.text(0) == stream)) return sha256;
+  NewEvent event =
+      encode(events::ManifestRegistered{sha256, std::string(path), std::string(text), info});
+  // The newest version of an experiment is the last one by this time.
+  if (known) event.not_before = newest.text(1);
+  append(stream, event, lock);
   lock.commit();
   return sha256;
 }

@@ -11,6 +11,7 @@
 #include "experiments/manifest/conversion.hpp"
 #include "provenance/checkpoint.hpp"
 #include "provenance/io/clock.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::bench {
 namespace {
@@ -184,7 +185,7 @@ void measure_size(std::size_t grains, const SpeedOptions& options,
   for (const Kernels* kernels : kernels_here()) {
     for (const std::size_t threads : options.threads) {
       SpeedResult result{.grains = grains, .simd = kernels->name, .threads = threads};
-      say(fmt::format("{}, {} thread{}", kernels->name, threads, threads == 1 ? "" : "s"));
+      say(fmt::format("{}, {}", kernels->name, counted(threads, "thread")));
       const EngineSettings settings{kernels, threads, {}, {}};
       result.state_hash = hash_after(made, settings, 200);
       if (results.size() > first && result.state_hash != results[first].state_hash) {

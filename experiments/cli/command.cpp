@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "experiments/runner/registered.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/read_number.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 

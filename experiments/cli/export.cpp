@@ -20,11 +20,11 @@
 #include "experiments/export/formats.hpp"
 #include "experiments/figures/experiment_part.hpp"
 #include "experiments/runner/asks.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/ro_crate.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {

@@ -10,9 +10,9 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/draw.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {

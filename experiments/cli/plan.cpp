@@ -18,7 +18,7 @@
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/novelty.hpp"
 #include "experiments/runner/run_end.hpp"
-#include "experiments/runner/words.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {

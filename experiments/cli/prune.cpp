@@ -14,8 +14,8 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stop.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {

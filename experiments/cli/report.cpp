@@ -7,8 +7,8 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/report/page.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/io/file.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {

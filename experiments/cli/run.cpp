@@ -11,8 +11,8 @@
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/stop.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/io/child_process.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {

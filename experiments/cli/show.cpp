@@ -16,8 +16,8 @@
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/run_end.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {

@@ -11,9 +11,9 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/document.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {

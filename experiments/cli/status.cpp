@@ -21,9 +21,9 @@
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/io/clock.hpp"
 #include "provenance/io/read_number.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {

@@ -11,10 +11,10 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/proposal.hpp"
 #include "experiments/cluster/submission.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {

@@ -11,9 +11,9 @@
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stop.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/sha256.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {

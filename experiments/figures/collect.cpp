@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -17,9 +16,9 @@
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/limits.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {

@@ -16,9 +16,9 @@
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/host.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {

@@ -44,11 +44,19 @@ struct Origins {
   std::vector<std::optional<Measures>*> to = {};
 };
 
-/// Computes the measure with options.instead. Calls read(record, result, measures) for each
-/// checkpoint that could be read.
-template <class Read>
+/// Computes the measure as simulate(record, checkpoint). Calls read(record, result, measures) for
+/// each checkpoint that could be read and from which the simulation did not fail.
+template <class Simulate, class Read>
 void add_simulated(const Store& store, const DerivedMeasure& measure, const Origins& origins,
-                   const MeasureOptions& options, MeasuredPackings& made, const Read& read) {
+                   MeasureOptions options, MeasuredPackings& made, const Simulate& simulate,
+                   const Read& read) {
+  options.instead = [&](const CheckpointRecord& record, const Checkpoint& checkpoint) {
+    try {
+      return simulate(record, checkpoint);
+    } catch (const NumericalFailure&) {
+      return nlohmann::json::object();
+    }
+  };
   const MeasuredCheckpoints found =
       measure_checkpoints(store, origins.from, {&measure, 1}, options);
   made.measured = std::max(made.measured, found.measured);
@@ -59,7 +67,7 @@ void add_simulated(const Store& store, const DerivedMeasure& measure, const Orig
   if (made.cache_trouble.empty()) made.cache_trouble = found.cache_trouble;
   for (std::size_t n = 0; n < found.results.size(); ++n) {
     const nlohmann::json& result = found.results[n].front();
-    if (!result.is_null() && *origins.to[n]) read(origins.from[n], result, **origins.to[n]);
+    if (!result.empty() && *origins.to[n]) read(origins.from[n], result, **origins.to[n]);
   }
 }
 
@@ -98,8 +106,7 @@ void add_cycle_energies(const Store& store, std::span<const CheckpointRecord> re
     origins.from.push_back(*begin);
     origins.to.push_back(&made.measures[i]);
   }
-  MeasureOptions simulating = options;
-  simulating.instead = [&](const CheckpointRecord& record, const Checkpoint& checkpoint) {
+  const auto simulate = [&](const CheckpointRecord& record, const Checkpoint& checkpoint) {
     const Shear& shear = shears.at(record.run);
     const Ledger sum = ledger(checkpoint.cell, shear.scene, shear.drive, checkpoint.state,
                               cycle_steps(shear.drive), kLedgerStride);
@@ -110,7 +117,7 @@ void add_cycle_energies(const Store& store, std::span<const CheckpointRecord> re
   const DerivedMeasure measure{
       "ledger_of_next_cycle", {{"stride", kLedgerStride}}, nullptr, nullptr};
   add_simulated(
-      store, measure, origins, simulating, made,
+      store, measure, origins, options, made, simulate,
       [&](const CheckpointRecord& begin, const nlohmann::json& result, Measures& measures) {
         const double unit_J = shears.at(begin.run).unit_J;
         for (const auto& [name, kept] : {std::pair("work_of_walls_per_cycle_J", "work_of_walls"),
@@ -137,15 +144,14 @@ void add_phi_at_rest(const Store& store, std::span<const CheckpointRecord> recor
     scenes[run] = shear_scene(read_stage(store.run(run).resolved).parameters);
   }
   DerivedMeasure measure = derived_measure("scalars");
-  MeasureOptions resting = options;
-  resting.instead = [&](const CheckpointRecord& record, Checkpoint checkpoint) {
+  const auto rest = [&](const CheckpointRecord& record, Checkpoint checkpoint) {
     checkpoint.state =
         rested(checkpoint.cell, scenes.at(record.run), std::move(checkpoint.state), kRest);
     return measure.from({analyse_stored(record, checkpoint)});
   };
   measure.name = "scalars_at_rest";
   measure.parameters["rest_s"] = kRest;
-  add_simulated(store, measure, origins, resting, made,
+  add_simulated(store, measure, origins, options, made, rest,
                 [&](const CheckpointRecord&, const nlohmann::json& result, Measures& measures) {
                   measures.phi_at_rest = read_results({&measure, 1}, {&result, 1}).phi;
                 });

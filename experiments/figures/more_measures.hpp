@@ -19,8 +19,9 @@ struct MeasuredPackings : MeasureOutcome {
 
 /// Measures checkpoints. `names` are derived measures (derived_measures.hpp), "drive", "ledger" or
 /// "at_rest" (phi_at_rest of cycles 1 to early_cycles). Units and drive of the runs are always
-/// added. "ledger" and "at_rest" are simulated; results are cached. A measure that needs an earlier
-/// checkpoint is left out if that cannot be read. Throws AnalysisError if the cache is malformed.
+/// added. "ledger" and "at_rest" are simulated; results are cached. They are left out where the
+/// simulation fails, as a measure that needs an earlier checkpoint is if that cannot be read.
+/// Throws AnalysisError if the cache is malformed.
 MeasuredPackings measures_of(const Store& store, std::span<const CheckpointRecord> records,
                              std::span<const std::string> names, const MeasureOptions& options);
 

@@ -244,6 +244,7 @@ void measure_where(const Store& store, std::span<const std::string> names,
 
 FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
   FigureRun history;
+  history.run_id = selected.run.id;
   history.labels = selected.membership.labels;
   history.parameters = effective_parameters(selected.run.resolved);
   for (const Row& row : rows) {

@@ -14,7 +14,7 @@
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/registered.hpp"
-#include "experiments/runner/words.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {

@@ -15,6 +15,7 @@
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -55,9 +56,7 @@ std::uint64_t cycles_back(std::string_view measure) {
 
 /// " with another one 1 cycle before it".
 std::string words_of_earlier(std::uint64_t back) {
-  return back == 0
-             ? ""
-             : fmt::format(" with another one {} cycle{} before it", back, back == 1 ? "" : "s");
+  return back == 0 ? "" : fmt::format(" with another one {} before it", counted(back, "cycle"));
 }
 
 /// Why no run has a value that the plot draws; "" if one may have.

@@ -11,6 +11,7 @@
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "provenance/limits.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -104,8 +105,7 @@ Until until_from_json(const nlohmann::json& json) {
 std::string describe(const Until& until) {
   std::string text = fmt::format("{} >= {}", name_of(until.measure), until.value);
   if (until.extra_cycles > 0)
-    text +=
-        fmt::format(" and {} more cycle{}", until.extra_cycles, until.extra_cycles == 1 ? "" : "s");
+    text += fmt::format(" and {}", counted(until.extra_cycles, "more cycle"));
   return text;
 }
 

@@ -13,6 +13,7 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/limits.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -96,11 +97,10 @@ void check_zip(const std::vector<SweepAxis>& zip, const Entry& in) {
   const std::size_t rows = first.values.size();
   for (const SweepAxis& axis : zip) {
     if (axis.values.size() == rows) continue;
-    return in.problems.add(
-        axis.at, path + "." + axis.key,
-        fmt::format("differs in length from {}, which has {}", first.key, rows),
-        fmt::format("{} value{}", axis.values.size(), axis.values.size() == 1 ? "" : "s"),
-        "The lists of a zip advance together; make them equally long.");
+    return in.problems.add(axis.at, path + "." + axis.key,
+                           fmt::format("differs in length from {}, which has {}", first.key, rows),
+                           counted(axis.values.size(), "value"),
+                           "The lists of a zip advance together; make them equally long.");
   }
   std::set<json> seen;
   for (std::size_t row = 0; row < rows; ++row) {

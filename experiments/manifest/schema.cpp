@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/named.hpp"
 #include "core/simulation.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/io/read_number.hpp"
@@ -213,8 +214,7 @@ std::span<const Field> schema() {
 }
 
 const Field* find_field(string_view name) {
-  const auto found = std::ranges::find(schema(), name, &Field::name);
-  return found == schema().end() ? nullptr : &*found;
+  return find_named(schema(), name);
 }
 
 json get_value(const Field& field, const Parameters& parameters) {

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "analysis/figure.hpp"
+#include "core/named.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
@@ -127,8 +128,7 @@ bool is_auto(const Setting& setting) {
 }
 
 const Scale* find_scale(const Manifest& manifest, std::string_view name) {
-  const auto found = std::ranges::find(manifest.scales, name, &Scale::name);
-  return found == manifest.scales.end() ? nullptr : &*found;
+  return find_named(manifest.scales, name);
 }
 
 Scale whole_scale(const Manifest& manifest, const Scale& scale) {

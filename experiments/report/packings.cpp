@@ -19,8 +19,8 @@
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/registered.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {

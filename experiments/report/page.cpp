@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiments/report/html.hpp"
-#include "experiments/runner/words.hpp"
+#include "provenance/words.hpp"
 
 // Files of the front end (web_assets.S).
 extern "C" {

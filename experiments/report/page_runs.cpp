@@ -8,8 +8,8 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/page.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/json_text.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {

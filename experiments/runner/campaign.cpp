@@ -21,9 +21,9 @@
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
-#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {

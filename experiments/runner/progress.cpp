@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "experiments/runner/terminal.hpp"
-#include "experiments/runner/words.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {

@@ -9,9 +9,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "experiments/runner/words.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {

@@ -148,7 +148,7 @@ std::uint64_t chunk_steps(std::size_t grains) {
 }
 
 Checkpoint make_checkpoint(const StagePlan& plan, const Simulation& simulation, double cycle) {
-  simulation.check();
+  simulation.check_recordable();
   return make_checkpoint(plan, simulation.cell(), simulation.scene(), simulation.state(), cycle);
 }
 

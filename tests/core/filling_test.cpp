@@ -129,6 +129,9 @@ TEST(Filling, RejectsImpossibleCells) {
   Geometry sparse = of(600);
   sparse.fill_packing_fraction = 1e-300;
   EXPECT_THROW(make_cell(sparse, 1), GeometryError);  // and not an endless placement
+  sparse.walls = WallTexture::smooth;
+  sparse.fill_packing_fraction = 3e-5;  // no checkpoint of so large a cell could be read
+  EXPECT_THROW(make_cell(sparse, 1), GeometryError);
   EXPECT_THROW(make_cell(of(10), 1), GeometryError);  // shallower than 3 d
   Geometry dense = of(300);
   dense.fill_packing_fraction = 0.5;  // beyond what random sequential addition reaches (0.38)

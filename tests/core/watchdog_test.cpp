@@ -81,6 +81,26 @@ TEST(Watchdog, StopsOverlapsOverTheLimitBeforeTheFirstStep) {
   EXPECT_NEAR(test::failure_of([&] { again.advance(Drive{}, 1); }).value, 0.5, 1e-12);
 }
 
+// Whether a run fails must not depend on where it was recorded, stopped or continued.
+TEST(Watchdog, ChecksTheSameStepsWhereverARunIsContinued) {
+  State pressed_together = at_rest({{20, 20, 20}, {20.5, 20, 20}}, open_cell());
+  pressed_together.step = 1000;
+  Scene scene = table_1();
+  scene.time_step = 1e-9;  // the grains do not part
+  Simulation continued(open_cell(), scene, pressed_together);
+  continued.advance(Drive{}, 23);
+  continued.check_recordable();
+  EXPECT_THROW(continued.check(), NumericalFailure);
+  EXPECT_EQ(test::failure_of([&] { continued.advance(Drive{}, 1); }).step, 1024U);
+
+  State lost = at_rest({{20, 20, 20}, {20, 10, 20}}, open_cell());
+  lost.step = 1;
+  lost.velocity(0, 1) = std::nan("");
+  Simulation of_lost(open_cell(), scene, lost);
+  of_lost.advance(Drive{}, 1);
+  EXPECT_EQ(test::failure_of([&] { of_lost.check_recordable(); }).grain, 1);
+}
+
 // Drag hides the instability: at 1.3 times 2/sqrt(8 k/m) the grains vibrate without end, with
 // plausible overlaps and speeds.
 TEST(Watchdog, StopsAnUnstableTimeStepThatDragHides) {

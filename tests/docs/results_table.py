@@ -34,14 +34,14 @@ HEADLINES = [
     ("C", "C: the critical size at A = 0.0667", "critical size [grains], A = 0.0667", "about 13"),
     ("C", "C: the critical size at A = 0.0833", "critical size [grains], A = 0.0833", "about 16"),
     ("C", "C: the critical size at A = 0.1", "critical size [grains], A = 0.1", "about 20"),
-    ("S6", "D: the onset at A = 0.05 rad is the same", "phi at the onset, A = 0.05, without minus with gravity", "equal at A = 0.04, 0.05"),
+    ("S6", "D: the onset at A = 0.05 rad is the same", "phi at the onset, A = 0.05, without minus with gravity", "similar at A = 0.04, 0.05"),
     ("S5a", "C: the onset at A = 0.04 rad", "phi at the onset, N = 7900, A = 0.04", "0.646 +- 0.001"),
     ("S5a", "C: the onset at A = 0.05 rad", "phi at the onset, N = 7900, A = 0.05", "0.646 +- 0.001"),
     ("S5b", "C: the onset at N = 11400", "phi at the onset, N = 11400, A = 0.05", "0.646 +- 0.001"),
     ("S5b", "C: the onset at N = 18200", "phi at the onset, N = 18200, A = 0.05", "0.646 +- 0.001"),
     ("nucleation", "title: the rate", "exponent of the nucleation rate against N_inves, minus 1", "homogeneous: 0"),
     ("nucleation_core", "title: at least 4 d", "the same at least 4 d from the walls, against the grains there, minus 1", "homogeneous: 0"),
-    ("S7", "E: crystallites are equally probable", "nuclei in the inner minus the outer half of the width", "equal"),
+    ("S7", "E: crystallites are equally probable", "nuclei in the inner minus the outer half of the width", "roughly equal"),
     ("S7", "E: crystallites are more probable near the top", "nuclei in the upper minus the lower third", "more near the top"),
 ]
 # Folders of results; a claim is shown as the first of them measured it.

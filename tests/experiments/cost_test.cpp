@@ -12,8 +12,8 @@
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "experiments/runner/words.hpp"
 #include "protocols/settle.hpp"
+#include "provenance/words.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
 

@@ -3,6 +3,7 @@
 // cannot be recomputed are distinguished from changed ones.
 #include "experiments/runner/replay.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -40,6 +41,25 @@ TEST_F(ReplayTest, ReproducesEveryRecordedState) {
   EXPECT_EQ(final_hashes(store_), before);
   for (const RunRecord& run : store_.runs()) EXPECT_EQ(run.state, RunState::completed);
   EXPECT_TRUE(store_.verify().ok());
+}
+
+// This run's time step is so near the stability limit that at the ends of some cycles, which are no
+// multiples of 1024 steps, the watchdog's bound is over it.
+TEST_F(ReplayTest, FailsNowhereThatTheRunDidNot) {
+  const auto manifest = [](const char* cycles) {
+    return fmt::format(
+        "experiment: near\nquestion: q\nbase: {{grains: 200, period_s: 0.0625, steps_per_cycle: "
+        "512, amplitude_rad: 0.1, cycles: {}}}\nseeds: [34]\n",
+        cycles);
+  };
+  const TemporaryFolder folder;
+  Store parts(folder.path() / "store", Access::create);
+  compute(parts, manifest("13"));
+  compute(parts, manifest("31"));
+  EXPECT_EQ(final_hashes(parts), undisturbed(manifest("31")));
+  for (const CheckpointRecord& record : replayable(parts)) {
+    EXPECT_FALSE(verify_by_replay(parts, record, 1).divergence) << record.step;
+  }
 }
 
 TEST_F(ReplayTest, RecordsNothingIfInterruptedWhileTheCellIsFilled) {

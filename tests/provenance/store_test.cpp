@@ -195,6 +195,20 @@ TEST_F(StoreTest, SkipsADamagedNewestCheckpoint) {
   EXPECT_EQ(store_.run(id_).step, 91200u);
 }
 
+TEST_F(StoreTest, TheManifestRegisteredLastIsTheNewestEvenIfTheClockWentBack) {
+  const nlohmann::json info = {{"experiment", "a"}};
+  store_.register_manifest("a: 1\n", "a.yaml", info);
+  sqlite::Database(path_ / "store.sqlite", Access::write)
+      .execute(
+          "DROP TRIGGER events_are_never_updated; UPDATE events SET recorded_at = "
+          "'2999-01-01T00:00:00.000Z' WHERE type = 'ManifestRegistered'");
+  store_.register_manifest("a: 2\n", "a.yaml", info);
+  store_.register_manifest("a: 2\n", "a.yaml", info);  // adds nothing
+  const auto registered = store_.events("", "ManifestRegistered");
+  ASSERT_EQ(registered.size(), 2U);
+  EXPECT_EQ(registered[1].recorded_at, registered[0].recorded_at);
+}
+
 TEST_F(StoreTest, ListsCheckpointsInATimeIndependentOfTheNumberOfRuns) {
   sqlite::Database database(path_ / "store.sqlite", Access::write);
   database.execute(

@@ -165,6 +165,13 @@ class Package(unittest.TestCase):
 
         self.assertEqual(list(self.store.measure(changed.spread)["spread"]), [2.0] * 6)
 
+    def test_results_that_cannot_be_kept_are_returned(self):
+        copy = self.folder / "full"
+        shutil.copytree(self.path, copy)
+        (self.folder / "full.measures").write_text("a file in the place of the folder")
+        with self.assertWarnsRegex(UserWarning, "unknown are not kept"):
+            self.assertEqual(len(Store(copy).measure(unknown)), 6)
+
     def test_errors_say_what_is_wrong(self):
         run = self.store.runs()[0]
         with self.assertRaisesRegex(KeyError, "it has those of cycles"):
@@ -175,6 +182,10 @@ class Package(unittest.TestCase):
             self.store.table(variant="fluid=cel")
         with self.assertRaisesRegex(FileNotFoundError, "is not a store"):
             Store(self.folder / "nowhere")
+        self.assertEqual(len(self.store.runs(seed=range(run.seed, run.seed + 1))),
+                         len(self.store.runs(seed=run.seed)))
+        with self.assertRaisesRegex(ValueError, "seed: no value is given"):
+            self.store.runs(seed=[])
         with self.assertRaisesRegex(ValueError, "cannot name a measure"):
             self.store.measure(lambda state: 1.0)
         copy = self.folder / "damaged"

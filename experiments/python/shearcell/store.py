@@ -11,9 +11,10 @@ import os
 import shutil
 import subprocess
 import textwrap
+import warnings
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Union
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Mapping, Union
 
 from .checkpoint import Checkpoint
 
@@ -261,15 +262,22 @@ class _KeptMeasure:
     def save(self) -> None:
         if not self.changed:
             return
-        self.file.parent.mkdir(exist_ok=True)
         part = self.file.with_suffix(f".{os.getpid()}.tmp")
-        part.write_text(json.dumps({**self.facts, "checkpoints": self.values}, indent=1) + "\n")
-        part.replace(self.file)
+        try:
+            self.file.parent.mkdir(exist_ok=True)
+            part.write_text(json.dumps({**self.facts, "checkpoints": self.values}, indent=1) + "\n")
+            part.replace(self.file)
+        except OSError as problem:
+            warnings.warn(f"the results of {self.name} are not kept: {problem}", stacklevel=3)
 
 
 def _filters(select: Mapping[str, Any]) -> list[str]:
     arguments = []
     for key, values in select.items():
-        for value in values if isinstance(values, (list, tuple, set)) else [values]:
-            arguments += [f"--{key}", str(value)]
+        several = isinstance(values, Iterable) and not isinstance(values, str)
+        chosen = [str(value) for value in values] if several else [str(values)]
+        if not chosen:
+            raise ValueError(f"{key}: no value is given; leave it out to select all")
+        for value in chosen:
+            arguments += [f"--{key}", value]
     return arguments

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/runner/words.hpp"
+#include "provenance/words.hpp"
 
 #include <fmt/format.h>
 
