@@ -26,8 +26,9 @@ struct WallGrain {
   Eigen::Vector3d position;
 };
 
-/// The largest width or height of a cell [d]. Beyond it positions lose digits that contacts need.
-inline constexpr double kLongestCell = 1e6;
+/// The largest width or height of a cell [d]. Neighbour lists have positions in single precision,
+/// whose rounding must be below their margins.
+inline constexpr double kLongestCell = 1e5;
 /// The largest volume of a cell for each of N + 100 grains [d^3]. An analysis takes memory for each
 /// layer of the cell.
 inline constexpr double kLoosestCell = 1e4;

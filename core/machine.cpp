@@ -6,36 +6,50 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <string>
 #include <thread>
 
 namespace shearcell {
 namespace {
 
-/// The limits of a container, in the files of cgroup version 2: "max", or a number.
-double limit_in(std::istream& file) {
-  double limit = 0;
-  return file >> limit ? limit : std::numeric_limits<double>::infinity();
+/// The smallest limit of the cgroups (version 2) around this process: its own, as of a batch job,
+/// and all above it. A container sees its own as the root. read(file) gives a limit or NaN.
+template <class Read>
+double smallest_limit(const char* name, const Read& read) {
+  std::filesystem::path group = "/";
+  std::ifstream groups("/proc/self/cgroup");
+  for (std::string line; std::getline(groups, line);) {
+    if (line.starts_with("0::/")) group = line.substr(3);
+  }
+  double smallest = std::numeric_limits<double>::infinity();
+  for (;; group = group.parent_path()) {
+    std::ifstream file("/sys/fs/cgroup" / group.relative_path() / name);
+    if (const double limit = read(file); limit < smallest) smallest = limit;
+    if (!group.has_relative_path()) return smallest;
+  }
 }
 
-double memory_limit() {
-  std::ifstream file("/sys/fs/cgroup/memory.max");
-  return limit_in(file);
+/// NaN for "max".
+double number_in(std::istream& file) {
+  double number = 0;
+  return file >> number ? number : std::nan("");
 }
 
 /// Time of cores per time: `docker run --cpus`.
-double core_limit() {
-  std::ifstream file("/sys/fs/cgroup/cpu.max");
-  const double time = limit_in(file), period = limit_in(file);
-  return time / period >= 0 ? time / period : std::numeric_limits<double>::infinity();
+double cores_in(std::istream& file) {
+  const double time = number_in(file), period = number_in(file);
+  return time / period;
 }
 
 }  // namespace
 
 double machine_memory() {
-  return std::min(memory_limit(), static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
-                                      static_cast<double>(sysconf(_SC_PAGESIZE)));
+  return std::min(
+      smallest_limit("memory.max", number_in),
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE)));
 }
 
 std::size_t usable_cores() {
@@ -43,8 +57,8 @@ std::size_t usable_cores() {
   const bool known = sched_getaffinity(0, sizeof set, &set) == 0;  // fails beyond 1024 cores
   const auto cores =
       known ? static_cast<unsigned>(CPU_COUNT(&set)) : std::thread::hardware_concurrency();
-  return static_cast<std::size_t>(
-      std::clamp(std::ceil(core_limit()), 1.0, std::max(1.0, static_cast<double>(cores))));
+  return static_cast<std::size_t>(std::clamp(std::ceil(smallest_limit("cpu.max", cores_in)), 1.0,
+                                             std::max(1.0, static_cast<double>(cores))));
 }
 
 }  // namespace shearcell

@@ -7,7 +7,8 @@
 
 namespace shearcell {
 
-/// Memory that this process may use [bytes]: the machine's, or the limit of its container.
+/// Memory that this process may use [bytes]: the machine's, or the limit of its container or batch
+/// job.
 double machine_memory();
 
 /// Cores that this process may use; fewer than the machine's under taskset, a batch system or in a

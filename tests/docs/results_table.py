@@ -27,7 +27,7 @@ HEADLINES = [
     ("S3", "B.4: phi is the same at cycles 1 to 15 for steps of 7.0e-5", "phi, time step 7.0e-5 s minus 4.4e-5 s", "similar"),
     ("S3", "B.4: at 4.4e-5 s the average overlap", "mean overlap [d]", "less than 0.001"),
     ("S3", "time step: the onset is the same for steps of 1.0e-4", "phi at the onset, time step 1.0e-4 s minus 4.4e-5 s", "not asked"),
-    ("B5", "B.5: at cycles", "phi gained by pauses, at rest", "grows more rapidly"),
+    ("B5", "B.5: at cycles", "phi with pauses minus phi without, after 0.1 s of rest", "grows more rapidly"),
     ("S4", "B.6: phi is the same at cycles", "phi, moving top minus moving bottom wall", "nearly the same"),
     ("C", "C: the critical size at A = 0.04", "critical size [grains], A = 0.04", "about 10"),
     ("C", "C: the critical size at A = 0.05", "critical size [grains], A = 0.05", "about 10"),
@@ -39,10 +39,10 @@ HEADLINES = [
     ("S5a", "C: the onset at A = 0.05 rad", "phi at the onset, N = 7900, A = 0.05", "0.646 +- 0.001"),
     ("S5b", "C: the onset at N = 11400", "phi at the onset, N = 11400, A = 0.05", "0.646 +- 0.001"),
     ("S5b", "C: the onset at N = 18200", "phi at the onset, N = 18200, A = 0.05", "0.646 +- 0.001"),
-    ("nucleation", "title: the rate", "exponent of the nucleation rate against N_inves, minus 1", "homogeneous: 0"),
-    ("nucleation_core", "title: at least 4 d", "the same at least 4 d from the walls, against the grains there, minus 1", "homogeneous: 0"),
-    ("S7", "E: crystallites are equally probable", "nuclei in the inner minus the outer half of the width", "roughly equal"),
-    ("S7", "E: crystallites are more probable near the top", "nuclei in the upper minus the lower third", "more near the top"),
+    ("nucleation", "title: the rate", "exponent of the nucleation rate against N_inves", "1 (homogeneous)"),
+    ("nucleation_core", "title: at least 4 d", "the same at least 4 d from the walls, against the grains there", "1 (homogeneous)"),
+    ("S7", "E: crystallites are equally probable", "share of nuclei in the inner half of the accessible width minus that in the outer half", "roughly equal"),
+    ("S7", "E: crystallites are more probable near the top", "share of nuclei in the upper third minus that in the lower third", "more near the top"),
 ]
 # Folders of results; a claim is shown as the first of them measured it.
 SOURCES = ("decide", "larger_step", "volume", "paper", "desk")
@@ -54,6 +54,7 @@ SHOWN = [
     (r"relative fall of phi_u less ([\d.]+)", lambda value, base: 100 * (value + base), " %"),
     (r"phi at the onset less ([\d.]+)", lambda value, base: value + base, ""),
     (r"relative difference from ([\d.]+)", lambda value, base: base * (1 + value), ""),
+        (r"exponent of the rate against \w+ less ([\d.]+)", lambda value, base: value + base, ""),
     (r"log2 of the ratio", lambda value, base: 2**value, ""),
     (r"relative difference", lambda value, base: 100 * value, " %"),
     (r"percentage", lambda value, base: value, " points"),
@@ -87,6 +88,14 @@ def measured(claim):
     # The last digit is the first digit of half the way to the nearer end.
     decimals = 3 if width == 0 else max(0, -math.floor(math.log10(width / 2)))
     return f"{value:.{decimals}f}{unit} ({ends[0]:.{decimals}f} to {ends[1]:.{decimals}f})"
+
+
+def margin(claim):
+    """In the unit of `measured`."""
+    if "log2 of the ratio" in claim["quantity"]:
+        return f"factor {2 ** claim['margin']:g}"
+    convert, unit = conversion(claim["quantity"])
+    return f"{convert(claim['margin']) - convert(0):.3g}{unit}"
 
 
 def runs(claim):
@@ -123,7 +132,7 @@ def best_of(found):
 
 
 def headlines(page, results):
-    text = header(["claim", "supplement", "ours (90 % interval)", "runs", "verdict"])
+    text = header(["claim", "supplement", "ours (90 % interval)", "margin", "runs", "verdict"])
     for figure, beginning, name, supplement in HEADLINES:
         found = [(place, drawing, claim) for place, of, drawing, claim in verdicts(results)
                  if of == figure and claim["claim"].startswith(beginning) and "(P on" not in claim["claim"]]
@@ -131,7 +140,7 @@ def headlines(page, results):
             continue
         place, drawing, claim = best_of(found)
         name += ", time step 1.0e-4 s" if place.startswith("larger_step") else ""
-        text += row([name, supplement, measured(claim), runs(claim), link(claim["verdict"], drawing, page)])
+        text += row([name, supplement, measured(claim), margin(claim), runs(claim), link(claim["verdict"], drawing, page)])
     return text
 
 
