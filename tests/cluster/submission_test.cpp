@@ -363,6 +363,7 @@ TEST(SharingOut, BalancesTimeNotSteps) {
 
 TEST(SharingOut, LeavesNoTaskEmptyIfNothingCosts) {
   const auto shares = share_out({bundle("p", 0), bundle("q", 0), bundle("r", 0)}, 3);
+  ASSERT_EQ(shares.size(), 3U);
   for (const Share& share : shares) EXPECT_EQ(share.packings.size(), 1U);
   EXPECT_TRUE(share_out({}, 5).empty());
 }

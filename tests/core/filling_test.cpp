@@ -135,7 +135,8 @@ TEST(Filling, RejectsImpossibleCells) {
   EXPECT_THROW(make_cell(of(10), 1), GeometryError);  // shallower than 3 d
   Geometry dense = of(300);
   dense.fill_packing_fraction = 0.5;  // beyond what random sequential addition reaches (0.38)
-  EXPECT_THROW(fill_cell(make_cell(dense, 1), dense, 1), GeometryError);
+  const Cell full = make_cell(dense, 1);
+  EXPECT_THROW(fill_cell(full, dense, 1), GeometryError);
   Geometry flat = of(10);  // lower than a grain even before it settles
   flat.height_over_width = 0.1;
   const Cell low = make_cell(flat, 1);

@@ -255,6 +255,12 @@ TEST(LinkedCells, VisitEveryPointNearbyOnceInShallowCellsToo) {
     std::multiset<std::int32_t> seen;
     near.for_each_near({2, 2, 0.1}, [&](std::int32_t i) { seen.insert(i); });
     for (const std::int32_t i : seen) EXPECT_EQ(seen.count(i), 1U) << depth;
+    for (std::int32_t i = 0; i < 50; ++i) {
+      const auto u = uniform_pair({static_cast<std::uint32_t>(i), 0, 0, 0}, 5);
+      const double dz = std::remainder(depth * (i % 7) / 7.0 - 0.1, depth);
+      const bool is_near = std::hypot(4 * u[0] - 2, 4 * u[1] - 2, dz) <= 1;
+      EXPECT_TRUE(!is_near || seen.contains(i)) << i << ", " << depth;
+    }
     EXPECT_FALSE(seen.empty());
     // Coordinates that are not finite belong to some cell.
     near.insert(50, {std::nan(""), 1e300, -1e300});

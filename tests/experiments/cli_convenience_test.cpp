@@ -92,7 +92,7 @@ TEST_F(Convenience, NewPrintsACommandThatCanBePasted) {
 // The manual of a machine is that of all: experiments/REFERENCE.md is compared with it.
 TEST_F(Convenience, TheManualDoesNotDependOnTheEnvironment) {
   for (const Arguments& page : {Arguments{"manual"}, Arguments{"manual", "--markdown"}}) {
-    const std::string usual = run(page).out;
+    const std::string usual = expect(0, page).out;
     name_store("elsewhere");
     EXPECT_EQ(run(page).out, usual);
     name_store("");
@@ -124,20 +124,9 @@ TEST_F(Convenience, ShellsCompleteCommandsAndOptions) {
 
 TEST_F(Convenience, TheManualHasEveryCommand) {
   const std::string page = run({"manual"}).out;
-  const std::string help = run({"--help"}).out;
-  std::istringstream lines(help.substr(help.find("Subcommands:")));
-  std::size_t commands = 0;
-  std::string line;
-  std::getline(lines, line);
-  while (std::getline(lines, line) && line.starts_with("  ")) {
-    std::istringstream words(line);
-    std::string word;
-    words >> word;
-    if (line[2] == ' ') continue;  // the rest of a meaning
-    EXPECT_TRUE(has(page, ".SS shearcell " + word + "\n"));
-    ++commands;
+  for (const std::string& command : commands()) {
+    EXPECT_TRUE(has(page, ".SS shearcell " + command + "\n"));
   }
-  EXPECT_GE(commands, 16U);
   if (find_program("groff")) {
     write("page", page);
     EXPECT_EQ(shell_output("groff -man -Tutf8 -ww -z page 2>&1"), "");
@@ -165,19 +154,13 @@ TEST_F(Convenience, DoctorReportsTheMachine) {
   expect(1, {"doctor", "--no-speed", "--store", "plain"}, {"plain is a file"});
 }
 
-TEST_F(Convenience, TablesFitTheTerminalAndHaveColoursOnlyThere) {
+TEST_F(Convenience, TablesHaveColoursOnlyOnATerminal) {
   campaign(tiny_manifest());
   const std::string piped = run({"status"}).out;
   EXPECT_FALSE(has(piped, "\x1b"));
   EXPECT_TRUE(has(piped, "completed"));
   EXPECT_TRUE(has(on_terminal(80, "", "status"), "\x1b[32mcompleted"));
-  const std::string plain = on_terminal(44, "NO_COLOR=1", "status");
-  EXPECT_FALSE(has(plain, "\x1b"));
-  std::istringstream lines(plain);
-  for (std::string line; std::getline(lines, line);) {
-    const bool of_table = has(line, "completed") && !has(line, "stages");
-    EXPECT_TRUE(!of_table || line.size() <= 45U) << line;  // and the terminal's carriage return
-  }
+  EXPECT_FALSE(has(on_terminal(80, "NO_COLOR=1", "status"), "\x1b"));
   // Long enough that progress is drawn.
   EXPECT_TRUE(has(on_terminal(80, "NO_COLOR=1", "run m.yaml --cycles 60"), "\x1b[2K"));
   for (const char* words : {"status", "status --watch 0.1", "run m.yaml --cycles 80"}) {

@@ -125,7 +125,7 @@ TEST_F(Outputs, AnExportOverwritesNothing) {
   fs::create_symlink(path("nowhere"), path("dangling"));
   for (const char* format : {"h5md", "extxyz", "vtk", "lammps", "ro-crate"}) {
     for (const char* place : {"out", "out/notes", "dangling", "m.yaml"}) {
-      expect_refused({"export", id_, "--to", format, "--out", place}, {});
+      expect_refused({"export", id_, "--to", format, "--out", place}, {place});
     }
   }
   EXPECT_EQ(read_bytes(path("out/notes")), notes);

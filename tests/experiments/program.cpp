@@ -24,7 +24,7 @@ ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::s
   Running program{0, outputs_.path() / ("out" + name), outputs_.path() / ("err" + name)};
   for (const fs::path& file : {program.out, program.err}) fs::remove(file);
   // The caller's environment may name a store.
-  Arguments words = {"-u", "SHEARCELL_STORE"};
+  Arguments words = {"-u", "SHEARCELL_STORE", "-u", "NO_COLOR"};
   if (!named_store_.empty()) words.push_back("SHEARCELL_STORE=" + named_store_);
   words.emplace_back(executable);
   program.pid = spawn(joined(words, arguments), folder_.path(), program.out, program.err);
@@ -118,6 +118,11 @@ void ProgramTest::shared(const std::string& identity, const std::string& place,
     const std::string part = kept.string() + ".part";
     fs::remove_all(part);
     make(part);
+    if (HasFailure()) {  // the next test tries again
+      fs::remove_all(part);
+      close(lock);
+      return;
+    }
     fs::rename(part, kept);
   }
   close(lock);
@@ -132,6 +137,27 @@ void ProgramTest::campaign(const std::string& manifest, const Arguments& options
   shared(identity, store, [&](const std::string& folder) {
     expect(0, joined({"run", file, "-q", "--store", folder}, options));
   });
+}
+
+std::vector<std::string> ProgramTest::commands() {
+  const std::string help = expect(0, {"--help"}, {"Subcommands:\n"}).out;
+  std::istringstream lines(help.substr(help.find("Subcommands:\n")));
+  std::vector<std::string> found;
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line) && line.starts_with("  ")) {
+    if (line[2] != ' ') found.push_back(line.substr(2, line.find(' ', 2) - 2));
+  }
+  EXPECT_GE(found.size(), 22U);
+  return found;
+}
+
+void ProgramTest::wait_for_objects(std::size_t files, const std::string& store) const {
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(kLimitSeconds);
+  while (objects(store) < files) {
+    ASSERT_LT(std::chrono::steady_clock::now(), limit) << objects(store) << " of " << files;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
 }
 
 nlohmann::json ProgramTest::json(const Arguments& arguments) {

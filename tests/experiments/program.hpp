@@ -125,10 +125,11 @@ class ProgramTest : public testing::Test {
     return "shearcell-store/" + store.checkpoints(run).back().file;
   }
 
+  /// The subcommands that the program's help lists.
+  std::vector<std::string> commands();
+
   /// Waits until the store has that many checkpoint files.
-  void wait_for_objects(std::size_t files, const std::string& store = "shearcell-store") const {
-    while (objects(store) < files) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
+  void wait_for_objects(std::size_t files, const std::string& store = "shearcell-store") const;
 
  private:
   Running start(const Arguments& arguments, const std::string& name = "",

@@ -164,9 +164,15 @@ std::vector<std::string> store_seeds() {
 
 std::vector<std::string> published_seeds() {
   const std::string csv = kCsv, lineage = R"({"outputs": {"S2a.csv": ")" + sha256_hex(csv) + "\"}}";
+  const std::string axis =
+      R"({"label": [["x", ""]], "unit": [], "log": true, "whole": false, "clip": false, "low": null,)"
+      R"( "high": null})";
+  const std::string chart = R"({"x": )" + axis + R"(, "y": )" + axis +
+                            R"(, "title": [], "lines": [], "series": [{"title": [["a", ""]],)"
+                            R"( "colour": "#000000", "point": 7, "shift": 0, "line": true,)"
+                            R"( "dashed": false, "band": false, "points": [[1, 2, null, null]]}]})";
   return {csv + '\0' + lineage, csv + "x" + '\0' + lineage,
-          "method,seconds_per_cycle,error\n\"a \"\"b\"\"\",1,2\nc,3,4e-3\n",
-          "run,time_s,distance_d\n1,2,3\n", "seconds_per_cycle,phi,phi_error\n1,0.64,1e-4\n"};
+          std::string("x,y\n1,2\n") + '\0' + chart};
 }
 
 std::vector<std::string> measure_seeds() {

@@ -29,7 +29,9 @@ if ! command -v dpkg-shlibdeps >/dev/null; then
 fi
 (cd "$build" && cpack -B "$folder/package") > "$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
 dpkg -x "$folder"/package/*.deb "$folder/unpacked"
-dpkg -I "$folder"/package/*.deb | grep -E "Package|Version|Depends|Recommends"
-"$folder/unpacked/usr/bin/shearcell" --version | head -1
+for field in Package Version Depends Recommends; do
+  dpkg -I "$folder"/package/*.deb | grep "^ $field:"
+done
+"$folder/unpacked/usr/bin/shearcell" --version | grep "^shearcell "
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$folder/unpacked/usr/lib/python3/dist-packages" /usr/bin/python3 -c "import shearcell"
 [ ! -e "$folder/unpacked/usr/include" ]

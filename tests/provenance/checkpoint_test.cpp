@@ -101,7 +101,13 @@ TEST(Checkpoint, StateHashCoversWhatARunContinuesFrom) {
   EXPECT_TRUE(changed([](Checkpoint& o) { o.state.velocity(2, 5) += 1e-15; }));
   EXPECT_TRUE(changed([](Checkpoint& o) { o.state.wall_velocity = 0.0; }));
   EXPECT_TRUE(changed([](Checkpoint& o) { o.cell.moving = MovingWall::bottom; }));
+  EXPECT_TRUE(changed([](Checkpoint& o) { o.state.wall_height += 1e-9; }));
+  for (double Cell::*length : {&Cell::width, &Cell::depth, &Cell::bottom, &Cell::top}) {
+    EXPECT_TRUE(changed([length](Checkpoint& o) { o.cell.*length += 1e-9; }));
+  }
   EXPECT_TRUE(changed([](Checkpoint& o) { o.cell.wall_grains.pop_back(); }));
+  EXPECT_TRUE(changed([](Checkpoint& o) { o.cell.wall_grains[2].position.z() += 1e-9; }));
+  EXPECT_TRUE(changed([](Checkpoint& o) { o.cell.wall_grains[0].side = WallSide::right; }));
 }
 
 TEST(Checkpoint, DoesNotWriteWhatItCouldNotRead) {

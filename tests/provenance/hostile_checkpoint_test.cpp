@@ -51,6 +51,25 @@ std::vector<double> columns(const Eigen::Matrix3Xd& m) {
   return {m.data(), m.data() + m.size()};
 }
 
+/// What others read: grains, then wall grains, in SI units.
+void expect_particles_in_si_units(const Handle& file, const Checkpoint& written) {
+  const double d = written.units.diameter_m;
+  const Eigen::Index grains = written.state.position.cols();
+  const Eigen::Matrix3Xd walls = wall_grain_positions(written.cell, pose_of(written));
+  Eigen::Matrix3Xd position(3, grains + walls.cols());
+  Eigen::Matrix3Xd velocity = Eigen::Matrix3Xd::Zero(3, position.cols());
+  position.leftCols(grains) = written.state.position * d;
+  position.rightCols(walls.cols()) = walls * d;
+  velocity.leftCols(grains) = written.state.velocity * d;
+  EXPECT_EQ(numbers(file, "/particles/all/position/value"), columns(position));
+  EXPECT_EQ(numbers(file, "/particles/all/velocity/value"), columns(velocity));
+  std::vector<double> species(static_cast<std::size_t>(grains), 0);
+  for (const WallGrain& grain : written.cell.wall_grains) {
+    species.push_back(1 + static_cast<int>(grain.side));
+  }
+  EXPECT_EQ(numbers(file, "/particles/all/species"), species);
+}
+
 TEST(Hdf5Read, AgreesWithTheLibrary) {
   for (const int observables : {0, 1, 8, 9, 40, 1000}) {
     for (const Eigen::Index grains : {0, 1, 700}) {
@@ -74,6 +93,7 @@ TEST(Hdf5Read, AgreesWithTheLibrary) {
         EXPECT_EQ(numbers(file, "/observables/" + name + "/value"), std::vector{value});
       }
       EXPECT_EQ(state_hash(read), state_hash(written));
+      expect_particles_in_si_units(file, written);
     }
   }
 }

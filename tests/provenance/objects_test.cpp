@@ -31,11 +31,19 @@ TEST_F(ObjectStoreTest, ReturnsStoredBytes) {
   EXPECT_EQ(sha256, sha256_hex("abc"));
   EXPECT_EQ(ObjectStore::file_of(sha256), "objects/ba/" + sha256 + ".h5");
   EXPECT_EQ(objects_.get(sha256, 3), bytes_);
-  const auto written = fs::last_write_time(folder_.path() / ObjectStore::file_of(sha256));
+  const fs::path file = folder_.path() / ObjectStore::file_of(sha256);
+  const auto earlier = fs::last_write_time(file) - std::chrono::hours(1);
+  fs::last_write_time(file, earlier);
   objects_.put(bytes_);
-  EXPECT_EQ(fs::last_write_time(folder_.path() / ObjectStore::file_of(sha256)), written)
-      << "it was written again";
+  EXPECT_EQ(fs::last_write_time(file), earlier) << "it was written again";
   EXPECT_TRUE(objects_.strangers({sha256}).empty());
+}
+
+TEST_F(ObjectStoreTest, RefusesAFileThatTheMemoryDoesNotHold) {
+  const std::string sha256 = objects_.put(bytes_);
+  fs::resize_file(folder_.path() / ObjectStore::file_of(sha256), std::uintmax_t{1} << 40);
+  expect_refused<TooLittleMemory>([&] { objects_.get(sha256, std::uint64_t{1} << 40); },
+                                  {"memory"});
 }
 
 TEST_F(ObjectStoreTest, ObeysTheUmask) {

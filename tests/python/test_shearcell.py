@@ -75,6 +75,7 @@ class Package(unittest.TestCase):
             table = self.store.table(per=per)
             self.assertEqual(len(table), rows)
             printed = json.loads(self.store.call("table", "--per", per, "--format", "json"))
+            self.assertEqual(len(printed), rows)
             for row, expected in zip(table.to_dict("records"), printed):
                 for key, value in expected.items():
                     same = pandas.isna(row[key]) if value in (None, "") else row[key] == value
@@ -140,6 +141,7 @@ class Package(unittest.TestCase):
 
     def test_own_measure_is_kept_beside_the_store(self):
         global calls
+        calls = 0
         first = self.store.measure(spread)
         self.assertEqual((len(first), calls), (6, 6))
         self.assertEqual(first["y_d"][0], self.store.run(first["run"][0]).checkpoint(0).position[:, 1].mean())
