@@ -140,12 +140,16 @@ void add_speed(CLI::App& bench, Context& context) {
   CLI::App* command = bench.add_subcommand(
       "speed",
       "Measure particle-steps per second in the sheared rough cell, and the share of each part");
-  add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000);
-  add_number(*command, "--threads", options->threads, "Threads inside one run", "T", 1, 1024);
+  add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000)
+      ->capture_default_str();
+  add_number(*command, "--threads", options->threads, "Threads inside one run", "T", 1, 1024)
+      ->capture_default_str();
   add_number(*command, "--repeats", options->repeats, "Number of timings; the median is printed",
-             "N", 1, 1000);
+             "N", 1, 1000)
+      ->capture_default_str();
   add_number(*command, "--seconds", options->seconds_per_repeat, "Length of one timing", "S", 0.01,
-             60);
+             60)
+      ->capture_default_str();
   add_json_option(*command, context);
   command->footer(
       "Checks that all kernels of this machine give the same state, then times each.\n"
@@ -295,12 +299,16 @@ void add_engines(CLI::App& bench, Context& context) {
   auto weightless = std::make_shared<bool>(false);
   CLI::App* command = bench.add_subcommand(
       "engines", "Compare LAMMPS and our engine: trajectories, means over seeds, speed");
-  add_number(*command, "--size", options->grains, "Number of grains", "N", 100, 100'000'000);
+  add_number(*command, "--size", options->grains, "Number of grains", "N", 100, 100'000'000)
+      ->capture_default_str();
   add_number(*command, "--steps", options->steps, "Time steps of trajectories and timing", "S", 1,
-             1'000'000);
+             1'000'000)
+      ->capture_default_str();
   add_number(*command, "--cycles", options->cycles, "Cycles before the means; 0: no means", "C", 0,
-             1000);
-  add_number(*command, "--seeds", options->seeds, "Packings of the means", "K", 3, 1000);
+             1000)
+      ->capture_default_str();
+  add_number(*command, "--seeds", options->seeds, "Packings of the means", "K", 3, 1000)
+      ->capture_default_str();
   add_number(*command, "--mpi", options->ranks,
              "Run LAMMPS also with this many processes, by mpirun", "N", 1, 65536);
   command->add_flag("--settle", options->settle,

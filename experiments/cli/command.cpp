@@ -82,8 +82,8 @@ CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const c
 
 void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
   add_each(command, "--variant", variants,
-           "Only runs with this swept value, as fluid=cell or `variant` of status --json; several "
-           "values of one key are alternatives, and those of other keys must fit too",
+           "Only runs with this swept value, as fluid=cell (`variant` of status --json). Values of "
+           "one key are alternatives, those of different keys must all fit",
            "KEY=V");
 }
 

@@ -144,7 +144,7 @@ void add_figures(CLI::App& app, Context& context) {
       ->type_name("DIR");
   add_selection_options(*command, how.runs);
   command->get_option("--experiment")
-      ->description("Only of this experiment, which need not list the figures named");
+      ->description("Only of this experiment, even if its manifest does not list the figure");
   command->get_option("--scale")->description(
       "Scale of the runs (default: that of the run that was added to the store last)");
   command->add_flag("--all-versions", how.runs.all_versions,
