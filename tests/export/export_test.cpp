@@ -104,8 +104,11 @@ nlohmann::json truth(const Checkpoint& c) {
   const auto walls = static_cast<Eigen::Index>(c.cell.wall_grains.size());
   Eigen::Matrix3Xd position(3, grains + walls), velocity(3, grains + walls);
   position << c.state.position, wall_grain_positions(c.cell, pose);
+  std::vector<double> periods(static_cast<std::size_t>(grains + walls), 0);
   for (Eigen::Index i = 0; i < grains; ++i) {
-    position(2, i) -= c.cell.depth * std::floor(position(2, i) / c.cell.depth);
+    const double passed = std::floor(position(2, i) / c.cell.depth);
+    periods[static_cast<std::size_t>(i)] = passed;
+    position(2, i) -= c.cell.depth * passed;
   }
   velocity << c.state.velocity * d,
       wall_grain_velocities(c.cell, pose, 0, c.state.wall_velocity) * d;  // about() names no drive
@@ -203,7 +206,8 @@ nlohmann::json truth(const Checkpoint& c) {
       {"contacts", contacts},
       {"structure", structure},
       {"lattice", lattice},
-      {"crystallite", crystallite}};
+      {"crystallite", crystallite},
+      {"periods", periods}};
 }
 
 TEST(Export, OtherProgramsReadEveryNumber) {
