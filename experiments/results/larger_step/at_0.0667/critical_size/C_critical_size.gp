@@ -24,7 +24,7 @@ $series0 << EOD
 0.0667,13,,
 EOD
 $series1 << EOD
-0.0667,11.4481147,,2.94879227
+0.0667,10.4540125,,1.46663562
 EOD
 plot keyentry with linespoints lc rgb '#888888' lw 1.2 dt 2 pt 6 ps 0.4 title 'supplement', \
      keyentry with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'simulated', \

@@ -18,18 +18,18 @@ set format x '10^{%T}'
 set mxtics 10
 set logscale y
 unset mytics
-set ytics (10,20)
+set ytics (10,20,30)
 set xrange [*:*]
 set yrange [*<13:13<*]
 set offsets graph 0.03, graph 0.03, graph 0.05, graph 0.05
 set arrow from graph 0, first 13 to graph 1, first 13 nohead dt 2 lc rgb '#6a3d9a'
 $series0 << EOD
-1,33.8193128,,1.86462661
-2,30.0694935,,1.85499731
-5,25.2302303,,1.94148845
-10,21.3822536,,2.29210186
-20,16.7424572,,2.54514427
-40,11.4481147,,2.94879227
+1,32.2208632,,1.13636802
+2,28.3834433,,1.02006889
+5,23.7268566,,0.968060421
+10,19.4523224,,1.08552578
+20,15.830742,,1.3666167
+40,10.4540125,,1.46663562
 EOD
 plot keyentry with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.0667', \
      $series0 every 1 using 1:2:4 with yerrorbars lc rgb '#6a3d9a' lw 0.7 pt 0 notitle, \
