@@ -263,8 +263,8 @@ std::uint64_t Store::start_run(const std::string& id, const json& host,
   }
   append(run_stream(id), encode(begun), lock);
   hold(id, attempt);
+  held_[id] = attempt;  // first, so that interrupt_run() works if the commit only reports an error
   lock.commit();
-  held_[id] = attempt;
   return attempt;
 }
 

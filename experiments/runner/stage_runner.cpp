@@ -104,18 +104,29 @@ class StageAttempt {
                        {"step", failure.step}});
       return StageOutcome::failed;
     } catch (const std::exception& failure) {
-      // The disk, the memory or the store. Other programs may continue the run.
-      try {
-        store_.interrupt_run(id(), failure.what());
-      } catch (const std::exception&) {  // for the same reason; then the run's lease expires
-      }
+      release(failure);  // the disk, the memory or the store
       throw;
     }
   }
 
   void start(const Beginning& beginning, const nlohmann::json& facts, bool filling = false) {
     const auto from = beginning.from ? std::optional(beginning.from->sha256) : std::nullopt;
-    store_.start_run(id(), facts, from, beginning.parent_checkpoint, filling);
+    try {
+      store_.start_run(id(), facts, from, beginning.parent_checkpoint, filling);
+    } catch (const ConcurrencyConflict&) {
+      throw;
+    } catch (const std::exception& failure) {
+      release(failure);  // a failed sync of the folder may leave the start recorded
+      throw;
+    }
+  }
+
+  // Lets other programs continue the run.
+  void release(const std::exception& failure) {
+    try {
+      store_.interrupt_run(id(), failure.what());
+    } catch (const std::exception&) {  // for the same reason; then the run's lease expires
+    }
   }
 
   StageOutcome advance(Engine& engine) {
