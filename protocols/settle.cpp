@@ -90,7 +90,7 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
   if (at_check()) simulation.check();
 
   const bool done = finished();
-  if (!done && at_check() && simulation.step() >= limit_steps_) {
+  if (!done && simulation.step() >= limit_steps_) {
     throw NumericalFailure(
         "the time [s] that the packing takes to settle",
         static_cast<double>(simulation.step()) * scene_.time_step, parameters_.time_limit, -1,
