@@ -54,7 +54,7 @@ SHOWN = [
     (r"relative fall of phi_u less ([\d.]+)", lambda value, base: 100 * (value + base), " %"),
     (r"phi at the onset less ([\d.]+)", lambda value, base: value + base, ""),
     (r"relative difference from ([\d.]+)", lambda value, base: base * (1 + value), ""),
-        (r"exponent of the rate against \w+ less ([\d.]+)", lambda value, base: value + base, ""),
+    (r"exponent of the rate against \w+ less ([\d.]+)", lambda value, base: value + base, ""),
     (r"log2 of the ratio", lambda value, base: 2**value, ""),
     (r"relative difference", lambda value, base: 100 * value, " %"),
     (r"percentage", lambda value, base: value, " points"),
