@@ -185,11 +185,10 @@ void add_prune(CLI::App& app, Context& context) {
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
   add_common_options(*command, context);
   command->footer(
-      "Needs runs, --state or --keep-every. Lists the files and asks; without a terminal it "
-      "deletes\n"
-      "nothing unless --yes is given. Never deletes the newest checkpoint of a run, those that "
-      "other\n"
-      "stages started from, or those of LAMMPS. Records stay, and `regenerate` recomputes a file.\n"
+      "Needs runs, --state or --keep-every. Lists the files and asks; without a terminal it\n"
+      "deletes nothing unless --yes is given. Never deletes the newest checkpoint of a run, those\n"
+      "that other stages started from, or those of LAMMPS. Records stay, and `regenerate`\n"
+      "recomputes a file.\n"
       "Examples:\n  shearcell prune --keep-every 10\n  shearcell prune --state failed --yes");
   command->callback([options, &context] { prune(*options, context); });
 }

@@ -8,7 +8,6 @@
 
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/cost.hpp"
-#include "experiments/runner/novelty.hpp"
 
 namespace shearcell {
 namespace {
@@ -27,10 +26,13 @@ void Share::add(const Share& other) {
 std::vector<Share> work_left(const std::vector<Plan>& plans, const Store* store) {
   const auto runs = store == nullptr ? std::vector<RunRecord>{} : store->runs();
   const Rates rates(runs);
-  const KnownRuns known(runs);
+  std::map<std::string, const RunRecord*> known;
+  for (const RunRecord& run : runs) known.emplace(run.id, &run);
   // Adds what is left of a stage; false when it is done.
   const auto add = [&](const PlannedRun& run, const StageSpec& stage, Share& share) {
-    const auto cycle = cycle_to_continue(run, stage, known.find(stage.key), store);
+    const auto found = known.find(stage.key);
+    const auto cycle =
+        cycle_to_continue(run, stage, found == known.end() ? nullptr : found->second, store);
     if (!cycle) return false;
     const double steps = stage_cost(run, stage, *cycle).particle_steps;
     const Rate rate =
