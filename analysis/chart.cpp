@@ -10,9 +10,12 @@
 
 #include "analysis/error.hpp"
 #include "provenance/io/file.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
+
+constexpr int significant = 9;  // digits
 
 using nlohmann::json;
 
@@ -42,12 +45,9 @@ std::optional<double> number_in(const TableRow& row, std::size_t column) {
   return *real;
 }
 
-double rounded(double value) {
-  return std::strtod(digits(value).c_str(), nullptr);
-}
-
-json to_json(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? json(rounded(*value)) : json();
+/// Null if it is missing or not finite; never "-0".
+json number(const std::optional<double>& value) {
+  return value ? rounded(*value == 0 ? 0 : *value, significant) : json();
 }
 
 /// As "mean overlap ⟨δ⟩ [d]".
@@ -63,8 +63,8 @@ json to_json(const Axis& axis) {
           {"unit", to_json(axis.unit)},
           {"log", axis.log},
           {"whole", axis.whole},
-          {"low", to_json(axis.low)},
-          {"high", to_json(axis.high)},
+          {"low", number(axis.low)},
+          {"high", number(axis.high)},
           {"clip", axis.clip}};
 }
 
@@ -72,7 +72,7 @@ json to_json(const FigureTable& table, const Series& series) {
   json points = json::array();
   for (const ChartPoint& p : points_of(table, series)) {
     points.push_back(
-        {rounded(p.x + series.shift), rounded(p.y), to_json(p.x_error), to_json(p.y_error)});
+        {number(p.x + series.shift), number(p.y), number(p.x_error), number(p.y_error)});
   }
   json facts = {{"title", to_json(series.title)},
                 {"colour", series.colour},
@@ -89,12 +89,12 @@ json to_json(const FigureTable& table, const Series& series) {
 }  // namespace
 
 Text operator+(Text first, const Text& second) {
-  first.runs.insert(first.runs.end(), second.runs.begin(), second.runs.end());
+  first.parts.insert(first.parts.end(), second.parts.begin(), second.parts.end());
   return first;
 }
 
 std::string digits(double value) {
-  return fmt::format("{:.9g}", value == 0 ? 0.0 : value);  // no "-0"
+  return fmt::format("{:.{}g}", value == 0 ? 0.0 : value, significant);  // no "-0"
 }
 
 std::string csv_field(const std::string& text) {
@@ -148,8 +148,8 @@ std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series
 
 std::string plain_text(const Text& text) {
   std::string plain;
-  for (const TextRun& run : text.runs) {
-    plain += (run.style == "sub" ? "_" : run.style == "sup" ? "^" : "") + run.text;
+  for (const TextPart& part : text.parts) {
+    plain += (part.style == "sub" ? "_" : part.style == "sup" ? "^" : "") + part.text;
   }
   return plain;
 }
@@ -197,9 +197,9 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
 }
 
 json to_json(const Text& text) {
-  json runs = json::array();
-  for (const TextRun& run : text.runs) runs.push_back({run.text, run.style});
-  return runs;
+  json parts = json::array();
+  for (const TextPart& part : text.parts) parts.push_back({part.text, part.style});
+  return parts;
 }
 
 json chart_json(const FigureTable& table) {
@@ -208,7 +208,7 @@ json chart_json(const FigureTable& table) {
   for (const Series& one : chart.series) series.push_back(to_json(table, one));
   json lines = json::array();
   for (const ReferenceLine& line : chart.lines) {
-    lines.push_back({{"at", rounded(line.at)},
+    lines.push_back({{"at", number(line.at)},
                      {"vertical", line.vertical},
                      {"stub", line.stub},
                      {"colour", line.colour}});

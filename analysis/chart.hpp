@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A table and how it is drawn. The gnuplot script (analysis/gnuplot_script) and the report's
-// interactive plot (to_json) are both made from this one description.
+// interactive plot (chart_json) are both made from this one description.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,20 @@ namespace shearcell {
 
 /// A piece of text in one style. The style is the HTML element that shows it: "" (plain), "i",
 /// "sub" or "sup".
-struct TextRun {
+struct TextPart {
   std::string text;
   std::string style;
 };
 struct Text {
-  std::vector<TextRun> runs;
+  std::vector<TextPart> parts;
 
   Text() = default;
   Text(const char* plain) : Text(std::string(plain)) {}  // NOLINT: a label is often plain
-  Text(std::string plain) { runs.push_back({std::move(plain), ""}); }  // NOLINT
-  Text(std::string text, std::string style) { runs.push_back({std::move(text), std::move(style)}); }
-  bool empty() const { return runs.empty(); }
+  Text(std::string plain) { parts.push_back({std::move(plain), ""}); }  // NOLINT
+  Text(std::string text, std::string style) {
+    parts.push_back({std::move(text), std::move(style)});
+  }
+  bool empty() const { return parts.empty(); }
 };
 Text operator+(Text first, const Text& second);
 inline Text italic(std::string text) {

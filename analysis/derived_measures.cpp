@@ -20,16 +20,17 @@ namespace {
 
 using nlohmann::json;
 
-/// Scalars that are kept together: those of Measures itself, or of its Mechanics.
+/// Scalars that are cached together: those of Measures itself, or of its Mechanics.
 enum class Scalars { own, mechanics };
 
-/// Calls visit(kept name, value) for each; mechanics must exist.
+/// Calls visit(cached name, value) for each; mechanics must exist.
 template <Scalars kWhich, class AnyMeasures, class Visit>
-void for_each_kept(AnyMeasures& measures, const Visit& visit) {
-  for (const auto& [name, unit, meaning, member] : kept_scalar_measures()) {
+void for_each_cached(AnyMeasures& measures, const Visit& visit) {
+  for (const auto& [name, unit, meaning, member] : cached_scalar_measures()) {
     if constexpr (kWhich == Scalars::mechanics) {
       const auto* mechanical = std::get_if<MechanicalMember>(&member);
-      if (mechanical != nullptr) visit(mechanical->kept, (*measures.mechanics).*mechanical->value);
+      if (mechanical != nullptr)
+        visit(mechanical->cached_as, (*measures.mechanics).*mechanical->value);
     } else {
       if (const auto* value = std::get_if<double Measures::*>(&member)) {
         visit(name, measures.**value);
@@ -42,10 +43,10 @@ void for_each_kept(AnyMeasures& measures, const Visit& visit) {
 
 template <Scalars kWhich>
 json scalars_of(const MeasureInput& input) {
-  json kept;
-  for_each_kept<kWhich>(input.analysis.measures,
-                        [&](std::string_view name, auto value) { kept[name] = value; });
-  return kept;
+  json values;
+  for_each_cached<kWhich>(input.analysis.measures,
+                          [&](std::string_view name, auto value) { values[name] = value; });
+  return values;
 }
 
 json lattices_of(const MeasureInput& input) {
@@ -81,7 +82,7 @@ double mean_over(const GrainMeasures& grains, const Value& value, const Selected
 
 json motion_of(const MeasureInput& input) {
   const GrainMeasures& grains = input.analysis.grains;
-  json kept = json::object();
+  json values = json::object();
   for (const auto& [cycles, lag] : {std::pair{std::uint64_t{1}, "1_cycle_d2"},
                                     {std::uint64_t{10}, "10_cycles_d2"},
                                     {std::uint64_t{100}, "100_cycles_d2"}}) {
@@ -92,8 +93,8 @@ json motion_of(const MeasureInput& input) {
       return moved.displacement.col(static_cast<Eigen::Index>(i)).squaredNorm();
     };
     const auto nonaffine = [&](std::size_t i) { return moved.nonaffine[i]; };
-    kept[std::string("msd_") + lag] = mean_over(grains, square, any_grain);
-    kept[std::string("d2min_") + lag] = mean_over(grains, nonaffine, any_grain);
+    values[std::string("msd_") + lag] = mean_over(grains, square, any_grain);
+    values[std::string("d2min_") + lag] = mean_over(grains, nonaffine, any_grain);
     if (cycles != 1) continue;
     // Motion over one cycle by the structure of the grains.
     std::vector<std::uint8_t> crystalline;
@@ -105,12 +106,12 @@ json motion_of(const MeasureInput& input) {
     const auto inside = [&](std::size_t i) { return crystalline[i] != 0 && boundary[i] == 0; };
     const auto at_boundary = [&](std::size_t i) { return boundary[i] != 0; };
     const auto disordered = [&](std::size_t i) { return crystalline[i] == 0; };
-    kept["reversible_percent"] = percent_of_interior(grains, returned);
-    kept["msd_inside_crystal_d2"] = mean_over(grains, square, inside);
-    kept["msd_crystal_boundary_d2"] = mean_over(grains, square, at_boundary);
-    kept["msd_disordered_d2"] = mean_over(grains, square, disordered);
+    values["reversible_percent"] = percent_of_interior(grains, returned);
+    values["msd_inside_crystal_d2"] = mean_over(grains, square, inside);
+    values["msd_crystal_boundary_d2"] = mean_over(grains, square, at_boundary);
+    values["msd_disordered_d2"] = mean_over(grains, square, disordered);
   }
-  return kept;
+  return values;
 }
 
 json to_json(const MeasuredCurve& curve) {
@@ -162,9 +163,9 @@ json sensitivity_of(const MeasureInput& input) {
 template <Scalars kWhich>
 void read_scalars(const json& result, Measures& measures) {
   if (kWhich == Scalars::mechanics && !measures.mechanics) measures.mechanics.emplace();
-  for_each_kept<kWhich>(measures,
-                        [&](std::string_view name, auto& value) { result.at(name).get_to(value); });
-  if (measures.phi < 0 || measures.phi > 1) throw AnalysisError("a kept phi is not in 0 to 1");
+  for_each_cached<kWhich>(
+      measures, [&](std::string_view name, auto& value) { result.at(name).get_to(value); });
+  if (measures.phi < 0 || measures.phi > 1) throw AnalysisError("a cached phi is not in 0 to 1");
 }
 
 void read_numbers(const json& result, Measures& measures) {
@@ -178,7 +179,7 @@ void read_curves(const json& result, Measures& measures) {
     MeasuredCurve& curve = measures.curves[name];
     value.at("x").get_to(curve.x);
     value.at("y").get_to(curve.y);
-    if (curve.x.size() != curve.y.size()) throw AnalysisError("a kept curve lacks values");
+    if (curve.x.size() != curve.y.size()) throw AnalysisError("a cached curve lacks values");
   }
 }
 
@@ -188,7 +189,8 @@ void checked(const json& result, Measures& measures) {
   try {
     kRead(result, measures);
   } catch (const json::exception& problem) {
-    throw AnalysisError(std::string("a kept result is not what its name says: ") + problem.what());
+    throw AnalysisError(std::string("a cached result is not what its name says: ") +
+                        problem.what());
   }
 }
 

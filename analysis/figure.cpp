@@ -12,14 +12,18 @@
 namespace shearcell {
 
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
-  for (const nlohmann::json* values : {&run.labels, &run.parameters}) {
+  for (const nlohmann::json* values : {&run.swept, &run.parameters}) {
     if (values->is_object() && values->contains(key)) return values->at(key);
   }
   return nullptr;
 }
 
 bool sweeps_engine(const FigureRun& run) {
-  return run.labels.is_object() && run.labels.contains("engine");
+  return run.swept.is_object() && run.swept.contains("engine");
+}
+
+const std::string& packing_of(const FigureRun& run) {
+  return run.parent.empty() ? run.run_id : run.parent;
 }
 
 double number_of(const FigureRun& run, const std::string& key) {
@@ -63,9 +67,9 @@ std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::strin
   std::set<nlohmann::json> variants;
   std::set<std::string> keys;
   for (const FigureRun& run : runs) {
-    if (!run.labels.is_object()) continue;
-    variants.insert(run.labels);
-    for (const auto& [key, value] : run.labels.items()) keys.insert(key);
+    if (!run.swept.is_object()) continue;
+    variants.insert(run.swept);
+    for (const auto& [key, value] : run.swept.items()) keys.insert(key);
   }
   const std::vector<nlohmann::json> list(variants.begin(), variants.end());
   std::vector<std::string> in_order(keys.begin(), keys.end());

@@ -35,7 +35,7 @@ struct FigureRun {
   std::string variant;        ///< its curve, as the manifest expands it: "fluid=cell"
   std::string name;           ///< of the variant, for people; "" for `variant`
   bool named = false;         ///< by a label of the manifest
-  nlohmann::json labels;      ///< the swept parameters of the run
+  nlohmann::json swept;       ///< the swept parameters of the run and their values
   nlohmann::json parameters;  ///< of all its stages, by their keys in a manifest
   std::uint64_t seed = 0;
   std::vector<CheckpointMeasures> checkpoints;  ///< by cycle; those that the figure takes
@@ -78,6 +78,9 @@ struct Figure {
 
 /// The value of a parameter, swept or not; null if the run has no such key.
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key);
+/// The id of the packing that the run begins with; the run's own if it has none. Runs of one
+/// packing are not independent.
+const std::string& packing_of(const FigureRun& run);
 /// The same as a number; NaN if it is not a number.
 double number_of(const FigureRun& run, const std::string& key);
 

@@ -43,16 +43,16 @@ std::string literal(const std::string& text) {
 /// gnuplot's enhanced text.
 std::string markup(const Text& text) {
   std::string result;
-  for (const TextRun& run : text.runs) {
+  for (const TextPart& part : text.parts) {
     std::string plain;
-    for (const char c : run.text) {
+    for (const char c : part.text) {
       if (std::string_view("_^@&{}\\~").find(c) != std::string_view::npos) plain += '\\';
       plain += c;
     }
-    result += run.style == "i"     ? "{/:Italic " + plain + "}"
-              : run.style == "sub" ? "_{" + plain + "}"
-              : run.style == "sup" ? "^{" + plain + "}"
-                                   : plain;
+    result += part.style == "i"     ? "{/:Italic " + plain + "}"
+              : part.style == "sub" ? "_{" + plain + "}"
+              : part.style == "sup" ? "^{" + plain + "}"
+                                    : plain;
   }
   return result;
 }

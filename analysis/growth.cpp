@@ -41,7 +41,7 @@ Cases cases_of(std::span<const GrowthBySize> runs, Vanished vanished) {
   return cases;
 }
 
-/// Newton's method on the log-likelihood, which is concave.
+/// Newton's method on the log-likelihood, which is concave; a step that would lower it is halved.
 std::optional<GrowthFit> fit(const Eigen::ArrayXd& log_size, const Eigen::ArrayXd& grew,
                              const Eigen::ArrayXd& shrank) {
   const Eigen::ArrayXd all = grew + shrank;
@@ -49,6 +49,10 @@ std::optional<GrowthFit> fit(const Eigen::ArrayXd& log_size, const Eigen::ArrayX
   const double mean = (all * log_size).sum() / all.sum();
   const Eigen::ArrayXd x = log_size - mean;
   if ((all * x.square()).sum() <= 1e-12 * all.sum()) return std::nullopt;
+  const auto log_likelihood = [&](const Eigen::Vector2d& theta) {
+    const Eigen::ArrayXd odds = theta[0] + theta[1] * x;
+    return (grew * odds - all * (odds.max(0) + (-odds.abs()).exp().log1p())).sum();
+  };
   Eigen::Vector2d theta(std::log(grew.sum() / shrank.sum()), 0);
   for (int step = 0; step < 50; ++step) {
     const Eigen::ArrayXd p = 1 / (1 + (-(theta[0] + theta[1] * x)).exp());
@@ -60,6 +64,8 @@ std::optional<GrowthFit> fit(const Eigen::ArrayXd& log_size, const Eigen::ArrayX
     Eigen::Vector2d move = curvature.ldlt().solve(gradient);
     if (!move.allFinite()) break;  // sizes that grew and sizes that shrank do not mix
     if (move.norm() > 2) move *= 2 / move.norm();
+    const double before = log_likelihood(theta), rounding = 1e-9 * std::abs(before);
+    while (move.norm() > 1e-10 && log_likelihood(theta + move) < before - rounding) move /= 2;
     theta += move;
     if (move.norm() < 1e-10) break;
   }

@@ -33,7 +33,7 @@ void find_crystallites(const VoronoiDiagram& diagram, Analysis& analysis) {
 
 }  // namespace
 
-std::span<const ScalarMeasure> kept_scalar_measures() {
+std::span<const ScalarMeasure> cached_scalar_measures() {
   using M = Measures;
   using F = Mechanics;
   using U = MechanicalUnits;
@@ -153,7 +153,7 @@ std::span<const ScalarMeasure> kept_scalar_measures() {
 }
 
 std::span<const ScalarMeasure> all_scalar_measures() {
-  return kept_scalar_measures().subspan(1);
+  return cached_scalar_measures().subspan(1);
 }
 
 std::string_view ScalarMeasure::derived() const {

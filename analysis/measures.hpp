@@ -49,7 +49,7 @@ struct Measures {
 
 /// A member of Mechanics.
 struct MechanicalMember {
-  std::string_view kept;  ///< the name that kept results give it, with its unit there
+  std::string_view cached_as;  ///< the name that cached results give it, with its unit there
   double Mechanics::*value;
   double MechanicalUnits::*unit;  ///< turns it into SI; null for a number that has none
 };
@@ -69,15 +69,15 @@ struct ScalarMeasure {
   std::string_view meaning;
   std::variant<double Measures::*, std::size_t Measures::*, MechanicalMember, NumberOf> member;
 
-  /// Name of the DerivedMeasure that it is kept in.
+  /// Name of the DerivedMeasure that it is cached in.
   std::string_view derived() const;
   std::uint64_t cycles_back() const;  ///< as NumberOf::cycles_back
   /// In `unit`; not a number where it is unknown.
   double of(const Measures& measures) const;
 };
-/// N is a parameter of the run, so it is not a measure; kept results have it all the same.
+/// N is a parameter of the run, so it is not a measure; cached results have it all the same.
 std::span<const ScalarMeasure> all_scalar_measures();
-std::span<const ScalarMeasure> kept_scalar_measures();
+std::span<const ScalarMeasure> cached_scalar_measures();
 /// The one of that name, or null.
 const ScalarMeasure* find_measure(std::string_view name);
 

@@ -31,14 +31,14 @@ std::vector<double> histogram(std::span<const double> places, std::size_t bins) 
   return counts;
 }
 
-/// Density of bin k over the selected runs.
+/// Density of bin k over the selected groups.
 std::optional<double> pooled(std::span<const std::vector<double>> histograms,
                              std::span<const std::size_t> selection, std::size_t k) {
   double inside = 0;
   double all = 0;
-  for (const std::size_t run : selection) {
-    inside += histograms[run][k];
-    for (const double count : histograms[run]) all += count;
+  for (const std::size_t group : selection) {
+    inside += histograms[group][k];
+    for (const double count : histograms[group]) all += count;
   }
   if (all <= 0) return std::nullopt;
   return inside / all * static_cast<double>(histograms.front().size());
@@ -88,6 +88,7 @@ Interval poisson_interval(std::size_t events) {
 /// One run's share of the likelihood in one stratum: an amplitude and a bin of phi.
 struct Share {
   double grains;  ///< N
+  const std::string* packing;
   double cycles;
   double log_size;
   bool event;
@@ -96,39 +97,60 @@ struct Share {
 using Strata = std::map<std::pair<double, std::int64_t>, std::vector<Share>>;
 
 struct Likelihood {
-  double logarithm = 0;  ///< up to a constant
-  double score = 0;      ///< its derivative by the exponent, which falls with the exponent
+  double logarithm = 0;    ///< up to a constant
+  double score = 0;        ///< its derivative by the exponent, which falls with the exponent
+  double information = 0;  ///< the slope of that fall
+  std::map<std::string, double> score_of;  ///< the part of each packing
 };
 
 /// Likelihood of the exponent, with the most likely c of each stratum. The score is a sum over
-/// events: ln N less its mean over the stratum with the weights cycles N^a.
+/// events: ln n less its mean over the stratum with the weights cycles n^a.
 Likelihood likelihood(const Strata& strata, double exponent) {
   Likelihood sum;
   for (const auto& [stratum, shares] : strata) {
+    const auto weight_of = [&](const Share& share) {
+      return share.cycles * std::exp(exponent * share.log_size);
+    };
     double weights = 0, weighted = 0, logs = 0, events = 0;
     for (const Share& share : shares) {
-      const double weight = share.cycles * std::exp(exponent * share.log_size);
-      weights += weight;
-      weighted += weight * share.log_size;
+      weights += weight_of(share);
+      weighted += weight_of(share) * share.log_size;
       logs += share.event ? share.log_size : 0;
       events += share.event ? 1 : 0;
     }
     if (!(events > 0 && weights > 0)) continue;
     sum.logarithm += exponent * logs - events * std::log(weights);
-    sum.score += logs - events * weighted / weights;
+    for (const Share& share : shares) {
+      const double off = share.log_size - weighted / weights;
+      const double expected = events * weight_of(share) / weights;
+      sum.score += share.event ? off : 0;
+      sum.score_of[*share.packing] += ((share.event ? 1 : 0) - expected) * off;
+      sum.information += expected * off * off;
+    }
   }
   return sum;
 }
 
-/// Whether some stratum with an event has runs of two sizes. Seeds of one size differ a little in
+/// Whether an event could have been in a larger cell of its stratum, and one in a smaller cell:
+/// only then has the likelihood a maximum. Sizes are those of N. Seeds of one N differ a little in
 /// their number of interior grains, which says nothing about the size.
-bool has_two_sizes(const Strata& strata) {
-  return std::ranges::any_of(strata, [](const auto& entry) {
-    const std::vector<Share>& shares = entry.second;
-    const bool event = std::ranges::any_of(shares, &Share::event);
-    const auto other = [&](const Share& share) { return share.grains != shares.front().grains; };
-    return event && std::ranges::any_of(shares, other);
-  });
+bool is_bounded(const Strata& strata) {
+  bool larger = false, smaller = false;
+  for (const auto& [stratum, shares] : strata) {
+    const auto [least, most] = std::ranges::minmax(shares, {}, &Share::grains);
+    for (const Share& share : shares) {
+      larger = larger || (share.event && share.grains < most.grains);
+      smaller = smaller || (share.event && share.grains > least.grains);
+    }
+  }
+  return larger && smaller;
+}
+
+/// What the drop of the logarithm is multiplied by for runs that share a packing.
+double variance_between_packings(const Likelihood& at) {
+  double squares = 0;
+  for (const auto& [packing, score] : at.score_of) squares += score * score;
+  return std::max(1.0, squares / at.information);
 }
 
 /// The point between the ends from which on `holds` is true.
@@ -163,10 +185,10 @@ std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis, Seen see
   return places;
 }
 
-std::vector<DensityBin> density(std::span<const std::vector<double>> runs, std::size_t bins) {
+std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std::size_t bins) {
   std::vector<std::vector<double>> histograms;
   std::vector<std::size_t> every;
-  for (const std::vector<double>& places : runs) {
+  for (const std::vector<double>& places : groups) {
     every.push_back(histograms.size());
     histograms.push_back(histogram(places, bins));
   }
@@ -177,7 +199,7 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> runs, std::
     if (!value) return {};
     const auto low = static_cast<double>(k) * width;
     result.push_back({low, low + width, *value,
-                      bootstrap_error(runs.size(), [&](std::span<const std::size_t> selection) {
+                      bootstrap_error(groups.size(), [&](std::span<const std::size_t> selection) {
                         return pooled(histograms, selection, k);
                       })});
   }
@@ -215,25 +237,30 @@ std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region) {
 std::optional<Estimate> size_exponent(RunGroup runs, Region region) {
   Strata strata;
   std::size_t counted = 0;
+  std::set<std::string> packings;
   for (const FigureRun* run : runs) {
     const Stays stays = stays_of(*run, region);
-    counted += stays.empty() ? 0 : 1;
+    if (stays.empty()) continue;
+    ++counted;
+    packings.insert(packing_of(*run));
     for (const auto& [bin, stay] : stays) {
       if (!(stay.grain_cycles > 0)) continue;
       strata[{number_of(*run, "amplitude_rad"), bin}].push_back(
-          {number_of(*run, "grains"), stay.cycles, std::log(stay.grain_cycles / stay.cycles),
-           stay.events > 0});
+          {number_of(*run, "grains"), &packing_of(*run), stay.cycles,
+           std::log(stay.grain_cycles / stay.cycles), stay.events > 0});
     }
   }
-  constexpr double widest = 30;  // N^30 is still a number
-  const bool bounded =
-      likelihood(strata, -widest).score > 1e-9 && likelihood(strata, widest).score < -1e-9;
-  if (counted < least_runs || !bounded || !has_two_sizes(strata)) return std::nullopt;
+  constexpr double widest = 30;  // n^30 is still a number
+  const bool bounded = is_bounded(strata) && likelihood(strata, -widest).score > 1e-9 &&
+                       likelihood(strata, widest).score < -1e-9;
+  if (packings.size() < least_runs || !bounded) return std::nullopt;
   const double value = bisected(
       -widest, widest, [&](double exponent) { return likelihood(strata, exponent).score < 0; });
+  const Likelihood best = likelihood(strata, value);
   const boost::math::chi_squared one_parameter(1);
-  const double least = likelihood(strata, value).logarithm -
-                       boost::math::quantile(one_parameter, confidence_level) / 2;
+  const double shared = packings.size() < counted ? variance_between_packings(best) : 1;
+  const double least =
+      best.logarithm - shared * boost::math::quantile(one_parameter, confidence_level) / 2;
   const auto unlikely = [&](double exponent) {
     return likelihood(strata, exponent).logarithm < least;
   };

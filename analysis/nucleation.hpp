@@ -33,11 +33,12 @@ struct DensityBin {
   double low = 0;
   double high = 0;
   double density = 0;           ///< P; its integral over [0, 1] is 1
-  std::optional<double> error;  ///< bootstrap over runs, since one crystallite is seen many times
+  std::optional<double> error;  ///< bootstrap, as one crystallite is seen many times
 };
 
-/// Of the places of all runs together; empty when there are none.
-std::vector<DensityBin> density(std::span<const std::vector<double>> runs, std::size_t bins);
+/// Of all places together; empty when there are none. The bootstrap draws groups, which must be
+/// independent: those of one packing each.
+std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std::size_t bins);
 
 /// The grains whose number and phi a rate is taken with: at least 1.5 d (interior) or 4 d (core)
 /// from the wall surfaces (packing_fraction.hpp). The onset is the same for both.
@@ -62,9 +63,12 @@ std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region);
 /// The exponent a of rate = c(amplitude, phi) n^a, n the grains of the region, by maximum
 /// likelihood: onsets are a Poisson process with a constant c in each bin of phi at each amplitude.
 /// Interval of the profile likelihood, since a run has one event at most (D. R. Cox and D. Oakes,
-/// Analysis of Survival Data, 1984). None if no bin with an event has runs of two sizes, if all
+/// Analysis of Survival Data, 1984). If runs share a packing, the drop of the logarithm that it
+/// allows is multiplied by the ratio of the variance of the score between packings to that between
+/// independent runs, where that is larger than 1 (L. Pace, A. Salvan, N. Sartori, Stat. Sinica 21,
+/// 129 (2011)). None if no bin with an event has runs of two sizes (numbers of grains N), if all
 /// events are in the largest or the smallest cells that they could be in, or for fewer than
-/// least_runs runs.
+/// least_runs packings.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region);
 
 }  // namespace shearcell

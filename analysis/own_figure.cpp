@@ -13,6 +13,7 @@
 
 #include "analysis/figures/curves.hpp"
 #include "analysis/onset.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -103,21 +104,21 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
   std::vector<FigureRun> found(runs.begin(), runs.end());
   std::map<std::string, std::set<std::string>> names;
   for (FigureRun& run : found) {
-    nlohmann::json labels = nlohmann::json::object();
+    nlohmann::json swept = nlohmann::json::object();
     for (const std::string& key : keys) {
-      if (nlohmann::json value = parameter_of(run, key); !value.is_null()) labels[key] = value;
+      if (nlohmann::json value = parameter_of(run, key); !value.is_null()) swept[key] = value;
     }
-    if (run.labels.is_object()) run.parameters.update(run.labels);
-    run.labels = std::move(labels);
-    run.variant = run.labels.empty() ? "all" : words_of(run.labels);
+    if (run.swept.is_object()) run.parameters.update(run.swept);
+    run.swept = std::move(swept);
+    run.variant = run.swept.empty() ? "all" : words_of(run.swept);
     names[run.variant].insert(run.name);
   }
   std::vector<nlohmann::json> curves;
-  for (const FigureRun& run : found) curves.push_back(run.labels);
+  for (const FigureRun& run : found) curves.push_back(run.swept);
   const auto shared = name ? name(curves) : std::map<nlohmann::json, std::string>();
   for (FigureRun& run : found) {
     if (names.at(run.variant).size() == 1 && !run.name.empty()) continue;
-    run.name = name && !keys.empty() ? shared.at(run.labels) : run.variant;
+    run.name = name && !keys.empty() ? shared.at(run.swept) : run.variant;
   }
   return found;
 }
@@ -293,10 +294,7 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
 std::string words_of(const nlohmann::json& values) {
   std::string text;
   for (const auto& [key, value] : values.items()) {
-    const std::string shown = value.is_string()         ? value.get<std::string>()
-                              : value.is_number_float() ? fmt::format("{}", value.get<double>())
-                                                        : value.dump();
-    text += (text.empty() ? "" : ", ") + key + "=" + shown;
+    text += (text.empty() ? "" : ", ") + key + "=" + value_text(value);
   }
   return text;
 }

@@ -48,26 +48,22 @@ double crystalline_percent(const GrainMeasures& grains, double least_phi_local, 
 Profiles profiles(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   const WallPose pose = pose_of(checkpoint);
   const auto layers = static_cast<std::size_t>(std::max(1.0, std::ceil(pose.top - pose.bottom)));
-  std::vector<std::vector<std::size_t>> members(layers + 1);  // grains of each layer
-  for (std::size_t i = 0; const std::size_t layer : layers_of(checkpoint, pose, layers)) {
-    members[layer].push_back(i++);
-  }
+  const std::vector<std::size_t> layer_of = layers_of(checkpoint, pose, layers);
   Profiles found;
   for (std::size_t l = 0; l < layers; ++l) {
-    std::vector<double> overlap, volumes;
-    double volume = 0, trace = 0, contacts = 0, crystalline = 0;
-    for (const std::size_t i : members[l]) {
-      overlap.push_back(grains.largest_overlap[i]);
-      volumes.push_back(grains.cell_volume[i]);
+    std::vector<std::uint8_t> inside(layer_of.size(), 0);
+    double count = 0, volume = 0, trace = 0, contacts = 0, crystalline = 0;
+    for (std::size_t i = 0; i < layer_of.size(); ++i) {
+      if (layer_of[i] != l) continue;
+      inside[i] = 1;
+      ++count;
       volume += grains.cell_volume[i];
       trace += grains.pressure[i] * grains.cell_volume[i];
       contacts += grains.contacts[i];
       crystalline += grains.structure[i] == Structure::disordered ? 0 : 1;
     }
-    const auto count = static_cast<double>(members[l].size());
-    const std::vector<std::uint8_t> all(members[l].size(), 1);
     found.height.push_back(static_cast<double>(l) + 0.5);
-    found.phi.push_back(packing_fractions(overlap, volumes, all).phi);
+    found.phi.push_back(packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi);
     found.pressure.push_back(trace / volume);
     found.coordination.push_back(contacts / count);
     found.crystalline_percent.push_back(100 * crystalline / count);

@@ -246,7 +246,10 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
     if (z < 0 && k < edges.size()) negative = high;
     if (z > 0 && k > 0) positive = std::min(positive, low);
   }
-  const double value = (negative + positive) / 2;
+  double value = (negative + positive) / 2;
+  // Without an event in one group only a bound is known.
+  if (event_cycles(a).empty()) value = infinite;
+  if (event_cycles(b).empty()) value = -infinite;
   kept = {std::min(kept.low, value), std::max(kept.high, value)};
   Estimate estimate = estimate_with(value, kept, limit, std::min(a.size(), b.size()));
   estimate.groups = 2;

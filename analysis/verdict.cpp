@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "provenance/json_text.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -15,10 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-json rounded(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);  // subnormal ones too
-}
+constexpr int significant = 6;  // digits
 
 Ruling ruling_of(const Interval& interval, double margin, Claimed claimed) {
   const bool is_above = interval.low > margin;
@@ -46,8 +44,9 @@ std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, 
 json claim_of(const Verdict& verdict) {
   json estimate, interval, runs_needed;
   if (verdict.estimate) {
-    estimate = rounded(*verdict.estimate);
-    interval = {rounded(verdict.interval.low), rounded(verdict.interval.high)};
+    estimate = rounded(*verdict.estimate, significant);
+    interval = {rounded(verdict.interval.low, significant),
+                rounded(verdict.interval.high, significant)};
   }
   if (verdict.runs_needed) runs_needed = *verdict.runs_needed;
   return {{"claim", verdict.claim},
@@ -55,7 +54,7 @@ json claim_of(const Verdict& verdict) {
           {"estimate", estimate},
           {"interval", interval},
           {"level", confidence_level},
-          {"margin", rounded(verdict.margin)},
+          {"margin", rounded(verdict.margin, significant)},
           {"verdict", name_of(verdict.ruling)},
           {"runs", verdict.runs},
           {"runs_needed", runs_needed},

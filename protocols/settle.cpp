@@ -23,7 +23,7 @@ Settle::Settle(const SettleParameters& parameters, const Scene& scene)
     : parameters_(parameters),
       scene_(scene),
       check_steps_(std::max<std::uint64_t>(1, steps_in(kSettleCheckInterval, scene))),
-      limit_steps_(steps_in(parameters.time_limit, scene)) {}
+      limit_steps_(std::max<std::uint64_t>(1, steps_in(parameters.time_limit, scene))) {}
 
 std::uint64_t Settle::steps_without_gravity(const Cell& cell, std::size_t grains) const {
   return scene_.gravity == 0 ? 0 : compaction_steps(cell, grains);
@@ -68,37 +68,36 @@ bool Settle::settled(const Simulation& simulation) const {
   return std::fabs(facts.wall_imbalance) <= parameters_.force_tolerance;
 }
 
-StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) const {
+bool Settle::finished(const Simulation& simulation) const {
+  const std::uint64_t step = simulation.step();
+  if (step % check_steps_ != 0) return false;
   const std::uint64_t pressed = steps_without_gravity(simulation.cell(), simulation.grains());
-  const auto at_check = [&] { return simulation.step() % check_steps_ == 0; };
-  const auto finished = [&] {
-    return simulation.step() > pressed && at_check() && settled(simulation);
-  };
-  const bool compacting =
-      simulation.step() < compaction_steps(simulation.cell(), simulation.grains());
+  if (step > pressed && settled(simulation)) return true;
+  if (step < limit_steps_) return false;
+  throw NumericalFailure("the time [s] that the packing takes to settle",
+                         static_cast<double>(step) * scene_.time_step, parameters_.time_limit, -1,
+                         step,
+                         "Raise that limit (settle_time_limit_s) or the settling tolerances, or "
+                         "check that the pressure can lift the grains");
+}
+
+StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) const {
+  const std::uint64_t start = simulation.step();
+  const bool compacting = start < compaction_steps(simulation.cell(), simulation.grains());
   simulation.set_overlap_limit(compacting
                                    ? std::max(parameters_.overlap_limit, kLargestOverlapLimit)
                                    : parameters_.overlap_limit);
   // A stage that was interrupted after its last state must not continue.
-  if (finished()) return {.checkpoint_due = true, .finished = true};
+  if (finished(simulation)) return {.checkpoint_due = true, .finished = true};
 
   Scene scene = scene_;
-  if (simulation.step() < pressed) scene.gravity = 0;
+  if (start < steps_without_gravity(simulation.cell(), simulation.grains())) scene.gravity = 0;
   simulation.set_scene(scene);
-  const std::uint64_t to_check = next_check(simulation.step()) - simulation.step();
-  simulation.advance(drive(), std::min(most_steps, to_check));
-  if (at_check()) simulation.check();
-
-  const bool done = finished();
-  if (!done && simulation.step() >= limit_steps_) {
-    throw NumericalFailure(
-        "the time [s] that the packing takes to settle",
-        static_cast<double>(simulation.step()) * scene_.time_step, parameters_.time_limit, -1,
-        simulation.step(),
-        "Raise that limit (settle_time_limit_s) or the settling tolerances, or check that "
-        "the pressure can lift the grains");
-  }
-  return {.checkpoint_due = done || simulation.step() % (kChecksPerCheckpoint * check_steps_) == 0,
+  simulation.advance(drive(), std::min(most_steps, next_check(start) - start));
+  const std::uint64_t step = simulation.step();
+  if (step % check_steps_ == 0) simulation.check();
+  const bool done = finished(simulation);
+  return {.checkpoint_due = done || step % (kChecksPerCheckpoint * check_steps_) == 0,
           .finished = done};
 }
 

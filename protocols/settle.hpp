@@ -16,7 +16,7 @@ inline constexpr double kSettleCheckInterval = 0.1;
 struct SettleParameters {
   double force_tolerance = 1e-3;    ///< largest |load - contact force| / (P A_w) of the moving wall
   double kinetic_tolerance = 1e-8;  ///< largest kinetic energy per grain over P d^3
-  double time_limit = 60;           ///< [s]; longer is an error
+  double time_limit = 60;           ///< [s]; longer, at a check, is an error
   double overlap_limit =
       WatchdogLimits{}.overlap;  ///< of the watchdog, after the wall has pressed the grains [d]
 };
@@ -52,6 +52,8 @@ class Settle final : public Protocol {
   std::uint64_t next_check(std::uint64_t step) const;
 
  private:
+  /// Whether the packing has settled at a check; throws NumericalFailure at one beyond the limit.
+  bool finished(const Simulation& simulation) const;
   bool settled(const Simulation& simulation) const;
 
   SettleParameters parameters_;

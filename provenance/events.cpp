@@ -39,6 +39,10 @@ constexpr bool has_fields = requires(T& value) {
   T::fields(value, [](const char*, auto&) {});
 };
 template <class T>
+constexpr bool has_optional_fields = requires(T& value) {
+  T::optional_fields(value, [](const char*, auto&) {});
+};
+template <class T>
 constexpr bool is_optional = requires(T& value) {
   value.has_value();
 };
@@ -63,6 +67,11 @@ void read(const json& from, const char* key, T& value) {
 template <class T>
 void read_fields(const json& from, T& value) {
   T::fields(value, [&from](const char* name, auto& v) { read(from, name, v); });
+  if constexpr (has_optional_fields<T>) {
+    T::optional_fields(value, [&from](const char* name, auto& v) {
+      if (from.contains(name)) read(from, name, v);
+    });
+  }
 }
 
 template <class T>
@@ -70,6 +79,11 @@ json written(const T& value) {
   if constexpr (has_fields<T>) {
     json inner;
     T::fields(value, [&inner](const char* name, const auto& v) { inner[name] = written(v); });
+    if constexpr (has_optional_fields<T>) {
+      T::optional_fields(value, [&inner](const char* name, const auto& v) {
+        if (json given = written(v); !given.empty()) inner[name] = std::move(given);
+      });
+    }
     return inner;
   } else if constexpr (is_optional<T>) {
     return value ? json(*value) : json();
@@ -115,14 +129,7 @@ NewEvent encode(const Any& event) {
     if constexpr (std::is_same_v<E, Other>) {
       throw std::logic_error("an event of unknown type cannot be written");
     } else if constexpr (has_fields<E>) {
-      json payload = written(e);
-      if constexpr (std::is_same_v<E, RunDeclared>) {
-        const Membership& m = e.run.membership;
-        json& place = payload["membership"];
-        if (!m.until.is_null()) place["until"] = m.until;
-        if (!m.checkpoint_phases.empty()) place["checkpoint_phases"] = m.checkpoint_phases;
-      }
-      return {std::string(E::kType), std::move(payload)};
+      return {std::string(E::kType), written(e)};
     } else {
       return {std::string(E::kType), e.facts};
     }

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstdlib>
+
 #include "provenance/event_log.hpp"
 #include "provenance/limits.hpp"
 
@@ -67,6 +70,16 @@ std::uint64_t count_at(const json& object, const char* key) {
 StoreDamaged damaged_payload(const Event& event, const json::exception& problem) {
   return StoreDamaged(fmt::format("event {} ({} of {}): its payload is invalid: {}", event.seq,
                                   event.type, event.stream, problem.what()));
+}
+
+json rounded(double value, int significant) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::strtod(fmt::format("{:.{}g}", value, significant).c_str(), nullptr);
+}
+
+std::string value_text(const json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  return value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
 }
 
 std::string short_text(const json& value) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Untrusted JSON. The library copies, compares and writes values recursively, so deeply nested
-// input would overflow the stack; these functions limit the depth.
+// JSON values as text, and untrusted JSON. The library copies, compares and writes values
+// recursively, so deeply nested input would overflow the stack; these functions limit the depth.
 #pragma once
 
 #include <cstddef>
@@ -28,6 +28,11 @@ StoreDamaged damaged_payload(const Event& event, const nlohmann::json::exception
 /// something else; the library's `get` would convert 1e300.
 std::uint64_t count_at(const nlohmann::json& object, const char* key);
 
+/// The number with so many significant digits; null if it is not finite.
+nlohmann::json rounded(double value, int significant);
+
+/// A value as a manifest or a CSV file writes it: "still", "0.1".
+std::string value_text(const nlohmann::json& value);
 /// For messages: a text without quotes, a fraction with six significant digits, else as JSON.
 std::string short_text(const nlohmann::json& value);
 

@@ -117,7 +117,7 @@ class Projector {
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "target_cycles = max(target_cycles, excluded.target_cycles), "
         "checkpoint_every = excluded.checkpoint_every",
-        id_, m.experiment, m.scale, m.variant, m.seed, m.manifest, m.labels.dump(), d.target_cycles,
+        id_, m.experiment, m.scale, m.variant, m.seed, m.manifest, m.swept.dump(), d.target_cycles,
         m.checkpoint_every, event_.seq);
   }
 
@@ -227,7 +227,7 @@ std::vector<Membership> query_memberships(const Database& database, const std::s
     std::string run, labels;
     row.get(run, m.experiment, m.scale, m.variant, m.seed, m.manifest, labels, m.target_cycles,
             m.checkpoint_every);
-    m.labels = parse(database, labels);
+    m.swept = parse(database, labels);
     require_cycles(m.target_cycles, m.checkpoint_every);
     return m;
   });

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "core/named.hpp"
@@ -16,30 +17,30 @@ namespace shearcell {
 /// The place of a run in an experiment. A run that two experiments share has two memberships.
 struct Membership {
   std::string experiment;
-  std::string scale;                                 ///< "" if the manifest has no scales
-  std::string variant;                               ///< the swept values: "drag=still"
-  nlohmann::json labels = nlohmann::json::object();  ///< swept key -> value
+  std::string scale;                                ///< "" if the manifest has no scales
+  std::string variant;                              ///< the swept values: "drag=still"
+  nlohmann::json swept = nlohmann::json::object();  ///< swept key -> value
   std::uint64_t seed = 0;
-  std::string manifest;                ///< SHA-256 of the manifest's text
-  std::uint64_t checkpoint_every = 1;  ///< requested cycles between checkpoints
-  std::uint64_t target_cycles = 0;     ///< requested length of the run; set by the store
-
-  // Recorded if given, but decode() does not read them: experiments/runner/asks.hpp does.
+  std::string manifest;                        ///< SHA-256 of the manifest's text
+  std::uint64_t checkpoint_every = 1;          ///< requested cycles between checkpoints
+  std::uint64_t target_cycles = 0;             ///< requested length of the run; set by the store
   nlohmann::json until = nullptr;              ///< measure that may end the run earlier
   std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle, for more checkpoints
 
-  /// The recorded members, without the last two.
   static void fields(auto& m, auto field) {
     field("experiment", m.experiment), field("scale", m.scale), field("variant", m.variant);
-    field("labels", m.labels), field("seed", m.seed), field("manifest", m.manifest);
+    field("labels", m.swept), field("seed", m.seed), field("manifest", m.manifest);
     field("checkpoint_every", m.checkpoint_every);
+  }
+  /// Those that are recorded if they are given. The events alone have them.
+  static void optional_fields(auto& m, auto field) {
+    field("until", m.until), field("checkpoint_phases", m.checkpoint_phases);
   }
 };
 
-/// Whether two memberships name the same place.
-inline bool same_place(const Membership& a, const Membership& b) {
-  return a.experiment == b.experiment && a.scale == b.scale && a.variant == b.variant &&
-         a.seed == b.seed && a.manifest == b.manifest;
+/// What distinguishes the memberships of a run.
+inline auto place_of(const Membership& m) {
+  return std::tie(m.experiment, m.scale, m.variant, m.seed, m.manifest);
 }
 
 /// The name to show: "base" if the manifest has no scales.

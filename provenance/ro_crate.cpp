@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
@@ -111,8 +113,8 @@ json add_host(Graph& graph, const json& host) {
                                                 text_at(host, "simd"))}});
 }
 
-/// Seed and resolved parameters of a run.
-json add_parameters(Graph& graph, const RunRecord& run) {
+/// Seed, resolved parameters and number of cycles of a run.
+json add_parameters(Graph& graph, const CrateFacts& facts, const RunRecord& run) {
   json given = json::array();
   const auto add = [&](const std::string& name, const json& value) {
     given.push_back(graph.add({{"@id", fmt::format("#parameter-{}-{}", run.id, name)},
@@ -126,8 +128,11 @@ json add_parameters(Graph& graph, const RunRecord& run) {
       add(key, value);
       continue;
     }
-    for (const auto& [name, inner] : value.items()) add(name, inner);
+    for (const auto& [name, inner] : value.items()) {
+      if (std::ranges::count(facts.left_out, name) == 0) add(name, inner);
+    }
   }
+  if (run.target_cycles > 0) add("target_cycles", run.target_cycles);
   return given;
 }
 
@@ -151,16 +156,22 @@ const CheckpointHistory* initial_state(const CrateFacts& facts, const Attempt& a
   return stage == facts.stages.end() ? nullptr : stage->find(attempt.from_checkpoint);
 }
 
-/// Inputs of every attempt of a run.
+/// Inputs of the attempts of a run.
 struct Given {
-  json manifests = json::array();
+  std::vector<std::pair<std::string, json>> manifests;  ///< when they were registered
   json parameters = json::array();
 };
 
 json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage, std::size_t a,
                  const Given& given) {
   const Attempt& attempt = stage.attempts[a];
-  json objects = given.manifests;
+  const bool is_last = a + 1 == stage.attempts.size();
+  const std::string end =
+      !attempt.ended_at.empty() || is_last ? attempt.ended_at : stage.attempts[a + 1].started_at;
+  json objects = json::array();
+  for (const auto& [registered_at, manifest] : given.manifests) {
+    if (end.empty() || registered_at <= end) objects.push_back(manifest);
+  }
   if (const auto* from = initial_state(facts, attempt)) {
     objects.push_back(add_checkpoint(graph, *from));
   }
@@ -217,8 +228,9 @@ json parts_of(const json& entities) {
 
 }  // namespace
 
-CrateFacts crate_facts(const Store& store, const std::string& run, std::string licence) {
-  CrateFacts facts{run_lineage(store, run), {}, std::move(licence)};
+CrateFacts crate_facts(const Store& store, const std::string& run, std::string licence,
+                       std::vector<std::string> left_out) {
+  CrateFacts facts{run_lineage(store, run), {}, std::move(licence), std::move(left_out)};
   for (const RunLineage& stage : facts.stages) {
     for (const Membership& member : stage.run.memberships) {
       if (std::ranges::count(facts.manifests, member.manifest, &ManifestText::sha256) > 0) continue;
@@ -249,10 +261,10 @@ json ro_crate_metadata(const CrateFacts& facts) {
     Given given;
     for (const ManifestText& manifest : facts.manifests) {
       if (std::ranges::count(stage.run.memberships, manifest.sha256, &Membership::manifest) > 0) {
-        given.manifests.push_back(add_manifest(graph, manifest));
+        given.manifests.emplace_back(manifest.registered_at, add_manifest(graph, manifest));
       }
     }
-    given.parameters = add_parameters(graph, stage.run);
+    given.parameters = add_parameters(graph, facts, stage.run);
     for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
       actions.push_back(add_attempt(graph, facts, stage, a, given));
     }

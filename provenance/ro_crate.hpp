@@ -17,10 +17,13 @@ struct CrateFacts {
   std::vector<RunLineage> stages;  ///< the first stage first, the run itself last
   std::vector<ManifestText> manifests;
   std::string licence;  ///< URI of the licence of the data, or ""
+  /// Parameters that a record states and the run did not have (Identity::recorded_as).
+  std::vector<std::string> left_out = {};
 };
 
 /// Throws NotFound for an unknown run.
-CrateFacts crate_facts(const Store& store, const std::string& run, std::string licence = "");
+CrateFacts crate_facts(const Store& store, const std::string& run, std::string licence = "",
+                       std::vector<std::string> left_out = {});
 
 /// Paths in the crate. They consist of hashes, so recorded text cannot lead out of the folder.
 std::string crate_path_of_checkpoint(const std::string& sha256);
@@ -40,6 +43,7 @@ std::string crate_identifier(const std::string& run);
 /// std::invalid_argument for any other folder and StoreDamaged for a damaged checkpoint.
 std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
                                         const std::filesystem::path& folder,
-                                        const std::string& licence = "");
+                                        const std::string& licence = "",
+                                        const std::vector<std::string>& left_out = {});
 
 }  // namespace shearcell

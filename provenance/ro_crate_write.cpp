@@ -72,8 +72,9 @@ std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const
 }  // namespace
 
 std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
-                                        const fs::path& where, const std::string& licence) {
-  const CrateFacts facts = crate_facts(store, run, licence);
+                                        const fs::path& where, const std::string& licence,
+                                        const std::vector<std::string>& left_out) {
+  const CrateFacts facts = crate_facts(store, run, licence, left_out);
   // "crate/" has no file name; "crate" is the same folder.
   const fs::path given = fs::absolute(where);
   const fs::path folder = given.has_filename() ? given : given.parent_path();

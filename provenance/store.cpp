@@ -86,7 +86,7 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
 bool adds_something(const RunRecord& known, const RunDeclaration& declared) {
   const Membership& m = declared.membership;
   return std::ranges::none_of(known.memberships, [&](const Membership& old) {
-    return same_place(old, m) && old.checkpoint_every == m.checkpoint_every &&
+    return place_of(old) == place_of(m) && old.checkpoint_every == m.checkpoint_every &&
            old.target_cycles >= declared.target_cycles;
   });
 }

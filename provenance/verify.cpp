@@ -92,10 +92,11 @@ void check_extends(const EventLog& log, const Head& earlier, VerifyReport& repor
   }
   const std::string found = log.hash_at(earlier.seq);
   if (found == earlier.hash) return;
-  add_error(report, event,
-            fmt::format("the log was rewritten: {} has hash {}, but the given head has {}; "
-                        "restore the log from a backup",
-                        event, found, earlier.hash));
+  add_error(
+      report, event,
+      fmt::format("the log was rewritten, or the given head is wrong: {} has hash {}, but that "
+                  "head has {}; check it, or restore the log from a backup",
+                  event, found, earlier.hash));
 }
 
 /// The tables derived from the events alone. Events that cannot be applied are reported and

@@ -56,7 +56,7 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
     const std::vector<GrowthBySize> counts = followed(members, published.n_bin);
     const std::size_t k = all.size();
     all.push_back({.style = {amplitude, italic("A") + fmt::format(" = {}", amplitude),
-                             amplitude_colours[k % amplitude_colours.size()], filled_symbol(k)},
+                             amplitude_colours[k % amplitude_colours.size()], curve_symbol(k)},
                    .amplitude = amplitude,
                    .published = &published,
                    .all_runs = members,

@@ -2,6 +2,7 @@
 // The figures that compare the variants of one parameter: S2, S3, S4, B5, walls and choices. They
 // differ in the parameter, the styles of the curves, the panels and the claims.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,19 +17,6 @@ namespace shearcell {
 namespace {
 
 using Runs = std::span<const FigureRun>;
-using Curves = std::span<const Curve>;
-
-struct Panel {
-  const char* name;
-  FigureTable (*draw)(const std::string& name, Curves curves);
-};
-
-FigureResult drawn(Curves curves, std::initializer_list<Panel> panels,
-                   std::vector<Verdict> verdicts) {
-  FigureResult result{{}, std::move(verdicts)};
-  for (const Panel& panel : panels) result.tables.push_back(panel.draw(panel.name, curves));
-  return result;
-}
 
 /// Compares a quantity of the cycles before crystallization. The note counts the runs whose onset
 /// is earlier.
@@ -112,14 +100,12 @@ std::string times(const char* what, double ratio) {
 
 /// How the run differs from the default.
 nlohmann::json choice_of(const FigureRun& run) {
-  std::string text;
-  for (const std::string& part :
-       {times("wall mass", number_of(run, "wall_mass_grains_per_d2") / default_wall_mass),
-        times("wall drag", number_of(run, "wall_drag_grains_per_d2_s") / default_wall_drag),
-        std::string(number_of(run, "wall_grain_draw") != 0 ? "other wall grains" : "")}) {
-    if (!part.empty()) text += (text.empty() ? "" : ", ") + part;
-  }
-  return text.empty() ? unchanged : text;
+  std::vector<std::string> parts = {
+      times("wall mass", number_of(run, "wall_mass_grains_per_d2") / default_wall_mass),
+      times("wall drag", number_of(run, "wall_drag_grains_per_d2_s") / default_wall_drag),
+      number_of(run, "wall_grain_draw") != 0 ? "other wall grains" : ""};
+  std::erase(parts, "");
+  return parts.empty() ? unchanged : fmt::format("{}", fmt::join(parts, ", "));
 }
 
 /// "v_fluid = ..."
@@ -140,8 +126,8 @@ FigureResult figure_s2(Runs runs) {
       {"still", fluid_is("0"), "#d55e00", 9},
       {"cell", fluid_is(italic("v") + subscript("cell")), "#000000", 5}};
   const auto curves = curves_of(runs, "fluid", styles);
-  return drawn(curves, {{"S2a", phi_against_cycle}, {"S2b", crystallinity_against_phi}},
-               similar("B.3", "both drags", runs_with(curves, "cell"), runs_with(curves, "still")));
+  return {{phi_against_cycle("S2a", curves), crystallinity_against_phi("S2b", curves)},
+          similar("B.3", "both drags", runs_with(curves, "cell"), runs_with(curves, "still"))};
 }
 
 FigureResult figure_s3(Runs runs) {
@@ -174,8 +160,8 @@ FigureResult figure_s3(Runs runs) {
       add(equal_physics(steps_of(step), other, main_text));
     }
   }
-  return drawn(curves, {{"S3a", phi_against_cycle}, {"S3b", crystallinity_against_phi}},
-               std::move(verdicts));
+  return {{phi_against_cycle("S3a", curves), crystallinity_against_phi("S3b", curves)},
+          std::move(verdicts)};
 }
 
 /// The wall that moves; `lifting` if the pressure alone also lifts the grains.
@@ -198,8 +184,8 @@ FigureResult figure_s4(Runs runs) {
                                    &Measures::mean_overlap, top, bottom));
   verdicts.push_back(same_contacts("B.6", "both moving walls", "contacts per grain",
                                    &Measures::contacts_per_grain, top, bottom));
-  return drawn(curves, {{"S4a", phi_against_cycle}, {"S4b", crystallinity_against_phi}},
-               std::move(verdicts));
+  return {{phi_against_cycle("S4a", curves), crystallinity_against_phi("S4b", curves)},
+          std::move(verdicts)};
 }
 
 FigureResult figure_b5(Runs runs) {
@@ -208,17 +194,15 @@ FigureResult figure_b5(Runs runs) {
   const auto curves = curves_of(runs, "protocol", styles);
   const RunGroup paused = runs_with(curves, "paused");
   const RunGroup continuous = runs_with(curves, "continuous");
-  return drawn(
-      curves,
-      {{"B5a", phi_against_cycle},
-       {"B5b", crystallinity_against_cycle},
-       {"B5c", crystallinity_against_phi}},
+  return {
+      {phi_against_cycle("B5a", curves), crystallinity_against_cycle("B5b", curves),
+       crystallinity_against_phi("B5c", curves)},
       {compare_early(
            {fmt::format("B.5: at cycles 1 to {} phi of paused shear is higher by more than {}",
                         early_cycles, margin_pause_gain),
             margin_pause_gain, Claimed::above},
            over_cycles("phi at rest", &Measures::phi_at_rest, 1, early_cycles), paused, continuous),
-       same_percentage("B.5", "both relaxations", paused, continuous)});
+       same_percentage("B.5", "both relaxations", paused, continuous)}};
 }
 
 // Not in the supplement, which says only that crystallites appear away from the walls (E).
@@ -241,11 +225,9 @@ FigureResult figure_walls(Runs runs) {
     const double grains = number_of(*rough.front(), "grains");
     if (published_interior(grains)) verdicts.push_back(interior_is_published(grains, rough));
   }
-  return drawn(curves,
-               {{"walls_a", phi_against_cycle},
-                {"walls_b", crystallinity_against_cycle},
-                {"walls_c", crystallinity_against_phi}},
-               std::move(verdicts));
+  return {{phi_against_cycle("walls_a", curves), crystallinity_against_cycle("walls_b", curves),
+           crystallinity_against_phi("walls_c", curves)},
+          std::move(verdicts)};
 }
 
 FigureResult figure_choices(Runs runs) {
@@ -263,7 +245,7 @@ FigureResult figure_choices(Runs runs) {
                                       "the default and " + styles[k].value.get<std::string>(),
                                       runs_with(curves, styles[k].value), reference));
   }
-  return drawn(curves, {{"choices", phi_against_cycle}}, std::move(verdicts));
+  return {{phi_against_cycle("choices", curves)}, std::move(verdicts)};
 }
 
 }  // namespace shearcell

@@ -40,7 +40,7 @@ std::string plain_field(std::string variant) {
 }
 
 /// Styles of curves by the keys that vary: the rank of the first key's value decides the colour,
-/// the rank of the other values the symbol.
+/// the rank of the other values the symbol, as far as there are colours and symbols.
 class StylesOfOthers {
  public:
   explicit StylesOfOthers(std::span<const FigureRun> runs) : keys_(varied_keys(runs)) {
@@ -60,11 +60,13 @@ class StylesOfOthers {
     return {rank(firsts_, first), rank(rests_, rest)};
   }
   CurveStyle style(const FigureRun& run) const {
-    const auto [first, rest] = place(run);
-    // Where one key varies, the symbol changes with the colour.
+    auto [first, rest] = place(run);
+    // Colour and symbol change together where one key varies, and where the values of more keys
+    // would need a style twice: that gives 70 styles.
+    if (rests_.size() == 1 || firsts_.size() > safe_colours.size() || rests_.size() > curve_symbols)
+      first = rest = first * rests_.size() + rest;
     return {nullptr, run.name.empty() ? run.variant : run.name,
-            safe_colours[first % safe_colours.size()],
-            filled_symbol(rests_.size() > 1 ? rest : first)};
+            safe_colours[first % safe_colours.size()], curve_symbol(rest)};
   }
   const std::vector<std::string>& keys() const { return keys_; }
 

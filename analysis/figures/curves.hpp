@@ -72,10 +72,11 @@ std::vector<ReferenceLine> onset_lines();
 inline constexpr std::array<const char*, 7> safe_colours = {
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
 
-/// Filled symbols, one after the other.
-inline int filled_symbol(std::size_t k) {
-  return 5 + 2 * static_cast<int>(k % 5);
+/// The five filled symbols, then the open ones.
+inline int curve_symbol(std::size_t k) {
+  return (k / 5 % 2 == 0 ? 5 : 4) + 2 * static_cast<int>(k % 5);
 }
+inline constexpr std::size_t curve_symbols = 10;
 
 /// The trace of one run.
 Series thin_line(Text title, std::string colour, int point = 0);

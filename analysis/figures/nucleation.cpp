@@ -42,7 +42,7 @@ std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns
     series.push_back({.title = italic("A") + fmt::format(" = {}, ", group.first) + italic("N") +
                                fmt::format(" = {}", group.second),
                       .colour = safe_colours[k % safe_colours.size()],
-                      .point = filled_symbol(k),
+                      .point = curve_symbol(k),
                       .join = join,
                       .columns = columns,
                       .filter = {"group", name_of(group)}});

@@ -8,12 +8,14 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 
 #include "analysis/figures/figures.hpp"
 #include "analysis/figures/groups.hpp"
 #include "analysis/nucleation.hpp"
 #include "analysis/published.hpp"
 #include "analysis/statistics.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -24,18 +26,23 @@ constexpr std::size_t density_bins = 20;
 constexpr double inaccessible = 4;
 
 struct Places {
-  std::vector<std::vector<double>> runs;  ///< those with any
+  std::vector<std::vector<double>> packings;  ///< those with any; of all runs that begin with it
+  std::size_t runs = 0;                       ///< with any
   std::size_t count = 0;
 };
 
 Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
   Places places;
+  std::map<std::string, std::vector<double>> of_packing;
   for (const FigureRun* run : runs) {
-    std::vector<double> found = nucleus_places(*run, axis, seen);
+    const std::vector<double> found = nucleus_places(*run, axis, seen);
     if (found.empty()) continue;
     places.count += found.size();
-    places.runs.push_back(std::move(found));
+    ++places.runs;
+    std::vector<double>& all = of_packing[packing_of(*run)];
+    all.insert(all.end(), found.begin(), found.end());
   }
+  for (auto& [packing, all] : of_packing) places.packings.push_back(std::move(all));
   return places;
 }
 
@@ -68,9 +75,9 @@ FigureTable density_table(std::string name, std::string first_column, Text x,
   table.chart = {.x = {.name = "position", .symbol = std::move(x), .low = 0, .high = 1},
                  .y = {.name = "probability density", .symbol = italic("P"), .low = 0}};
   for (const Profile& profile : profiles) {
-    for (const DensityBin& bin : density(profile.places.runs, density_bins)) {
+    for (const DensityBin& bin : density(profile.places.packings, density_bins)) {
       table.rows.push_back({profile.key, bin.low, bin.high, bin.density, bin.error,
-                            profile.places.count, profile.places.runs.size()});
+                            profile.places.count, profile.places.runs});
     }
     const std::size_t k = table.chart.series.size();
     table.chart.series.push_back({.title = profile.title,
@@ -90,15 +97,16 @@ Text ratio(const char* length, const Text& unit) {
 }
 
 /// Share of the nuclei in one part of the cell less that in another, over all runs. `side` gives 1
-/// in the one part, -1 in the other, 0 elsewhere, and nothing where a nucleus is not counted.
+/// in the one part, -1 in the other, 0 elsewhere, and nothing where a nucleus is not counted. The
+/// bootstrap draws packings with all their runs.
 Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
                       const std::function<std::optional<int>(double place)>& side) {
   const Places places = places_of(runs, axis, Seen::first);
   const auto difference = [&](std::span<const std::size_t> selection) {
     double sum = 0;
     double all = 0;
-    for (const std::size_t run : selection) {
-      for (const double place : places.runs[run]) {
+    for (const std::size_t packing : selection) {
+      for (const double place : places.packings[packing]) {
         const std::optional<int> counted = side(place);
         if (!counted) continue;
         sum += *counted;
@@ -107,13 +115,17 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
     }
     return std::optional<double>(sum / all);
   };
-  const std::size_t found = places.runs.size();
+  const std::size_t packings = places.packings.size();
   std::string note = fmt::format("{} nuclei of {} to {} grains in {} of {} runs", places.count,
-                                 nucleus_smallest, nucleus_largest, found, runs.size());
-  if (found < least_bootstrap_runs) {
-    note += fmt::format("; too few runs; at least {} are needed", least_bootstrap_runs);
+                                 nucleus_smallest, nucleus_largest, places.runs, runs.size());
+  if (packings < places.runs) {
+    note +=
+        fmt::format("; {}, and runs of one packing count together", counted(packings, "packing"));
   }
-  return decide(claim, std::move(quantity), bootstrapped(found, difference), found,
+  if (packings < least_bootstrap_runs) {
+    note += fmt::format("; too few; at least {} are needed", least_bootstrap_runs);
+  }
+  return decide(claim, std::move(quantity), bootstrapped(packings, difference), packings,
                 std::move(note));
 }
 
@@ -141,11 +153,7 @@ Verdict upper_less_lower(RunGroup runs, const Claim& claim) {
 FigureResult figure_s7(std::span<const FigureRun> runs) {
   // The panels of the supplement are for the softest springs; a manifest may sweep the stiffness.
   const auto by_stiffness = runs_by(runs, "stiffness_N_per_m");
-  std::vector<const FigureRun*> softest;
-  for (const FigureRun& run : runs) {
-    const double k = number_of(run, "stiffness_N_per_m");
-    if (by_stiffness.empty() || k == by_stiffness.begin()->first) softest.push_back(&run);
-  }
+  const auto softest = by_stiffness.empty() ? pointers(runs) : by_stiffness.begin()->second;
   const auto probability = [](const Text& of) { return italic("P") + "(" + of + ")"; };
   const Text x_over_w = ratio("x", italic("w")), y_over_h = ratio("y", italic("h"));
   const Text y_over_nominal = ratio("y", Text("1.675 ") + italic("L"));

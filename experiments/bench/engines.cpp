@@ -154,9 +154,10 @@ LammpsResult settle_by_lammps(std::size_t ranks, const LammpsProgram& program, c
   LammpsResult settled{loose.state, 0, 0};
   for (;;) {
     // One step of our own, whose result is discarded: in it the protocol decides whether the
-    // packing has settled and which forces act now, and the watchdog checks the grains.
+    // packing has settled and which forces act now. Then the watchdog checks the grains.
     Simulation check(loose.cell, loose.scene, settled.state);
     if (protocol.advance(check, 1).finished) return settled;
+    check.check();
     const std::uint64_t end = protocol.next_check(settled.state.step);
     const LammpsTask task{.cell = loose.cell,
                           .scene = check.scene(),

@@ -81,19 +81,21 @@ CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const c
 }
 
 void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
-  add_each(command, "--variant", variants,
-           "Only runs with this swept value, as fluid=cell (`variant` of status --json). Values of "
-           "one key are alternatives, those of different keys must all fit",
-           "KEY=V");
+  add_each(
+      command, "--variant", variants,
+      "Only runs with this swept value, such as fluid=cell (`variant` of status --json). Several "
+      "values of one key are alternatives; values of different keys must all match",
+      "KEY=V");
 }
 
 }  // namespace
 
 void add_expand_options(CLI::App& command, ExpandOptions& options) {
   command.add_option("--scale", options.scale, "Named size (default: desk)");
-  add_number(command, "--cycles", options.cycles, "Cycles instead of the manifest's");
-  add_number(command, "--seeds", options.seeds, "Number of seeds instead of the manifest's", "N",
-             1);
+  add_number(command, "--cycles", options.cycles,
+             "Cycles instead of the manifest's; the store keeps the largest number asked for");
+  add_number(command, "--seeds", options.seeds,
+             "Number of seeds instead of the manifest's; runs that the store has stay", "N", 1);
   add_variant_option(command, options.variants);
 }
 

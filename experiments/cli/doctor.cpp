@@ -62,7 +62,7 @@ Check disk(const fs::path& place) {
   shape.grains = 5200;
   return {"disk", fmt::format("{} free in {}", format_bytes(free), place.string()),
           free > 1e9 ? "ok" : "low",
-          free > 0 ? fmt::format("room for {:.1e} checkpoints of 5200 grains",
+          free > 0 ? fmt::format("room for {:.0f} checkpoints of 5200 grains",
                                  free / checkpoint_bytes(shape))
                    : ""};
 }

@@ -19,6 +19,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
 #include "experiments/figures/experiment_part.hpp"
+#include "experiments/manifest/schema.hpp"
 #include "experiments/runner/asks.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
@@ -172,12 +173,23 @@ std::vector<std::string> files_of(const fs::path& out) {
   return files;
 }
 
+/// Parameters that records state at a fixed value.
+std::vector<std::string> constants_of_records() {
+  std::vector<std::string> names;
+  for (const Field& field : schema()) {
+    if (!field.identity.recorded_as.empty()) names.emplace_back(field.name);
+  }
+  return names;
+}
+
 /// Writes the run to `out`, which does not exist, and returns the names of the files. Throws
 /// std::invalid_argument if the run cannot be exported.
 std::vector<std::string> write_run(const Store& store, const WantedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out) {
-  if (format.writer == nullptr) return write_ro_crate(store, run.run.id, out, options.licence);
+  if (format.writer == nullptr) {
+    return write_ro_crate(store, run.run.id, out, options.licence, constants_of_records());
+  }
   const std::vector<CheckpointRecord> records = chosen(store, run, options);
   const bool folder = *format.ending == '\0';
   if (folder) fs::create_directory(out);

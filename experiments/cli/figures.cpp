@@ -137,7 +137,7 @@ void add_figures(CLI::App& app, Context& context) {
   how.folder = "shearcell-figures";
   CLI::App* command = app.add_subcommand("figures", "Draw figures from stored checkpoints");
   command->add_option("figure", options->names, "Figures, as S2 (default: all)");
-  command->add_flag("--all", options->all, "Every figure that the store's manifests list");
+  command->add_flag("--all", options->all, "All that the store's manifests list, as without names");
   command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/NAME.csv, ...")
       ->capture_default_str()
       ->check(unnamed)
@@ -146,7 +146,7 @@ void add_figures(CLI::App& app, Context& context) {
   command->get_option("--experiment")
       ->description("Only of this experiment, even if its manifest does not list the figure");
   command->get_option("--scale")->description(
-      "Scale of the runs (default: that of the run that was added to the store last)");
+      "Scale of the runs (default: for each experiment, that of its run added last)");
   command->add_flag("--all-versions", how.runs.all_versions,
                     "Runs of older versions of a manifest too, as variants of their own");
   command

@@ -16,6 +16,7 @@
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell::cli {
 namespace {

@@ -264,8 +264,9 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
   const double seconds = left.work.seconds(cores);
   std::vector<std::string> notes = notes_of(expanded);
   if (longer > 0) {
-    notes.push_back(fmt::format("`run` continues {} to a larger number of cycles, asked for before",
-                                counted(longer, "run")));
+    notes.push_back(fmt::format(
+        "`run` also continues {} to the number of cycles that an earlier command asked for",
+        counted(longer, "run")));
   }
   if (context.json) {
     return print_json({{"experiment", expanded.experiment},

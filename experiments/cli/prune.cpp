@@ -185,7 +185,8 @@ void add_prune(CLI::App& app, Context& context) {
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
   add_common_options(*command, context);
   command->footer(
-      "Needs runs, --state or --keep-every. Lists the files and asks; without a terminal it\n"
+      "Name runs, or give --state or --keep-every. Lists the files and asks; without a terminal "
+      "it\n"
       "deletes nothing unless --yes is given. Never deletes the newest checkpoint of a run, those\n"
       "that other stages started from, or those of LAMMPS. Records stay, and `regenerate`\n"
       "recomputes a file.\n"

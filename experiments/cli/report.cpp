@@ -35,7 +35,7 @@ void report(ReportCommand& command, Context& context) {
   for (std::string& run : options.packings.runs) run = store.find_run(run).id;
   options.workers = usable_cores();
   options.measured = terminal_counter("measuring checkpoint");
-  options.packed = terminal_counter("packing checkpoint");
+  options.encoded = terminal_counter("reading checkpoint");
   const ReportData made = collect_report(store, options);
   const std::string html = report_page(made);
   write_output(command.out, html);

@@ -200,7 +200,7 @@ void add_verify(CLI::App& app, Context& context) {
   command->footer(
       R"(Proves that no event or file was changed or lost; that each file is the one that its event
 describes (step, cycle, time, units, grains, observables, state); that each run has the
-parameters and labels of its id and began from a completed packing; that the tables follow
+parameters and swept values of its id and began from a completed packing; that the tables follow
 from the events.
 --replay K recomputes K sampled checkpoints from the ones before, compares every bit of the
 state and of all that is recorded with it, and records the outcome. --measures K recomputes

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -152,7 +153,7 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRu
     std::vector<nlohmann::json> variants;
     for (const CollectedRun& run : collected.runs) {
       if (run.membership.experiment == manifest.experiment)
-        variants.push_back(run.membership.labels);
+        variants.push_back(run.membership.swept);
     }
     if (variants.empty()) continue;
     const auto known = read(manifest);
@@ -160,9 +161,9 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRu
     const auto names = variant_names(variants, labels);
     for (CollectedRun& run : collected.runs) {
       if (run.membership.experiment != manifest.experiment) continue;
-      run.name = names.at(run.membership.labels);
+      run.name = names.at(run.membership.swept);
       run.named = std::ranges::any_of(
-          labels, [&](const VariantLabel& label) { return selects(label, run.membership.labels); });
+          labels, [&](const VariantLabel& label) { return selects(label, run.membership.swept); });
     }
   }
 }
@@ -197,17 +198,22 @@ std::string last_scale(const std::vector<SelectedRun>& runs,
 }  // namespace
 
 FigureRun unmeasured(const CollectedRun& input) {
-  nlohmann::json parameters = recorded_parameters(input.run.resolved);
-  if (!effective_parameters(input.run.resolved).contains("pressure_at")) {
-    parameters["pressure_at"] = name_of(PressureAt::top);
+  const nlohmann::json& resolved = input.run.resolved;
+  if (!resolved.is_object() ||
+      !resolved.value("parameters", nlohmann::json::object()).is_object()) {
+    throw StoreDamaged(fmt::format(
+        "the record of run {:.8} has no parameters; `shearcell verify` reports all damage",
+        input.run.id));
   }
+  nlohmann::json parameters = effective_parameters(resolved);
+  parameters.emplace("pressure_at", name_of(PressureAt::top));  // where that key has no effect
   return {input.run.id,
           input.run.parent,
           input.membership.experiment,
           input.membership.variant,
           input.name,
           input.named,
-          input.membership.labels,
+          input.membership.swept,
           std::move(parameters),
           input.membership.seed,
           {},
@@ -279,8 +285,17 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   CollectedRuns collected;
   std::vector<SelectedRun> selected = runs_of(store, wanted, selection);
   collected.scale = last_scale(selected, manifests);
-  std::erase_if(selected,
-                [&](const SelectedRun& s) { return s.membership.scale != collected.scale; });
+  std::set<std::string> at_scale, elsewhere;  // experiments
+  std::erase_if(selected, [&](const SelectedRun& s) {
+    const bool is_at_scale = s.membership.scale == collected.scale;
+    (is_at_scale ? at_scale : elsewhere).insert(s.membership.experiment);
+    return !is_at_scale;
+  });
+  std::erase_if(elsewhere, [&](const std::string& name) { return at_scale.contains(name); });
+  if (!elsewhere.empty()) {
+    collected.notes.push_back(fmt::format("left out: experiments without a run at scale {}: {}",
+                                          scale_name(collected.scale), some_of(elsewhere)));
+  }
   NewestRuns newest = newest_runs(std::move(selected), selection.all_versions);
   if (newest.runs.empty()) {
     throw NotFound(
@@ -288,12 +303,12 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                     "manifest; --all-versions adds them",
                     wanted.path()));
   }
-  collected.notes = std::move(newest.notes);
+  std::ranges::move(newest.notes, std::back_inserter(collected.notes));
   for (SelectedRun& run : newest.runs) {
     Membership& m = run.membership;
     RunAsk ask = ask_of(store, run.run.id, m);
     if (!run.of_newest_version) {
-      m.labels["manifest"] = m.manifest.substr(0, 8);
+      m.swept["manifest"] = m.manifest.substr(0, 8);
       m.variant += fmt::format(",manifest={:.8}", m.manifest);
     }
     collected.runs.push_back({std::move(run), std::move(ask)});

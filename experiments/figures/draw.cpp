@@ -119,7 +119,7 @@ void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>
   for (const FigureRun& run : runs) {
     std::vector<nlohmann::json> group;
     for (const std::string& key : wanted.figure.keys) group.push_back(parameter_of(run, key));
-    variants.emplace_back(std::move(group), run.labels);
+    variants.emplace_back(std::move(group), run.swept);
   }
   const std::string key = averaged_key(variants);
   if (key.empty()) return;

@@ -29,12 +29,12 @@ FigureInput read_input(const json& input) {
 }
 
 // The swept values of the run, by the membership that the figure used.
-json labels_of(const RunRecord& run, const FigureInput& input) {
+json swept_values_of(const RunRecord& run, const FigureInput& input) {
   for (const Membership& member : run.memberships) {
     // The variant of an older version ends in that version (collect.hpp).
     const bool same =
         input.variant == member.variant || input.variant.starts_with(member.variant + ",manifest=");
-    if (member.manifest == input.manifest && same) return member.labels;
+    if (member.manifest == input.manifest && same) return member.swept;
   }
   return json::object();
 }
@@ -153,9 +153,9 @@ FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
         }
       }
       if (const auto* manifest = remember_manifest(store, lineage, input.manifest)) {
-        input.lines =
-            manifest_lines(manifest->text, scale, labels_of(lineage.runs.at(input.run).run, input),
-                           figure_name(record));
+        input.lines = manifest_lines(manifest->text, scale,
+                                     swept_values_of(lineage.runs.at(input.run).run, input),
+                                     figure_name(record));
       }
       lineage.inputs.push_back(std::move(input));
     }

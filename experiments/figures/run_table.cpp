@@ -160,11 +160,11 @@ std::vector<Column> ends() {
   return columns;
 }
 
-/// The value of a parameter that some variants sweep: from the variant's labels, or from the run's
+/// The value of a parameter that some variants sweep: from the variant, or from the run's
 /// record; null if it does not affect the run, or its record cannot be read.
 json swept_value(const Field& field, const SelectedRun& selected) try {
-  const auto label = selected.membership.labels.find(field.name);
-  if (label != selected.membership.labels.end()) return *label;
+  const auto label = selected.membership.swept.find(field.name);
+  if (label != selected.membership.swept.end()) return *label;
   const StageRecord record = read_stage(selected.run.resolved);
   const bool has_effect = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
   return has_effect ? get_value(field, record.parameters) : json();
@@ -177,7 +177,7 @@ std::vector<Column> columns_of_runs(const std::vector<MeasuredRun>& runs,
                                     const VariantNames& variants, bool all_versions) {
   std::set<std::string> swept = {"grains"};  // a column of every table
   for (const MeasuredRun& run : runs) {
-    for (const auto& [key, value] : run.membership.labels.items()) swept.insert(key);
+    for (const auto& [key, value] : run.membership.swept.items()) swept.insert(key);
   }
   std::vector<Column> columns = names(variants);
   if (all_versions) {
@@ -245,7 +245,7 @@ void measure_where(const Store& store, std::span<const std::string> names,
 FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
   FigureRun history;
   history.run_id = selected.run.id;
-  history.labels = selected.membership.labels;
+  history.swept = selected.membership.swept;
   history.parameters = effective_parameters(selected.run.resolved);
   for (const Row& row : rows) {
     if (!row.measures || row.checkpoint->cycle != std::floor(row.checkpoint->cycle)) continue;

@@ -65,7 +65,7 @@ std::vector<Membership> newest_memberships(const RunRecord& run, Versions& versi
 bool in_order(const SelectedRun& a, const SelectedRun& b) {
   if (a.of_newest_version != b.of_newest_version) return a.of_newest_version;
   const auto key = [](const Membership& m) {
-    return std::tie(m.experiment, m.scale, m.labels, m.seed);
+    return std::tie(m.experiment, m.scale, m.swept, m.seed);
   };
   return key(a.membership) < key(b.membership);
 }
@@ -162,7 +162,7 @@ NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
     // A run that is several variants of one manifest is listed for each of them.
     Taken& of_run =
         taken.try_emplace({experiment_scale(m), run.run.id}, Taken{m.manifest, {}}).first->second;
-    if (of_run.manifest != m.manifest || !of_run.variants.insert(m.labels).second) continue;
+    if (of_run.manifest != m.manifest || !of_run.variants.insert(m.swept).second) continue;
     const auto [place, first] = places.try_emplace(
         {experiment_scale(m), m.manifest, m.variant, m.seed}, chosen.runs.size());
     if (first) {

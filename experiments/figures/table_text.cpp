@@ -8,6 +8,7 @@
 #include "analysis/chart.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -16,10 +17,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 std::string csv_cell(const json& value) {
-  if (value.is_null()) return "";
-  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
-  if (!value.is_string()) return value.dump();
-  return csv_field(value.get<std::string>());
+  return value.is_null() ? "" : csv_field(value_text(value));
 }
 
 ordered_json rows_of(const RunTable& table) {

@@ -14,6 +14,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "protocols/settle.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -209,7 +210,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   std::set<const VariantLabel*> used;
   for (const Scale& scale : scales) {
     std::vector<nlohmann::json> variants;
-    for (const Variant& variant : variants_of(scale)) variants.push_back(variant.labels());
+    for (const Variant& variant : variants_of(scale)) variants.push_back(variant.swept_values());
     const auto names = variant_names(variants, manifest.labels);
     std::map<string, const VariantLabel*> named;  // the label behind a name; null: none
     for (const nlohmann::json& variant : variants) {
@@ -223,7 +224,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
       const auto [earlier, first] = named.try_emplace(name, chosen);
       const VariantLabel* label = chosen != nullptr ? chosen : earlier->second;
       if (first || label == nullptr) continue;
-      return problems.add(label->at, "labels", "gives two variants the same name, " + name,
+      return problems.add(label->at, "labels", "gives two variants the same name, '" + name + "'",
                           label->name, "Give each its own.");
     }
   }

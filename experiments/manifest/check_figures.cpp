@@ -136,7 +136,7 @@ std::string averaged_over(const std::vector<std::string>& keys,
       const Field* field = find_field(key);
       if (field != nullptr) curve.push_back(get_value(*field, variant.parameters));
     }
-    values.emplace_back(std::move(curve), variant.labels());
+    values.emplace_back(std::move(curve), variant.swept_values());
   }
   return averaged_key(values);
 }
@@ -152,8 +152,11 @@ std::vector<std::string> problems_of(const PlotSpec& plot, const Scale& scale,
                     key));
   }
   if (plot.x == "shear_strain" && (!plot.cycles || scale.checkpoints->phases.empty())) {
-    found.emplace_back(
-        "shear_strain is 0 at whole cycles. State `cycles`, and `phases` of `checkpoints`.");
+    found.push_back(fmt::format("shear_strain is 0 at whole cycles. State {}.",
+                                plot.cycles ? "`phases` of `checkpoints`"
+                                : scale.checkpoints->phases.empty()
+                                    ? "`cycles`, and `phases` of `checkpoints`"
+                                    : "`cycles`"));
   }
   const bool every_cycle = draws_every_cycle(plot);
   if (plot.cycle && find_run_measure(plot.y) != nullptr) {

@@ -15,6 +15,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -176,7 +177,7 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   PlannedRun run;
   static_cast<Membership&>(run) = common;
   run.variant = variant.name();
-  run.labels = variant.labels();
+  run.swept = variant.swept_values();
   run.seed = seed;
   run.parameters = variant.parameters;
   run.target_cycles = target_cycles(run.parameters);
@@ -206,9 +207,9 @@ void take_declared_lengths(const Membership& place, std::span<const RunRecord> k
 
 void name_variants(const Manifest& manifest, Plan& plan) {
   std::vector<nlohmann::json> variants;
-  for (const PlannedRun& run : plan.runs) variants.push_back(run.labels);
+  for (const PlannedRun& run : plan.runs) variants.push_back(run.swept);
   const auto names = variant_names(variants, manifest.labels);
-  for (PlannedRun& run : plan.runs) run.name = names.at(run.labels);
+  for (PlannedRun& run : plan.runs) run.name = names.at(run.swept);
 }
 
 }  // namespace

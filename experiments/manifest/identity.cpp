@@ -127,6 +127,23 @@ Parameters read_parameters(Stage stage, const json& values) {
   return parameters;
 }
 
+// The parameters that the record states, and those that it omits at the value of all older runs.
+// Throws json::exception if the record or its parameters are not a JSON object.
+json recorded_parameters(const json& resolved) {
+  json values = resolved.value("parameters", json::object());
+  const json name = member_of(resolved, "stage");
+  const auto stage = name.is_string() ? value_of<Stage>(name.get<std::string>()) : std::nullopt;
+  if (!stage) return values;
+  const auto protocol = protocol_in(values);
+  for (const Field& field : schema()) {
+    const std::string_view omitted = field.identity.omitted_at;
+    if (omitted.empty() || values.contains(field.name)) continue;
+    if (!enters(field.identity, *stage, protocol, nullptr)) continue;
+    values[std::string(field.name)] = as_json(field, omitted);
+  }
+  return values;
+}
+
 }  // namespace
 
 StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed) {
@@ -172,21 +189,6 @@ StageRecord read_stage(const json& resolved) {
     if (!known) throw damaged(key.substr(0, 64), "is unknown");
   }
   return record;
-}
-
-json recorded_parameters(const json& resolved) {
-  json values = resolved.value("parameters", json::object());
-  const json name = member_of(resolved, "stage");
-  const auto stage = name.is_string() ? value_of<Stage>(name.get<std::string>()) : std::nullopt;
-  if (!stage) return values;
-  const auto protocol = protocol_in(values);
-  for (const Field& field : schema()) {
-    const std::string_view omitted = field.identity.omitted_at;
-    if (omitted.empty() || values.contains(field.name)) continue;
-    if (!enters(field.identity, *stage, protocol, nullptr)) continue;
-    values[std::string(field.name)] = as_json(field, omitted);
-  }
-  return values;
 }
 
 json effective_parameters(const json& resolved) {

@@ -48,12 +48,9 @@ struct UnreadableRecord : std::runtime_error {
 /// range. Compare stage_key(resolved) with the run's id as well.
 StageRecord read_stage(const nlohmann::json& resolved);
 
-/// The parameters that the record states, and those that it omits at the value of all older runs.
-/// Throws nlohmann::json::exception if the record or its parameters are not a JSON object.
-nlohmann::json recorded_parameters(const nlohmann::json& resolved);
-
-/// The same without those that do not affect the stage; of a damaged record, those that it states.
-/// Without constants of the record (Identity::recorded_as), which are not what the run had.
+/// The parameters that affect the stage: those that the record states, and those that it omits at
+/// the value of all older runs, without constants of the record (Identity::recorded_as), which are
+/// not what the run had. Of a damaged record, those that it states.
 nlohmann::json effective_parameters(const nlohmann::json& resolved);
 
 /// The engine that a record names, even if the record is damaged otherwise.

@@ -27,7 +27,7 @@ std::string text_of_line(std::string_view text, int line) {
 }  // namespace
 
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
-                                         const nlohmann::json& labels, std::string_view figure) {
+                                         const nlohmann::json& swept, std::string_view figure) {
   std::vector<ManifestLine> found;
   const auto add = [&](std::string key, const Position& at) {
     found.push_back({std::move(key), at.line, text_of_line(text, at.line)});
@@ -36,14 +36,14 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
     const Manifest manifest = parse_manifest(text, "manifest");
     const Scale* own = find_scale(manifest, scale);
     const std::string path = "scales." + std::string(scale);
-    const Scale& swept = own != nullptr && own->sweep ? *own : manifest.base;
-    const auto add_labels = [&](const std::vector<SweepAxis>& axes, const std::string& kind) {
+    const Scale& sweeping = own != nullptr && own->sweep ? *own : manifest.base;
+    const auto add_swept = [&](const std::vector<SweepAxis>& axes, const std::string& kind) {
       for (const SweepAxis& axis : axes) {
-        const auto label = labels.find(axis.key);
-        if (label == labels.end()) continue;
-        const auto value = std::ranges::find(axis.values, *label, &Setting::value);
-        add((&swept == own ? path + ".sweep." : "sweep.") + kind + axis.key,
-            value == axis.values.end() ? axis.at : value->at);
+        const auto value = swept.find(axis.key);
+        if (value == swept.end()) continue;
+        const auto stated = std::ranges::find(axis.values, *value, &Setting::value);
+        add((&sweeping == own ? path + ".sweep." : "sweep.") + kind + axis.key,
+            stated == axis.values.end() ? axis.at : stated->at);
       }
     };
     const auto add_cycles = [&](const Scale& in, const std::string& prefix) {
@@ -54,8 +54,8 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
 
     add("experiment", manifest.experiment_at);
     if (own != nullptr) add(path, own->at);
-    add_labels(swept.sweep->grid, "grid.");
-    add_labels(swept.sweep->zip, "zip.");
+    add_swept(sweeping.sweep->grid, "grid.");
+    add_swept(sweeping.sweep->zip, "zip.");
     if (own == nullptr || !add_cycles(*own, path)) add_cycles(manifest.base, "base");
     const auto add_stated = [&](const std::string& key, auto Scale::*member) {
       if (own != nullptr && own->*member) {
@@ -68,7 +68,7 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
     add_stated("checkpoints", &Scale::checkpoints);
     add_stated("until", &Scale::until);
     for (const VariantLabel& label : manifest.labels) {
-      if (selects(label, labels)) add("labels", label.at);
+      if (selects(label, swept)) add("labels", label.at);
     }
     for (const auto& plot : manifest.plots) {
       if (plot.name == figure) add("plots", plot.at);
@@ -91,14 +91,14 @@ nlohmann::json overrides(std::string_view text, const Membership& membership) {
     const Manifest manifest = parse_manifest(text, "manifest");
     const Scale* scale = find_scale(manifest, membership.scale);
     const Scale stated = scale == nullptr ? manifest.base : whole_scale(manifest, *scale);
-    const auto labelled = [&](const auto& swept) {
-      const auto label = membership.labels.find(swept.first);
-      return label != membership.labels.end() && *label == swept.second->value;
+    const auto selected = [&](const auto& swept) {
+      const auto value = membership.swept.find(swept.first);
+      return value != membership.swept.end() && *value == swept.second->value;
     };
     for (const Variant& variant : variants_of(stated)) {
       const std::uint64_t cycles = target_cycles(variant.parameters);
       if (found.is_null() && cycles != membership.target_cycles &&
-          std::ranges::all_of(variant.swept, labelled)) {
+          std::ranges::all_of(variant.swept, selected)) {
         add("cycles", membership.target_cycles, cycles);
       }
     }
@@ -106,8 +106,8 @@ nlohmann::json overrides(std::string_view text, const Membership& membership) {
     if (std::ranges::find(seeds, membership.seed) == seeds.end()) {
       add("seed", membership.seed, seeds);
     }
-    const auto engine = membership.labels.find("engine");
-    if (engine != membership.labels.end() && find_axis(*stated.sweep, "engine") == nullptr) {
+    const auto engine = membership.swept.find("engine");
+    if (engine != membership.swept.end() && find_axis(*stated.sweep, "engine") == nullptr) {
       add("engine", *engine, value_at(stated, "engine"));
     }
   } catch (const ManifestError&) {

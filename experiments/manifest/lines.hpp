@@ -17,11 +17,11 @@ struct ManifestLine {
   std::string text;  ///< the line, without surrounding blanks, fit for a message
 };
 
-/// Where a manifest states its experiment, the scale, the value of each swept key in `labels`, the
+/// Where a manifest states its experiment, the scale, the value of each key in `swept`, the
 /// cycles, the seeds, `checkpoints`, `until`, the label of the variant, and the plot or claim of
 /// the name `figure`. Empty if this program cannot read the manifest.
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
-                                         const nlohmann::json& labels, std::string_view figure);
+                                         const nlohmann::json& swept, std::string_view figure);
 
 /// Where a shear run differs from its manifest, since the command line gave --cycles, --seeds or
 /// --engine: {"cycles", "seed" or "engine": {"run": VALUE, "manifest": VALUE}}; for "seed", the

@@ -140,8 +140,11 @@ std::span<const ManifestKey> manifest_keys() {
 
 string read_name(const Entry& in) {
   if (in.is_scalar() && is_name(in.node.text)) return in.node.text;
-  in.reject_type("a name", fmt::format("It takes letters, digits, - and _, at most {} of them.",
-                                       kLongestName));
+  in.reject_type(
+      "a name",
+      fmt::format(
+          "It takes ASCII letters, digits, - and _, at most {} of them, and does not begin with -.",
+          kLongestName));
   return {};
 }
 

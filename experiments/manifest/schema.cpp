@@ -13,6 +13,7 @@
 #include "core/simulation.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/io/read_number.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -174,8 +175,8 @@ std::span<const Field> schema() {
           "simulated time after which a packing that has not settled is a failure"),
       row("max_overlap_diameters", "", "d", &P::max_overlap_diameters,
           above(0, kLargestOverlapLimit), {.stage = Stage::prepare, .recorded_as = "0.1"},
-          "a stage whose largest overlap exceeds this stops as failed; a larger value continues "
-          "it"),
+          "a stage whose largest overlap exceeds this stops as failed; with a larger value it "
+          "continues"),
       // Shear.
       row("protocol", "", "", choice<&P::protocol>(), {}, kShear,
           "what is done to the settled packing: shear without or with pauses (B.5), or stiffening "
@@ -243,12 +244,6 @@ bool enters(const Identity& identity, Stage stage, std::optional<ProtocolKind> p
     return false;
   if (identity.under && identity.under != protocol) return false;
   return identity.omitted_at.empty() || value_text(value) != identity.omitted_at;
-}
-
-std::string value_text(const json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
-  return value.dump();
 }
 
 std::string expected_values(const Field& field) {

@@ -99,9 +99,6 @@ void set_value(const Field& field, const nlohmann::json& value, Parameters& para
 bool enters(const Identity& identity, Stage stage, std::optional<ProtocolKind> protocol,
             const nlohmann::json& value);
 
-/// A value as a manifest writes it: "still", "0.1".
-std::string value_text(const nlohmann::json& value);
-
 /// "a number > 0 and <= 1e+06", "one of still, cell".
 std::string expected_values(const Field& field);
 

@@ -16,6 +16,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/io/read_number.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -161,10 +162,10 @@ std::string Variant::name() const {
   return fmt::format("{}", fmt::join(parts, ","));
 }
 
-json Variant::labels() const {
-  json labels = json::object();
-  for (const auto& [key, setting] : swept) labels[key] = setting->value;
-  return labels;
+json Variant::swept_values() const {
+  json values = json::object();
+  for (const auto& [key, setting] : swept) values[key] = setting->value;
+  return values;
 }
 
 bool has_values(const std::string& wanted, const std::string& variant) {

@@ -37,8 +37,8 @@ struct Variant {
   std::vector<std::pair<std::string, const Setting*>> swept;
   Parameters parameters;
 
-  std::string name() const;       ///< "fluid=cell", "base" when nothing is swept
-  nlohmann::json labels() const;  ///< swept keys and values
+  std::string name() const;             ///< "fluid=cell", "base" when nothing is swept
+  nlohmann::json swept_values() const;  ///< swept keys and values
 };
 
 /// Whether the variant of that name has all values of `wanted`: "fluid=cell" fits

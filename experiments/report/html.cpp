@@ -45,9 +45,9 @@ std::string escape_html(std::string_view text) {
 
 std::string text_html(const Text& text) {
   std::string html;
-  for (const TextRun& run : text.runs) {
-    const std::string plain = escape_html(run.text);
-    html += run.style.empty() ? plain : "<" + run.style + ">" + plain + "</" + run.style + ">";
+  for (const TextPart& part : text.parts) {
+    const std::string plain = escape_html(part.text);
+    html += part.style.empty() ? plain : "<" + part.style + ">" + plain + "</" + part.style + ">";
   }
   return html;
 }

@@ -190,7 +190,7 @@ std::vector<GrainField> make_fields(const Checkpoint& checkpoint, const WallPose
           std::move(overlap), std::move(moved),    std::move(nonaffine)};
 }
 
-json rounded(const std::vector<double>& values, double unit = 1) {
+json four_decimals(const std::vector<double>& values, double unit = 1) {
   json list = json::array();
   for (const double value : values) {
     const double scaled = std::round(value * unit * 1e4) / 1e4;
@@ -202,11 +202,11 @@ json rounded(const std::vector<double>& values, double unit = 1) {
 json profiles_json(const Checkpoint& checkpoint, const GrainMeasures& grains,
                    const MechanicalUnits& units) {
   const Profiles found = profiles(checkpoint, grains);
-  return {{"height", rounded(found.height)},
-          {"phi", rounded(found.phi)},
-          {"pressure", rounded(found.pressure, 1e-3 * units.stress_Pa)},
-          {"coordination", rounded(found.coordination)},
-          {"crystalline", rounded(found.crystalline_percent)}};
+  return {{"height", four_decimals(found.height)},
+          {"phi", four_decimals(found.phi)},
+          {"pressure", four_decimals(found.pressure, 1e-3 * units.stress_Pa)},
+          {"coordination", four_decimals(found.coordination)},
+          {"crystalline", four_decimals(found.crystalline_percent)}};
 }
 
 struct PageFrame {
@@ -220,11 +220,12 @@ PageFrame make_frame(const Store& store, const RunRecord& run, const CheckpointR
   const Analysis analysis = analyse_stored(record, checkpoint);
   const WallPose pose = pose_of(checkpoint);
   const MechanicalUnits units = mechanical_units(run, record);
-  const double pressure_Pa = run.resolved.value("/parameters/pressure_Pa"_json_pointer, 0.0);
+  const json stated = member_of(member_of(run.resolved, "parameters"), "pressure_Pa");
+  const double pressure_Pa = stated.is_number() ? stated.get<double>() : 0;
   const std::vector<GrainField> fields =
       make_fields(checkpoint, pose, analysis.grains,
                   motion_since(sources.earlier(record, 1), checkpoint), units, pressure_Pa);
-  const PackedFrame packed = pack_frame(checkpoint, pose, analysis.grains, fields);
+  const EncodedFrame encoded = encode_frame(checkpoint, pose, analysis.grains, fields);
   json described = json::array();
   for (const GrainField& field : fields) described.push_back(to_json(field));
   return {{{"name", frame_name(record)},
@@ -239,18 +240,18 @@ PageFrame make_frame(const Store& store, const RunRecord& run, const CheckpointR
              {"tan_theta", pose.tan_theta}}},
            {"fields", std::move(described)},
            {"profiles", profiles_json(checkpoint, analysis.grains, units)},
-           {"origin", std::vector(packed.origin.begin(), packed.origin.end())},
-           {"step", std::vector(packed.step.begin(), packed.step.end())},
-           {"data", base64(packed.bytes)}},
-          packed.step.maxCoeff()};
+           {"origin", std::vector(encoded.origin.begin(), encoded.origin.end())},
+           {"step", std::vector(encoded.step.begin(), encoded.step.end())},
+           {"data", base64(encoded.bytes)}},
+          encoded.step.maxCoeff()};
 }
 
 }  // namespace
 
-PackedFrame pack_frame(const Checkpoint& checkpoint, const WallPose& pose,
-                       const GrainMeasures& grains, std::span<const GrainField> fields) {
+EncodedFrame encode_frame(const Checkpoint& checkpoint, const WallPose& pose,
+                          const GrainMeasures& grains, std::span<const GrainField> fields) {
   const Eigen::Matrix3Xd position = wrapped_sites(checkpoint.cell, pose, checkpoint.state.position);
-  PackedFrame frame;
+  EncodedFrame frame;
   frame.origin = position.rowwise().minCoeff();
   frame.step = (position.rowwise().maxCoeff() - frame.origin) / largest_word;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {

@@ -53,7 +53,7 @@ std::vector<std::size_t> evenly(std::size_t size, std::size_t count);
 ///     crystallite   N: its number from 1 on, at most 65535; 0 for none
 ///     structure     N bytes: 0 disordered, 1 FCC, 2 HCP; 4 is added for interior grains
 ///     each field    N bytes, see GrainField
-struct PackedFrame {
+struct EncodedFrame {
   Eigen::Vector3d origin;
   Eigen::Vector3d step;  ///< the error of a coordinate is at most half of it [d]
   std::vector<std::byte> bytes;
@@ -73,10 +73,10 @@ struct GrainField {
 /// {"key", "unit", "low", "high"} or {"key", "classes"}.
 nlohmann::json to_json(const GrainField& field);
 
-PackedFrame pack_frame(const Checkpoint& checkpoint, const WallPose& pose,
-                       const GrainMeasures& grains, std::span<const GrainField> fields = {});
+EncodedFrame encode_frame(const Checkpoint& checkpoint, const WallPose& pose,
+                          const GrainMeasures& grains, std::span<const GrainField> fields = {});
 
-/// Size of a packed frame in the page, in base64 [bytes].
+/// Size of an encoded frame in the page, in base64 [bytes].
 std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains, std::size_t fields);
 
 }  // namespace shearcell

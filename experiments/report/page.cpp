@@ -56,7 +56,7 @@ std::string title_html(const ReportData& data) {
       "value=\"dark\">dark</option></select></label>\n</header>\n",
       escape_html(data.store), counted(data.experiments.size(), "experiment"),
       counted(data.figures.size(), "figure"), counted(data.runs.size(), "stage"), data.head.seq,
-      escape_html(data.head.hash), escape_html(data.head.hash.substr(0, 12)),
+      escape_html(data.head.hash), brief(data.head.hash),
       escape_html(data.program.value("version", "")),
       escape_html(data.program.value("commit", "")));
 }

@@ -31,6 +31,11 @@ std::string lineage_html(const ReportData& data, const ReportFigure& figure);
 /// Every run with its attempts, builds and checkpoints, and the manifests.
 std::string runs_html(const ReportData& data);
 
+/// The beginning of an id. It is cut before it is escaped, since an escape must stay whole.
+std::string brief(const std::string& id);
+/// A link to the part of the page about a run. The text has so many digits of its id.
+std::string run_link(const std::string& id, std::size_t digits = 12);
+
 /// The experiment's question, or its name if the manifest has no question.
 std::string question_html(const ReportExperiment& experiment);
 

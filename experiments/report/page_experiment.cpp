@@ -95,9 +95,8 @@ std::string figures_html(const ReportData& data, const ReportExperiment& experim
 }
 
 std::string manifest_html(const ReportExperiment& experiment) {
-  const std::string brief = escape_html(experiment.manifest.sha256.substr(0, 12));
-  return fmt::format("<p><a href=\"#manifest-{0}\">{1}</a></p><p class=\"id\">{0}</p>", brief,
-                     escape_html(experiment.manifest_path));
+  return fmt::format("<p><a href=\"#manifest-{0}\">{1}</a></p><p class=\"id\">{0}</p>",
+                     brief(experiment.manifest.sha256), escape_html(experiment.manifest_path));
 }
 
 /// Boxes from the manifest to the figures of the experiment, with the states of each. The style

@@ -23,15 +23,6 @@ std::string code(const std::string& text) {
   return "<code>" + escape_html(text) + "</code>";
 }
 
-/// The beginning of an id. It is cut before it is escaped, since an escape must stay whole.
-std::string brief(const std::string& id) {
-  return escape_html(id.substr(0, 12));
-}
-
-std::string run_link(const std::string& id) {
-  return fmt::format("<a class=\"id\" href=\"#run-{0}\">{0}</a>", brief(id));
-}
-
 /// "shearcell 0.1.0 (dd11cbe), GNU 12.2.0 Release, on HOST: CPU, AVX-512".
 std::string made_by(const json& host) {
   const json build = member_of(host, "build");
@@ -166,6 +157,15 @@ std::string run_html(const RunLineage& stage) {
 }
 
 }  // namespace
+
+std::string brief(const std::string& id) {
+  return escape_html(id.substr(0, 12));
+}
+
+std::string run_link(const std::string& id, std::size_t digits) {
+  return fmt::format("<a class=\"id\" href=\"#run-{}\">{}</a>", brief(id),
+                     escape_html(id.substr(0, digits)));
+}
 
 std::string lineage_html(const ReportData& data, const ReportFigure& figure) {
   const json& facts = figure.lineage.record.provenance;

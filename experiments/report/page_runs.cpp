@@ -36,9 +36,7 @@ CellText decimals(int count, double factor = 1) {
 }
 
 std::string record_link(const json& id) {
-  const std::string& text = id.get_ref<const std::string&>();
-  return fmt::format("<a class=\"id\" href=\"#run-{}\">{}</a>", escape_html(text.substr(0, 12)),
-                     escape_html(text.substr(0, 8)));
+  return run_link(id.get_ref<const std::string&>(), 8);
 }
 
 std::string state_html(const json& state) {

@@ -18,6 +18,7 @@
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -114,6 +115,9 @@ void add_figures(const Store& store, const ReportOptions& options, ReportData& d
       notes.insert(summary.notes.begin(), summary.notes.end());
       if (home != data.experiments.end()) home->figures.push_back(data.figures.size());
       data.figures.push_back(std::move(one));
+    } catch (const StoreDamaged& damage) {
+      data.damage.emplace_back(damage.what());
+      leave_out(damage.what());
     } catch (const UsageError& problem) {
       leave_out(problem.what());
     } catch (const AnalysisError& problem) {
@@ -162,21 +166,16 @@ void add_runs(const Store& store, ReportData& data) {
   }
 }
 
-/// Six significant digits are enough for a drawing.
-json rounded(const json& value) {
-  if (!value.is_number_float()) return value;
-  return std::strtod(fmt::format("{:.6g}", value.get<double>()).c_str(), nullptr);
-}
-
 /// ReportExperiment::traces.
 json traces_of(const RunTable& runs, const std::map<std::string, RunLineage>& lineages) {
+  constexpr int significant = 6;
   json all = json::array();
   for (std::size_t k = 0; k < runs.rows.size(); ++k) {
     json& run = all.emplace_back(json::object());
     for (const CheckpointMeasures& checkpoint : runs.histories[k].checkpoints) {
       run["cycle"].push_back(checkpoint.cycle);
-      run["phi"].push_back(rounded(checkpoint.measures.phi));
-      run["percent"].push_back(rounded(checkpoint.measures.crystalline_percent));
+      run["phi"].push_back(rounded(checkpoint.measures.phi, significant));
+      run["percent"].push_back(rounded(checkpoint.measures.crystalline_percent, significant));
     }
     const std::vector<json>& row = runs.rows[k];
     for (const char* key : {"scale", "variant", "seed"}) run[key] = row[runs.place(key)];
@@ -232,7 +231,7 @@ ReportData collect_report(const Store& store, const ReportOptions& options) {
   if (options.accuracy) data.accuracy = read_accuracy_charts(*options.accuracy);
   if (data.interactive) {
     data.packings = collect_packings(store, names, options.runs, options.packings, options.workers,
-                                     options.packed);
+                                     options.encoded);
     data.notes.insert(data.notes.end(), data.packings.notes.begin(), data.packings.notes.end());
   }
   if (!data.drawing_trouble.empty()) data.notes.push_back(data.drawing_trouble);

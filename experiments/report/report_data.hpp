@@ -27,7 +27,7 @@ struct ReportOptions {
   bool interactive = true;  ///< false: drawings only, as in a build without Node
   std::size_t workers = 1;
   std::function<void(std::size_t done, std::size_t total)> measured;  ///< may be empty
-  std::function<void(std::size_t done, std::size_t total)> packed;    ///< may be empty
+  std::function<void(std::size_t done, std::size_t total)> encoded;   ///< may be empty
 };
 
 /// Whether this build holds the front end. Building that needs Node.
@@ -35,7 +35,7 @@ bool has_front_end();
 
 struct ReportPanel {
   std::string name;
-  std::string id;        ///< in the page: "drag-S2a"
+  std::string id;        ///< in the page: "drag.S2a"
   nlohmann::json chart;  ///< for the front end; null if there is none
   std::string csv;
   TextTable text;       ///< if the panel is a table
@@ -43,7 +43,7 @@ struct ReportPanel {
 };
 
 struct ReportFigure {
-  std::string id;  ///< in the page: "drag-S2"
+  std::string id;  ///< in the page: "drag.S2"
   FigureSummary summary;
   std::vector<ReportPanel> panels;
   FigureLineage lineage;

@@ -4,50 +4,53 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/events.hpp"
 #include "provenance/limits.hpp"
 
 namespace shearcell {
 namespace {
 
-using nlohmann::json;
-
 constexpr std::size_t kMostListed = 1'000'000;  // of one list; the store is not trusted
 
-using Place = std::array<json, 5>;  // the members that same_place() compares
+using Place = std::tuple<std::string, std::string, std::string, std::uint64_t, std::string>;
 
+RunAsk ask_in(const events::RunDeclared& declared) {
+  const Membership& m = declared.run.membership;
+  if (m.checkpoint_every < 1 || m.checkpoint_every > StoreLimits::cycles) {
+    throw std::runtime_error("checkpoint_every: is out of range");
+  }
+  if (declared.run.target_cycles > StoreLimits::cycles) {
+    throw std::runtime_error("target_cycles: is out of range");
+  }
+  if (m.checkpoint_phases.size() > ManifestLimits::values_per_list) {
+    throw std::runtime_error("checkpoint_phases: there are too many");
+  }
+  RunAsk ask{declared.run.target_cycles, {}, m.checkpoint_every, m.checkpoint_phases};
+  if (!m.until.is_null()) ask.until = until_from_json(m.until);
+  return ask;
+}
+
+// By place_of() of the membership.
 std::map<Place, RunAsk> asks_by_place(const Store& store, const std::string& run) {
   std::map<Place, RunAsk> asks;
   for (const Event& event : store.events(run_stream(run), "RunDeclared")) {
-    const json body = event.body();
+    const auto declared = std::get<events::RunDeclared>(events::decode(event));
     try {
-      const json& m = body.at("membership");
-      const Place place = {m.at("experiment"), m.at("scale"), m.at("variant"), m.at("seed"),
-                           m.at("manifest")};
-      RunAsk& ask = asks[place];
-      ask.target_cycles =
-          std::max(ask.target_cycles, body.at("target_cycles").get<std::uint64_t>());
-      const json until = m.value("until", json());
-      ask.until = until.is_null() ? std::nullopt : std::optional(until_from_json(until));
-      ask.checkpoint_every = m.at("checkpoint_every").get<std::uint64_t>();
-      if (ask.checkpoint_every < 1 || ask.checkpoint_every > StoreLimits::cycles) {
-        throw std::runtime_error("checkpoint_every: is out of range");
-      }
-      ask.phases = m.value("checkpoint_phases", std::vector<double>());
-      if (ask.phases.size() > ManifestLimits::values_per_list) {
-        throw std::runtime_error("checkpoint_phases: there are too many");
-      }
+      RunAsk ask = ask_in(declared);
+      RunAsk& newest = asks[place_of(declared.run.membership)];
+      ask.target_cycles = std::max(ask.target_cycles, newest.target_cycles);
+      newest = std::move(ask);
     } catch (const std::exception& problem) {
       throw StoreDamaged(fmt::format("event {} ({}): {}", event.seq, event.type, problem.what()));
     }
@@ -74,7 +77,7 @@ std::vector<RunAsk> asks_of(const Store& store, const std::string& run) {
 
 RunAsk ask_of(const Store& store, const std::string& run, const Membership& m) {
   const auto asks = asks_by_place(store, run);
-  const auto found = asks.find(Place{m.experiment, m.scale, m.variant, m.seed, m.manifest});
+  const auto found = asks.find(place_of(m));
   return found == asks.end() ? RunAsk{m.target_cycles} : found->second;
 }
 

@@ -16,6 +16,7 @@
 #include "experiments/runner/replay.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/events.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -31,7 +32,7 @@ void require_same(const std::string& what, const json& recorded, const json& exp
 /// Labels of parameters that do not act on the run, or are not part of its id, are not checked.
 void check_membership(const Membership& m, const StageRecord& stage, const json& resolved) {
   require_same("seed", m.seed, stage.seed);
-  for (const auto& [key, value] : m.labels.items()) {
+  for (const auto& [key, value] : m.swept.items()) {
     const Field* field = find_field(key);
     const json& parameters = resolved.at("parameters");
     if (field == nullptr || !field->identity.recorded_as.empty() || !parameters.contains(key)) {

@@ -15,8 +15,9 @@
 namespace shearcell {
 
 /// An error for each run whose id is not the hash of its parameters, or whose kind, parent, number
-/// of grains, seed, labels or variant contradict them, or that was started from another state than
-/// that at which its parent was completed; a note when this program does not know its parameters.
+/// of grains, seed, swept values or variant contradict them, or that was started from another state
+/// than that at which its parent was completed; a note when this program does not know its
+/// parameters.
 std::vector<Finding> check_runs(const Store& store);
 
 struct MeasureCheck {

@@ -151,6 +151,7 @@ class Campaign {
     } catch (const std::exception&) {
       return;  // the next attempt to compute one of them reports why
     }
+    if (holders.empty()) return;  // it has just ended
     shown_held_ = held;
     progress_.note(
         fmt::format("waiting for {} that another program computes ({}); a stage is free when its "

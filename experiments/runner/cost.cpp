@@ -56,7 +56,7 @@ std::vector<RunAsk> planned_asks(const PlannedRun& run, const RunRecord& known) 
   std::vector<RunAsk> planned;
   for (const Membership& one : run.memberships) {
     const bool declared = std::ranges::any_of(
-        known.memberships, [&](const Membership& m) { return same_place(m, one); });
+        known.memberships, [&](const Membership& m) { return place_of(m) == place_of(one); });
     if (declared) continue;
     planned.push_back({one.target_cycles, {}, one.checkpoint_every, one.checkpoint_phases});
   }

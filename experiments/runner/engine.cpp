@@ -82,12 +82,13 @@ class LammpsEngine final : public Engine {
   std::uint64_t evaluations() const override { return step_ - first_; }
 
  private:
-  // The first step of our own engine from the frame runs the watchdog on it.
+  // The watchdog checks the frame after a step of our own engine from it.
   bool take(std::optional<State> frame) {
     if (!frame) return false;
     state_ = std::move(*frame);
-    make_simulation(plan_, {cell_, state_, std::nullopt, ""}, 1)
-        .advance(plan_.protocol->drive(), 1);
+    Simulation watched = make_simulation(plan_, {cell_, state_, std::nullopt, ""}, 1);
+    watched.advance(plan_.protocol->drive(), 1);
+    watched.check();
     step_ = state_.step;
     return true;
   }

@@ -53,7 +53,7 @@ struct MeasuredCheckpoints : MeasureOutcome {
 };
 
 /// Results are cached under the checkpoint's recorded SHA-256, so for a cached result the file is
-/// not read and may be missing; `verify` checks files. Kept and computed results are the same
+/// not read and may be missing; `verify` checks files. Cached and computed results are the same
 /// bytes.
 MeasuredCheckpoints measure_checkpoints(const Store& store,
                                         std::span<const CheckpointRecord> records,

@@ -64,7 +64,7 @@ VariantNames::VariantNames(const Store& store) {
       if (run.kind == "prepare") {
         packings_.add(m, run.resolved);
       } else {
-        variants[{m.experiment, m.manifest, m.scale}].push_back(m.labels);
+        variants[{m.experiment, m.manifest, m.scale}].push_back(m.swept);
       }
     }
   }
@@ -76,7 +76,7 @@ VariantNames::VariantNames(const Store& store) {
 std::string VariantNames::of(const Membership& m) const {
   const auto group = names_.find({m.experiment, m.manifest, m.scale});
   if (group == names_.end()) return m.variant;
-  const auto name = group->second.find(m.labels);
+  const auto name = group->second.find(m.swept);
   return name == group->second.end() ? m.variant : name->second;
 }
 

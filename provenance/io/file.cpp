@@ -157,7 +157,8 @@ void NewFile::add(std::string_view text) {
 
 TemporaryFolder::TemporaryFolder(const std::string& prefix) {
   fs::path whole = prefix + std::string(kRandom, 'X');
-  if (whole.is_relative()) {
+  const bool named = whole.is_absolute();
+  if (!named) {
     std::error_code missing;
     const fs::path folder = fs::temp_directory_path(missing);
     if (missing) {
@@ -170,7 +171,9 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix) {
   }
   std::string pattern = whole;
   if (mkdtemp(pattern.data()) == nullptr) {
-    fail_on(whole.parent_path(), "make a temporary folder in it (TMPDIR names another one)");
+    fail_on(whole.parent_path(), named
+                                     ? "make a temporary folder in it"
+                                     : "make a temporary folder in it (TMPDIR names another one)");
   }
   path_ = pattern;
 }

@@ -20,13 +20,13 @@ namespace shearcell::test {
 namespace {
 
 /// Runs of a sweep of drag and fluid, named as the program names them.
-std::vector<FigureRun> two_parameters() {
+std::vector<FigureRun> two_parameters(const std::vector<double>& drags = {0.001, 0.002, 0.004}) {
   std::vector<FigureRun> runs;
   for (const char* fluid : {"still", "cell"}) {
-    for (const double drag : {0.001, 0.002, 0.004}) {
+    for (const double drag : drags) {
       for (const std::uint64_t seed : {1U, 2U, 3U}) {
         FigureRun run = rising_run(fluid, seed, 3, 1000 * drag + 0.001 * static_cast<double>(seed));
-        run.labels["drag_kg_per_s"] = drag;
+        run.swept["drag_kg_per_s"] = drag;
         run.variant = fmt::format("fluid={},drag_kg_per_s={}", fluid, drag);
         run.name = fmt::format("fluid={}, b={} kg/s", fluid, drag);
         run.run_id = fmt::format("{}/{}", run.variant, seed);
@@ -37,20 +37,34 @@ std::vector<FigureRun> two_parameters() {
   return runs;
 }
 
+/// The number of different styles.
+std::size_t looks(const FigureTable& table) {
+  std::set<std::pair<std::string, int>> different;
+  for (const Series& one : table.chart.series) different.emplace(one.colour, one.point);
+  return different.size();
+}
+
 TEST(Curves, AreNamedAndStyledByWhatVaries) {
   const FigureTable table = s2(two_parameters())[0];
   std::set<std::string> titles;
-  std::set<std::pair<std::string, int>> looks;
-  for (const Series& one : table.chart.series) {
-    titles.insert(plain_text(one.title));
-    looks.emplace(one.colour, one.point);
-  }
+  for (const Series& one : table.chart.series) titles.insert(plain_text(one.title));
   EXPECT_EQ(titles.size(), 6U);
   EXPECT_TRUE(titles.contains("fluid=cell, b=0.002 kg/s"));
-  EXPECT_EQ(looks.size(), 6U);
+  EXPECT_EQ(looks(table), 6U);
   EXPECT_EQ(find_figure("S2")->make(two_parameters()).verdicts.at(0).note,
             "there are no such runs, or they differ in another swept parameter too")
       << "three variants have fluid=still";
+}
+
+TEST(Curves, HaveStylesOfTheirOwnWhereManyValuesVary) {
+  for (const std::size_t values : {8U, 12U, 30U}) {
+    std::vector<double> drags;
+    for (std::size_t k = 1; k <= values; ++k) drags.push_back(0.001 * static_cast<double>(k));
+    std::vector<FigureRun> runs = two_parameters(drags);
+    EXPECT_EQ(looks(s2(runs)[0]), 2 * values);
+    std::erase_if(runs, [](const FigureRun& run) { return run.swept["fluid"] == "cell"; });
+    EXPECT_EQ(looks(s2(runs)[0]), values);
+  }
 }
 
 // `run --engine lammps` adds runs to an experiment; its claims are on the runs that it states.
@@ -58,7 +72,7 @@ TEST(Curves, AnotherEnginesRunsChangeNoVerdict) {
   std::vector<FigureRun> runs = two_variants();
   const nlohmann::json before = to_json(find_figure("S2")->make(runs).verdicts);
   runs.push_back(runs.back());
-  runs.back().labels["engine"] = "lammps";
+  runs.back().swept["engine"] = "lammps";
   runs.back().variant += ",engine=lammps";
   EXPECT_EQ(to_json(find_figure("S2")->make(runs).verdicts), before);
   EXPECT_EQ(s2(runs)[0].chart.series.size(), s2(two_variants())[0].chart.series.size() + 1);
@@ -176,7 +190,7 @@ TEST(OwnPlot, AgainstOneKeyOfAZipIsOneCurve) {
   std::vector<FigureRun> runs;
   for (const double drag : {0.001, 0.002}) {
     runs.push_back(rising_run("still", 1, 3, drag));
-    runs.back().labels = {{"amplitude_rad", 50 * drag}, {"drag_kg_per_s", drag}};
+    runs.back().swept = {{"amplitude_rad", 50 * drag}, {"drag_kg_per_s", drag}};
   }
   for (const char* x : {"amplitude_rad", "drag_kg_per_s"}) {
     const auto result = plot_figure({.name = "own", .y = "phi", .x = x}).make(runs);

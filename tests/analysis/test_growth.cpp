@@ -100,6 +100,36 @@ TEST(GrowthFit, FindsTheCurveThatMadeTheCounts) {
   }
 }
 
+// Newton's method alone leaves these maxima, which scipy finds too, and does not come back.
+TEST(GrowthFit, FindsTheMaximumOfFewCrystallites) {
+  const auto fit = [](const GrowthBySize& counts) {
+    return fit_growth(std::vector{counts}).value();
+  };
+  const GrowthFit few = fit({{1, {0, 32, 0}},
+                             {2, {0, 7, 0}},
+                             {3, {0, 3, 0}},
+                             {4, {0, 2, 0}},
+                             {16, {0, 1, 0}},
+                             {29, {0, 1, 0}},
+                             {65, {1, 0, 0}},
+                             {78, {0, 1, 0}}});
+  EXPECT_NEAR(few.slope, 2.58, 0.01);
+  EXPECT_NEAR(few.critical_size().value(), 76.7, 0.1);
+  const GrowthFit more = fit({{1, {0, 17, 0}},
+                              {2, {0, 7, 0}},
+                              {3, {0, 4, 0}},
+                              {4, {0, 3, 0}},
+                              {5, {0, 2, 0}},
+                              {12, {0, 1, 0}},
+                              {13, {0, 1, 0}},
+                              {19, {0, 1, 0}},
+                              {41, {1, 0, 0}},
+                              {67, {1, 0, 0}},
+                              {95, {0, 1, 0}}});
+  EXPECT_NEAR(more.slope, 1.91, 0.01);
+  EXPECT_NEAR(more.critical_size().value(), 55.0, 0.1);
+}
+
 TEST(GrowthFit, IsMissingWithoutATurn) {
   const auto fit = [](const GrowthBySize& counts) { return fit_growth(std::vector{counts}); };
   EXPECT_FALSE(fit({{3, {0, 9, 0}}}).has_value()) << "all shrink";

@@ -91,6 +91,19 @@ std::vector<FigureRun> runs_with_places(int count, const std::function<double(do
                                      static_cast<std::int32_t>(20 * n)));
     }
     runs.push_back(run_with(maps));
+    runs.back().run_id = std::to_string(seed);
+  }
+  return runs;
+}
+
+/// Each run and a copy of it, under another id; `shared`: both begin with the packing of the first.
+std::vector<FigureRun> with_copies(std::vector<FigureRun> runs, double amplitude, bool shared) {
+  for (std::size_t k = 0, count = runs.size(); k < count; ++k) {
+    FigureRun copy = runs[k];
+    copy.run_id += " again";
+    copy.parameters["amplitude_rad"] = amplitude;
+    if (shared) runs[k].parent = copy.parent = "packing of " + runs[k].run_id;
+    runs.push_back(std::move(copy));
   }
   return runs;
 }
@@ -114,6 +127,22 @@ TEST(FigureS7, DecidesCorrectlyForKnownPlaces) {
   EXPECT_EQ(rulings(runs_with_places(100, even, even)), (std::vector{R::agrees, R::differs}))
       << "no excess at the top";
   EXPECT_EQ(rulings(runs_with_places(3, even, even)), (std::vector{R::undecided, R::undecided}));
+}
+
+// Another amplitude does not make independent runs of those that share a packing.
+TEST(FigureS7, CountsRunsOfOnePackingTogether) {
+  const auto even = [](double u) { return u; };
+  const std::vector<FigureRun> runs = runs_with_places(10, even, even);
+  const Verdict once = figure_s7(runs).verdicts[1];
+  const Verdict shared = figure_s7(with_copies(runs, 0.1, true)).verdicts[1];
+  EXPECT_EQ(shared.estimate, once.estimate);
+  EXPECT_EQ(shared.interval.low, once.interval.low);
+  EXPECT_EQ(shared.interval.high, once.interval.high);
+  EXPECT_EQ(shared.runs, 6U);
+  EXPECT_TRUE(has(shared.note, "120 nuclei of 15 to 25 grains in 12 of 12 runs; 6 packings"));
+  const Verdict apart = figure_s7(with_copies(runs, 0.1, false)).verdicts[1];
+  EXPECT_EQ(apart.runs, 12U);
+  EXPECT_LT(apart.interval.high - apart.interval.low, once.interval.high - once.interval.low);
 }
 
 /// Of `grains` interior grains, at one phi, with an onset just before cycle `onset` (0: none).
@@ -212,9 +241,42 @@ TEST(SizeExponent, NeedsTwoSizesAtOnePhi) {
   std::vector<FigureRun> seeds;
   for (const int interior : {990, 1010, 1000, 1005, 995}) {
     seeds.push_back(waiting(interior, seeds.size(), 3 + interior % 7, 30));
-    seeds.back().labels["grains"] = seeds.back().parameters["grains"] = 2000;
+    seeds.back().swept["grains"] = seeds.back().parameters["grains"] = 2000;
   }
   EXPECT_FALSE(size_exponent(pointers(seeds), Region::interior)) << "seeds of one size";
+}
+
+// The rate differs from packing to packing, and the runs of one packing share it.
+TEST(SizeExponent, TheIntervalCoversTheTruthWithRunsOfOnePacking) {
+  constexpr std::uint32_t samples = 300, packings = 15;
+  std::uint32_t covered = 0, narrower = 0;
+  for (std::uint32_t sample = 0; sample < samples; ++sample) {
+    std::vector<FigureRun> runs;
+    for (const int grains : {1000, 3000}) {
+      const auto key = static_cast<std::uint32_t>(grains);
+      const std::vector<double> scatter = normal_numbers(2 * sample + key / 3000, packings);
+      for (std::uint32_t seed = 0; seed < packings; ++seed) {
+        for (const double amplitude : {0.0833, 0.0834}) {
+          const double u = uniform_pair({sample, seed, key, amplitude > 0.0833 ? 1U : 0U}, 3)[0];
+          const double rate = 2e-5 * grains * std::exp(0.6 * scatter[seed]);
+          const double onset = 1 - std::log(u) / rate;
+          runs.push_back(waiting(grains, seed, onset < 60 ? static_cast<int>(onset) : 0, 60));
+          runs.back().run_id += amplitude > 0.0833 ? "b" : "a";
+          runs.back().parameters["amplitude_rad"] = amplitude;
+        }
+      }
+    }
+    const auto apart = size_exponent(pointers(runs), Region::interior);
+    for (FigureRun& run : runs)
+      run.parent = fmt::format("{} {}", run.parameters["grains"].dump(), run.seed);
+    const auto shared = size_exponent(pointers(runs), Region::interior);
+    ASSERT_TRUE(apart && shared);
+    covered += shared->interval.low <= 1 && shared->interval.high >= 1 ? 1 : 0;
+    narrower += shared->interval.low > apart->interval.low ? 1 : 0;
+  }
+  std::printf("coverage %.3f\n", covered / double{samples});
+  EXPECT_NEAR(covered / double{samples}, 0.9, 0.05);
+  EXPECT_EQ(narrower, 0U);
 }
 
 // By one onset of six small runs, and none.
@@ -231,6 +293,10 @@ TEST(SizeExponent, IsMissingWithOnsetsInLargeCellsAlone) {
       << "one onset says less of how rare they are in small cells than of how frequent";
   runs[0] = waiting(1000, 1, 0, 30);
   EXPECT_FALSE(size_exponent(pointers(runs), Region::interior)) << "none in the small ones";
+  for (FigureRun& run : runs) {  // sizes are those of N, whatever number of grains is interior
+    for (CheckpointMeasures& c : run.checkpoints) c.measures.interior_grains += 5 * run.seed;
+  }
+  EXPECT_FALSE(size_exponent(pointers(runs), Region::interior));
 }
 
 TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {

@@ -173,7 +173,7 @@ TEST(FigureB5, PausesCompactFaster) {
       run.seed %= 20;
       run.parent = std::to_string(run.seed);
       for (CheckpointMeasures& c : run.checkpoints) c.measures.phi_at_rest = c.measures.phi;
-      run.parameters["protocol"] = run.labels["protocol"];
+      run.parameters["protocol"] = run.swept["protocol"];
     }
     EXPECT_EQ(rulings("B5", runs), (Rulings{ruling, agrees}));
   }
@@ -212,8 +212,8 @@ TEST(FigureChoices, FindsAChoiceThatMatters) {
   const auto add = [&](double mass, double drag, int draw, double speed) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       FigureRun run = crystallizing("choice", runs.size() / 6, seed + 10 * runs.size(), speed, 0);
-      run.labels = {{"wall_mass_grains_per_d2", mass}, {"wall_drag_grains_per_d2_s", drag}};
-      run.parameters = run.labels;
+      run.swept = {{"wall_mass_grains_per_d2", mass}, {"wall_drag_grains_per_d2_s", drag}};
+      run.parameters = run.swept;
       run.parameters["wall_grain_draw"] = draw;
       runs.push_back(std::move(run));
     }
@@ -252,7 +252,7 @@ TEST(FigureTable1, OnlySweptParametersMayDiffer) {
                                  of_table_1("gravity", "gravity_m_per_s2", 0.0),
                                  of_table_1("other", "pressure_Pa", 955.0),
                                  of_table_1("timestep", "steps_per_cycle", 57143)};
-  runs[2].labels = {{"fluid", "still"}};
+  runs[2].swept = {{"fluid", "still"}};
   EXPECT_EQ(rulings("table1", runs), Rulings{}) << "inputs are not claims";
   expect_rows(runs,
               {"gravity,gravity_m_per_s2,9.81,0,9.81,2,varied\n",

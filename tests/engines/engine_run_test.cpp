@@ -86,6 +86,14 @@ TEST_F(EngineRun, IsRecordedBesideOursAndStartsFromTheSamePacking) {
   expect(1, {"regenerate", b["checkpoints"][1]["sha256"]}, {"LAMMPS made it"});
 }
 
+TEST_F(EngineRun, FailsWhereTheWatchdogRefusesAFrame) {
+  if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
+  expect(0, {"run", write("m.yaml", tiny_manifest()), "--cycles", "0", "-q"});  // the packing
+  const std::string strict = write("strict.yaml", tiny_manifest("  max_overlap_diameters: 1e-4\n"));
+  expect(3, {"run", strict, "--engine", "lammps"}, {"overlap [d] of two grains", "0.0001"});
+  EXPECT_EQ(run_of("engine=lammps")["state"], "failed");
+}
+
 TEST_F(EngineRun, EndsByUntil) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   write("m.yaml", tiny_manifest("  cycles: 4\n", "until: {phi: 0.1, extra_cycles: 1}\n"));

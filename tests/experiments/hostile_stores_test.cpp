@@ -140,6 +140,11 @@ std::vector<Case> damaged_tables() {
       reported("labels_a_list", "figures S2", 0, sql("UPDATE memberships SET labels = '[1]'")),
       reported("resolved_a_number", "figures S2", 4, sql("UPDATE runs SET resolved = '1'"),
                "shearcell verify"),
+      reported("resolved_a_number_in_a_report", "report", 4, sql("UPDATE runs SET resolved = '1'"),
+               "shearcell verify"),
+      reported(
+          "pressure_a_text_in_a_report", "report", 0,
+          sql("UPDATE runs SET resolved = json_set(resolved, '$.parameters.pressure_Pa', 'x')")),
       reported("table_not_of_the_events", "verify", 4, sql("UPDATE runs SET grains = 7"),
                "not what the events give", "run `rebuild`"),
       reported("leases_of_garbage", "status", 0,

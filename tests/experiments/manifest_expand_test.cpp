@@ -48,7 +48,7 @@ TEST(Drag, ComparesTheFluidsOnTheSamePackings) {
             (Strings{"fluid=still", "fluid=still", "fluid=cell", "fluid=cell"}));
   EXPECT_EQ(runs[0].seed, 1U);
   EXPECT_EQ(runs[1].seed, 2U);
-  EXPECT_EQ(runs[2].labels, (nlohmann::json{{"fluid", "cell"}}));
+  EXPECT_EQ(runs[2].swept, (nlohmann::json{{"fluid", "cell"}}));
   EXPECT_EQ(runs[2].parameters.fluid, Fluid::cell);
   EXPECT_EQ(runs[0].prepare.key, runs[2].prepare.key);
   EXPECT_EQ(runs[1].prepare.key, runs[3].prepare.key);
@@ -66,7 +66,7 @@ TEST(Expand, WithoutSweepThereIsOneVariant) {
   ASSERT_EQ(plan.runs.size(), 1U);
   EXPECT_EQ(plan.scale, "");
   EXPECT_EQ(plan.runs[0].variant, "base");
-  EXPECT_EQ(plan.runs[0].labels, nlohmann::json::object());
+  EXPECT_EQ(plan.runs[0].swept, nlohmann::json::object());
   EXPECT_EQ(plan.runs[0].parameters, Parameters{});
 }
 
@@ -136,7 +136,7 @@ TEST(Expand, AZipHasALengthForEachVariant) {
   EXPECT_EQ(variants(plan), (Strings{"amplitude_rad=0.05", "amplitude_rad=0.1"}));
   EXPECT_EQ(plan.runs[0].target_cycles, 300U);
   EXPECT_EQ(plan.runs[1].target_cycles, 20U);
-  EXPECT_EQ(plan.runs[1].labels, (nlohmann::json{{"amplitude_rad", 0.1}}));
+  EXPECT_EQ(plan.runs[1].swept, (nlohmann::json{{"amplitude_rad", 0.1}}));
   EXPECT_EQ(plan.runs[1].last.key,
             expand(parse("experiment: a\nbase: {amplitude_rad: 0.1}\n")).runs[0].last.key);
   for (const PlannedRun& run : expand(manifest, {.cycles = 7}).runs)

@@ -12,6 +12,7 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "provenance/json_text.hpp"
 #include "tests/experiments/plan_of.hpp"
 #include "tests/support/text.hpp"
 

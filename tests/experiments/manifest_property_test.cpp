@@ -131,7 +131,7 @@ std::vector<std::string> combinations(const Written& written) {
 // The same of what it expands to, from the parameters that will be computed.
 std::string described(const PlannedRun& run) {
   Strings parts = {fmt::format("seed={}", run.seed)};
-  for (const auto& [key, label] : run.labels.items()) {
+  for (const auto& [key, label] : run.swept.items()) {
     const json value = get_value(*find_field(key), run.parameters);
     RC_ASSERT(value == label);
     parts.push_back(key + "=" + value_text(value.is_string() ? std::string(value) : value.dump()));

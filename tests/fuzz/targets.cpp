@@ -71,7 +71,7 @@ void take_manifest(Input input) {
       const Plan plan = expand(manifest, {.scale = scale, .cycles = {}, .seeds = 1});
       if (plan.runs.size() > kExpanded) continue;
       check_plan(plan);
-      for (const PlannedRun& run : plan.runs) manifest_lines(text, run.scale, run.labels, "");
+      for (const PlannedRun& run : plan.runs) manifest_lines(text, run.scale, run.swept, "");
     }
   } catch (const ManifestError& error) {
     require(!error.problems().empty(), "an error says what is wrong");

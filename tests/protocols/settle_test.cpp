@@ -66,7 +66,7 @@ TEST(SettledPacking, IsAsDenseAndAsSoftAsSphereGlass) {
 }
 
 // Forces of the walls on the grains, over P A: the moving wall carries its load, the others the
-// rest of the weight. Whichever wall moves, with P at the top the top feels P.
+// rest of the weight. With P at the top a moving bottom wall bears the weight too.
 TEST(Settle, BalancesTheLoadOfTheMovingWallAndTheWeightWithTheOtherWalls) {
   const struct {
     const char* name;
@@ -155,6 +155,19 @@ TEST(Settle, NamesTheExceededLimit) {
   EXPECT_GE(failure.value, 0.25);
   EXPECT_LE(failure.value, 0.35 + 1e-9);  // it checks every 0.1 s
   EXPECT_EQ(failure.grain, -1);
+
+  // Interruptions do not change at which step.
+  Packing pieces = loose(rough_geometry(300), table_1());
+  const Settle protocol(parameters, pieces.scene);
+  const NumericalFailure same = test::failure_of([&] {
+    for (;;) {
+      Simulation simulation(pieces.cell, pieces.scene, pieces.state);
+      protocol.advance(simulation, 777);
+      pieces.state = simulation.state();
+    }
+  });
+  EXPECT_EQ(same.step, failure.step);
+  EXPECT_EQ(same.value, failure.value);
 }
 
 // The moving wall pushes out what it has caught between the wall grains; see settle.hpp.

@@ -88,8 +88,35 @@ TEST_F(Crate, AnActionHasManifestPackingSeedAndParameters) {
   }
   EXPECT_TRUE(objects.contains("checkpoints/" + packing + ".h5"));
   EXPECT_TRUE(objects.contains("manifests/" + sha256_hex("manifest") + ".yaml"));
-  EXPECT_EQ(values, (std::map<std::string, json>{
-                        {"fluid", "cell"}, {"mass_kg", 2e-5}, {"seed", 7}, {"stage", "shear"}}));
+  EXPECT_EQ(values, (std::map<std::string, json>{{"fluid", "cell"},
+                                                 {"mass_kg", 2e-5},
+                                                 {"seed", 7},
+                                                 {"stage", "shear"},
+                                                 {"target_cycles", 3}}));
+}
+
+TEST_F(Crate, AnActionHasNoLaterManifestAndNoConstantOfTheRecord) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));  // times are kept in milliseconds
+  store_.register_manifest("later", "later.yaml", {{"experiment", "drag"}});
+  const RunRecord run = store_.run(history_.sheared);
+  RunDeclaration again = sample_run(2, 3);
+  again.parent = run.parent, again.resolved = run.resolved;
+  again.membership.manifest = sha256_hex("later");
+  store_.declare_run(again);
+  const CrateFacts facts = crate_facts(store_, history_.sheared, "", {"mass_kg"});
+  EXPECT_EQ(facts.manifests.size(), 2U);
+  const json metadata = ro_crate_metadata(facts);
+  const std::string text = metadata.dump();
+  EXPECT_TRUE(has(text, R"("name":"fluid")"));
+  EXPECT_FALSE(has(text, R"("name":"mass_kg")"));
+  std::size_t objects = 0;
+  for (const json& entity : metadata.at("@graph")) {
+    for (const json& object : entity.value("object", json::array())) {
+      ++objects;
+      EXPECT_FALSE(has(object.at("@id").get<std::string>(), sha256_hex("later")));
+    }
+  }
+  EXPECT_GT(objects, 0U);
 }
 
 TEST_F(Crate, EqualStoresGiveEqualBytes) {

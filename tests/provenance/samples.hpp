@@ -63,7 +63,7 @@ inline RunDeclaration sample_run(int number, std::uint64_t target = 5) {
   d.membership = {.experiment = "drag",
                   .scale = "smoke",
                   .variant = "drag=still",
-                  .labels = {{"drag", "still"}},
+                  .swept = {{"drag", "still"}},
                   .seed = 0xffffffffffffffff - static_cast<std::uint64_t>(number),
                   .manifest = sha256_hex("manifest")};
   return d;

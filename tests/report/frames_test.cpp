@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A packed frame is unpacked to within its stated step.
+// A frame is decoded to within its stated step.
 #include "experiments/report/packings.hpp"
 
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ class Frames : public testing::Test {
       wall_pose(checkpoint_.cell, checkpoint_.theta, checkpoint_.state.wall_height);
   const GrainMeasures grains_ = measures_of_each();
   const std::vector<GrainField> fields_ = fields_of_each();
-  const PackedFrame frame_ = pack_frame(checkpoint_, pose_, grains_, fields_);
+  const EncodedFrame frame_ = encode_frame(checkpoint_, pose_, grains_, fields_);
   static constexpr std::size_t kAll = kFrameGrains + 4;
 
   int byte(std::size_t at) const { return std::to_integer<int>(frame_.bytes[at]); }

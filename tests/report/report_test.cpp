@@ -207,7 +207,7 @@ TEST_F(ReportOf, ShowsMarkupAsText) {
   run.membership.experiment = evil;
   run.membership.scale = evil;
   run.membership.variant = evil;
-  run.membership.labels = {{evil, evil}};
+  run.membership.swept = {{evil, evil}};
   store_.declare_run(run);
   store_.start_run(run.id, {{"host", evil}, {"build", {{"version", evil}, {"flags", evil}}}});
   store_.fail_run(run.id, evil);

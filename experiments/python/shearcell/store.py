@@ -73,7 +73,7 @@ class Store:
                 for place in facts["places"] if all_versions or place["newest"]]
 
     def run(self, prefix: str) -> "Run":
-        """The run whose id begins so. A run that several experiments share is that of the one which
+        """The run whose id begins with `prefix`. A run that several experiments share is that of the one which
         declared it last; `runs(experiment=...)` gives it as another's. Raises KeyError if it is none
         or several."""
         found = {run.id: run for run in self.runs(all_versions=True) if run.id.startswith(prefix)}
@@ -105,13 +105,13 @@ class Store:
 
     def measure(self, function: Measure, *, fresh: bool = False, all_versions: bool = False,
                 **select: Any) -> "pandas.DataFrame":
-        """An own measure of every checkpoint that figures and tables have: experiment, scale,
+        """A measure of your own for every checkpoint that figures and tables use: experiment, scale,
         variant, run, seed, cycle, checkpoint and what the function returns, in a column of its name
         or one for each key; needs pandas.
 
         Results are kept beside the store, in PATH.measures/NAME.json, with the SHA-256 of the
         function's source, that of each checkpoint and the program's version, and are computed
-        again when one of these is another; results that are not finite are not kept. Only the
+        again when one of these changes; results that are not finite are not kept. Only the
         function's own source is looked at: after a change in a function that it calls, use
         fresh=True.
 

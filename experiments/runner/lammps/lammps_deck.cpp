@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <iterator>
 #include <numbers>
 #include <string_view>
@@ -237,7 +238,7 @@ class Numbers {
     text_.remove_prefix(start);
     Number number{};
     const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), number);
-    if (error != std::errc()) refuse();
+    if (error != std::errc() || !std::isfinite(static_cast<double>(number))) refuse();
     text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
     return number;
   }
