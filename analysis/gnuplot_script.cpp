@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "analysis/plot.hpp"
 
@@ -329,30 +330,32 @@ std::string text_table_commands(const TextTable& table) {
   return text + "plot [0:1] [0:1] NaN\n";
 }
 
-/// Height of the frame and of the rows of the key [px].
-int height_of(const Chart& chart) {
-  std::size_t entries = 0, longest = 0;
+/// Width and height [px]: the frame, and the rows of the key. A title that is too long for a row of
+/// one column takes two.
+std::pair<int, int> size_of(const Chart& chart) {
+  constexpr std::size_t row = 50, wide_row = 110, symbol = 8;  // letters
+  std::size_t entries = 0, longest = symbol;
   for (const Series& series : chart.series) {
     const std::size_t length = plain_text(series.title).size();
     entries += length > 0 ? 1 : 0;
-    longest = std::max(longest, length);
+    longest = std::max(longest, length + symbol);
   }
-  const std::size_t letters = chart.wide ? 110 : 50, symbol = 8;  // of a row
-  const std::size_t in_a_row = std::max<std::size_t>(1, letters / (longest + symbol));
-  return chart_height + key_row * static_cast<int>((entries + in_a_row - 1) / in_a_row);
+  const bool wide = chart.wide || longest > row;
+  const std::size_t in_a_row = std::max<std::size_t>(1, (wide ? wide_row : row) / longest);
+  return {wide ? double_width : column_width,
+          chart_height + key_row * static_cast<int>((entries + in_a_row - 1) / in_a_row)};
 }
 
 }  // namespace
 
 std::string gnuplot_script(const FigureTable& table) {
   const bool words = !table.text.rows.empty();
-  const Chart& chart = table.chart;
+  const auto [width, height] =
+      words ? std::pair(width_of(table.text), height_of(table.text)) : size_of(table.chart);
   return fmt::format(
       "{}{},{} enhanced font 'Helvetica,{}' background '#ffffff'\n{}set output '{}.svg'\n{}set "
       "output\n",
-      gnuplot_script_beginning,
-      words ? width_of(table.text) : (chart.wide ? double_width : column_width),
-      words ? height_of(table.text) : height_of(chart), words ? 14 : type_size, style, table.name,
+      gnuplot_script_beginning, width, height, words ? 14 : type_size, style, table.name,
       words ? text_table_commands(table.text) : Script(table).text());
 }
 

@@ -29,6 +29,10 @@ struct WallGrain {
 /// The largest width or height of a cell [d]. Neighbour lists have positions in single precision,
 /// whose rounding must be below their margins.
 inline constexpr double kLongestCell = 1e5;
+
+/// The smallest depth [d]: in a shallower cell a grain could touch another one across both periodic
+/// boundaries.
+inline constexpr double kShallowestCell = 3;
 /// The largest volume of a cell for each of N + 100 grains [d^3]. An analysis takes memory for each
 /// layer of the cell.
 inline constexpr double kLoosestCell = 1e4;

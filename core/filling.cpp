@@ -121,7 +121,7 @@ Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Poll& poll) {
   Cell cell;
   cell.width = cell.depth = cell_width(geometry);
   cell.moving = geometry.moving;
-  if (!(cell.depth >= 3.0)) {
+  if (!(cell.depth >= kShallowestCell)) {
     throw GeometryError("a cell for " + std::to_string(geometry.grains) + " grains is only " +
                         std::to_string(cell.depth) +
                         " d deep; the periodic depth must be at least 3 d, so that no grain meets "

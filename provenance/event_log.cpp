@@ -2,6 +2,7 @@
 #include "provenance/event_log.hpp"
 
 #include <fcntl.h>
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -190,6 +191,11 @@ std::string run_stream(std::string_view run) {
 std::optional<std::string> run_of(const Event& event) {
   if (!event.stream.starts_with("run/")) return std::nullopt;
   return event.stream.substr(4);
+}
+
+std::string utc_text(std::int64_t ms) {
+  const std::int64_t within = (ms % 1000 + 1000) % 1000;  // also before 1970
+  return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(std::time_t{(ms - within) / 1000}), within);
 }
 
 EventLog::EventLog(sqlite::Database& database) : database_(database) {}

@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include "provenance/io/clock.hpp"
 #include "provenance/sqlite.hpp"
 
 namespace shearcell {

@@ -113,6 +113,10 @@ void Database::fail(int code, std::string_view doing) const {
       throw MachineError(fmt::format(
           "{}: another process kept the store locked for {} s; run again when it has ended", name_,
           kBusyTimeoutMs / 1000));
+    case SQLITE_FULL:
+      throw MachineError(fmt::format(
+          "{}: the disk is full; free some space and run again: nothing that was recorded is lost",
+          name_));
     case SQLITE_TOOBIG:
       throw StoreDamaged(fmt::format(
           "{}: a value of the database is larger than {} MiB, more than this program writes or "

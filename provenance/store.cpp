@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "provenance/events.hpp"
+#include "provenance/io/clock.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/sha256.hpp"
 

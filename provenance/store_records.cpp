@@ -7,6 +7,7 @@
 #include <set>
 
 #include "provenance/events.hpp"
+#include "provenance/io/clock.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/store.hpp"

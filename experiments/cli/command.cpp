@@ -15,6 +15,7 @@
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/read_number.hpp"
+#include "provenance/limits.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell::cli {
@@ -90,10 +91,17 @@ void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
 
 }  // namespace
 
+std::filesystem::path existing_folder(const std::string& store) {
+  std::filesystem::path place = std::filesystem::absolute(store);
+  while (!is_directory(place) && place.has_relative_path()) place = place.parent_path();
+  return place;
+}
+
 void add_expand_options(CLI::App& command, ExpandOptions& options) {
   command.add_option("--scale", options.scale, "Named size (default: desk)");
   add_number(command, "--cycles", options.cycles,
-             "Cycles instead of the manifest's; the store keeps the largest number asked for");
+             "Cycles instead of the manifest's; the store keeps the largest number asked for", "N",
+             0, StoreLimits::cycles);
   add_number(command, "--seeds", options.seeds,
              "Number of seeds instead of the manifest's; runs that the store has stay", "N", 1);
   add_variant_option(command, options.variants);

@@ -123,6 +123,9 @@ void add_threads_option(CLI::App& command, std::size_t& threads, const std::stri
 /// --engine NAME.
 void add_engine_option(CLI::App& command, ExpandOptions& options);
 
+/// The folder of the store, or the nearest existing folder above it.
+std::filesystem::path existing_folder(const std::string& store);
+
 /// Prints one JSON value, indented by two.
 void print_json(const nlohmann::json& facts);
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -20,6 +19,7 @@
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "provenance/io/child_process.hpp"
+#include "provenance/io/clock.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -32,13 +32,6 @@ struct Check {
   std::string state;  ///< "ok", "slow", "low", "missing"
   std::string advice;
 };
-
-/// The folder of the store, or the nearest existing folder above it.
-fs::path place_of(const std::string& store) {
-  fs::path place = fs::absolute(store);
-  while (!fs::is_directory(place) && place.has_relative_path()) place = place.parent_path();
-  return place;
-}
 
 Check vectors(const std::string& simd) {
   if (simd != scalar_kernels().name) return {"vectors", simd, "ok", ""};
@@ -93,14 +86,13 @@ Check writing(const std::string& store, const fs::path& place) {
             "missing", "no store can be written there; name another folder with --store"};
   }
   constexpr int count = 10;
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   bool written = true;
   for (int k = 0; k < count; ++k)
     written = ::write(file, "x", 1) == 1 && fsync(file) == 0 && written;
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+  const double ms = 1e3 * watch.seconds() / count;
   close(file);
   fs::remove(name);
-  const double ms = 1e3 * spent.count() / count;
   if (!written) return {"writing", "failed in " + place.string(), "missing", "is the disk full?"};
   return {"writing", fmt::format("{:.1f} ms to sync", ms), ms < 100 ? "ok" : "slow",
           "each checkpoint waits for about six of these"};
@@ -127,7 +119,7 @@ std::vector<Check> examine(const std::string& store, bool with_speed) {
   const nlohmann::json facts = host_facts();
   const nlohmann::json& libraries = facts.at("libraries");
   const auto version = [&](const char* name) { return libraries.at(name).get<std::string>(); };
-  const fs::path place = place_of(store);
+  const fs::path place = existing_folder(store);
   const std::size_t cores = usable_cores();
   std::vector<Check> found = {{"processor", facts.at("cpu").get<std::string>(), "ok", ""},
                               {"cores", fmt::format("{} usable", cores), "ok",

@@ -21,7 +21,7 @@ std::string gist(const Event& event) {
 
 void print_log(const std::string& run, Context& context) {
   const Store store(context.store, Access::read);
-  const std::string stream = run.empty() ? "" : "run/" + store.find_run(run).id;
+  const std::string stream = run.empty() ? "" : run_stream(store.find_run(run).id);
   const std::vector<Event> events = store.events(stream);
   if (context.json) {
     const auto facts = [](const Event& event) -> nlohmann::json {

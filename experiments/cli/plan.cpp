@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -260,9 +261,19 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
   const std::size_t longer = take_longer_targets(runs, expanded);
   const std::vector<Line> lines = lines_of(expanded, store, known);
   const Left left = left_of(lines, runs);
-  const std::size_t cores = usable_cores();
+  std::set<const PlannedRun*> unfinished;  // each is computed by one core
+  for (const Line& line : lines) {
+    if (line.state != "done") unfinished.insert(line.run);
+  }
+  const std::size_t cores = std::clamp<std::size_t>(unfinished.size(), 1, usable_cores());
   const double seconds = left.work.seconds(cores);
   std::vector<std::string> notes = notes_of(expanded);
+  const std::filesystem::path place = existing_folder(context.store);
+  const auto free = static_cast<double>(std::filesystem::space(place).available);
+  if (left.bytes > free) {
+    notes.push_back(fmt::format("too little disk space: {} are free in {}", format_bytes(free),
+                                place.string()));
+  }
   if (longer > 0) {
     notes.push_back(fmt::format(
         "`run` also continues {} to the number of cycles that an earlier command asked for",
@@ -292,9 +303,10 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
     fmt::print("\nleft: nothing\n");
   } else {
     fmt::print(
-        "\nleft: {:.3g} particle-steps, about {} on {} cores at {:.0f} M particle-steps/s each "
+        "\nleft: {:.3g} particle-steps, about {} on {} at {:.0f} M particle-steps/s each "
         "({}),\n      about {} on disk\n",
-        left.work.particle_steps, format_duration(seconds), cores, left.rate * 1e-6,
+        left.work.particle_steps, format_duration(seconds), counted(cores, "core"),
+        left.rate * 1e-6,
         left.work.measured ? "measured in this store" : "assumed until a run has been measured",
         format_bytes(left.bytes));
     print_until(lines, left.work.particle_steps);

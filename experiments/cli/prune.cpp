@@ -21,20 +21,18 @@ namespace shearcell::cli {
 namespace {
 
 struct PruneOptions {
-  std::vector<std::string> runs;
+  PruneChoice choice;
   std::string state;
-  std::uint64_t keep_every = 0;
   bool yes = false;
 };
 
 PruneChoice choice_of(const PruneOptions& options, const Store& store) {
-  if (options.runs.empty() && options.state.empty() && options.keep_every == 0) {
+  PruneChoice choice = options.choice;
+  if (choice.runs.empty() && options.state.empty() && choice.keep_every == 0) {
     throw CLI::ValidationError(
         "prune", "choose what to delete: --keep-every K, --state STATE, or runs; see prune --help");
   }
-  PruneChoice choice;
-  for (const std::string& prefix : options.runs) choice.runs.push_back(store.find_run(prefix).id);
-  choice.keep_every = options.keep_every;
+  for (std::string& run : choice.runs) run = store.find_run(run).id;
   choice.state = value_of<RunState>(options.state);
   return choice;
 }
@@ -177,10 +175,11 @@ void add_prune(CLI::App& app, Context& context) {
   auto options = std::make_shared<PruneOptions>();
   CLI::App* command = app.add_subcommand(
       "prune", "Delete checkpoint files that can be recomputed; their records stay");
-  command->add_option("run", options->runs, "Only these runs: ids, or unique beginnings of them");
+  command->add_option("run", options->choice.runs,
+                      "Only these runs: ids, or unique beginnings of them");
   command->add_option("--state", options->state, "Only runs in this state")
       ->check(one_of<RunState>());
-  add_number(*command, "--keep-every", options->keep_every, "Keep every K-th cycle", "K", 1,
+  add_number(*command, "--keep-every", options->choice.keep_every, "Keep every K-th cycle", "K", 1,
              1'000'000'000);
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
   add_common_options(*command, context);

@@ -55,7 +55,7 @@ nlohmann::json facts_of_all(const Store& store, const RunRecord& run,
 // The engine that the latest attempt recorded; null for our own.
 nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   nlohmann::json engine;
-  for (const Event& event : store.events("run/" + run)) {
+  for (const Event& event : store.events(run_stream(run))) {
     const nlohmann::json body = event.body();
     const nlohmann::json host = body.value("host", nlohmann::json::object());
     if (host.is_object() && host.contains("engine")) engine = host["engine"];

@@ -43,6 +43,7 @@ void table(const TableOptions& options, Context& context) {
                  options.out);
   }
   for (const std::string& note : made.notes) print_stderr("{}\n", note);
+  if (made.rows.empty()) print_stderr("no checkpoint of a run fits all of these options\n");
   print_problems(made, "not measured", context);
 }
 

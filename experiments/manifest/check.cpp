@@ -22,11 +22,8 @@ namespace {
 using std::string;
 using std::string_view;
 
-// In a shallower cell a grain could touch another one across both periodic boundaries.
-constexpr double kSmallestDepth = 3;
-
 bool is_wide_enough(const Parameters& p) {
-  return cell_width(geometry(p)) >= kSmallestDepth;
+  return cell_width(geometry(p)) >= kShallowestCell;
 }
 
 // Checks one variant at one scale. The scale is complete (whole_scale()).
@@ -152,7 +149,7 @@ struct VariantCheck {
     if (!is_wide_enough(p)) {
       report("grains",
              fmt::format("the cell for so few grains is {:.3g} d wide and deep, less than {} d",
-                         cell_width(shape), kSmallestDepth),
+                         cell_width(shape), kShallowestCell),
              advise_more_grains(p, is_wide_enough));
     }
     if (!too_large(shape)) return;

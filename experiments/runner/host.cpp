@@ -2,10 +2,8 @@
 #include "experiments/runner/host.hpp"
 
 #include <sys/utsname.h>
-#include <unistd.h>
 
 #include <Eigen/Core>
-#include <array>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -30,12 +28,10 @@ std::string cpu_model() {
 }  // namespace
 
 nlohmann::json host_facts() {
-  std::array<char, 256> name{};
-  if (gethostname(name.data(), name.size() - 1) != 0) name[0] = '\0';
   utsname system{};
   uname(&system);
   return {
-      {"host", name.data()},
+      {"host", system.nodename},
       {"system", std::string(system.sysname) + " " + system.release + " " + system.machine},
       {"cpu", cpu_model()},
       {"cores", std::thread::hardware_concurrency()},

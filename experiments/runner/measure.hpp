@@ -17,11 +17,13 @@
 
 namespace shearcell {
 
+/// Called after each item, by one thread at a time; may be empty.
+using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
+
 struct MeasureOptions {
   std::size_t workers = 1;
-  bool fresh = false;  ///< compute all of them again and replace the cached ones
-  /// Called as checkpoints are computed; may be empty.
-  std::function<void(std::size_t done, std::size_t total)> report;
+  bool fresh = false;   ///< compute all of them again and replace the cached ones
+  ReadProgress report;  ///< called as checkpoints are computed
   /// If given, computes the only measure instead of an analysis.
   std::function<nlohmann::json(const CheckpointRecord& record, const Checkpoint& checkpoint)>
       instead = {};
@@ -72,9 +74,6 @@ Measures read_results(std::span<const DerivedMeasure> measures,
 /// SI units of the mechanics of a checkpoint, from the run's resolved parameters; the spring
 /// constant is the checkpoint's own if it records one (stiffening). NaN for what the store lacks.
 MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& checkpoint);
-
-/// Called after each item, by one thread at a time; may be empty.
-using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Adds lines; `all` stays sorted and without repetitions.
 void add_unread(const UnreadCheckpoints& more, UnreadCheckpoints& all);

@@ -9,8 +9,6 @@
 namespace shearcell {
 namespace {
 
-constexpr std::chrono::seconds kPlainInterval{10};
-
 std::string describe(const StageStatus& status) {
   const double rate = status.steps_per_second * static_cast<double>(status.grains) * 1e-6;
   const std::string where =
@@ -33,7 +31,7 @@ Progress::~Progress() {
 
 void Progress::begin(const std::string& id, const std::string& name) {
   const std::lock_guard lock(mutex_);
-  running_[id] = {name, "starting", std::chrono::steady_clock::now()};
+  running_[id] = {name, "starting", {}};
   if (!terminal_ && !quiet_) print_stderr("{}: started\n", name);
 }
 
@@ -46,9 +44,8 @@ void Progress::update(const std::string& id, const StageStatus& status) {
     draw();
     return;
   }
-  const auto now = std::chrono::steady_clock::now();
-  if (now - shown.said_at < kPlainInterval) return;
-  shown.said_at = now;
+  if (shown.said.seconds() < 10) return;
+  shown.said.restart();
   print_stderr("{}: {}\n", shown.name, shown.text);
 }
 

@@ -2,13 +2,13 @@
 // Shows the progress of a campaign on standard error.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <map>
 #include <mutex>
 #include <string>
 
 #include "experiments/runner/stage_runner.hpp"
+#include "provenance/io/clock.hpp"
 
 namespace shearcell {
 
@@ -36,7 +36,7 @@ class Progress {
  private:
   struct Shown {
     std::string name, text;
-    std::chrono::steady_clock::time_point said_at;
+    Stopwatch said;
   };
 
   void erase();

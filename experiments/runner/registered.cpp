@@ -7,6 +7,7 @@
 
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "provenance/events.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -17,13 +18,11 @@ std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   // Not in the order of the log, which a merge decides.
   std::ranges::stable_sort(events, {}, &Event::recorded_at);
   for (const Event& event : events) {
+    auto [sha256, path, text, info] = std::get<events::ManifestRegistered>(events::decode(event));
     try {
-      const nlohmann::json body = event.body();
-      const nlohmann::json& info = body.at("info");
-      found.push_back({body.at("sha256").get<std::string>(),
-                       info.at("experiment").get<std::string>(), info.value("question", ""),
-                       info.at("figures").get<std::vector<std::string>>(),
-                       body.at("text").get<std::string>()});
+      found.push_back({std::move(sha256), info.at("experiment").get<std::string>(),
+                       info.value("question", ""),
+                       info.at("figures").get<std::vector<std::string>>(), std::move(text)});
     } catch (const nlohmann::json::exception& problem) {
       throw damaged_payload(event, problem);
     }

@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <memory>
 
 #include "experiments/manifest/document.hpp"
+#include "provenance/io/clock.hpp"
 
 namespace shearcell {
 namespace {
@@ -71,11 +71,11 @@ void write_stderr(std::string_view text) noexcept {
 
 std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what) {
   if (isatty(STDERR_FILENO) == 0) {
-    using Clock = std::chrono::steady_clock;
-    const auto said_at = std::make_shared<Clock::time_point>(Clock::now());  // by all copies
-    return [what = std::move(what), said_at](std::size_t done, std::size_t total) {
-      if (Clock::now() - *said_at < std::chrono::seconds(10)) return;
-      *said_at = Clock::now();
+    // Shared by all copies.
+    return [what = std::move(what), said = std::make_shared<Stopwatch>()](std::size_t done,
+                                                                          std::size_t total) {
+      if (said->seconds() < 10) return;
+      said->restart();
       write_stderr(fmt::format("{} {} of {}\n", what, done, total));
     };
   }

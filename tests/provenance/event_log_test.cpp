@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "provenance/errors.hpp"
-#include "provenance/io/clock.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {

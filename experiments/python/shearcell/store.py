@@ -7,6 +7,7 @@ import inspect
 import io
 import json
 import math
+import numbers
 import os
 import shutil
 import subprocess
@@ -195,6 +196,8 @@ class Run:
     def checkpoint(self, cycle: float | None = None) -> Checkpoint:
         """The checkpoint at that cycle, which may be any of `records()`, or the newest of `cycles`.
         Raises KeyError if there is none."""
+        if cycle is not None and not isinstance(cycle, numbers.Real):
+            raise TypeError(f"a cycle is a number, not {cycle!r}")
         found = (self._of_experiment() if cycle is None
                  else [c for c in self.records() if c["cycle"] == cycle])
         if found:
@@ -273,7 +276,10 @@ class _KeptMeasure:
 
 def _filters(select: Mapping[str, Any]) -> list[str]:
     arguments = []
+    known = ("experiment", "scale", "variant", "seed", "state")
     for key, values in select.items():
+        if key not in known:
+            raise TypeError(f"runs are not selected by {key}, but by {', '.join(known)}")
         several = isinstance(values, Iterable) and not isinstance(values, str)
         chosen = [str(value) for value in values] if several else [str(values)]
         if not chosen:
