@@ -101,7 +101,7 @@ void figures(FigureArguments& options, Context& context) {
   how.workers = usable_cores();
   how.report = terminal_counter("measuring checkpoint");
   nlohmann::json list = nlohmann::json::array();
-  for (const WantedFigure& figure : in_order_of_needs(std::move(wanted.figures))) {
+  for (const WantedFigure& figure : wanted.figures) {
     try {
       const FigureSummary result = draw_figure(store, figure, how);
       complain(result, told, context);

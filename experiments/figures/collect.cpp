@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "analysis/derived_measures.hpp"
 #include "analysis/own_figure.hpp"
 #include "experiments/figures/experiment_part.hpp"
 #include "experiments/manifest/identity.hpp"
@@ -268,15 +269,19 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
     if (!known.contains(name))
       throw NotFound(unknown_name("figure", name, {known.begin(), known.end()}));
   }
+  std::map<std::string, std::set<std::string>> needs;  // of each experiment, by one analysis
+  for (const auto& [figure, experiment, also] : wanted.figures) {
+    for (const DerivedMeasure& one : all_derived_measures()) {
+      if (one.earlier.empty() && std::ranges::count(figure.needs, one.name) > 0)
+        needs[experiment].insert(one.name);
+    }
+  }
+  for (WantedFigure& one : wanted.figures) {
+    one.also.assign(needs[one.experiment].begin(), needs[one.experiment].end());
+  }
+  std::ranges::stable_partition(
+      wanted.figures, [](const WantedFigure& one) { return one.figure.form != FigureForm::table; });
   return wanted;
-}
-
-std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures) {
-  std::ranges::stable_sort(figures, {}, [](const WantedFigure& wanted) {
-    return std::pair(std::ranges::count(wanted.figure.needs, "crystallites") == 0,
-                     wanted.figure.form == FigureForm::table);
-  });
-  return figures;
 }
 
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,

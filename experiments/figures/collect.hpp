@@ -17,6 +17,8 @@ namespace shearcell {
 struct WantedFigure {
   Figure figure;
   std::string experiment;
+  /// Derived measures that other figures of the experiment need: MeasureOptions::also.
+  std::vector<std::string> also = {};
 
   /// "drag/S2": the name of its record, and the path of its files in the folder for figures.
   std::string path() const;
@@ -24,7 +26,8 @@ struct WantedFigure {
 
 /// The figures that registered manifests list.
 struct WantedFigures {
-  /// By experiment; for each, figures of the supplement in its order, then plots and claims.
+  /// By experiment; for each, figures of the supplement in its order, then plots and claims. Tables
+  /// of several experiments are last.
   std::vector<WantedFigure> figures;
   std::vector<std::string> unknown;  ///< a message for each unknown name
 };
@@ -34,10 +37,6 @@ struct WantedFigures {
 /// with the nearest name, for an unknown figure or experiment.
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});
-
-/// Moves figures that need more measures of a checkpoint to the front, so that one analysis serves
-/// all figures. Keeps the order otherwise.
-std::vector<WantedFigure> in_order_of_needs(std::vector<WantedFigure> figures);
 
 /// One run of a figure.
 struct CollectedRun : SelectedRun {

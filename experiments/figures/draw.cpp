@@ -224,7 +224,10 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   summary.experiment = wanted.experiment;
   summary.notes = std::move(collected.notes);
   summary.scale = collected.scale;
-  const std::vector<FigureRun> runs = figure_runs(store, figure, collected.runs, options, summary);
+  MeasureOptions measuring = options;
+  measuring.also = wanted.also;
+  const std::vector<FigureRun> runs =
+      figure_runs(store, figure, collected.runs, measuring, summary);
   require_told_apart(wanted, runs);
   summary.title = title_of(figure, runs);
   summary.runs = runs.size();

@@ -99,7 +99,7 @@ void add_figures(const Store& store, const ReportOptions& options, ReportData& d
   const std::vector<FigureRecord> records = figure_records(store);
   WantedFigures wanted = wanted_figures(store, {}, options.runs.experiments);
   std::set<std::string> notes(wanted.unknown.begin(), wanted.unknown.end());
-  for (const WantedFigure& figure : in_order_of_needs(std::move(wanted.figures))) {
+  for (const WantedFigure& figure : wanted.figures) {
     const auto home =
         std::ranges::find(data.experiments, figure.experiment,
                           [](const ReportExperiment& e) { return e.manifest.experiment; });

@@ -43,7 +43,12 @@ class Measuring {
       if (fresh) distinct_.push_back(&record);
       place_.push_back(entry->second);
     }
+    for (const std::string& name : options.also) {
+      const bool listed = std::ranges::count(measures_, name, &DerivedMeasure::name) > 0;
+      if (!listed && !options.fresh && !options.instead) also_.push_back(&derived_measure(name));
+    }
     for (const CheckpointRecord* record : distinct_) {
+      for (const DerivedMeasure* one : also_) also_keys_.push_back(sources_.key(*record, *one));
       for (const DerivedMeasure& measure : measures_) {
         keys_.push_back(sources_.key(*record, measure));
         for (const std::uint64_t cycles : measure.earlier) {
@@ -121,6 +126,10 @@ class Measuring {
       changed = changed || (known && encode_result(before[m]) != objects.back().content);
       results_[i][m] = std::move(*result);
     }
+    for (std::size_t m = 0; m < also_.size(); ++m) {
+      const auto result = sources_.measure(record, checkpoint, analysis, *also_[m], unread);
+      if (result) objects.push_back({also_keys_[i * also_.size() + m], encode_result(*result)});
+    }
     const std::lock_guard lock(mutex_);
     std::ranges::move(unread.damage, std::back_inserter(unread_earlier_.damage));
     std::ranges::move(unread.pruned, std::back_inserter(unread_earlier_.pruned));
@@ -141,6 +150,8 @@ class Measuring {
   std::vector<const CheckpointRecord*> distinct_;
   std::vector<std::size_t> place_;  // of each record in distinct_
   std::vector<DerivedKey> keys_;    // of each in distinct_, in the order of the measures
+  std::vector<const DerivedMeasure*> also_;
+  std::vector<DerivedKey> also_keys_;  // of each in distinct_, in the order of also_
   std::vector<std::size_t> todo_;
   std::vector<Results> results_;  // of each checkpoint that is left; a thread writes only its own
   std::mutex mutex_;              // guards the members below while threads run

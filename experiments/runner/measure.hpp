@@ -30,6 +30,9 @@ struct MeasureOptions {
   /// Cycles between the checkpoints that the experiment asks of a run, by its id; 1 for others.
   /// Measures over two checkpoints do not use those that interruptions and other experiments left.
   std::map<std::string, std::uint64_t> cadence = {};
+  /// Names of further measures, which are cached too whenever a checkpoint is analysed (not with
+  /// `fresh`), so that one analysis serves many callers. None may need earlier checkpoints.
+  std::vector<std::string> also = {};
 };
 
 /// A line for each checkpoint that could not be read; sorted.

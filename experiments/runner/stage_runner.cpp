@@ -39,6 +39,7 @@ class StageAttempt {
                          {"processes", options_.parallel.ranks}};
     }
     start(beginning, facts);
+    if (options_.begun) options_.begun();
     return guarded([&] {
       if (may_end_early(store_, id()))
         end_.emplace(store_, plan_.run, fresh ? 0 : beginning.from->step);

@@ -28,6 +28,7 @@ struct StageStatus {
 struct StageOptions {
   Parallel parallel = {};
   std::function<void(const std::string&)> damaged;  ///< called for each skipped checkpoint
+  std::function<void()> begun;                      ///< called when an attempt has been recorded
   std::function<void(const StageStatus&)> report;   ///< called a few times a second
 };
 

@@ -91,12 +91,12 @@ TEST(GnuplotScript, StatesEverySeriesLineAndLabel) {
 
 TEST(GnuplotScript, LongTitlesTakeTwoColumns) {
   const auto script_for = [](const std::string& title) {
-    return gnuplot_script({.name = "t", .chart = {.series = {{.title = title}}}});
+    return gnuplot_script(table_with({}, {.series = {{.title = title}}}));
   };
   EXPECT_TRUE(has(script_for("no gravity"), "size 325,230 "));
   EXPECT_TRUE(
       has(script_for("b=0.00256 kg/s, g=9.81 m/s^2, P=1908 Pa, A=0.0667 rad"), "size 673,230 "));
-  EXPECT_TRUE(has(gnuplot_script({.name = "t"}), "size 325,215 "));
+  EXPECT_TRUE(has(gnuplot_script(table_with({}, {})), "size 325,215 "));
 }
 
 // "0.70" beside "0.75"; about five steps.

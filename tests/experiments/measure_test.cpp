@@ -155,16 +155,19 @@ TEST_F(Measure, EarlierCheckpointsAreThoseOfTheExperiment) {
 }
 
 TEST_F(Measure, OneAnalysisServesAllFiguresMadeTogether) {
-  std::string text = tiny_manifest("", "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\n");
+  std::string text =
+      tiny_manifest("",
+                    "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\nplots: [{name: core, "
+                    "y: core_phi}, {name: fcc, y: cna_fcc_percent}]\n");
   text.replace(text.find("[S2]"), 4, "[S7, walls]");
   compute(store_, text);
   std::vector<std::string> order;
   std::size_t measured = 0;
-  for (const WantedFigure& wanted : in_order_of_needs(wanted_figures(store_).figures)) {
+  for (const WantedFigure& wanted : wanted_figures(store_).figures) {
     order.emplace_back(wanted.figure.name);
     measured += draw("together", wanted).measured;
   }
-  EXPECT_EQ(order, (std::vector<std::string>{"S7", "walls", "table1"}));
+  EXPECT_EQ(order, (std::vector<std::string>{"S7", "walls", "core", "fcc", "table1"}));
   EXPECT_EQ(measured, 6U) << "checkpoints, each once";
 }
 

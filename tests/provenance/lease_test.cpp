@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "core/threads.hpp"
+#include "provenance/io/clock.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/threads.hpp"
+#include "provenance/io/clock.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {
