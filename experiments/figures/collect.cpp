@@ -196,6 +196,20 @@ std::string last_scale(const std::vector<SelectedRun>& runs,
   return (last == runs.rend() ? runs.back() : *last).membership.scale;
 }
 
+/// Sets WantedFigure::also.
+void share_needs(std::vector<WantedFigure>& figures) {
+  std::map<std::string, std::set<std::string>> needs;  // of each experiment
+  for (const WantedFigure& wanted : figures) {
+    for (const DerivedMeasure& one : all_derived_measures()) {
+      const bool needed = std::ranges::count(wanted.figure.needs, one.name) > 0;
+      if (needed && one.earlier.empty()) needs[wanted.experiment].insert(one.name);
+    }
+  }
+  for (WantedFigure& wanted : figures) {
+    wanted.also.assign(needs[wanted.experiment].begin(), needs[wanted.experiment].end());
+  }
+}
+
 }  // namespace
 
 FigureRun unmeasured(const CollectedRun& input) {
@@ -245,10 +259,6 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   std::vector<std::string_view> supplement;
   for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
   std::set<std::string> known(supplement.begin(), supplement.end()), reported;
-  for (const Figure& figure : all_figures()) {
-    if (figure.form != FigureForm::table || manifests.empty() || !asked(figure.name)) continue;
-    if (experiments.empty() || named) wanted.figures.push_back({figure, ""});
-  }
   for (const RegisteredManifest& manifest : manifests) {
     for (const Figure& figure : all_figures()) {
       const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;
@@ -265,22 +275,15 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
                                unknown_name("figure", name, supplement));
     }
   }
+  for (const Figure& figure : all_figures()) {
+    if (figure.form != FigureForm::table || manifests.empty() || !asked(figure.name)) continue;
+    if (experiments.empty() || named) wanted.figures.push_back({figure, ""});
+  }
   for (const std::string& name : names) {
     if (!known.contains(name))
       throw NotFound(unknown_name("figure", name, {known.begin(), known.end()}));
   }
-  std::map<std::string, std::set<std::string>> needs;  // of each experiment, by one analysis
-  for (const auto& [figure, experiment, also] : wanted.figures) {
-    for (const DerivedMeasure& one : all_derived_measures()) {
-      if (one.earlier.empty() && std::ranges::count(figure.needs, one.name) > 0)
-        needs[experiment].insert(one.name);
-    }
-  }
-  for (WantedFigure& one : wanted.figures) {
-    one.also.assign(needs[one.experiment].begin(), needs[one.experiment].end());
-  }
-  std::ranges::stable_partition(
-      wanted.figures, [](const WantedFigure& one) { return one.figure.form != FigureForm::table; });
+  share_needs(wanted.figures);
   return wanted;
 }
 

@@ -376,7 +376,7 @@ TEST_F(DrawFigure, ListsTheFiguresThatTheStoreCanMake) {
   const WantedFigures wanted = wanted_figures(store_);
   std::vector<std::string> names;
   for (const WantedFigure& one : wanted.figures) names.push_back(one.path());
-  EXPECT_EQ(names, (std::vector<std::string>{"table1", "tiny/S2"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"tiny/S2", "table1"}));
   EXPECT_EQ(wanted_figures(store_, {"S4"}).figures.size(), 0U);
   EXPECT_EQ(wanted_figures(store_, {"S4"}, {"tiny"}).figures.size(), 1U) << "asked for by name";
   EXPECT_THROW(wanted_figures(store_, {}, {"tini"}), NotFound);
