@@ -58,7 +58,7 @@ AddCommand add_plan, add_run, add_status, add_log, add_show, add_verify, add_reb
     add_bench, add_new, add_doctor, add_completion, add_manual;
 
 /// Prints the result of a campaign and sets the exit code.
-void report(const CampaignResult& result, Context& context);
+void print_result(const CampaignResult& result, Context& context);
 
 /// Prints the origin of a figure, within 80 columns or as JSON.
 void show_figure(const Store& store, const FigureRecord& record, Context& context);

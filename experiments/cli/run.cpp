@@ -42,7 +42,7 @@ void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& 
              Context& context) {
   catch_stop_signals();
   Progress progress(jobs.size(), options.quiet);
-  report(run_campaign(store, jobs, workers(options), progress, options.parallel), context);
+  print_result(run_campaign(store, jobs, workers(options), progress, options.parallel), context);
 }
 
 void run(const RunOptions& options, Context& context) {
@@ -74,7 +74,7 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
 
 }  // namespace
 
-void report(const CampaignResult& result, Context& context) {
+void print_result(const CampaignResult& result, Context& context) {
   const bool interrupted = result.interrupted > 0 || stop_requested();
   context.exit_code = result.damaged > 0   ? kStoreDamaged
                       : result.failed > 0  ? kRunFailed

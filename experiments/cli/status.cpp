@@ -17,6 +17,7 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
+#include "experiments/manifest/parameters.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
@@ -66,7 +67,7 @@ struct View {
       }
       // If versions of a manifest named the variant differently, the last one is kept.
       SelectedRun place = found;
-      place.of_newest_version = found.run.kind == "prepare";
+      place.of_newest_version = found.run.kind == name_of(Stage::prepare);
       if (known == places.end()) {
         places.push_back(std::move(place));
       } else {
@@ -245,7 +246,9 @@ void print_tables(const View& view) {
           view.called(selected) + (selected.of_newest_version ? "" : " (older version)"),
           std::to_string(place.seed), std::to_string(run.grains),
           fmt::format("{}{}", name_of(shown.state()), view.holders.contains(run.id) ? " *" : ""),
-          run.kind == "prepare" ? "" : fmt::format("{:.4g}/{}", shown.cycle(), run.target_cycles),
+          run.kind == name_of(Stage::prepare)
+              ? ""
+              : fmt::format("{:.4g}/{}", shown.cycle(), run.target_cycles),
           fmt::format("{:.1f}", rate(run) * 1e-6), format_duration(run.wall_seconds)});
       if (queued) row.push_back(shown.queue());
     }

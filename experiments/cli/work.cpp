@@ -118,7 +118,7 @@ void work(const WorkOptions& options, Context& context) {
   }
   report_task();
   place.finish();
-  report(result, context);
+  print_result(result, context);
   if (stop_requested()) {
     // If work is left, the task continues later, whatever else happened.
     const bool work_left = result.interrupted + result.blocked > 0;

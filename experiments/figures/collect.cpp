@@ -138,7 +138,7 @@ std::string unknown_name(const char* what, const std::string& name,
 
 std::vector<Figure> own_figures(const RegisteredManifest& manifest) {
   std::vector<Figure> figures;
-  const std::optional<Manifest> read_one = read(manifest);
+  const std::optional<Manifest> read_one = parsed(manifest);
   if (!read_one) return figures;
   const auto names = [labels = read_one->labels](const std::vector<nlohmann::json>& variants) {
     return variant_names(variants, labels);
@@ -157,7 +157,7 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRu
         variants.push_back(run.membership.swept);
     }
     if (variants.empty()) continue;
-    const auto known = read(manifest);
+    const auto known = parsed(manifest);
     const auto labels = known ? known->labels : std::vector<VariantLabel>();
     const auto names = variant_names(variants, labels);
     for (CollectedRun& run : collected.runs) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "experiments/manifest/parameters.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
@@ -115,7 +116,7 @@ std::map<std::string, std::string> files_of(const FigureRecord& record) {
 }  // namespace
 
 json overrides_of(const Store& store, const RunRecord& run, const Membership& membership) {
-  if (run.kind != "shear") return nullptr;
+  if (run.kind != name_of(Stage::shear)) return nullptr;
   const auto manifest = find_manifest(store, membership.manifest);
   return manifest ? overrides(manifest->text, membership) : json();
 }

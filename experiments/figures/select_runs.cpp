@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "experiments/manifest/filter.hpp"
+#include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/registered.hpp"
@@ -142,7 +143,8 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
 }
 
 NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
-  std::erase_if(selected, [](const SelectedRun& s) { return s.run.kind == "prepare"; });
+  std::erase_if(selected,
+                [](const SelectedRun& s) { return s.run.kind == name_of(Stage::prepare); });
   std::ranges::stable_partition(selected, &SelectedRun::of_newest_version);
   NewestRuns chosen;
   struct Taken {

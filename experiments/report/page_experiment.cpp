@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "experiments/manifest/parameters.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/report/page.hpp"
 
@@ -63,7 +64,7 @@ std::string box_html(const char* title, const std::string& html) {
 std::string stages_html(const ReportExperiment& experiment, bool prepare) {
   std::map<RunState, std::size_t> in;
   for (const RunRecord& run : experiment.runs) {
-    if ((run.kind == "prepare") == prepare) ++in[run.state];
+    if ((run.kind == name_of(Stage::prepare)) == prepare) ++in[run.state];
   }
   return counts_html({{"done", "✓", "done", in[RunState::completed]},
                       {"running", "▸", "running", in[RunState::running]},

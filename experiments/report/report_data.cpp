@@ -32,7 +32,7 @@ std::vector<ReportExperiment> experiments_of(const Store& store,
   std::vector<ReportExperiment> found;
   for (RegisteredManifest& manifest : newest_manifests(store)) {
     if (!names.empty() && std::ranges::count(names, manifest.experiment) == 0) continue;
-    const std::optional<Manifest> known = read(manifest);
+    const std::optional<Manifest> known = parsed(manifest);
     ReportExperiment& experiment = found.emplace_back();
     experiment.manifest = std::move(manifest);
     experiment.labelled = known && !known->labels.empty();

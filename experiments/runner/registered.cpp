@@ -30,7 +30,7 @@ std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   return found;
 }
 
-std::optional<Manifest> read(const RegisteredManifest& manifest) {
+std::optional<Manifest> parsed(const RegisteredManifest& manifest) {
   try {
     return read_manifest(manifest.text, "manifest");
   } catch (const ManifestError&) {
@@ -55,12 +55,12 @@ std::string PackingNames::of(const Membership& place, const nlohmann::json& reso
 VariantNames::VariantNames(const Store& store) {
   std::map<std::string, std::vector<VariantLabel>> labels;
   for (const RegisteredManifest& manifest : registered_manifests(store)) {
-    if (auto known = read(manifest)) labels[manifest.sha256] = std::move(known->labels);
+    if (auto known = parsed(manifest)) labels[manifest.sha256] = std::move(known->labels);
   }
   std::map<Group, std::vector<nlohmann::json>> variants;
   for (const RunRecord& run : store.runs()) {
     for (const Membership& m : run.memberships) {
-      if (run.kind == "prepare") {
+      if (run.kind == name_of(Stage::prepare)) {
         packings_.add(m, run.resolved);
       } else {
         variants[{m.experiment, m.manifest, m.scale}].push_back(m.swept);
@@ -80,7 +80,7 @@ std::string VariantNames::of(const Membership& m) const {
 }
 
 std::string VariantNames::of(const RunRecord& run, const Membership& m) const {
-  return run.kind == "prepare" ? packings_.of(m, run.resolved) : of(m);
+  return run.kind == name_of(Stage::prepare) ? packings_.of(m, run.resolved) : of(m);
 }
 
 std::vector<RegisteredManifest> newest_manifests(const Store& store) {

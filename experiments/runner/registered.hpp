@@ -28,7 +28,7 @@ struct RegisteredManifest {
 std::vector<RegisteredManifest> registered_manifests(const Store& store);
 
 /// The parsed manifest; nothing if this version of the program cannot read it.
-std::optional<Manifest> read(const RegisteredManifest& manifest);
+std::optional<Manifest> parsed(const RegisteredManifest& manifest);
 
 /// Display names of settled packings, which no sweep names: "packing", or if an experiment has
 /// several at one scale, with the values in which they differ: "packing N=600".
