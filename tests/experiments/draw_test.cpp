@@ -383,17 +383,6 @@ TEST_F(DrawFigure, ListsTheFiguresThatTheStoreCanMake) {
   EXPECT_TRUE(wanted.unknown.empty());
 }
 
-TEST_F(DrawFigure, NamesTheExperimentsThatATableLeavesOut) {
-  declared(store_, tiny_manifest());
-  ExpandOptions small;
-  small.scale = "small";
-  declared(store_, renamed(tiny_manifest("", "scales: {small: {grains: 310}}\n"), "other"), small);
-  const CollectedRuns found = collect_runs(store_, {*find_figure("table1"), ""}, {});
-  EXPECT_EQ(found.scale, "small");
-  EXPECT_EQ(found.notes,
-            (std::vector<std::string>{"left out: experiments without a run at scale small: tiny"}));
-}
-
 // Registered by a program that knew other figures.
 TEST_F(DrawFigure, SuggestsTheNearestFigureName) {
   store_.register_manifest(

@@ -182,6 +182,16 @@ TEST_F(Measure, RedrawingEveryExperimentMeasuresNothing) {
   EXPECT_TRUE(has(read_bytes(folder_.path() / "table" / "table1.csv"), "other,mass_kg,"));
 }
 
+TEST_F(Measure, ATableNamesTheExperimentsThatItLeavesOut) {
+  ExpandOptions small;
+  small.scale = "small";
+  declared(store_, renamed(tiny_manifest("", "scales: {small: {grains: 310}}\n"), "other"), small);
+  const CollectedRuns found = collect_runs(store_, {*find_figure("table1"), ""}, {});
+  EXPECT_EQ(found.scale, "small");
+  EXPECT_EQ(found.notes,
+            (std::vector<std::string>{"left out: experiments without a run at scale small: tiny"}));
+}
+
 TEST_F(Measure, AChangedValueIsFoundAndReplaced) {
   make("first");
   sql("UPDATE derived SET (content, sha256) = (SELECT content, sha256 FROM derived LIMIT 1)");
