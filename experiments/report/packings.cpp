@@ -20,6 +20,7 @@
 #include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
