@@ -3,6 +3,7 @@
 // whose rate is known.
 #include "analysis/nucleation.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
