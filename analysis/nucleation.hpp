@@ -37,7 +37,7 @@ struct DensityBin {
 };
 
 /// Of all places together; empty when there are none. The bootstrap draws groups, which must be
-/// independent: those of one packing each.
+/// independent; each has the places of one packing.
 std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std::size_t bins);
 
 /// The grains whose number and phi a rate is taken with: at least 1.5 d (interior) or 4 d (core)

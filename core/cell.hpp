@@ -33,6 +33,7 @@ inline constexpr double kLongestCell = 1e5;
 /// The smallest depth [d]: in a shallower cell a grain could touch another one across both periodic
 /// boundaries.
 inline constexpr double kShallowestCell = 3;
+
 /// The largest volume of a cell for each of N + 100 grains [d^3]. An analysis takes memory for each
 /// layer of the cell.
 inline constexpr double kLoosestCell = 1e4;

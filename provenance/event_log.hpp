@@ -43,12 +43,12 @@ struct Event {
   nlohmann::json body() const;
 };
 
-std::string run_stream(std::string_view run);
-
-/// A time [ms since 1970] as ISO 8601 with milliseconds, UTC: "2026-11-22T09:55:45.123Z".
-std::string utc_text(std::int64_t ms);  ///< "run/<id>"
+std::string run_stream(std::string_view run);  ///< "run/<id>"
 /// The id of the event's run; nothing if its stream is not that of a run.
 std::optional<std::string> run_of(const Event& event);
+
+/// A time [ms since 1970] as ISO 8601 with milliseconds, UTC: "2026-11-22T09:55:45.123Z".
+std::string utc_text(std::int64_t ms);
 
 struct NewEvent {
   std::string type;

@@ -163,8 +163,8 @@ std::vector<Column> ends() {
 /// The value of a parameter that some variants sweep: from the variant, or from the run's
 /// record; null if it does not affect the run, or its record cannot be read.
 json swept_value(const Field& field, const SelectedRun& selected) try {
-  const auto label = selected.membership.swept.find(field.name);
-  if (label != selected.membership.swept.end()) return *label;
+  const auto value = selected.membership.swept.find(field.name);
+  if (value != selected.membership.swept.end()) return *value;
   const StageRecord record = read_stage(selected.run.resolved);
   const bool has_effect = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
   return has_effect ? get_value(field, record.parameters) : json();
