@@ -63,15 +63,15 @@ plot keyentry with points lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '{/:Italic A
      keyentry with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.0833, {/:Italic N} = 5200', \
      keyentry with points lc rgb '#cc79a7' lw 1.2 pt 11 ps 0.4 title '{/:Italic A} = 0.0833, {/:Italic N} = 7900', \
      keyentry with points lc rgb '#e69f00' lw 1.2 pt 13 ps 0.4 title '{/:Italic A} = 0.0833, {/:Italic N} = 18200', \
-     keyentry with points lc rgb '#56b4e9' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.1, {/:Italic N} = 5200', \
-     keyentry with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.1, {/:Italic N} = 7900', \
-     keyentry with points lc rgb '#0072b2' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.1, {/:Italic N} = 18200', \
+     keyentry with points lc rgb '#56b4e9' lw 1.2 pt 4 ps 0.4 title '{/:Italic A} = 0.1, {/:Italic N} = 5200', \
+     keyentry with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 title '{/:Italic A} = 0.1, {/:Italic N} = 7900', \
+     keyentry with points lc rgb '#0072b2' lw 1.2 pt 8 ps 0.4 title '{/:Italic A} = 0.1, {/:Italic N} = 18200', \
      $series7 every 1 using 1:2:4 with yerrorbars lc rgb '#0072b2' lw 0.7 pt 0 notitle, \
-     $series7 every 1 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 9 ps 0.4 notitle, \
+     $series7 every 1 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 8 ps 0.4 notitle, \
      $series6 every 1 using 1:2:4 with yerrorbars lc rgb '#000000' lw 0.7 pt 0 notitle, \
-     $series6 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series6 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle, \
      $series5 every 1 using 1:2:4 with yerrorbars lc rgb '#56b4e9' lw 0.7 pt 0 notitle, \
-     $series5 every 1 using 1:2 with points lc rgb '#56b4e9' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series5 every 1 using 1:2 with points lc rgb '#56b4e9' lw 1.2 pt 4 ps 0.4 notitle, \
      $series4 every 1 using 1:2:4 with yerrorbars lc rgb '#e69f00' lw 0.7 pt 0 notitle, \
      $series4 every 1 using 1:2 with points lc rgb '#e69f00' lw 1.2 pt 13 ps 0.4 notitle, \
      $series3 every 1 using 1:2:4 with yerrorbars lc rgb '#cc79a7' lw 0.7 pt 0 notitle, \
