@@ -73,7 +73,8 @@ std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::strin
   }
   const std::vector<nlohmann::json> list(variants.begin(), variants.end());
   std::vector<std::string> in_order(keys.begin(), keys.end());
-  std::ranges::stable_partition(in_order, [&](const std::string& key) { return key == first; });
+  std::stable_partition(in_order.begin(), in_order.end(),
+                        [&](const std::string& key) { return key == first; });
   return keys_telling_apart(list, std::move(in_order));
 }
 

@@ -13,7 +13,7 @@
 namespace shearcell {
 
 /// Cells [begin, end) of consecutive numbers.
-struct CellRun {
+struct CellRange {
   std::size_t begin, end;
 };
 
@@ -48,9 +48,9 @@ struct Grid {
     return first * rows + row * std::min(strip, layers - first) + layer - first;
   }
 
-  /// A cell and its neighbours, each once: at most nine runs of three cells in x. Returns the
-  /// number of runs.
-  std::size_t surrounding(std::uint32_t number, std::array<CellRun, 9>& runs) const {
+  /// A cell and its neighbours, each once: at most nine ranges of three cells in x. Returns the
+  /// number of ranges.
+  std::size_t surrounding(std::uint32_t number, std::array<CellRange, 9>& ranges) const {
     const auto cell = static_cast<std::int32_t>(number);
     const std::int32_t column = cell % columns;
     const std::int32_t line = cell / columns;
@@ -67,8 +67,8 @@ struct Grid {
       for (std::int32_t k = 0; k < most; ++k) {
         const std::int32_t z = layers < 3 ? k : (layer + k - 1 + layers) % layers;
         const std::int32_t begin = line_of(r, z) * columns;
-        runs[count++] = {static_cast<std::size_t>(begin + first),
-                         static_cast<std::size_t>(begin + last + 1)};
+        ranges[count++] = {static_cast<std::size_t>(begin + first),
+                           static_cast<std::size_t>(begin + last + 1)};
       }
     }
     return count;

@@ -29,10 +29,10 @@ class LinkedCells {
   /// Calls visit(index) for every point in the cell of a place and its neighbours, once each.
   template <class Visit>
   void for_each_near(const Eigen::Vector3d& at, Visit&& visit) const {
-    std::array<CellRun, 9> runs;
-    const std::size_t count = grid_.surrounding(grid_.cell_of(at.data()), runs);
+    std::array<CellRange, 9> ranges;
+    const std::size_t count = grid_.surrounding(grid_.cell_of(at.data()), ranges);
     for (std::size_t r = 0; r < count; ++r) {
-      for (std::size_t cell = runs[r].begin; cell < runs[r].end; ++cell) {
+      for (std::size_t cell = ranges[r].begin; cell < ranges[r].end; ++cell) {
         for (std::int32_t p = head_[cell]; p >= 0; p = next_[static_cast<std::size_t>(p)]) visit(p);
       }
     }

@@ -114,11 +114,11 @@ std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
     const double z = t.grid.position[2][place];
     std::int32_t found[kMostNeighbours];
     std::size_t count = 0;
-    std::array<CellRun, 9> runs;
-    const std::size_t run_count = t.grid.cells.surrounding(t.grid.cell[place], runs);
-    for (std::size_t r = 0; r < run_count; ++r) {
-      const std::size_t end = t.grid.begin[runs[r].end];
-      for (std::size_t p = t.grid.begin[runs[r].begin]; p < end; ++p) {
+    std::array<CellRange, 9> ranges;
+    const std::size_t range_count = t.grid.cells.surrounding(t.grid.cell[place], ranges);
+    for (std::size_t r = 0; r < range_count; ++r) {
+      const std::size_t end = t.grid.begin[ranges[r].end];
+      for (std::size_t p = t.grid.begin[ranges[r].begin]; p < end; ++p) {
         const double dx = x - t.grid.position[0][p];
         const double dy = y - t.grid.position[1][p];
         const double dz = nearest_image(z - t.grid.position[2][p], t.depth, t.per_depth);

@@ -72,12 +72,12 @@ HWY_INLINE std::size_t find_near(const SearchTask& t, std::size_t place,
   const V own_margin = hn::Set(kD, t.grid.margin[place]);
   // Compared as doubles, which represent every id exactly and have masks of the right size.
   const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
-  std::array<CellRun, 9> runs;
-  const std::size_t run_count = t.grid.cells.surrounding(t.grid.cell[place], runs);
+  std::array<CellRange, 9> ranges;
+  const std::size_t range_count = t.grid.cells.surrounding(t.grid.cell[place], ranges);
   std::size_t count = 0;
-  for (std::size_t r = 0; r < run_count; ++r) {
-    const std::size_t end = t.grid.begin[runs[r].end];
-    for (std::size_t p = t.grid.begin[runs[r].begin]; p < end; p += kLanes) {
+  for (std::size_t r = 0; r < range_count; ++r) {
+    const std::size_t end = t.grid.begin[ranges[r].end];
+    for (std::size_t p = t.grid.begin[ranges[r].begin]; p < end; p += kLanes) {
       const Vectors other{hn::LoadU(kD, t.grid.position[0] + p),
                           hn::LoadU(kD, t.grid.position[1] + p),
                           hn::LoadU(kD, t.grid.position[2] + p)};

@@ -17,7 +17,8 @@ constexpr std::uint64_t kWatchInterval = 1024;
 
 }  // namespace
 
-Simulation::Simulation(Cell cell, const Scene& scene, const State& state, EngineSettings settings)
+Simulation::Simulation(Cell cell, const Scene& scene, const State& state,
+                       SimulationSettings settings)
     : cell_(std::move(cell)),
       scene_(scene),
       settings_(settings),

@@ -28,7 +28,7 @@
 namespace shearcell {
 
 /// Settings that change the speed of a simulation and not its result.
-struct EngineSettings {
+struct SimulationSettings {
   const Kernels* kernels = kernels_here().front();  ///< not null
   std::size_t threads = 1;
   ListSettings lists;
@@ -54,7 +54,7 @@ class Simulation {
  public:
   /// Copies the state. Throws std::invalid_argument when the sizes disagree or the cell
   /// is too shallow for the cutoffs.
-  Simulation(Cell cell, const Scene& scene, const State& state, EngineSettings settings = {});
+  Simulation(Cell cell, const Scene& scene, const State& state, SimulationSettings settings = {});
 
   /// Advances by `steps` time steps. The watchdog checks step 0, every 1024th step and, except for
   /// the time-step check, the end of each cycle. It checks no other step: whether a run fails must
@@ -117,7 +117,7 @@ class Simulation {
 
   Cell cell_;
   Scene scene_;
-  EngineSettings settings_;
+  SimulationSettings settings_;
   const Kernels& kernels_;
   Team team_;
   std::uint64_t step_ = 0;

@@ -73,7 +73,8 @@ FigureTable density_table(std::string name, std::string first_column, Text x,
                     .columns = {std::move(first_column), "low", "high", "probability_density",
                                 "standard_error", "crystallites", "runs"}};
   table.chart = {.x = {.name = "position", .symbol = std::move(x), .low = 0, .high = 1},
-                 .y = {.name = "probability density", .symbol = italic("P"), .low = 0}};
+                 .y = {.name = "probability density", .symbol = italic("P"), .low = 0},
+                 .errors = "bars are standard errors over packings"};
   for (const Profile& profile : profiles) {
     for (const DensityBin& bin : density(profile.places.packings, density_bins)) {
       table.rows.push_back({profile.key, bin.low, bin.high, bin.density, bin.error,

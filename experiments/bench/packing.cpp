@@ -39,7 +39,7 @@ Packing pressed_packing(const Parameters& parameters, std::uint64_t seed) {
   return packing;
 }
 
-Simulation simulate(const Packing& packing, const EngineSettings& settings) {
+Simulation simulate(const Packing& packing, const SimulationSettings& settings) {
   return {packing.cell, packing.scene, packing.state, settings};
 }
 

@@ -38,7 +38,7 @@ Packing pressed_packing(const Parameters& parameters, std::uint64_t seed);
 /// do not settle.
 Packing settled_packing(const Parameters& parameters, std::uint64_t seed);
 
-Simulation simulate(const Packing& packing, const EngineSettings& settings = {});
+Simulation simulate(const Packing& packing, const SimulationSettings& settings = {});
 
 /// The state after `steps`. Throws NumericalFailure.
 State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive = {});

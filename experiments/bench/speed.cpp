@@ -110,7 +110,8 @@ Packing prepare(std::size_t grains) {
   return parts == 1 ? made : repeated(made, parts);
 }
 
-std::string hash_after(const Packing& made, const EngineSettings& settings, std::uint64_t steps) {
+std::string hash_after(const Packing& made, const SimulationSettings& settings,
+                       std::uint64_t steps) {
   Simulation simulation = simulate(made, settings);
   simulation.advance(drive(made.parameters), steps);
   Checkpoint checkpoint;
@@ -152,8 +153,8 @@ void measure_limits(std::size_t lanes, SpeedResult& result) {
   result.memory_limit = 1e-6 * threads * read_bandwidth(read) / work.bytes;
 }
 
-void measure_rate(const Packing& made, const EngineSettings& settings, const SpeedOptions& options,
-                  SpeedResult& result) {
+void measure_rate(const Packing& made, const SimulationSettings& settings,
+                  const SpeedOptions& options, SpeedResult& result) {
   Simulation simulation = simulate(made, settings);
   const Stopwatch warm_up;
   std::uint64_t steps = 0;
@@ -186,7 +187,7 @@ void measure_size(std::size_t grains, const SpeedOptions& options,
     for (const std::size_t threads : options.threads) {
       SpeedResult result{.grains = grains, .simd = kernels->name, .threads = threads};
       say(fmt::format("{}, {}", kernels->name, counted(threads, "thread")));
-      const EngineSettings settings{kernels, threads, {}, {}};
+      const SimulationSettings settings{kernels, threads, {}, {}};
       result.state_hash = hash_after(made, settings, 200);
       if (results.size() > first && result.state_hash != results[first].state_hash) {
         throw std::runtime_error(

@@ -114,8 +114,10 @@ std::vector<CheckpointRecord> asked_of(const Store& store, const WantedRun& want
     std::ranges::move(checkpoints_for(store, run, place, {}), std::back_inserter(all));
   }
   std::ranges::sort(all, {}, &CheckpointRecord::step);
-  const auto repeated = std::ranges::unique(all, {}, &CheckpointRecord::step);
-  all.erase(repeated.begin(), repeated.end());
+  const auto same_step = [](const CheckpointRecord& a, const CheckpointRecord& b) {
+    return a.step == b.step;
+  };
+  all.erase(std::unique(all.begin(), all.end(), same_step), all.end());
   return all;
 }
 

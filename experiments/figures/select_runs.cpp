@@ -145,7 +145,8 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
 NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
   std::erase_if(selected,
                 [](const SelectedRun& s) { return s.run.kind == name_of(Stage::prepare); });
-  std::ranges::stable_partition(selected, &SelectedRun::of_newest_version);
+  std::stable_partition(selected.begin(), selected.end(),
+                        [](const SelectedRun& s) { return s.of_newest_version; });
   NewestRuns chosen;
   struct Taken {
     std::string manifest;

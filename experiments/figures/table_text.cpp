@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <ranges>
+#include <algorithm>
+#include <iterator>
 
 #include "analysis/chart.hpp"
 #include "experiments/figures/run_table.hpp"
@@ -38,7 +39,9 @@ std::string text_of(const ordered_json& value) {
 std::string to_csv(const RunTable& table) {
   std::string text = fmt::format("{}\n", fmt::join(names_of(table.columns), ","));
   for (const std::vector<json>& row : table.rows) {
-    text += fmt::format("{}\n", fmt::join(row | std::views::transform(csv_cell), ","));
+    std::vector<std::string> cells;
+    std::ranges::transform(row, std::back_inserter(cells), csv_cell);
+    text += fmt::format("{}\n", fmt::join(cells, ","));
   }
   return text;
 }

@@ -248,13 +248,13 @@ bool selects(const VariantLabel& label, const json& variant) {
 std::map<json, std::string> variant_names(const std::vector<json>& variants,
                                           std::span<const VariantLabel> labels) {
   std::vector<std::string> all = swept_keys(variants);
-  const auto some = std::ranges::stable_partition(all, [&](const std::string& key) {
+  const auto some = std::stable_partition(all.begin(), all.end(), [&](const std::string& key) {
     return std::ranges::all_of(variants, [&](const json& v) { return v.contains(key); });
   });
   // A key that some variants lack must not replace one that all have: that would not be named.
-  std::vector<std::string> keys = keys_telling_apart(variants, {all.begin(), some.begin()});
+  std::vector<std::string> keys = keys_telling_apart(variants, {all.begin(), some});
   for (const std::string& key : keys_telling_apart(variants, all)) {
-    if (std::ranges::find(some, key) != some.end()) keys.push_back(key);
+    if (std::find(some, all.end(), key) != all.end()) keys.push_back(key);
   }
   if (keys.empty() && !all.empty()) keys = {all.front()};
   std::vector<const VariantLabel*> longest_first;

@@ -167,8 +167,7 @@ void add_unread(const UnreadCheckpoints& more, UnreadCheckpoints& all) {
   for (const auto lines : {&UnreadCheckpoints::damage, &UnreadCheckpoints::pruned}) {
     (all.*lines).insert((all.*lines).end(), (more.*lines).begin(), (more.*lines).end());
     std::ranges::sort(all.*lines);
-    const auto repeated = std::ranges::unique(all.*lines);
-    (all.*lines).erase(repeated.begin(), repeated.end());
+    (all.*lines).erase(std::unique((all.*lines).begin(), (all.*lines).end()), (all.*lines).end());
   }
 }
 

@@ -136,7 +136,7 @@ Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::s
 }
 
 Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads) {
-  EngineSettings settings;
+  SimulationSettings settings;
   settings.threads = threads;
   settings.limits.overlap = plan.stage.parameters.max_overlap_diameters;
   return Simulation(std::move(beginning.cell), plan.scene, beginning.state, settings);

@@ -67,7 +67,7 @@ double flow_of(const Scene& scene, const Drive& drive, const WallPose& pose, std
   return scene.time_step * scene.drag_rate * rate / (1 + 0.5 * scene.drag_rate * scene.time_step);
 }
 
-// One time step by brute force over all pairs, in the order that the engine promises.
+// One time step by brute force over all pairs, in the order that Simulation promises.
 void brute_step(const Cell& cell, const Scene& scene, const Drive& drive, State& state) {
   const WallPose pose = wall_pose(cell, tilt(drive, state.step).theta, state.wall_height);
   const double flow = flow_of(scene, drive, pose, state.step);
@@ -123,10 +123,10 @@ PROPERTY(Reproducible, EqualsBruteForceOverAllPairs, 60) {
   const Scene scene = any_scene();
   const Drive drive = any_drive();
   const auto steps = *rc::gen::inRange<std::uint64_t>(1, 120).as("steps");
-  const EngineSettings engine = any_engine();
+  const SimulationSettings settings = any_settings();
   State brute = start.state;
   for (std::uint64_t n = 0; n < steps; ++n) brute_step(start.cell, scene, drive, brute);
-  RC_ASSERT(same_bits(brute, advanced(start, steps, engine, scene, drive)));
+  RC_ASSERT(same_bits(brute, advanced(start, steps, settings, scene, drive)));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace shearcell::test {
 
 /// A cell of 600 grains that is sheared for 700 steps.
-inline State sheared(const EngineSettings& settings) {
+inline State sheared(const SimulationSettings& settings) {
   static const Sheared start = pressed(600, 9000);
   return advanced(start, 700, settings);
 }
@@ -22,14 +22,14 @@ inline const Sheared& small_packing() {
   return packing;
 }
 
-inline State minimized(const EngineSettings& settings) {
+inline State minimized(const SimulationSettings& settings) {
   Simulation simulation(small_packing().cell, table_1(), small_packing().state, settings);
   minimize_enthalpy(simulation, {.force_tolerance = 1e-5});
   return simulation.state();
 }
 
 /// Deep overlaps take the closed form of the contact law; lanes beside them must not notice.
-inline State deep_and_shallow(const EngineSettings& settings) {
+inline State deep_and_shallow(const SimulationSettings& settings) {
   Sheared start{open_cell(), {}};
   std::vector<Eigen::Vector3d> positions;
   for (int i = 0; i < 40; ++i) {
@@ -38,14 +38,14 @@ inline State deep_and_shallow(const EngineSettings& settings) {
     positions.emplace_back(x + (i % 3 == 0 ? 0.5 : 0.99), y, 10);
   }
   start.state = at_rest(positions, start.cell);
-  EngineSettings any_overlap = settings;
+  SimulationSettings any_overlap = settings;
   any_overlap.limits.overlap = 1;
   return advanced(start, 200, any_overlap);
 }
 
 struct Golden {
   const char* name;
-  State (*compute)(const EngineSettings& settings);
+  State (*compute)(const SimulationSettings& settings);
   std::uint64_t fingerprint;
 };
 
@@ -57,7 +57,7 @@ inline constexpr std::array kGolden = {Golden{"sheared", sheared, 0x1d65753234f7
 inline bool is_reached(const Golden& golden) {
   bool all = true;
   for (const Kernels* kernels : kernels_here()) {
-    EngineSettings settings;
+    SimulationSettings settings;
     settings.kernels = kernels;
     const std::uint64_t found = fingerprint(golden.compute(settings));
     if (found == golden.fingerprint) continue;

@@ -118,7 +118,7 @@ std::vector<std::int32_t> found_row(const NeighbourLists& lists, const Walls& wa
 
 PROPERTY(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId, 300) {
   const Cell cell = any_cell();
-  const ListSettings settings = any_engine().lists;
+  const ListSettings settings = any_settings().lists;
   Walls walls(cell);
   const double moved = any_number("wall moved", 0, 0.3) * cell.top;
   const WallPose pose =
@@ -170,7 +170,7 @@ TEST(NeighbourLists, OfACollapsedCellAreTheSameInAllKernels) {
   }
   Scene scene;
   scene.stiffness = 1;
-  EngineSettings settings;
+  SimulationSettings settings;
   settings.lists.sort_memory = false;
   settings.kernels = &scalar_kernels();
   const Eigen::Matrix3Xd expected = Simulation(cell, scene, state, settings).forces().on_grain;
@@ -234,10 +234,10 @@ TEST(Grid, NeighboursOfEveryCellInStripsOfAnyWidth) {
                             std::min(dz, layers - dz) <= 1;
           if (near) expected.insert(other_at);
         }
-        std::array<CellRun, 9> runs;
-        const std::size_t count = grid.surrounding(static_cast<std::uint32_t>(at), runs);
+        std::array<CellRange, 9> ranges;
+        const std::size_t count = grid.surrounding(static_cast<std::uint32_t>(at), ranges);
         for (std::size_t r = 0; r < count; ++r) {
-          for (std::size_t p = runs[r].begin; p < runs[r].end; ++p) found.insert(p);
+          for (std::size_t p = ranges[r].begin; p < ranges[r].end; ++p) found.insert(p);
         }
         ASSERT_EQ(found, expected) << layers << " layers in strips of " << strip << ", " << at;
       }

@@ -47,11 +47,12 @@ inline Drive any_drive() {
   return drive;
 }
 
-/// Any instructions that the machine has, and ways to keep the lists.
-inline EngineSettings any_engine() {
-  EngineSettings settings;
+/// Any instructions that the machine has, one to three threads, and ways to keep the lists.
+inline SimulationSettings any_settings() {
+  SimulationSettings settings;
   settings.kernels = kernels_here()[*rc::gen::inRange<std::size_t>(0, kernels_here().size())
                                          .as("kernel, the fastest first")];
+  settings.threads = *rc::gen::element<std::size_t>(1, 1, 2, 3).as("threads");
   settings.limits.overlap = settings.limits.escape = 1;  // small cells driven hard
   settings.lists.inner_cutoff = any_number("inner cutoff", 1.02, 1.2);
   settings.lists.outer_cutoff = settings.lists.inner_cutoff + any_number("outer beyond", 0.02, 0.1);

@@ -15,13 +15,13 @@ TEST(Reproducible, TheBitsOfTheReferenceBuildOnEveryKernel) {
 // Any cutoffs and kernels, on random scenes: EqualsBruteForceOverAllPairs and
 // tests/provenance/restart_property_test.cpp.
 TEST(Reproducible, AnyThreadsAndAnyLists) {
-  EngineSettings two, three, always, unsorted;
+  SimulationSettings two, three, always, unsorted;
   two.threads = 2;
   three.threads = 3;
   always.lists.rebuild_every_step = true;
   unsorted.lists.sort_memory = false;
   for (const test::Golden& golden : test::kGolden) {
-    for (const EngineSettings& settings : {two, three, always, unsorted}) {
+    for (const SimulationSettings& settings : {two, three, always, unsorted}) {
       EXPECT_EQ(test::fingerprint(golden.compute(settings)), golden.fingerprint)
           << golden.name << ", " << settings.threads
           << " threads, rebuilt every step: " << settings.lists.rebuild_every_step

@@ -70,7 +70,7 @@ inline Sheared pressed(std::size_t grains, std::uint64_t steps,
   scene.state = fill_cell(scene.cell, geometry, 7);
   Scene forces = table_1();
   forces.gravity = 0;
-  EngineSettings settings;
+  SimulationSettings settings;
   settings.limits.overlap = 1;  // the wall comes down on loose grains
   Simulation simulation(scene.cell, forces, scene.state, settings);
   simulation.advance(Drive{}, steps);
@@ -81,7 +81,7 @@ inline Sheared pressed(std::size_t grains, std::uint64_t steps,
 
 /// The state after `steps` steps; by default a sheared cell under Table I.
 inline State advanced(const Sheared& start, std::uint64_t steps,
-                      const EngineSettings& settings = {}, const Scene& scene = table_1(),
+                      const SimulationSettings& settings = {}, const Scene& scene = table_1(),
                       const Drive& drive = {0.0833, 2000, 0}) {
   Simulation simulation(start.cell, scene, start.state, settings);
   simulation.advance(drive, steps);

@@ -15,7 +15,7 @@ namespace {
 using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 NumericalFailure failure_of(const Cell& cell, const Scene& scene, const State& state,
-                            std::uint64_t steps = 1, const EngineSettings& settings = {}) {
+                            std::uint64_t steps = 1, const SimulationSettings& settings = {}) {
   Simulation simulation(cell, scene, state, settings);
   return test::failure_of([&] { simulation.advance(Drive{}, steps); });
 }
@@ -43,7 +43,7 @@ TEST(Watchdog, StopsAGrainThatLeaves) {
   scene.time_step = 1e-5;
   State state = at_rest({{20, 1, 20}}, open_cell());
   state.velocity(1, 0) = -1e-3;  // slow enough for so weak a wall, but nothing stops it
-  EngineSettings settings;
+  SimulationSettings settings;
   settings.limits.overlap = 1e4;  // only the escape counts here
   const NumericalFailure failure = failure_of(open_cell(), scene, state, 20000, settings);
   EXPECT_TRUE(has(failure.quantity, "behind a wall"));
@@ -72,7 +72,7 @@ TEST(Watchdog, StopsOverlapsOverTheLimitBeforeTheFirstStep) {
     EXPECT_EQ(failure.limit, 0.1);
     EXPECT_EQ(failure.step, 0U);
   }
-  EngineSettings strict;
+  SimulationSettings strict;
   strict.limits.overlap = 1e-4;
   EXPECT_EQ(failure_of(open_cell(), table_1(), pair(0.999), 1, strict).limit, 1e-4);
   Simulation again(open_cell(), table_1(), pair(2));
@@ -109,12 +109,12 @@ TEST(Watchdog, StopsAnUnstableTimeStepThatDragHides) {
   const auto& start = packing.state;
   Scene scene = table_1();
   scene.time_step = 1.3 * 2 / std::sqrt(8 * scene.stiffness);
-  const auto energy_at_end = [&](const EngineSettings& settings) {
+  const auto energy_at_end = [&](const SimulationSettings& settings) {
     Simulation simulation(cell, scene, start, settings);
     simulation.advance(Drive{}, 20000);
     return 0.5 * simulation.state().velocity.squaredNorm() / 300;
   };
-  EngineSettings blind;
+  SimulationSettings blind;
   blind.limits.time_step = 1e9;
   const double kinetic = energy_at_end(blind);
   EXPECT_GT(kinetic, 1) << "of a packing that should be at rest";

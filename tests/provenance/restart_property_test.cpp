@@ -12,8 +12,8 @@ namespace {
 using namespace test;  // NOLINT(google-build-using-namespace): the helpers of these tests
 
 Checkpoint advanced(Checkpoint at, const Scene& scene, const Drive& drive, std::uint64_t until,
-                    const EngineSettings& engine) {
-  Simulation simulation(at.cell, scene, at.state, engine);
+                    const SimulationSettings& settings) {
+  Simulation simulation(at.cell, scene, at.state, settings);
   simulation.advance(drive, until - at.state.step);
   at.state = simulation.state();
   at.theta = tilt(drive, until).theta;
@@ -38,10 +38,10 @@ PROPERTY(Restart, AtAnyStepFromACheckpointGivesTheSameBits, 80) {
   std::sort(cuts.begin(), cuts.end());
   Checkpoint cut = start;
   for (const std::uint64_t step : cuts) {
-    cut = decode_checkpoint(encode_checkpoint(advanced(cut, scene, drive, step, any_engine())));
+    cut = decode_checkpoint(encode_checkpoint(advanced(cut, scene, drive, step, any_settings())));
   }
-  cut = advanced(cut, scene, drive, last, any_engine());
-  const Checkpoint whole = advanced(start, scene, drive, last, any_engine());
+  cut = advanced(cut, scene, drive, last, any_settings());
+  const Checkpoint whole = advanced(start, scene, drive, last, any_settings());
   RC_ASSERT(same_bits(cut.state, whole.state));
   RC_ASSERT(state_hash(cut) == state_hash(whole));
   RC_ASSERT(encode_checkpoint(cut) == encode_checkpoint(whole));

@@ -14,7 +14,7 @@ namespace {
 
 bool grows(Packing packing, double time_step, std::uint64_t steps) {
   packing.scene.time_step = time_step;
-  EngineSettings settings;
+  SimulationSettings settings;
   settings.limits.time_step = 1e9;  // do not stop for the time step
   Simulation simulation = simulate(packing, settings);
   try {
