@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "provenance/errors.hpp"
+#include "provenance/limits.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -131,6 +132,7 @@ void DerivedCache::put(std::span<const DerivedObject> objects) {
     sqlite::WriteTransaction lock(database);
     sqlite::Statement insert(database, "INSERT OR REPLACE INTO derived VALUES(?,?,?,?,?)");
     for (const DerivedObject& object : objects) {
+      if (object.content.size() > StoreLimits::value_bytes) continue;  // computed again every time
       const DerivedKey& key = object.key;
       insert.bind_all(key.checkpoint, key.measure, key.version, digest(key, object.content),
                       object.content);

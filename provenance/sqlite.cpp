@@ -69,7 +69,8 @@ Database::Database(const std::filesystem::path& file, Access access)
     inode_ = opened.st_ino;
   }
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);
-  sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, static_cast<int>(StoreLimits::value_bytes));
+  constexpr std::size_t beside = 64 << 10;  // the other values of a row, whose size is limited too
+  sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, static_cast<int>(StoreLimits::value_bytes + beside));
   sqlite3_limit(handle, SQLITE_LIMIT_ATTACHED, 0);
   // A forged schema could hold views and triggers that never end or that open other files.
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
@@ -172,7 +173,16 @@ void Statement::check(int code) const {
   if (code != SQLITE_OK) database_->fail(code, "read or write");
 }
 
+void Statement::require_fits(std::size_t bytes) const {
+  if (bytes <= StoreLimits::value_bytes) return;
+  throw UsageError(fmt::format(
+      "{}: a record of {} MiB was not added, since a store holds at most {} MiB in one; choose "
+      "fewer runs or checkpoints",
+      database_->name(), bytes >> 20, StoreLimits::value_bytes >> 20));
+}
+
 void Statement::bind(int parameter, std::string_view text) {
+  require_fits(text.size());
   check(sqlite3_bind_text64(handle_.get(), parameter, text.data() ? text.data() : "", text.size(),
                             SQLITE_TRANSIENT, SQLITE_UTF8));
 }
@@ -186,6 +196,7 @@ void Statement::bind(int parameter, double value) {
 }
 
 void Statement::bind(int parameter, std::span<const std::byte> blob) {
+  require_fits(blob.size());
   // A null pointer would bind NULL.
   check(sqlite3_bind_blob64(handle_.get(), parameter,
                             blob.empty() ? static_cast<const void*>("") : blob.data(), blob.size(),

@@ -123,6 +123,7 @@ class Statement {
  private:
   Database::Prepared prepared() const;
   void check(int code) const;
+  void require_fits(std::size_t bytes) const;
   void bind(int parameter, std::string_view text);
   void bind(int parameter, std::uint64_t value);
   void bind(int parameter, double value);

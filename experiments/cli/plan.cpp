@@ -229,7 +229,6 @@ nlohmann::json facts(const Line& line) {
           {"new", line.novelty},
           {"particle_steps_left", line.left.particle_steps},
           {"bytes_left", line.left.bytes},
-          {"most_particle_steps", most_particle_steps(*line.run, *line.stage)},
           {"memory_bytes", run_bytes(geometry(line.run->parameters))}};
 }
 

@@ -179,7 +179,7 @@ std::string caption(const FigureSummary& summary, const std::map<std::string, st
   std::string text =
       fmt::format("{} Runs: {}. Experiment {}, scale {}.",
                   caption_of(fmt::format("Figure {}{}", summary.name, title), tables),
-                  fmt::join(counts, ", "), summary.experiment, scale_name(summary.scale));
+                  fmt::join(counts, "; "), summary.experiment, scale_name(summary.scale));
   if (!selected.variants.empty()) {
     text += fmt::format(" Selected: {}.", fmt::join(selected.variants, ", "));
   }

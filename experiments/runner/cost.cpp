@@ -149,17 +149,6 @@ StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle
   return {grains * steps * left, bytes * files};
 }
 
-double most_particle_steps(const PlannedRun& run, const StageSpec& stage) {
-  const auto cycles = static_cast<double>(run.target_cycles);
-  double steps = cycles * static_cast<double>(cycle_steps(drive(run.parameters)));
-  if (stage.stage == Stage::prepare) {
-    steps = std::ceil(run.parameters.settle_time_limit_s / run.parameters.settle_time_step_s);
-  } else if (stage.stage == Stage::stiffen) {
-    steps = cycles * static_cast<double>(MinimizeSettings().most_evaluations);
-  }
-  return static_cast<double>(run.parameters.grains) * steps;
-}
-
 Rates::Rates(const std::vector<RunRecord>& runs) {
   for (const RunRecord& run : runs) {
     Sum& sum = sums_[engine_of(run.resolved)];

@@ -52,9 +52,6 @@ double checkpoints_left(std::string_view kind, const RunAsk& ask, double cycle);
 /// 18200; checkpoints by checkpoint_bytes.
 StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle);
 
-/// The most particle-steps that a whole stage can take before it ends or fails.
-double most_particle_steps(const PlannedRun& run, const StageSpec& stage);
-
 struct Rate {
   double particle_steps_per_second;  ///< of one core
   bool measured;                     ///< in the store's own runs; else assumed

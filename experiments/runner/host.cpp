@@ -6,9 +6,9 @@
 #include <Eigen/Core>
 #include <fstream>
 #include <string>
-#include <thread>
 
 #include "core/kernel.hpp"
+#include "core/machine.hpp"
 #include "experiments/runner/build_facts.hpp"
 
 namespace shearcell {
@@ -34,7 +34,7 @@ nlohmann::json host_facts() {
       {"host", system.nodename},
       {"system", std::string(system.sysname) + " " + system.release + " " + system.machine},
       {"cpu", cpu_model()},
-      {"cores", std::thread::hardware_concurrency()},
+      {"cores", usable_cores()},
       {"simd", kernels_here().front()->name},
       {"build",
        {{"version", kBuildVersion},

@@ -156,7 +156,7 @@ void NewFile::add(std::string_view text) {
 }
 
 TemporaryFolder::TemporaryFolder(const std::string& prefix) {
-  fs::path whole = prefix + std::string(kRandom, 'X');
+  fs::path whole = prefix + "XXXXXX";
   const bool named = whole.is_absolute();
   if (!named) {
     std::error_code missing;

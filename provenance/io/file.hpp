@@ -90,8 +90,6 @@ class NewFile {
 /// end of the object's life. The constructor throws std::system_error, which names the folder.
 class TemporaryFolder {
  public:
-  static constexpr std::size_t kRandom = 6;
-
   explicit TemporaryFolder(const std::string& prefix = "shearcell-");
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/threads.hpp"
+#include "provenance/limits.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {
@@ -48,6 +49,15 @@ TEST_F(DerivedCacheTest, ReturnsStoredResults) {
   EXPECT_EQ(get(key(1)), bytes_of("newer"));
   put(key(2), "");
   EXPECT_EQ(get(key(2)), bytes_of(""));
+}
+
+TEST_F(DerivedCacheTest, LeavesOutWhatIsTooLargeAndKeepsTheRest) {
+  put(key(1), "content");
+  put(key(2), std::string(StoreLimits::value_bytes, 'x'));
+  put(key(3), std::string(StoreLimits::value_bytes + 1, 'x'));
+  EXPECT_EQ(get(key(1)), bytes_of("content"));
+  EXPECT_NE(get(key(2)), std::nullopt);
+  EXPECT_EQ(get(key(3)), std::nullopt);
 }
 
 TEST_F(DerivedCacheTest, EveryPartOfTheKeyMatters) {

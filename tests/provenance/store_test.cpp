@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/threads.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/io/clock.hpp"
 #include "tests/provenance/samples.hpp"
 
@@ -248,6 +249,12 @@ TEST_F(StoreTest, KeepsTheNewestRecordOfEachFigure) {
   EXPECT_EQ(figures[0].name, "S2a");
   EXPECT_EQ(figures[0].provenance["inputs"][0], 3);
   EXPECT_EQ(store_.events("figure/S2a").size(), 2u);
+}
+
+TEST_F(StoreTest, RejectsARecordThatItCouldNotReadAgain) {
+  EXPECT_THROW(store_.record_figure("S2a", {{"inputs", std::string(65 << 20, 'x')}}), UsageError);
+  store_.record_figure("S2b", {{"inputs", {2}}});
+  EXPECT_EQ(open().figures().size(), 1u);
 }
 
 TEST_F(StoreTest, AcceptsRecordsFromManyThreadsAndProcesses) {

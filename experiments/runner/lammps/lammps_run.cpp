@@ -101,8 +101,7 @@ LammpsProgram find_lammps(std::size_t ranks) {
   if (ranks > 1 && !find_program("mpirun")) {
     throw ProgramError("there is no program mpirun; install the Debian package openmpi-bin");
   }
-  remove_abandoned_folders();
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const std::string text = help_of(*path, folder.path());
   const auto at = text.find(kTitle);
   if (at == text.npos) {

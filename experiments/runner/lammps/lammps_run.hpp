@@ -9,8 +9,8 @@
 #include <string>
 
 #include "experiments/runner/lammps/lammps_deck.hpp"
-#include "experiments/runner/lammps/scratch_folder.hpp"
 #include "provenance/io/child_process.hpp"
+#include "provenance/io/file.hpp"
 
 namespace shearcell {
 
@@ -24,8 +24,7 @@ std::string lammps_name();
 
 /// The program of that name, on PATH if it has no slash. Throws ProgramError when
 /// there is none, it lacks the package GRANULAR or does not answer, or when there is no mpirun for
-/// several ranks, and Interrupted when it does not answer and a stop is requested. Deletes the
-/// folders of killed runs.
+/// several ranks, and Interrupted when it does not answer and a stop is requested.
 LammpsProgram find_lammps(std::size_t ranks = 1);
 
 /// Steps between two checks of LAMMPS for a request to stop, and of this program for progress:
@@ -60,7 +59,7 @@ class LammpsRun {
   std::optional<State> take_frame();
   [[noreturn]] void fail(int code) const;
 
-  ScratchFolder folder_;
+  TemporaryFolder folder_;
   std::size_t grains_;
   std::size_t ranks_;
   std::uint64_t step_;
