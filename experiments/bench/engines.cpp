@@ -71,7 +71,7 @@ EngineMeans compare_means(const std::vector<std::size_t>& engines,
   EngineMeans result;
   for (const auto& [quantity, number] : quantities) {
     // phi, without interior grains, does not exist in every packing.
-    const auto lacks = [&](const std::vector<PackingNumbers>& packings) {
+    const auto lacks = [number = number](const std::vector<PackingNumbers>& packings) {
       return over(packings, number).runs < packings.size();
     };
     if (std::ranges::any_of(of_engine, lacks)) continue;

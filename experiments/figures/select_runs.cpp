@@ -84,9 +84,10 @@ void note_shortened(const std::vector<SelectedRun>& runs, std::vector<std::strin
   };
   std::map<ExperimentScale, Shortened> shortened;
   for (const auto& [run, m, newest] : runs) {
-    const bool asked_for_more = std::ranges::any_of(run.memberships, [&](const Membership& older) {
-      return place(older) == place(m) && older.target_cycles > m.target_cycles;
-    });
+    const bool asked_for_more =
+        std::ranges::any_of(run.memberships, [&m = m](const Membership& older) {
+          return place(older) == place(m) && older.target_cycles > m.target_cycles;
+        });
     if (!asked_for_more || run.cycle <= static_cast<double>(m.target_cycles)) continue;
     Shortened& found = shortened[experiment_scale(m)];
     ++found.runs;
