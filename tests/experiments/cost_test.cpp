@@ -176,10 +176,9 @@ TEST_F(CostOfARun, CountsTheTimeThatAWeakDragTakesToSettle) {
   EXPECT_NEAR(expected / steps, 1, 0.3);
   const PlannedRun undamped = only_run(tiny_manifest("  drag_kg_per_s: 0\n"));
   const Parameters& parameters = undamped.parameters;
-  EXPECT_NEAR(stage_cost(undamped, undamped.prepare, 0).particle_steps,
-              static_cast<double>(parameters.grains) * parameters.settle_time_limit_s /
-                  parameters.settle_time_step_s,
-              static_cast<double>(parameters.grains));
+  EXPECT_EQ(stage_cost(undamped, undamped.prepare, 0).particle_steps,
+            static_cast<double>(parameters.grains) *
+                std::ceil(parameters.settle_time_limit_s / parameters.settle_time_step_s));
 }
 
 TEST(Cost, UsesTheRateMeasuredInTheStore) {
