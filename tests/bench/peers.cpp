@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One packing for three programs: `bench_peers prepare DIR N` writes it for LAMMPS and LIGGGHTS,
-// `ours DIR N` times the same steps here, `compare DIR N` compares their positions with ours.
-// peers.sh runs them.
+// `ours DIR N` times the same steps here, `compare DIR N` compares the positions of every dump in
+// DIR with ours. peers.sh runs them.
 //
 // The scene: the rough cell of Table I, pressed, then upright with all walls fixed (a moving wall
 // of huge mass), random velocities, no gravity.
@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -21,6 +22,7 @@
 #include "core/simulation.hpp"
 #include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "experiments/runner/host.hpp"
 #include "provenance/io/clock.hpp"
 
 namespace shearcell {
@@ -88,15 +90,16 @@ void write_data(const Kicked& kicked, const fs::path& folder) {
   }
 }
 
-// An input deck; drag as b/m, and how many steps.
+// An input deck; drag as b/m, and how many steps. The command line gives the neighbour skin [d] and
+// the dump's name (-var skin 0.1 -var name LAMMPS).
 void write_input(const Kicked& kicked, const fs::path& folder, const std::string& name,
                  double drag_rate, std::uint64_t steps) {
   const double k = kicked.scene.stiffness;
   std::ofstream in(folder / (name + ".in"));
-  in << "units lj\natom_style sphere\nboundary f f p\nnewton off\ncomm_modify vel yes\n"
+  in << "units lj\natom_style sphere\nboundary f f p\nnewton on\ncomm_modify vel yes\n"
      << "read_data scene.data\ngroup grains type 1\ngroup walls type 2\n"
      << fmt::format("pair_style gran/hooke {:.17g} 0 0 0 0 0\npair_coeff * *\n", k)
-     << "neigh_modify exclude group walls walls delay 0 every 1 check yes\nneighbor 0.1 bin\n"
+     << "neigh_modify exclude group walls walls delay 0 every 1 check yes\nneighbor ${skin} bin\n"
      << fmt::format(
             "fix left grains wall/gran hooke {0:.17g} 0 0 0 0 0 xplane 0 {1:.17g}\n"
             "fix base grains wall/gran hooke {0:.17g} 0 0 0 0 0 yplane {2:.17g} {3:.17g}\n",
@@ -104,7 +107,7 @@ void write_input(const Kicked& kicked, const fs::path& folder, const std::string
      << "fix move grains nve/sphere\n";
   if (drag_rate > 0) in << fmt::format("fix drag grains viscous {:.17g}\n", drag_rate);
   in << fmt::format("timestep {:.17g}\nthermo 1000000\nrun {}\n", kicked.scene.time_step, steps)
-     << "dump out grains custom 1 " << name << ".dump id xu yu zu\n"
+     << "dump out grains custom 1 ${name}.dump id xu yu zu\n"
      << "dump_modify out sort id format float %.17g\nrun 0\n";
 }
 
@@ -113,7 +116,7 @@ void write_liggghts(const Kicked& kicked, const fs::path& folder, const std::str
                     double drag_rate, std::uint64_t steps) {
   std::ofstream in(folder / (name + ".in"));
   in << "units si\natom_style granular\nboundary f f p\nnewton off\ncommunicate single vel yes\n"
-     << "read_data scene.data\ngroup grains type 1\ngroup walls type 2\nneighbor 0.1 bin\n"
+     << "read_data scene.data\ngroup grains type 1\ngroup walls type 2\nneighbor ${skin} bin\n"
      << "neigh_modify delay 0 every 1 check yes exclude group walls walls\n";
   for (const char* property : {"kn", "kt", "gamman", "gammat"}) {
     const double value = std::string(property) == "kn" ? kicked.scene.stiffness : 0;
@@ -134,7 +137,7 @@ void write_liggghts(const Kicked& kicked, const fs::path& folder, const std::str
   in << "fix move grains nve/sphere\n";
   if (drag_rate > 0) in << fmt::format("fix drag grains viscous {:.17g}\n", drag_rate);
   in << fmt::format("timestep {:.17g}\nthermo 1000000\nrun {}\n", kicked.scene.time_step, steps)
-     << "dump out grains custom 1 " << name << ".dump id x y z\n"
+     << "dump out grains custom 1 ${name}.dump id x y z\n"
      << "dump_modify out sort id format \"%d %.17g %.17g %.17g\"\nrun 0\n";
 }
 
@@ -160,19 +163,24 @@ double farthest(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b, double dep
 }
 
 void compare(const Kicked& kicked, const fs::path& folder) {
-  const auto distance = [&](const std::string& name) {
-    Simulation simulation = simulate(kicked, 0);
-    simulation.advance(Drive{}, kAccuracySteps);
-    return farthest(simulation.state().position,
-                    read_dump(folder / (name + ".dump"), kicked.state.position.cols()),
-                    kicked.cell.depth);
-  };
-  const double lammps = distance("free");
-  const double liggghts = distance("liggghts-free");
-  fmt::print("largest distance from ours after {} steps [d]\n", kAccuracySteps);
-  fmt::print("  LAMMPS, no drag      {:.3g}   (must be below 1e-9)\n", lammps);
-  fmt::print("  LIGGGHTS, no drag    {:.3g}   (must be below 1e-9)\n", liggghts);
-  if (!(lammps < 1e-9 && liggghts < 1e-9)) throw std::runtime_error("the trajectories disagree");
+  Simulation simulation = simulate(kicked, 0);
+  simulation.advance(Drive{}, kAccuracySteps);
+  std::set<fs::path> dumps;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".dump") dumps.insert(entry.path());
+  }
+  if (dumps.empty()) throw std::runtime_error(folder.string() + " has no dumps to compare");
+  fmt::print("largest distance from ours after {} steps without drag [d] (must be below 1e-9)\n",
+             kAccuracySteps);
+  bool agree = true;
+  for (const fs::path& dump : dumps) {
+    const double distance =
+        farthest(simulation.state().position, read_dump(dump, kicked.state.position.cols()),
+                 kicked.cell.depth);
+    fmt::print("  {:<22} {:.3g}\n", dump.stem().string(), distance);
+    agree = agree && distance < 1e-9;
+  }
+  if (!agree) throw std::runtime_error("the trajectories disagree");
 }
 
 void time_ours(const Kicked& kicked) {
@@ -189,6 +197,11 @@ int run(int argc, char** argv) {
   const fs::path folder = argv[2];
   const Kicked kicked = prepare(std::stoul(argv[3]));
   if (what == "prepare") {
+    const nlohmann::json host = host_facts();
+    const nlohmann::json& build = host["build"];
+    fmt::print("{}\nshearcell: {}, {}, {}\n", host["cpu"].get<std::string>(),
+               build["compiler"].get<std::string>(), build["flags"].get<std::string>(),
+               host["simd"].get<std::string>());
     write_data(kicked, folder);
     write_input(kicked, folder, "free", 0, kAccuracySteps);
     write_input(kicked, folder, "speed", 64, kSpeedSteps);
