@@ -51,7 +51,11 @@ if [ $native = yes ]; then
   compiled=${XDG_CACHE_HOME:-$HOME/.cache}/shearcell-peers/lammps-$key
   if [ ! -x "$compiled" ]; then
     echo "compiling LAMMPS $version" >&2
-    compile_lammps >compile.log 2>&1 || { tail -n 30 compile.log >&2; exit 1; }
+    compile_lammps >compile.log 2>&1 || {
+      tail -n 30 compile.log >&2
+      echo "peers.sh: LAMMPS $version could not be fetched and compiled (see above); without --native it need not be" >&2
+      exit 1
+    }
     mkdir -p "$(dirname "$compiled")"
     cp lammps-*/src/lmp_serial "$compiled.part"
     mv "$compiled.part" "$compiled"
