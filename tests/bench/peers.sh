@@ -53,7 +53,7 @@ if [ $native = yes ]; then
     echo "compiling LAMMPS $version" >&2
     compile_lammps >compile.log 2>&1 || {
       tail -n 30 compile.log >&2
-      echo "peers.sh: LAMMPS $version could not be fetched and compiled (see above); without --native it need not be" >&2
+      echo "peers.sh: LAMMPS $version could not be fetched or compiled; the end of the log is above" >&2
       exit 1
     }
     mkdir -p "$(dirname "$compiled")"
