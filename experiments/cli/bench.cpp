@@ -29,8 +29,7 @@ std::vector<Fact> facts(const bench::SpeedResult& r) {
           {"slowest", r.slowest_rate, "range",
            fmt::format("{:.0f}-{:.0f}", r.slowest_rate, r.fastest_rate)},
           {"fastest", r.fastest_rate},
-          {"arithmetic_limit", r.arithmetic_limit, "arith", digits(r.arithmetic_limit, 0)},
-          {"memory_limit", r.memory_limit, "mem", digits(r.memory_limit, 0)},
+          {"limit", r.limit, "limit", digits(r.limit, 0)},
           {"share_forces", r.force_share, "force%", percent(r.force_share)},
           {"share_integration", r.integration_share, "integ%", percent(r.integration_share)},
           {"share_walls", r.wall_share, "wall%", percent(r.wall_share)},
@@ -39,8 +38,7 @@ std::vector<Fact> facts(const bench::SpeedResult& r) {
           {"bytes_per_grain", r.bytes_per_grain, "B/grain", digits(r.bytes_per_grain, 0)},
           {"steps_per_search", r.steps_per_search},
           {"steps_per_prune", r.steps_per_prune},
-          {"vector_operations_per_particle_step", r.work.vector_operations},
-          {"bytes_per_particle_step", r.work.bytes},
+          {"multiplications_per_particle_step", r.multiplications},
           {"state_hash", r.state_hash}};
 }
 
@@ -58,9 +56,10 @@ void print_speed(const std::vector<bench::SpeedResult>& results, std::size_t rep
   }
   print_table(header, rows);
   fmt::print(
-      "M/s: million particle-steps/s, median of {}. arith, mem: what this machine's vector units "
-      "and\nits caches or memory would allow. Shares of one thread's time; search: building the "
-      "outer\nneighbour list, prune: the inner one.\n",
+      "M/s: million particle-steps/s, median of {}. limit: M/s if the units that multiply were "
+      "never "
+      "idle.\nShares of one thread's time; search: building the outer neighbour list, prune: the "
+      "inner one.\n",
       repeats);
 }
 
