@@ -20,56 +20,63 @@ namespace shearcell {
 namespace HWY_NAMESPACE {
 #if SHEARCELL_HAS_SIMD
 
-// contact_factor(s) for s >= 0; kDeep: also for s beyond the range of the series.
-template <bool kDeep>
-HWY_INLINE V contact_factors(V s) {
+// contact_factor(s) up to the end of the series.
+HWY_INLINE V series_factors(V s) {
   V series = hn::Set(kD, kContactSeries.back());
   for (std::size_t n = kContactSeries.size() - 1; n-- > 0;) {
     series = hn::MulAdd(series, s, hn::Set(kD, kContactSeries[n]));
   }
-  series = hn::Mul(s, series);
-  if constexpr (!kDeep) return series;
+  return hn::Mul(s, series);
+}
+
+// contact_factor(s), given `series` for s up to the end of the series.
+HWY_INLINE V exact_beyond(V s, V series) {
   const V one = hn::Set(kD, 1.0);
   const V exact = hn::Sub(hn::Div(one, hn::Sqrt(hn::Sub(one, s))), one);
   return hn::IfThenElse(hn::Gt(s, hn::Set(kD, kSeriesEnd)), exact, series);
 }
 
-// Adds (1/r - 1) dr over the touching neighbours; lane l has its k-th at list[k * kLanes + l].
-// Returns the largest s.
-template <bool kSeam, bool kDeep>
-HWY_INLINE V add_all(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
-                     const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,
-                     V per_depth) {
+// Neighbours of a lane whose factors are computed side by side: more need more than 16 registers.
+constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 2 : 1;
+
+// Adds (1/r - 1) dr over the touching ones of kCount neighbours of each lane, one after the other.
+template <bool kSeam, std::size_t kCount>
+HWY_INLINE void add_slots(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
+                          const std::int32_t* HWY_RESTRICT list, V depth, V per_depth) {
+  Vectors dr[kCount];
+  V s[kCount], factor[kCount];
   V deepest = hn::Zero(kD);
-  for (const std::int32_t* const end = list + slots * kLanes; list != end; list += kLanes) {
+  for (std::size_t k = 0; k < kCount; ++k) {
     V margin;
     const Vectors other = load_rows(
-        rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{list[lane]}; }, margin);
-    const Vectors dr = separation<kSeam>(own, other, depth, per_depth);
-    V s = hn::NegMulAdd(dr.z, dr.z,
-                        hn::NegMulAdd(dr.y, dr.y, hn::NegMulAdd(dr.x, dr.x, hn::Set(kD, 1.0))));
-    s = hn::Max(s, hn::Zero(kD));  // not touching: the factor is 0
-    if constexpr (!kDeep) deepest = hn::Max(deepest, s);
-    const V factor = contact_factors<kDeep>(s);
-    sum.x = hn::MulAdd(factor, dr.x, sum.x);
-    sum.y = hn::MulAdd(factor, dr.y, sum.y);
-    sum.z = hn::MulAdd(factor, dr.z, sum.z);
+        rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{list[k * kLanes + lane]}; },
+        margin);
+    dr[k] = separation<kSeam>(own, other, depth, per_depth);
+    const auto& [x, y, z] = dr[k];
+    s[k] = hn::NegMulAdd(z, z, hn::NegMulAdd(y, y, hn::NegMulAdd(x, x, hn::Set(kD, 1.0))));
+    s[k] = hn::Max(s[k], hn::Zero(kD));  // not touching: the factor is 0
+    factor[k] = series_factors(s[k]);
+    deepest = k == 0 ? s[k] : hn::Max(deepest, s[k]);
   }
-  return deepest;
+  if (HWY_UNLIKELY(!hn::AllFalse(kD, hn::Gt(deepest, hn::Set(kD, kSeriesEnd))))) {
+    for (std::size_t k = 0; k < kCount; ++k) factor[k] = exact_beyond(s[k], factor[k]);
+  }
+  for (std::size_t k = 0; k < kCount; ++k) {
+    sum.x = hn::MulAdd(factor[k], dr[k].x, sum.x);
+    sum.y = hn::MulAdd(factor[k], dr[k].y, sum.y);
+    sum.z = hn::MulAdd(factor[k], dr[k].z, sum.z);
+  }
 }
 
-// Overlaps beyond the range of the series are rare: a block that has one is summed again.
+// Adds (1/r - 1) dr over the touching neighbours; lane l has its k-th at list[k * kLanes + l].
 template <bool kSeam>
 HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
                              const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,
                              V per_depth) {
-  Vectors series = sum;
-  const V deepest = add_all<kSeam, false>(series, own, rows, list, slots, depth, per_depth);
-  if (HWY_LIKELY(hn::AllFalse(kD, hn::Gt(deepest, hn::Set(kD, kSeriesEnd))))) {
-    sum = series;
-  } else {
-    add_all<kSeam, true>(sum, own, rows, list, slots, depth, per_depth);
+  for (; slots >= kSlots; slots -= kSlots, list += kSlots * kLanes) {
+    add_slots<kSeam, kSlots>(sum, own, rows, list, depth, per_depth);
   }
+  if (slots > 0) add_slots<kSeam, 1>(sum, own, rows, list, depth, per_depth);
 }
 
 HWY_INLINE void touch_plane(Vectors& sum, const Vectors& own, const WallPlane& plane) {

@@ -35,29 +35,21 @@ struct Vectors {
 };
 
 #if HWY_TARGET != HWY_NEON
-// Rows {x, y, z, margin} of kLanes grains, transposed. `a` .. `d` hold rows 0 .. 3, and in their
-// upper halves, where there are any, rows 4 .. 7.
-HWY_INLINE Vectors transpose(V a, V b, V c, V d, V& margin) {
-  const V x_z_low = hn::InterleaveLower(kD, a, b);
-  const V x_z_high = hn::InterleaveLower(kD, c, d);
-  const V y_m_low = hn::InterleaveUpper(kD, a, b);
-  const V y_m_high = hn::InterleaveUpper(kD, c, d);
-  margin = hn::OddEvenBlocks(y_m_high, hn::SwapAdjacentBlocks(y_m_low));
-  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(x_z_high), x_z_low),
-          hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y_m_high), y_m_low),
-          hn::OddEvenBlocks(x_z_high, hn::SwapAdjacentBlocks(x_z_low))};
+// The even or the odd 128-bit blocks of `low`, then those of `high`.
+template <bool kOdd>
+HWY_INLINE V half_of_blocks(V low, V high) {
+#if HWY_TARGET == HWY_AVX3
+  return V{_mm512_shuffle_f64x2(low.raw, high.raw, kOdd ? 0xDD : 0x88)};
+#else
+  return kOdd ? hn::ConcatUpperUpper(kD, high, low) : hn::ConcatLowerLower(kD, high, low);
+#endif
 }
-
 #endif
 
 // Loads kLanes rows; lane l takes the row at rows + offset(l).
 template <class Offset>
 HWY_INLINE Vectors load_rows(const double* HWY_RESTRICT rows, Offset&& offset, V& margin) {
-#if HWY_TARGET == HWY_AVX3
-  const auto row = [&](std::size_t lane) HWY_ATTR { return hn::LoadU(kHalf, rows + offset(lane)); };
-  return transpose(hn::Combine(kD, row(4), row(0)), hn::Combine(kD, row(5), row(1)),
-                   hn::Combine(kD, row(6), row(2)), hn::Combine(kD, row(7), row(3)), margin);
-#elif HWY_TARGET == HWY_NEON
+#if HWY_TARGET == HWY_NEON
   const double* const a = rows + offset(0);
   const double* const b = rows + offset(1);
   const V xy_a = hn::LoadU(kD, a), z_a = hn::LoadU(kD, a + 2);
@@ -66,8 +58,19 @@ HWY_INLINE Vectors load_rows(const double* HWY_RESTRICT rows, Offset&& offset, V
   return {hn::InterleaveLower(kD, xy_a, xy_b), hn::InterleaveUpper(kD, xy_a, xy_b),
           hn::InterleaveLower(kD, z_a, z_b)};
 #else
-  return transpose(hn::LoadU(kD, rows + offset(0)), hn::LoadU(kD, rows + offset(1)),
-                   hn::LoadU(kD, rows + offset(2)), hn::LoadU(kD, rows + offset(3)), margin);
+#if HWY_TARGET == HWY_AVX3
+  const auto row = [&](std::size_t lane) HWY_ATTR { return hn::LoadU(kHalf, rows + offset(lane)); };
+  const V a = hn::Combine(kD, row(2), row(0)), b = hn::Combine(kD, row(3), row(1));
+  const V c = hn::Combine(kD, row(6), row(4)), d = hn::Combine(kD, row(7), row(5));
+#else
+  const auto row = [&](std::size_t lane) HWY_ATTR { return hn::LoadU(kD, rows + offset(lane)); };
+  const V a = row(0), b = row(1), c = row(2), d = row(3);
+#endif
+  const V x_z_low = hn::InterleaveLower(kD, a, b), x_z_high = hn::InterleaveLower(kD, c, d);
+  const V y_m_low = hn::InterleaveUpper(kD, a, b), y_m_high = hn::InterleaveUpper(kD, c, d);
+  margin = half_of_blocks<true>(y_m_low, y_m_high);
+  return {half_of_blocks<false>(x_z_low, x_z_high), half_of_blocks<false>(y_m_low, y_m_high),
+          half_of_blocks<true>(x_z_low, x_z_high)};
 #endif
 }
 

@@ -141,16 +141,10 @@ void measure_shares(const Packing& made, const Kernels& kernels, std::uint64_t s
 }
 
 // After measure_shares.
-void measure_limits(std::size_t lanes, SpeedResult& result) {
-  const double slots = times.slots / times.blocks;
-  const StepWork work = result.work = step_work(lanes, slots);
-  const auto threads = static_cast<double>(result.threads);
-  result.arithmetic_limit = 1e-6 * threads * peak_operations(lanes) / work.vector_operations;
-  // An array larger than any cache is read at the same speed.
-  constexpr double kMostRead = 1 << 28;
-  const double arrays = work.footprint * static_cast<double>(result.grains);
-  const auto read = static_cast<std::size_t>(std::min(arrays, kMostRead));
-  result.memory_limit = 1e-6 * threads * read_bandwidth(read) / work.bytes;
+void measure_limit(std::size_t lanes, SpeedResult& result) {
+  result.multiplications = multiplications(lanes, times.slots / times.blocks);
+  result.limit = 1e-6 * static_cast<double>(result.threads) * peak_multiplications(lanes) /
+                 result.multiplications;
 }
 
 void measure_rate(const Packing& made, const SimulationSettings& settings,
@@ -199,7 +193,7 @@ void measure_size(std::size_t grains, const SpeedOptions& options,
                            static_cast<double>(grains * threads);
       measure_shares(made, *kernels,
                      std::max<std::uint64_t>(400, static_cast<std::uint64_t>(steps)), result);
-      measure_limits(kernels->lanes, result);
+      measure_limit(kernels->lanes, result);
       results.push_back(result);
     }
   }

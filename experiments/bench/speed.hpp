@@ -9,30 +9,14 @@
 
 namespace shearcell::bench {
 
-// Upper limits of the kernel's speed on this machine: its counted operations at the measured peak
-// of the vector units, and its counted bytes at the measured read bandwidth.
-//
-// Peak: a loop of independent fused multiply-adds, additions and shuffles of doubles in registers,
-// 4 : 2 : 3 as in the kernel. Bandwidth: a search through an array as large as those that a time
-// step reads, so from the cache that holds it, or from memory. Both are the best of several short
-// runs on one core.
+/// Multiplications and fused multiply-adds of one particle-step, in vectors of `lanes` grains with
+/// `slots` neighbour slots per block. Only those that the kernel cannot do without are counted:
+/// none for walls, the seam in z, or the fluid.
+double multiplications(std::size_t lanes, double slots);
 
-/// The least work of one particle-step.
-struct StepWork {
-  double vector_operations = 0;  ///< arithmetic and shuffles; loads and stores are not counted
-  double bytes = 0;              ///< read and written in arrays over grains; each row counts once
-  double footprint = 0;  ///< bytes of these arrays; the velocity is written where it was read
-};
-
-/// Mean work of a kernel with `lanes` grains per vector and `slots` neighbour slots per block.
-StepWork step_work(std::size_t lanes, double slots);
-
-/// Vector operations per second in vectors of `lanes` doubles: 8, 4 or 2 as kernels_here() offers
-/// them, 1 for scalars.
-double peak_operations(std::size_t lanes);
-
-/// Bytes per second read from an array of `bytes`.
-double read_bandwidth(std::size_t bytes);
+/// Fused multiply-adds per second of one core, in vectors of `lanes` doubles: 8, 4 or 2 as
+/// kernels_here() offers them, 1 for scalars. The best of several short runs that do nothing else.
+double peak_multiplications(std::size_t lanes);
 
 struct SpeedOptions {
   std::vector<std::size_t> sizes = {600, 2000, 5200, 18200, 100000};
@@ -54,10 +38,10 @@ struct SpeedResult {
   double search_share = 0, prune_share = 0;  ///< of the outer list, of the inner list
   double steps_per_search = 0, steps_per_prune = 0;
   double bytes_per_grain = 0;
-  /// The least work of a particle-step, and the rates that this machine's vector units and its
-  /// caches or memory allow: measured on one core and multiplied by the threads.
-  StepWork work = {};
-  double arithmetic_limit = 0, memory_limit = 0;
+  double multiplications = 0;  ///< per particle-step
+  /// The rate if the multiplication units were never idle: measured on one core and multiplied by
+  /// the threads. No kernel with these operations can exceed it.
+  double limit = 0;
   std::string state_hash = {};  ///< after 200 steps; the same for all results of one size
 };
 

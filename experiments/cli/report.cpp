@@ -93,9 +93,6 @@ void add_report(CLI::App& app, Context& context) {
              "Limit for all packings in 3D; fewer checkpoints are taken where they would not fit",
              "MB", 0, 1000)
       ->capture_default_str();
-  sub->add_option("--accuracy", command->report.accuracy,
-                  "Folder that `bench accuracy --out` wrote: adds its diagrams")
-      ->type_name("DIR");
   sub->add_flag_callback(
          "--drawings", [command] { command->report.interactive = false; },
          "Static figures drawn by gnuplot; no JavaScript, no packings")
@@ -108,7 +105,7 @@ store change.
 Examples:
   shearcell report --out report.html
   shearcell report --run 3f9a --frames 200 --out one-run.html
-  shearcell report --experiment drag --scale desk --accuracy accuracy --out desk.html)");
+  shearcell report --experiment drag --scale desk --out desk.html)");
   sub->callback([command, &context] { report(*command, context); });
 }
 

@@ -80,7 +80,6 @@ std::string overview_html(const ReportData& data) {
                      "\n<p class=\"small\">";
   if (data.interactive) html += "<a href=\"#compare\">Two variants side by side</a> · ";
   if (!data.packings.runs.empty()) html += "<a href=\"#packings\">Packings in 3D</a> · ";
-  if (!data.accuracy.empty()) html += "<a href=\"#accuracy\">Error against cost</a> · ";
   return html +
          "<a href=\"#runs\">Runs and manifests</a> · <a href=\"#about\">About this file</a></p>"
          "</nav>\n";
@@ -116,16 +115,6 @@ std::string across_html(const ReportData& data) {
   return "<section id=\"across\">\n<h2>All experiments together</h2>\n" + html + "</section>\n";
 }
 
-std::string accuracy_html(const ReportData& data) {
-  if (data.accuracy.empty()) return "";
-  std::string html =
-      "<section id=\"accuracy\">\n<h2>Error against cost</h2>\n<p class=\"small\">Measured by "
-      "<code>shearcell bench accuracy</code>, not taken from this store.</p>\n"
-      "<div class=\"panels\">\n";
-  for (const ReportPanel& panel : data.accuracy) html += panel_html(data, panel);
-  return html + "</div>\n</section>\n";
-}
-
 std::string about_html(const ReportData& data) {
   std::string html =
       "<section id=\"about\">\n<h2>About this file</h2>\n<p>This file is complete: it fetches "
@@ -155,7 +144,6 @@ std::string data_html(const ReportData& data) {
     }
   };
   for (const ReportFigure& figure : data.figures) add(figure.panels);
-  add(data.accuracy);
   for (const ReportExperiment& experiment : data.experiments) {
     experiments.push_back(
         {{"experiment", experiment.manifest.experiment}, {"runs", experiment.traces}});
@@ -180,8 +168,8 @@ std::string report_page(const ReportData& data) {
   for (const ReportExperiment& experiment : data.experiments) {
     html += experiment_html(data, experiment);
   }
-  html += across_html(data) + compare_html(data) + packings_html(data) + accuracy_html(data) +
-          runs_html(data) + about_html(data);
+  html += across_html(data) + compare_html(data) + packings_html(data) + runs_html(data) +
+          + about_html(data);
   return html + "</main>\n" + data_html(data) + "</body>\n</html>\n";
 }
 

@@ -228,7 +228,6 @@ ReportData collect_report(const Store& store, const ReportOptions& options) {
   add_figures(store, options, data);
   add_runs(store, data);
   add_run_tables(store, options, data);
-  if (options.accuracy) data.accuracy = read_accuracy_charts(*options.accuracy);
   if (data.interactive) {
     data.packings = collect_packings(store, names, options.runs, options.packings, options.workers,
                                      options.encoded);

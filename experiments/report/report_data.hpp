@@ -2,7 +2,6 @@
 // The data of a report.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -21,8 +20,6 @@ namespace shearcell {
 
 struct ReportOptions {
   RunSelection runs;  ///< for figures, tables and packings; a figure has one scale
-  /// Folder that `bench accuracy --out` wrote; adds a section.
-  std::optional<std::filesystem::path> accuracy;
   PackingChoice packings;
   bool interactive = true;  ///< false: drawings only, as in a build without Node
   std::size_t workers = 1;
@@ -72,7 +69,6 @@ struct ReportData {
   std::vector<ReportFigure> figures;       ///< of `experiments`, and of all experiments together
   std::map<std::string, RunLineage> runs;  ///< by id
   std::map<std::string, ManifestText> manifests;
-  std::vector<ReportPanel> accuracy;
   Packings packings;
   bool interactive = false;
   std::string drawing_trouble;      ///< why a figure has no drawing
@@ -81,13 +77,7 @@ struct ReportData {
 };
 
 /// Collects the data. Writes nothing but measures into derived.sqlite. Throws NotFound if the store
-/// has no experiment or a run of `packings.runs` is unknown, and as read_accuracy_charts().
+/// has no experiment or a run of `packings.runs` is unknown.
 ReportData collect_report(const Store& store, const ReportOptions& options);
-
-/// A panel for each CSV file that `bench accuracy --out` wrote, by name, with the chart
-/// NAME.chart.json and the drawing NAME.svg if they exist. Files are not trusted. Throws UsageError
-/// for a file that is unreadable or too large, a malformed chart, and a folder without CSV files or
-/// with too many.
-std::vector<ReportPanel> read_accuracy_charts(const std::filesystem::path& folder);
 
 }  // namespace shearcell

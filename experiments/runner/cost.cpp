@@ -14,8 +14,7 @@ namespace shearcell {
 namespace {
 
 // Particle-steps/s assumed until the store has measured them: rough cells on one core of an EPYC
-// (Zen 4), from `bench speed`; LAMMPS 29 Sep 2021 with one process, from `bench engines`
-// (SCALING.md).
+// (Zen 4), from `bench speed`; LAMMPS 29 Sep 2021 with one process (SCALING.md).
 struct MeasuredRate {
   double grains, rate;
 };

@@ -18,7 +18,7 @@ namespace shearcell {
 
 /// Memory [bytes] that a run may need per grain: grains, lists, wall grains, and a checkpoint while
 /// it is written. Measured: 405 to 460 under shear (`bench speed`), 710 while 100,000 grains settle
-/// (`bench engines --settle`).
+/// (SCALING.md).
 inline constexpr double kRunBytesPerGrain = 750;
 
 /// Memory [bytes] that a whole run may need.

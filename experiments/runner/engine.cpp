@@ -125,7 +125,7 @@ std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning
 std::vector<std::string> lammps_caveats() {
   return {
       "LAMMPS computes the shear alone; packings are placed and settled by this program, and "
-      "shared. bench engines --settle has LAMMPS settle the same grains.",
+      "shared.",
       "Results equal ours up to rounding; the bits differ, also between numbers of processes.",
       "These runs have ids of their own. verify --replay, regenerate and prune leave them out.",
       "The watchdog sees their checkpoints, not every 1024th step; a grain whose centre reaches a "

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random numbers, trigonometry, tilt and contact law: the arithmetic below everything else.
+// Random numbers, trigonometry, tilt, walls and contact law: the arithmetic below everything else.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "core/cell.hpp"
 #include "core/contact.hpp"
 #include "core/drive.hpp"
 #include "core/random.hpp"
@@ -74,6 +75,63 @@ TEST(Tilt, EndsEachCycleUprightAndRestsInThePause) {
     for (std::uint64_t step = 100; step < 140; ++step) {
       EXPECT_EQ(tilt(drive, 140 * cycle + step).theta, 0);
       EXPECT_EQ(tilt(drive, 140 * cycle + step).rate, 0);
+    }
+  }
+  for (std::uint64_t step = 0; step < 100; ++step) {
+    const double turned = 2 * std::numbers::pi * static_cast<double>(step) / 100;
+    EXPECT_NEAR(tilt(drive, 140 + step).theta, 0.0833 * std::sin(turned), 1e-16) << step;
+    EXPECT_NEAR(tilt(drive, 140 + step).rate, 0.0833 * std::cos(turned), 1e-16) << step;
+  }
+}
+
+// The walls tilt about the top one, which is fixed in x; the bottom one moves as one body.
+TEST(WallPose, IsThatOfASimpleShear) {
+  for (const MovingWall moving : {MovingWall::bottom, MovingWall::top}) {
+    Cell cell{.width = 7, .depth = 5, .bottom = 1, .top = 9, .moving = moving};
+    for (const WallSide side : {WallSide::left, WallSide::right, WallSide::bottom, WallSide::top}) {
+      cell.wall_grains.push_back({side, {0.25, 3, 2}});
+    }
+    for (const double theta : {-0.5, -1e-3, 0.0, 1e-9, 0.0833, 0.4}) {
+      SCOPED_TRACE(theta);
+      const double height = moving == MovingWall::bottom ? 1.75 : 8.5;
+      const double bottom = moving == MovingWall::bottom ? height : 1;
+      const double top = moving == MovingWall::top ? height : 9;
+      const WallPose pose = wall_pose(cell, theta, height);
+      EXPECT_NEAR(pose.sin_theta, std::sin(theta), 1e-15);
+      EXPECT_NEAR(pose.cos_theta, std::cos(theta), 1e-15);
+      EXPECT_NEAR(pose.tan_theta, std::tan(theta), 1e-15);
+      EXPECT_EQ(pose.bottom, bottom);
+      EXPECT_EQ(pose.top, top);
+      const auto displaced = [&](double y) { return (y - top) * std::tan(theta); };
+      const Eigen::Vector3d right[] = {{0.25 + displaced(3), 3, 2},
+                                       {0.25 + displaced(3), 3, 2},
+                                       {0.25 + displaced(bottom), 3 + bottom - 1, 2},
+                                       {0.25, 3 + top - 9, 2}};
+      const Eigen::Matrix3Xd grains = wall_grain_positions(cell, pose);
+      for (Eigen::Index i = 0; i < 4; ++i) EXPECT_LT((grains.col(i) - right[i]).norm(), 1e-14) << i;
+      const std::array planes = wall_planes(cell, pose);
+      for (const double y : {0.0, 2.5, 11.0}) {
+        EXPECT_NEAR(distance_to(planes[0], displaced(y), y), 0, 1e-14);
+        EXPECT_NEAR(distance_to(planes[1], 7 + displaced(y), y), 0, 1e-14);
+        EXPECT_GT(distance_to(planes[0], displaced(y) + 1, y), 0.8);
+        EXPECT_GT(distance_to(planes[1], 6 + displaced(y), y), 0.8);
+        EXPECT_EQ(distance_to(planes[2], 3, y), y - bottom);
+        EXPECT_EQ(distance_to(planes[3], 3, y), top - y);
+      }
+    }
+  }
+}
+
+TEST(NearestImage, IsTheSmallestOfAll) {
+  for (const double depth : {3.0, 5.7, 1e4}) {
+    for (int i = -300; i <= 300; ++i) {
+      const double dz = depth * (0.01 * i + 1e-3);
+      double smallest = dz;
+      for (int image = -4; image <= 4; ++image) {
+        const double one = dz + image * depth;
+        if (std::fabs(one) < std::fabs(smallest)) smallest = one;
+      }
+      EXPECT_NEAR(nearest_image(dz, depth, 1 / depth), smallest, 1e-14 * depth) << dz;
     }
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time loop against closed forms. More of them: experiments/bench/accuracy and stability, which
-// tests/experiments runs.
+// The time loop against closed forms. More of them: tests/hard and
+// tests/bench/closed_forms.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>

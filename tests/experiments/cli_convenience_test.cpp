@@ -216,40 +216,9 @@ TEST_F(Convenience, WatchEndsWhenNoProgramWorks) {
   expect_refused({"status", "--watch", "0"}, {"from 0.1 to 86400"});
 }
 
-// `bench accuracy` as a user runs it, and what `plan` prints about time steps.
-class BenchAccuracy : public ProgramTest {};
+class TimeSteps : public ProgramTest {};
 
-TEST_F(BenchAccuracy, PrintsJsonAndWritesTablesAndFigures) {
-  const nlohmann::json all = json({"bench", "accuracy", "--quick", "--json", "--out", "made/here"});
-  EXPECT_EQ(all.at("quick"), true);
-  std::set<std::string> names;
-  for (const nlohmann::json& section : all.at("sections")) {
-    const std::string name = section.at("name");
-    names.insert(name);
-    EXPECT_FALSE(section.at("rows").empty()) << name;
-    EXPECT_TRUE(std::filesystem::exists(path("made/here/" + name + ".csv"))) << name;
-    EXPECT_TRUE(std::filesystem::exists(path("made/here/" + name + ".svg"))) << name;
-  }
-  EXPECT_EQ(names, (std::set<std::string>{"accuracy-collision-speed", "accuracy-seeds",
-                                          "accuracy-stiffness", "accuracy-wall"}));
-}
-
-TEST_F(BenchAccuracy, ReportsErrorsBeforeItMeasures) {
-  expect_refused({"bench", "accuracy", "--quick", "--jobs", "0"}, {"--jobs"});
-  write("file", "");
-  const Outcome in_the_way = run({"bench", "accuracy", "--quick", "--out", "file/figures"});
-  EXPECT_NE(in_the_way.code, 0);
-  EXPECT_TRUE(has(in_the_way.err, "file/figures"));
-  EXPECT_EQ(in_the_way.out, "");
-  std::filesystem::create_directory(path("made"));
-  for (const std::string name : {"accuracy-wall.csv", "accuracy-seeds.chart.json"}) {
-    write("made/" + name, "my own\n");
-    expect_refused({"bench", "accuracy", "--quick", "--out", "made"}, {name, "was not made by"});
-    std::filesystem::remove(path("made/" + name));
-  }
-}
-
-TEST_F(BenchAccuracy, PlanPrintsTimeStepsAndWarns) {
+TEST_F(TimeSteps, ArePrintedByPlanWithWarnings) {
   const std::string head = "experiment: a\nbase: {grains: 600, cycles: 1, ";
   const std::string sound = write("sound.yaml", head + "steps_per_cycle: 45600}\n");
   EXPECT_EQ(expect(0, {"plan", sound}, {"0.355", "overlap [d]"}).err, "");

@@ -112,7 +112,6 @@ TEST_F(CommandLineLineage, WritesAReportAndChangesNothingElse) {
   EXPECT_EQ(read_bytes(path("out/report.html")), first);
 
   expect(2, {"report", "--run", "nothing"});
-  expect(2, {"report", "--accuracy", "nowhere"});
   expect(1, {"report", "--out", "no/such/folder.html"});
 
   const std::string file = newest_file(last_run());

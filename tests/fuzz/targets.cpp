@@ -16,7 +16,6 @@
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/lines.hpp"
-#include "experiments/report/report_data.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/ro_crate.hpp"
@@ -140,12 +139,10 @@ void take_published(Input input) {
   test::write_bytes(place.published / "S2a.csv", std::string(text.substr(0, end)));
   const std::string second(text.substr(std::min(end + 1, text.size())));
   test::write_bytes(place.published / "S2.lineage.json", second);
-  test::write_bytes(place.published / "S2a.chart.json", second);
   for (const char* name : {"S2a.csv", "S2.lineage.json"}) {
     const auto found = find_published(place.store, place.published / name);
     require(found.has_value(), "the figure that the file is named after is found");
   }
-  attempt<UsageError>([&] { read_accuracy_charts(place.published); });
 }
 
 // What derived.sqlite keeps of a checkpoint.

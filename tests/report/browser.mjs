@@ -149,15 +149,6 @@ const checks = {
     await page.screenshot({path: join(shots, "top.png")});
   },
 
-  // campaign.sh adds a chart with a title; figures have theirs in the text.
-  async title() {
-    const page = await open("title");
-    await drawAllPlots(page);
-    const titles = await page.locator("#accuracy svg.canvas .title").allTextContents();
-    expect(titles.join() === "One grain swings on a wall: position, in amplitudes",
-      `title: a chart is headed '${titles}'`);
-  },
-
   // Without the script that names the theme, as in a report of drawings.
   async tints() {
     const page = await open("tints", {colorScheme: "dark"});

@@ -21,15 +21,4 @@ base: {grains: 300, period_s: 1, steps_per_cycle: 10000, settle_time_step_s: 1.0
 MANIFEST
 "$program" run "$hostile" --store "$folder/store" >/dev/null 2>>"$folder/run.log"
 
-# As `bench accuracy --out` writes it, with its longest title.
-mkdir "$folder/accuracy"
-printf 'cost,error\n1,0.1\n' >"$folder/accuracy/wall.csv"
-cat >"$folder/accuracy/wall.chart.json" <<'CHART'
-{"x": {"label": [["cost", ""]], "unit": [], "log": true, "whole": false, "clip": false, "low": null, "high": null},
- "y": {"label": [["error", ""]], "unit": [], "log": true, "whole": false, "clip": false, "low": null, "high": null},
- "title": [["One grain swings on a wall: position, in amplitudes", ""]], "lines": [],
- "series": [{"title": [["engine", ""]], "colour": "#000000", "point": 7, "shift": 0, "line": true, "dashed": false,
-             "band": false, "points": [[1, 0.1, null, null]]}]}
-CHART
-
-"$program" report --scale smoke --store "$folder/store" --accuracy "$folder/accuracy" --out "$folder/report.html"
+"$program" report --scale smoke --store "$folder/store" --out "$folder/report.html"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks the structure of the sources: python3 structure.py REPOSITORY
-Includes follow the table below, no file includes itself through others, no file is too long, and the tables of files and
-folders in each README name what is there."""
+Includes follow the table below, no file includes itself through others, and the tables of files and folders in each
+README name what is there."""
 
 import pathlib
 import re
@@ -25,8 +25,6 @@ BELOW["experiments/cli"] = ["experiments/bench", "experiments/cluster", "experim
                             *BELOW["experiments/report"]]
 TOP = ("core", "protocols", "provenance", "analysis", "experiments", "tests")
 GENERATED = {"experiments/runner/build_facts.hpp"}  # by CMake
-LONGEST = 400  # lines
-LONGER = {}  # file: reason
 
 
 def group(path):
@@ -64,8 +62,6 @@ for top in TOP:
         if "node_modules" in name:
             continue
         lines = file.read_text().splitlines()
-        if len(lines) > LONGEST and name not in LONGER:
-            faults.append(f"{name}: {len(lines)} lines, at most {LONGEST}; split it")
         own = group(name)
         if own is None and top != "tests":
             faults.append(f"{name}: its folder has no entry in {pathlib.Path(__file__).name}")

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/diagnostics.hpp"
-#include "experiments/bench/stability/scenes.hpp"
+#include "tests/hard/hard.hpp"
 
-namespace shearcell::stability {
+namespace shearcell::test {
 namespace {
 
 // In a unit of time that is s times smaller every rate is s times larger along the same paths.
@@ -39,16 +39,16 @@ Answer similar(double ratio) {
 }
 
 // Grains side by side between two walls carry P A and their weight.
-Answer balance(double ratio, bool quick) {
+Answer balance(double ratio) {
   Scene scene = table_1();
   scene.stiffness *= ratio;
   scene.time_step /= std::sqrt(ratio);
   const Packing row = row_between_walls(3, scene);
   const State end =
-      advanced(row, static_cast<std::uint64_t>((quick ? 0.6 : 1.5) / scene.time_step));
+      advanced(row, static_cast<std::uint64_t>((in_full() ? 1.5 : 0.6) / scene.time_step));
   const double load = scene.pressure * row.cell.width * row.cell.depth / 3;
   const double below = load / scene.stiffness, above = (load - scene.gravity) / scene.stiffness;
-  const double tolerance = quick ? 1e-6 : 1e-8;
+  const double tolerance = in_full() ? 1e-8 : 1e-6;
   return all_of(
       {expect_near("overlap below / (P A / 3 k)",
                    (0.5 - (end.position(1, 1) - end.wall_height)) / below, 1, tolerance),
@@ -154,18 +154,16 @@ Answer light_wall() {
   return expect_stop(packing, 20000, "time step");
 }
 
-}  // namespace
-
-void add_load_cases(Cases& cases, bool quick) {
+Cases load_cases() {
+  Cases cases;
   const std::string overlap_stop = "stopped: the overlap over its limit";
   const std::string balanced = "all forces in balance";
   for (const double ratio : {1.0, 10.0, 100.0, 1e3, 1e4}) {
     add_each(cases, {ratio}, "k-{:g}-similar", "{:g} k0, dt and all loads scaled alike",
              "the same paths, scaled; equal to the last bit for a power of four", similar);
-    add(cases, fmt::format("k-{:g}-scaled-dt", ratio),
-        fmt::format("{:g} k0 with dt ~ 1/sqrt(k) under the loads of Table I", ratio),
-        "overlaps P A / 3 k below and that less m g / k above",
-        [ratio, quick] { return balance(ratio, quick); });
+    add_each(cases, {ratio}, "k-{:g}-scaled-dt",
+             "{:g} k0 with dt ~ 1/sqrt(k) under the loads of Table I",
+             "overlaps P A / 3 k below and that less m g / k above", balance);
   }
   const std::string fixed_dt = "{:g} k0 at the time step of Table I";
   add_each(cases, {1.0, 4.0}, "k-{:g}-fixed-dt", fixed_dt, "at rest with " + balanced, fixed_step);
@@ -189,6 +187,10 @@ void add_load_cases(Cases& cases, bool quick) {
   add(cases, "gravity-100g-stack", "twelve such grains stacked", overlap_stop, heavy_stack);
   add(cases, "light-wall", "a moving wall of 0.01 m per d^2",
       "stopped: the time step over the limit of the wall", light_wall);
+  return cases;
 }
 
-}  // namespace shearcell::stability
+INSTANTIATE_TEST_SUITE_P(Load, Hard, testing::ValuesIn(load_cases()), test_name);
+
+}  // namespace
+}  // namespace shearcell::test

@@ -1,112 +1,53 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/bench/stability/scenes.hpp"
+#include "tests/hard/hard.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <numbers>
+#include <string_view>
 
 #include "core/minimizer.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "tests/support/all_pairs.hpp"
 
-namespace shearcell::stability {
-namespace {
+namespace shearcell::test {
 
-// The oracle: the contact law over all pairs and all images. Nothing of the engine is called here.
-
-struct Pose {
-  double tangent, bottom, top;
-};
-
-// Position of a wall grain: side walls tilt about the top wall, the others keep their shape.
-V wall_grain_at(const Cell& cell, const Pose& walls, const WallGrain& grain) {
-  V p = grain.position;
-  if (grain.side == WallSide::left || grain.side == WallSide::right) {
-    p.x() += (p.y() - walls.top) * walls.tangent;
-  } else if (grain.side == WallSide::bottom) {
-    p += V((walls.bottom - walls.top) * walls.tangent, walls.bottom - cell.bottom, 0);
-  } else {
-    p.y() += walls.top - cell.top;
+TEST_P(Hard, EndsAsExpected) {
+  const HardCase& hard = GetParam();
+  // table.sh reads these lines.
+  std::printf("case: %s\ncomputed: %s\nexpected: %s\n", hard.name.c_str(), hard.done.c_str(),
+              hard.expected.c_str());
+  std::fflush(stdout);
+  Answer answer;
+  try {
+    answer = hard.run();
+  } catch (const std::exception& error) {
+    answer = {false, std::string("threw: ") + error.what()};
   }
-  return p;
+  std::printf("came: %s\n", answer.text.c_str());
+  EXPECT_TRUE(answer.as_expected) << hard.name << ", " << hard.done
+                                  << "\nexpected: " << hard.expected << "\ncame: " << answer.text;
 }
 
-// Overlap times normal of a grain at p with every image of a sphere at q.
-V push_of_images(const V& p, const V& q, double depth, bool itself) {
-  V sum = V::Zero();
-  const double nearest = std::floor((p.z() - q.z()) / depth);
-  for (const double image : {nearest - 1, nearest, nearest + 1, nearest + 2}) {
-    if (itself && image == 0) continue;
-    const V dr = p - q - V(0, 0, image * depth);
-    const double r = dr.norm();
-    if (r < 1 && r > 0) sum += (1 - r) / r * dr;
-  }
-  return sum;
+void PrintTo(const HardCase& hard, std::ostream* out) {
+  *out << hard.name;
 }
 
-struct Pushes {
-  Eigen::Matrix3Xd on_grain;
-  double of_moving_wall = 0;  // upwards, on all grains
-};
-
-Pushes pushes(const Cell& cell, const Pose& walls, const Eigen::Matrix3Xd& at) {
-  const V across = V(1, -walls.tangent, 0).normalized();
-  const V points[4] = {
-      {0, walls.top, 0}, {cell.width, walls.top, 0}, {0, walls.bottom, 0}, {0, walls.top, 0}};
-  const V normals[4] = {across, -across, {0, 1, 0}, {0, -1, 0}};
-  const WallSide moving = cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
-  Pushes sum{Eigen::Matrix3Xd::Zero(3, at.cols())};
-  const auto of_wall = [&](Eigen::Index i, WallSide side, const V& push) {
-    sum.on_grain.col(i) += push;
-    if (side == moving) sum.of_moving_wall += push.y();
-  };
-  for (Eigen::Index i = 0; i < at.cols(); ++i) {
-    const V p = at.col(i);
-    for (std::size_t side = 0; side < 4; ++side) {
-      const double overlap = std::max(0.0, 0.5 - (p - points[side]).dot(normals[side]));
-      of_wall(i, static_cast<WallSide>(side), overlap * normals[side]);
-    }
-    for (const WallGrain& grain : cell.wall_grains) {
-      const V q = wall_grain_at(cell, walls, grain);
-      of_wall(i, grain.side, push_of_images(p, q, cell.depth, false));
-    }
-    for (Eigen::Index j = 0; j < at.cols(); ++j) {
-      sum.on_grain.col(i) += push_of_images(p, at.col(j), cell.depth, i == j);
-    }
+std::string test_name(const testing::TestParamInfo<HardCase>& hard) {
+  std::string name = hard.param.name;
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
   }
-  return sum;
+  return name;
 }
 
-void step_once(const Cell& cell, const Scene& scene, const Drive& drive, State& state) {
-  const double dt = scene.time_step, area = cell.width * cell.depth;
-  const bool bottom_moves = cell.moving == MovingWall::bottom;
-  const std::uint64_t phase = state.step % (drive.steps_per_cycle + drive.pause_steps);
-  const double amplitude = phase < drive.steps_per_cycle ? drive.amplitude : 0;
-  const double turn = 2 * std::numbers::pi / static_cast<double>(drive.steps_per_cycle);
-  const double at = turn * static_cast<double>(phase);
-  const Pose walls{std::tan(amplitude * std::sin(at)),
-                   bottom_moves ? state.wall_height : cell.bottom,
-                   bottom_moves ? cell.top : state.wall_height};
-  const Pushes push = pushes(cell, walls, state.position);
-  Eigen::Matrix3Xd force = scene.stiffness * push.on_grain;
-  force.row(1).array() -= scene.gravity;
-  if (scene.fluid == Fluid::cell) {
-    const double rate = amplitude * turn / dt * std::cos(at) * (1 + walls.tangent * walls.tangent);
-    force.row(0).array() += scene.drag_rate * rate * (state.position.row(1).array() - walls.top);
-  }
-  const double half = 0.5 * scene.drag_rate * dt;
-  state.velocity = ((1 - half) * state.velocity + dt * force) / (1 + half);
-  state.position += dt * state.velocity;
-  const double on_wall =
-      (bottom_moves ? 1 : -1) * scene.pressure * area - scene.stiffness * push.of_moving_wall;
-  const double wall_half = 0.5 * scene.wall_drag * dt / scene.wall_mass;
-  state.wall_velocity =
-      ((1 - wall_half) * state.wall_velocity + dt * on_wall / (scene.wall_mass * area)) /
-      (1 + wall_half);
-  state.wall_height += dt * state.wall_velocity;
-  ++state.step;
+bool in_full() {
+  const char* set = std::getenv("SHEARCELL_HARD");
+  return set != nullptr && std::string_view(set) == "full";
 }
-
-}  // namespace
 
 Scene table_1() {
   Parameters parameters;
@@ -126,7 +67,7 @@ Packing settled() {
     Parameters parameters;
     parameters.grains = 60;
     parameters.pressure_at = PressureAt::moving_wall;
-    Packing made = bench::settled_packing(parameters, 1);
+    Packing made = settled_packing(parameters, 1);
     made.state = advanced(made, 20000);  // closer to rest than settling requires
     made.state.step = 0;
     return made;
@@ -186,8 +127,7 @@ double kinetic_energy(const State& state) {
 }
 
 double largest_difference(const State& a, const State& b) {
-  return std::max((a.position - b.position).colwise().norm().maxCoeff(),
-                  std::fabs(a.wall_height - b.wall_height));
+  return std::max(farthest(a, b), std::fabs(a.wall_height - b.wall_height));
 }
 
 Answer expect_stop(const Packing& packing, std::uint64_t steps, const std::string& quantity) {
@@ -216,7 +156,7 @@ Answer expect_at_most(const std::string& what, double got, double most) {
 Answer expect_as_all_pairs(const Packing& packing, const State& end, const Drive& drive,
                            double tolerance) {
   State right = packing.state;
-  while (right.step < end.step) step_once(packing.cell, packing.scene, drive, right);
+  while (right.step < end.step) step_over_all_pairs(packing.cell, packing.scene, drive, right);
   return expect_at_most("difference from the sum over all pairs", largest_difference(end, right),
                         tolerance);
 }
@@ -235,4 +175,4 @@ Answer all_of(const std::vector<Answer>& parts) {
   return whole;
 }
 
-}  // namespace shearcell::stability
+}  // namespace shearcell::test

@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "core/filling.hpp"
-#include "experiments/bench/stability/scenes.hpp"
+#include "tests/hard/hard.hpp"
 
-namespace shearcell::stability {
+namespace shearcell::test {
 namespace {
 
 // A cycle of 2000 steps is 23 times as fast as that of Table I. Rounding errors grow, so only some
@@ -179,9 +179,8 @@ Answer no_cell(std::size_t grains) {
   return expect_refusal<GeometryError>("more grains", [&] { make_cell(geometry, 1); });
 }
 
-}  // namespace
-
-void add_motion_cases(Cases& cases) {
+Cases motion_cases() {
+  Cases cases;
   const std::string as_oracle = "as by the sum over all pairs and images";
   const std::string overlapping = "stopped before the first step: the overlap over its limit";
   add_each(cases, {1e-6, 1e-4, 1e-2, 0.0833, 0.5}, "amplitude-{:g}",
@@ -227,6 +226,10 @@ void add_motion_cases(Cases& cases) {
            "refused: a grain would meet a neighbour, or itself, through both seams", shallow);
   add_each(cases, {0.95}, "own-image", "a grain in contact with its own image, {:g} d deep",
            "refused: a grain would meet itself", shallow);
+  return cases;
 }
 
-}  // namespace shearcell::stability
+INSTANTIATE_TEST_SUITE_P(Motion, Hard, testing::ValuesIn(motion_cases()), test_name);
+
+}  // namespace
+}  // namespace shearcell::test

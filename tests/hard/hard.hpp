@@ -1,19 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes of the hard cases, and the checks of their results.
+// Hard cases: at and beyond the limits of the engine. Each has a right answer that is known without
+// the engine, or must be stopped or refused with the numbers that say why. ctest runs each case in
+// a process of its own with a time limit, so a crash or a hang is an outcome as well.
+// table.sh makes the table of core/STABILITY.md from what the cases print.
 #pragma once
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
-#include "experiments/bench/packing.hpp"
-#include "experiments/bench/stability/stability.hpp"
+#include <functional>
+#include <string>
+#include <vector>
 
-namespace shearcell::stability {
+#include "tests/support/packing.hpp"
+
+namespace shearcell::test {
 
 using bench::advanced;
-using bench::Packing;
-using bench::placed;
 using bench::simulate;
 using V = Eigen::Vector3d;
+
+struct Answer {
+  bool as_expected = false;
+  std::string text;  ///< the result, with its numbers
+};
+
+struct HardCase {
+  std::string name;
+  std::string done;             ///< what is computed
+  std::string expected;         ///< the right answer, or the check that stops it
+  std::function<Answer()> run;  ///< an exception counts as not as expected
+};
+using Cases = std::vector<HardCase>;
+
+void PrintTo(const HardCase& hard, std::ostream* out);
+
+/// Each file of cases instantiates it with its own.
+class Hard : public testing::TestWithParam<HardCase> {};
+
+/// The case's name with '_' for what a test's name cannot hold.
+std::string test_name(const testing::TestParamInfo<HardCase>& hard);
+
+/// Whether the very long cases take all of their steps: if SHEARCELL_HARD is "full", as in
+/// table.sh.
+bool in_full();
 
 /// Table I of the supplement, in units of d, m and s.
 Scene table_1();
@@ -53,8 +83,7 @@ Answer expect_stop(const Packing& packing, std::uint64_t steps, const std::strin
 Answer expect_near(const std::string& what, double got, double right, double tolerance);
 Answer expect_at_most(const std::string& what, double got, double most);
 
-/// Expects the run to end, within `tolerance` [d], as by an oracle that is independent of the
-/// engine: the contact law over all pairs and images, at about 10 ns per pair and step.
+/// Expects the run to end, within `tolerance` [d], as by step_over_all_pairs().
 Answer expect_as_all_pairs(const Packing& packing, const State& end, const Drive& drive,
                            double tolerance);
 
@@ -80,4 +109,4 @@ void add_each(Cases& cases, const std::vector<Value>& values, const std::string&
   }
 }
 
-}  // namespace shearcell::stability
+}  // namespace shearcell::test

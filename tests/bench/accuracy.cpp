@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Error against time step and cost of the engine, PEFRL, Runge-Kutta and LAMMPS, for the grains of
+// Table I: bench_accuracy FOLDER writes the CSV files and figures of core/ACCURACY.md into FOLDER.
+// accuracy.sh runs it and writes the tables. Only the costs depend on the machine.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "analysis/plot.hpp"
+#include "experiments/bench/speed.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
+#include "tests/bench/closed_forms.hpp"
+
+namespace shearcell::test {
+namespace {
+
+constexpr std::uint64_t kGrains = 600;
+
+// Core-seconds of a cycle of 600 sheared grains for each evaluation of the forces in a time step of
+// `dt`, at `rate` million particle-steps/s.
+double seconds_per_cycle(double dt, double rate) {
+  return Parameters{}.period_s / dt * kGrains / (1e6 * rate);
+}
+
+double our_rate() {
+  return bench::measure_speed({.sizes = {kGrains},
+                               .threads = {1},
+                               .repeats = 9,
+                               .seconds_per_repeat = 0.3,
+                               .report = {}})
+      .front()
+      .median_rate;
+}
+
+// Million particle-steps/s of LAMMPS with one process in the same scene, the median of five.
+double lammps_rate() {
+  const Packing packing = bench::pressed_packing({.grains = kGrains}, 1);
+  const LammpsTask task{.cell = packing.cell,
+                        .scene = packing.scene,
+                        .drive = drive(packing.parameters),
+                        .state = packing.state,
+                        .end = 5000,
+                        .stride = 5000,
+                        .check_every = lammps_check_steps(kGrains, 1)};
+  std::array<double, 5> rates;
+  for (double& rate : rates) {
+    rate = 1e-6 * static_cast<double>(kGrains * task.end) /
+           run_lammps(find_lammps(), task, 1).loop_seconds;
+  }
+  std::ranges::sort(rates);
+  return rates[2];
+}
+
+// One closed form by one method, over time steps from twice Table I's down. The order is fitted
+// from Table I's time step on.
+void add_curve(const ClosedForm& form, const Method& method, double rate,
+               std::vector<TableRow>& rows) {
+  const Scene scene = shear_scene(Parameters{});
+  std::vector<double> steps, errors;
+  for (int n = -2; n <= 8; ++n) {
+    steps.push_back(scene.time_step * std::exp2(-0.5 * n));
+    errors.push_back(form.error(method, steps.back()));
+  }
+  const double order = order_of(std::span(steps).subspan(2), std::span(errors).subspan(2));
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    std::optional<double> local;  // slope between this time step and the next smaller one
+    if (s + 1 < steps.size()) {
+      local = std::log(errors[s] / errors[s + 1]) / std::log(steps[s] / steps[s + 1]);
+    }
+    const double cost = method.evaluations * seconds_per_cycle(steps[s], rate);
+    rows.push_back({form.name, method.name, form.name + ", " + method.name, steps[s],
+                    steps[s] / contact_time(scene), steps[s] / stability_limit_s(Parameters{}),
+                    cost, errors[s], local, order});
+  }
+}
+
+struct Style {
+  const char *name, *colour;
+  int point;
+};
+constexpr Style kStyles[] = {
+    {"engine", "#000000", 7}, {"PEFRL", "#1f4fd8", 9}, {"Runge-Kutta", "#2ca02c", 11}};
+
+FigureTable error_table(double ours, double lammps) {
+  FigureTable table{
+      .name = "accuracy-order",
+      .columns = {"motion", "method", "curve", "time_step_s", "time_step_over_contact_time",
+                  "time_step_over_stability_limit", "core_seconds_per_cycle", "relative_error",
+                  "local_order", "fitted_order"}};
+  for (const ClosedForm& form : closed_forms(shear_scene(Parameters{}), 16)) {
+    fmt::print(stderr, "{}\n", form.title);
+    for (const Method& method : methods()) add_curve(form, method, ours, table.rows);
+  }
+  // LAMMPS makes the engine's steps up to rounding (tests/engines), at another cost.
+  const std::vector<TableRow> rows = table.rows;
+  for (TableRow row : rows) {
+    if (row[1] != TableValue("engine")) continue;
+    row[1] = "LAMMPS";
+    row[2] = std::get<std::string>(row[0]) + ", LAMMPS";
+    row[6] = std::get<double>(row[6]) * ours / lammps;
+    table.rows.push_back(row);
+  }
+  table.chart = {.x = {.name = "time step", .unit = Text("2/ω") + subscript("max"), .log = true},
+                 .y = {.name = "relative error", .log = true}};
+  for (const Style& style : kStyles) {
+    for (const auto& [motion, title, hollow, join] :
+         {std::tuple{"collision", "collision", 0, Join::line},
+          std::tuple{"wall", "wall", 1, Join::dashes}}) {
+      table.chart.series.push_back(
+          {.title = fmt::format("{}, {}", title, style.name),
+           .colour = style.colour,
+           .point = style.point - hollow,
+           .join = join,
+           .columns = {.x = "time_step_over_stability_limit", .y = "relative_error"},
+           .filter = {"curve", fmt::format("{}, {}", motion, style.name)}});
+    }
+  }
+  const double largest = std::get<double>(table.rows[2][5]);
+  for (const double end : {largest / 16, largest}) {
+    table.chart.lines.push_back({.at = end, .vertical = true, .title = "range of the fits"});
+  }
+  return table;
+}
+
+FigureTable cost_table(const FigureTable& errors) {
+  FigureTable table{.name = "accuracy-cost", .columns = errors.columns};
+  for (const TableRow& row : errors.rows) {
+    if (row[0] == TableValue("collision")) table.rows.push_back(row);
+  }
+  table.chart = {.x = {.name = "core-seconds per cycle of 600 sheared grains", .log = true},
+                 .y = {.name = "relative error of the speed after a collision", .log = true}};
+  const auto add = [&](const Style& style) {
+    table.chart.series.push_back({.title = style.name,
+                                  .colour = style.colour,
+                                  .point = style.point,
+                                  .join = Join::line,
+                                  .columns = {.x = "core_seconds_per_cycle", .y = "relative_error"},
+                                  .filter = {"method", style.name}});
+  };
+  for (const Style& style : kStyles) add(style);
+  add({"LAMMPS", "#d62728", 5});
+  return table;
+}
+
+// An observable: the mean energy after collisions, in which gains and losses cancel.
+FigureTable energy_table() {
+  fmt::print(stderr, "mean energy after collisions\n");
+  const Scene scene = shear_scene(Parameters{});
+  const double drag = 1 - std::exp(-scene.drag_rate * contact_time(scene));
+  FigureTable table{
+      .name = "accuracy-energy",
+      .columns = {"method", "time_step_s", "time_step_over_stability_limit", "speed_error",
+                  "mean_energy_change", "local_order", "energy_lost_by_drag_in_a_collision"}};
+  for (const Method& method : methods()) {
+    const auto at = [&](double dt) { return collide(scene, method, dt, 32); };
+    for (int n = -2; n <= 2; ++n) {
+      const double dt = scene.time_step * std::exp2(-0.5 * n);
+      const Collision here = at(dt), finer = at(dt / std::sqrt(2.0));
+      const double local = 2 * std::log2(std::fabs(here.energy_change / finer.energy_change));
+      table.rows.push_back({method.name, dt, dt / stability_limit_s(Parameters{}), here.speed_error,
+                            here.energy_change, local, drag});
+    }
+  }
+  return table;
+}
+
+// Two runs of a settled packing of 600 grains under shear that differ by 1e-13 d in one coordinate:
+// the time in which their distance grows by a factor of e, between 1e-11 and 1e-5 d.
+FigureTable divergence_table() {
+  fmt::print(stderr, "divergence of two runs\n");
+  FigureTable table{.name = "accuracy-divergence",
+                    .columns = {"steps_per_cycle", "time_step_s", "time_step_over_stability_limit",
+                                "lyapunov_time_s", "standard_error_s", "runs"}};
+  constexpr std::uint64_t kSeeds = 4;
+  std::vector<Packing> packings;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    packings.push_back(settled_packing({.grains = kGrains}, seed));
+  }
+  for (const std::uint64_t steps : {76923U, 45600U, 28571U}) {
+    std::vector<double> times;
+    for (const Packing& packing : packings) {
+      Parameters parameters = packing.parameters;
+      parameters.steps_per_cycle = steps;
+      const Scene scene = shear_scene(parameters);
+      const Drive tilt = drive(parameters);
+      Simulation one(packing.cell, scene, packing.state);
+      one.advance(tilt, steps / 8);
+      State moved = one.state();
+      moved.position(0, 0) += 1e-13;
+      Simulation other(packing.cell, scene, moved);
+      const std::uint64_t begin = one.step();
+      double from = 0, first = 0;
+      for (;;) {
+        one.advance(tilt, 20);
+        other.advance(tilt, 20);
+        const double apart = farthest(one.state(), other.state());
+        const double time = static_cast<double>(one.step() - begin) * scene.time_step;
+        if (apart < 1e-11) continue;
+        if (from == 0) from = time, first = apart;
+        if (apart < 1e-5) continue;
+        times.push_back((time - from) / std::log(apart / first));
+        break;
+      }
+    }
+    const RunStatistics mean = over_runs(times);
+    const double dt = Parameters{}.period_s / static_cast<double>(steps);
+    table.rows.push_back({static_cast<std::int64_t>(steps), dt,
+                          dt / stability_limit_s(Parameters{}), mean.mean, mean.standard_error,
+                          mean.runs});
+  }
+  return table;
+}
+
+void measure(const std::filesystem::path& folder) {
+  fmt::print(stderr, "speed of the engine and of LAMMPS\n");
+  const double ours = our_rate(), lammps = lammps_rate();
+  const FigureTable errors = error_table(ours, lammps);
+  for (const FigureTable& table :
+       {errors, cost_table(errors), energy_table(), divergence_table()}) {
+    write_csv(table, folder);
+    if (!table.chart.series.empty()) draw_svg(table, folder);
+  }
+}
+
+}  // namespace
+}  // namespace shearcell::test
+
+int main(int argc, char** argv) {
+  try {
+    if (argc != 2) throw std::runtime_error("usage: bench_accuracy FOLDER");
+    shearcell::test::measure(argv[1]);
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "bench_accuracy: {}\n", error.what());
+    return 1;
+  }
+}
