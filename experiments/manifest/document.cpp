@@ -73,6 +73,11 @@ class TreeBuilder : public YAML::EventHandler {
 
   Node take() { return std::move(root_); }
 
+  [[noreturn]] void refuse_reference(const YAML::Mark& mark, const std::string& name) {
+    refuse(file_, position(mark), printable(name), "anchors and aliases are not read", "",
+           "Write the value out, and quote a text that begins with & or *.");
+  }
+
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (started_) {
       refuse(file_, position(mark), "", "a second YAML document begins", "",
@@ -113,11 +118,6 @@ class TreeBuilder : public YAML::EventHandler {
     std::set<std::string> keys = {};
     bool awaits_value = false;
   };
-
-  [[noreturn]] void refuse_reference(const YAML::Mark& mark, const std::string& name) {
-    refuse(file_, position(mark), printable(name), "anchors and aliases are not read", "",
-           "Write the value out.");
-  }
 
   void check_tag(const YAML::Mark& mark, const std::string& tag) {
     if (tag == "?" || tag == "!" || tag.empty()) return;  // no tag was written
@@ -178,9 +178,6 @@ int tab_indented_line(string_view text, int last) {
 }
 
 std::string syntax_remedy(string_view text, const YAML::Exception& error) {
-  if (error.msg.find("anchor") != std::string::npos) {
-    return "Anchors and aliases are not read; write the value out.";
-  }
   if (const int line = tab_indented_line(text, position(error.mark).line); line != 0) {
     return fmt::format("Line {} is indented with a tab; use spaces.", line);
   }
@@ -208,6 +205,11 @@ Node read_document(string_view text, string_view file) {
     }
     parser.HandleNextDocument(builder);
   } catch (const YAML::Exception& error) {
+    // The parser's own messages for them vary.
+    if (error.msg.find("anchor") != std::string::npos ||
+        error.msg.find("alias") != std::string::npos) {
+      builder.refuse_reference(error.mark, "");
+    }
     refuse(file, position(error.mark), "", fmt::format("is not valid YAML: {}", error.msg), "",
            syntax_remedy(text, error));
   }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "analysis/error.hpp"
@@ -58,11 +59,11 @@ TEST(FigureS2, HasOneCheckpointOfEachRunAtAWholeCycle) {
   EXPECT_THROW(s2(runs), AnalysisError) << "two of one cycle";
 }
 
-const FigureTable& panel(const FigureResult& result, const std::string& name) {
+const FigureTable& panel(const FigureResult& result, std::string_view name) {
   for (const FigureTable& table : result.tables) {
     if (table.name == name) return table;
   }
-  throw AnalysisError("no panel " + name);
+  throw AnalysisError("no panel " + std::string(name));
 }
 
 /// A crystallite of 20 grains at x = 3, y = 5 [d] of a cell 10 wide whose planes are at 1 and 17.

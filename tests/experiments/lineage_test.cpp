@@ -123,7 +123,8 @@ TEST_F(FigureLineageTest, DistinguishesChangedFromUnknownFiles) {
     const auto found = find_published(store_, file("out/tiny/S2a.csv"));
     ASSERT_TRUE(found.has_value());
     EXPECT_FALSE(found->matches());
-    EXPECT_EQ(found->recorded, found->record.provenance.at("outputs").at("S2a.csv"));
+    EXPECT_EQ(found->recorded,
+              found->record.provenance.at("outputs").at("S2a.csv").get<std::string>());
   }
   std::ofstream(file("else.csv")) << "a,b\n1,2\n";
   EXPECT_FALSE(find_published(store_, file("else.csv")).has_value());

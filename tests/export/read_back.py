@@ -200,10 +200,15 @@ timestep 1e-5
 group inner id {" ".join(str(i) for i in f["inner_id"])}
 compute stress all stress/atom NULL pair
 compute contacts all contact/atom
-compute pairs inner rdf 75 cutoff {1.5 * 2 * f['radius'][0]:.17g}
-fix pairs all ave/time 1 1 1 c_pairs[*] file pairs.txt mode vector
 dump out all custom 1 stress.dump id c_stress[1] c_stress[2] c_stress[3] c_stress[4] c_stress[5] c_stress[6] c_contacts
 dump_modify out sort id format float %.17g
+run 0
+undump out
+# Without the keyword cutoff, which sets no bin width in LAMMPS of 4 Feb 2025: the bins end at the pair style's cutoff.
+pair_style zero {1.5 * 2 * f['radius'][0]:.17g}
+pair_coeff * *
+compute pairs inner rdf 75
+fix pairs all ave/time 1 1 1 c_pairs[*] file pairs.txt mode vector
 run 0
 """
     run = subprocess.run([lammps, "-log", "none", "-screen", "none"], input=deck, text=True, cwd=folder)

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Fuzzes every target for so many seconds each: sh tests/fuzz/run.sh [SECONDS] [TARGET...]
-# Builds with clang and libFuzzer (Debian: clang, libclang-rt-14-dev, llvm for coverage). Prints one
+# Builds with clang and libFuzzer (Debian: clang, libclang-rt-dev, llvm for coverage). Prints one
 # line a target; with a fault it ends with 1 and the input is in build/fuzz/faults/TARGET.
 # The corpora grow in build/fuzz/corpus; an input that found a fault belongs into
 # tests/fuzz/regressions/TARGET, where the ordinary suite runs it for ever.
@@ -11,7 +11,7 @@ seconds="${1:-10}"
 targets="${*:-checkpoint events manifest measures published store}"
 
 if ! command -v clang++ >/dev/null 2>&1; then
-  echo "fuzzing: left out, clang is not installed (Debian: clang libclang-rt-14-dev)"
+  echo "fuzzing: left out, clang is not installed (Debian: clang libclang-rt-dev)"
   exit 0
 fi
 build="$PWD/build/fuzz"
