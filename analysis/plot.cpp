@@ -40,8 +40,8 @@ std::string fault_of(const char* program, const ProgramOutcome& outcome,
   } else if (outcome.code != 0) {
     fault = fmt::format("ended with code {}", outcome.code);
   } else if (!drawn.starts_with(begins) || !drawn.ends_with(ends)) {
-    fault = fmt::format("wrote {} bytes, which do not begin with {} and end with {}", drawn.size(),
-                        begins, ends);
+    fault = fmt::format("wrote {} bytes; a whole file begins with {} and ends with {}",
+                        drawn.size(), begins, ends);
   } else {
     return "";
   }

@@ -201,10 +201,15 @@ void check_scale_against_sweep(const Scale& scale, const Sweep& sweep, ProblemLi
   }
 }
 
-/// Each label must name a variant of some scale; names of variants of one scale must look
-/// different.
+/// Each label must name a variant of some scale and show something; names of variants of one scale
+/// must look different.
 void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                   ProblemList& problems) {
+  for (const VariantLabel& label : manifest.labels) {
+    if (!as_seen(label.name).empty()) continue;
+    problems.add(label.at, "labels", "gives a variant a name with nothing to see",
+                 fmt::format("\"{}\"", printable(label.name)), "Write a name.");
+  }
   std::set<const VariantLabel*> used;
   for (const Scale& scale : scales) {
     std::vector<nlohmann::json> variants;

@@ -244,6 +244,9 @@ std::string syntax_remedy(string_view text, const YAML::Exception& error) {
   if (const int line = tab_indented_line(text, position(error.mark).line); line != 0) {
     return fmt::format("Line {} is indented with a tab; use spaces.", line);
   }
+  if (error.msg.find("unicode") != std::string::npos) {
+    return "This escape names no character; write the character itself.";
+  }
   if (error.msg.find("flow") != std::string::npos) {
     return "A { or [ of this line, or of one above it, is not closed.";
   }
@@ -275,8 +278,9 @@ Node read_document(string_view text, string_view file) {
 }
 
 std::string printable(string_view text, std::size_t longest) {
-  return escaped(text, longest,
-                 [](char32_t c) { return is_control(c) || is_odd_blank(c) || is_invisible(c); });
+  return escaped(text, longest, [](char32_t c) {
+    return is_control(c) || is_odd_blank(c) || is_invisible(c) || is_noncharacter(c);
+  });
 }
 
 std::string without_controls(string_view text) {

@@ -30,8 +30,8 @@ struct Node {
 Node read_document(std::string_view text, std::string_view file);
 
 /// Makes a text fit for a one-line message. Escapes control characters, characters that change the
-/// direction of text, bytes that are not UTF-8, invisible characters, and blanks that look like a
-/// space, as \x1b or \u202e. Cuts it to `longest` bytes.
+/// direction of text, bytes that are not UTF-8, code points that are no characters, invisible ones,
+/// and blanks that look like a space, as \x1b or \u202e. Cuts it to `longest` bytes.
 std::string printable(std::string_view text, std::size_t longest = 60);
 
 /// Makes a text fit for a terminal: like printable(), but keeps blanks and invisible characters,

@@ -246,10 +246,9 @@ void read_labels(const Entry& in, Manifest& manifest) {
     in.reject_type("a map of names", "It takes `{\"fluid=still\": \"fluid at rest\"}`.");
   }
   for (const Entry& entry : in.entries()) {
-    if (!is_text(entry.node, kLongestLabel, false) || as_seen(entry.node.text).empty()) {
-      entry.reject_type(
-          "a name",
-          fmt::format("It takes a text of at most {} bytes with something to see.", kLongestLabel));
+    if (!is_text(entry.node, kLongestLabel, false) || entry.node.text.empty()) {
+      entry.reject_type("a name",
+                        fmt::format("It takes a text of at most {} bytes.", kLongestLabel));
     }
     manifest.labels.push_back({read_selector(entry), entry.node.text, entry.key.at});
   }

@@ -52,7 +52,9 @@ std::vector<ReportExperiment> experiments_of(const Store& store,
 std::string draw(const FigureTable& table) {
   const TemporaryFolder folder("shearcell-report-");
   constexpr std::size_t most = 64'000'000;
-  return read_plain(draw_svg(table, folder.path()), most).value();
+  std::optional<std::string> svg = read_plain(draw_svg(table, folder.path()), most);
+  if (!svg) throw AnalysisError(fmt::format("{}.svg is larger than {} bytes", table.name, most));
+  return std::move(*svg);
 }
 
 /// The newest record of the figure with the same scale, inputs and analysis version.
