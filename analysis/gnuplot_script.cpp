@@ -28,10 +28,10 @@ constexpr std::string_view style =
     // Ranges end a little outside the data, not at the next tick, so that no point or bar is cut.
     "set autoscale noextend\n"
     // Above the frame, the one place where no data can be.
-    "set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9\n"
-    "set bars 0.5\n";
+    "set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9\n";
 
-/// gnuplot's single-quoted text, in which only the quote itself is special.
+/// gnuplot's single-quoted text, in which only the quote itself is special. gnuplot misreads two
+/// quotes in a row, and one at the beginning; markup() has none, since it puts `\` before each.
 std::string literal(const std::string& text) {
   std::string inside;
   for (const char c : text) {
@@ -41,14 +41,15 @@ std::string literal(const std::string& text) {
   return fmt::format("'{}'", inside);
 }
 
-/// gnuplot's enhanced text.
+/// gnuplot's enhanced text. Without the `{}`, `\\U+0041` would give the character "A".
 std::string markup(const Text& text) {
   std::string result;
   for (const TextPart& part : text.parts) {
     std::string plain;
     for (const char c : part.text) {
-      if (std::string_view("_^@&{}\\~").find(c) != std::string_view::npos) plain += '\\';
+      if (std::string_view("_^@&{}\\~'").find(c) != std::string_view::npos) plain += '\\';
       plain += c;
+      if (c == '\\') plain += "{}";
     }
     result += part.style == "i"     ? "{/:Italic " + plain + "}"
               : part.style == "sub" ? "_{" + plain + "}"
@@ -101,6 +102,22 @@ std::vector<std::string> ticks_of_decades(const Extent& data) {
     }
   }
   return ticks;
+}
+
+/// Width and height [px]: the frame, and the rows of the key. A title that is too long for a row of
+/// one column takes two.
+std::pair<int, int> size_of(const Chart& chart) {
+  constexpr std::size_t row = 50, wide_row = 110, symbol = 8;  // letters
+  std::size_t entries = 0, longest = symbol;
+  for (const Series& series : chart.series) {
+    const std::size_t length = plain_text(series.title).size();
+    entries += length > 0 ? 1 : 0;
+    longest = std::max(longest, length + symbol);
+  }
+  const bool wide = chart.wide || longest > row;
+  const std::size_t in_a_row = std::max<std::size_t>(1, (wide ? wide_row : row) / longest);
+  return {wide ? double_width : column_width,
+          chart_height + key_row * static_cast<int>((entries + in_a_row - 1) / in_a_row)};
 }
 
 /// The commands for one chart. The data are written into the script, so that it draws the same
@@ -259,19 +276,41 @@ class Script {
                                [&](const ChartPoint& p) { return (p.*error).has_value(); });
   }
 
+  /// The lower end and the length of the error bars, for gnuplot. On a logarithmic axis a bar that
+  /// reaches zero ends at the lowest value that is drawn, or at the axis's end below it.
+  static std::pair<std::string, std::string> bar(int value, int error, const Axis& axis,
+                                                 const Extent& data) {
+    std::string low = fmt::format("${}-${}", value, error);
+    const double lowest = std::min(data.low, axis.low.value_or(data.low));
+    if (axis.log) low = fmt::format("{0}>0?{0}:{1}", low, digits(lowest > 0 ? lowest : data.low));
+    return {fmt::format("({})", low), fmt::format("(${}+${}-({}))", value, error, low)};
+  }
+
   void errors(std::size_t k, std::vector<std::string>& plots) const {
     const Series& series = chart_.series[k];
-    if (!has(k, &ChartPoint::y_error)) return;
-    plots.push_back(
-        series.band
-            ? fmt::format("$series{} using 1:($2-$4):($2+$4) with filledcurves fc rgb '{}' fs "
-                          "transparent solid 0.2 noborder notitle",
-                          k, series.colour)
-            : fmt::format("$series{} every {} using {} lc rgb '{}' lw 0.7 pt 0 notitle", k,
-                          spacing(series),
-                          has(k, &ChartPoint::x_error) ? "1:2:3:4 with xyerrorbars"
-                                                       : "1:2:4 with yerrorbars",
-                          series.colour));
+    if (series.band && has(k, &ChartPoint::y_error)) {
+      plots.push_back(
+          fmt::format("$series{} using 1:($2-$4):($2+$4) with filledcurves fc rgb '{}' fs "
+                      "transparent solid 0.2 noborder notitle",
+                      k, series.colour));
+    }
+    if (series.band) return;
+    // Arrows whose heads are the caps, 2 px to each side: behind each point of `yerrorbars` gnuplot
+    // 5.4 paints a white disc over what is there already.
+    const auto add_bars = [&](const std::string& columns) {
+      plots.push_back(fmt::format(
+          "$series{} every {} using {} with vectors heads size screen {},90 fixed lc rgb '{}' lw "
+          "0.7 notitle",
+          k, spacing(series), columns, digits(2.0 / size_of(chart_).first), series.colour));
+    };
+    if (has(k, &ChartPoint::x_error)) {
+      const auto [low, length] = bar(1, 3, chart_.x, x_);
+      add_bars(fmt::format("{}:2:{}:(0)", low, length));
+    }
+    if (has(k, &ChartPoint::y_error)) {
+      const auto [low, length] = bar(2, 4, chart_.y, y_);
+      add_bars(fmt::format("1:{}:(0):{}", low, length));
+    }
   }
 
   void curve(std::size_t k, std::vector<std::string>& plots) const {
@@ -328,22 +367,6 @@ std::string text_table_commands(const TextTable& table) {
   }
   label(table.note, cell_margin, "left", "#555555");
   return text + "plot [0:1] [0:1] NaN\n";
-}
-
-/// Width and height [px]: the frame, and the rows of the key. A title that is too long for a row of
-/// one column takes two.
-std::pair<int, int> size_of(const Chart& chart) {
-  constexpr std::size_t row = 50, wide_row = 110, symbol = 8;  // letters
-  std::size_t entries = 0, longest = symbol;
-  for (const Series& series : chart.series) {
-    const std::size_t length = plain_text(series.title).size();
-    entries += length > 0 ? 1 : 0;
-    longest = std::max(longest, length + symbol);
-  }
-  const bool wide = chart.wide || longest > row;
-  const std::size_t in_a_row = std::max<std::size_t>(1, (wide ? wide_row : row) / longest);
-  return {wide ? double_width : column_width,
-          chart_height + key_row * static_cast<int>((entries + in_a_row - 1) / in_a_row)};
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/plot.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,24 +27,33 @@ void require_plain_name(const std::string& name) {
 /// Programs write this date into their files, whenever they run.
 constexpr const char* fixed_date = "SOURCE_DATE_EPOCH=0";
 
-/// What a program drew; nothing when it failed.
-std::optional<std::string> drawing(const ProgramOutcome& outcome,
-                                   const std::filesystem::path& file) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 30;
-  auto text = read_plain(file, most_bytes);
-  if (outcome.code != 0 || (text && text->empty())) text.reset();
-  return text;
+/// Why what a program drew on its standard output cannot be used; "" if it is whole.
+std::string fault_of(const char* program, const ProgramOutcome& outcome,
+                     const std::filesystem::path& file, std::string_view begins,
+                     std::string_view ends) {
+  constexpr int signal = 128;
+  std::string_view drawn = outcome.output;
+  drawn = drawn.substr(0, drawn.find_last_not_of(" \r\n") + 1);
+  std::string fault;
+  if (outcome.code > signal) {
+    fault = fmt::format("was ended by signal {}", outcome.code - signal);
+  } else if (outcome.code != 0) {
+    fault = fmt::format("ended with code {}", outcome.code);
+  } else if (!drawn.starts_with(begins) || !drawn.ends_with(ends)) {
+    fault = fmt::format("wrote {} bytes; a whole file begins with {} and ends with {}",
+                        drawn.size(), begins, ends);
+  } else {
+    return "";
+  }
+  return fmt::format("{} could not draw {}: it {}{}{}", program, file.filename().string(), fault,
+                     outcome.messages.empty() ? "" : ":\n", outcome.messages);
 }
 
-/// librsvg drops spaces next to a change of style unless xml:space says "preserve", which gnuplot
-/// sets only for two spaces in a row.
-std::string with_spaces_kept(std::string text) {
-  constexpr std::string_view plain = "<text>";
-  constexpr std::string_view keeping = "<text xml:space=\"preserve\">";
-  for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at)) {
-    text.replace(at, plain.size(), keeping);
+void replace_all(std::string& text, std::string_view old, std::string_view replacement) {
+  for (std::size_t at = text.find(old); at != std::string::npos;
+       at = text.find(old, at + replacement.size())) {
+    text.replace(at, old.size(), replacement);
   }
-  return text;
 }
 
 }  // namespace
@@ -69,43 +80,40 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
   require_plain_name(table.name);
   std::filesystem::path svg = folder / (table.name + ".svg"), pdf = folder / (table.name + ".pdf");
   const std::string script = table.name + ".gp";
-  write_output(folder / script, gnuplot_script(table));
   const TemporaryFolder apart;
   write_output(apart.path() / script, gnuplot_script(table));
-
+  write_output(folder / script, gnuplot_script(table));
+  // Into memory: on a full disk gnuplot leaves out a part of the file and ends with code 0.
+  std::filesystem::create_symlink("/dev/stdout", apart.path() / svg.filename());
   // -d: without the user's own settings.
   const std::optional<ProgramOutcome> outcome =
       run_program({"gnuplot", "-d", script}, apart.path(), {fixed_date});
-  auto drawn = outcome ? drawing(*outcome, apart.path() / svg.filename()) : std::nullopt;
-  if (!drawn) {  // older drawings show other data
+  const std::string fault = outcome ? fault_of("gnuplot", *outcome, svg, "<?xml", "</svg>")
+                                    : "gnuplot is not installed (Debian package gnuplot-nox)";
+  if (!fault.empty()) {  // older drawings show other data
     for (const auto& old : {svg, pdf}) std::filesystem::remove(old);
+    throw AnalysisError(fault);
   }
-  if (!outcome) {
-    throw AnalysisError("gnuplot is not installed (Debian package gnuplot-nox); the data are in " +
-                        folder.string());
-  }
-  if (!drawn) {
-    throw AnalysisError("gnuplot could not draw " + table.name + ":\n" + outcome->messages);
-  }
-  write_output(svg, with_spaces_kept(std::move(*drawn)));
+  std::string drawn = outcome->output;
+  // librsvg drops spaces next to a change of style unless xml:space says "preserve", which gnuplot
+  // sets only for two spaces in a row.
+  replace_all(drawn, "<text>", "<text xml:space=\"preserve\">");
+  replace_all(drawn, "]]>", "]]&gt;");  // XML does not allow it in a text; gnuplot leaves it there
+  write_output(svg, drawn);
   return svg;
 }
 
 std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path& svg) {
   std::filesystem::path pdf = svg;
   pdf.replace_extension(".pdf");
-  const TemporaryFolder apart;
-  const std::filesystem::path made = apart.path() / pdf.filename();
   const std::optional<ProgramOutcome> outcome = run_program(
-      {"rsvg-convert", "--format=pdf", "--output", made.string(), svg.filename().string()},
-      svg.parent_path(), {fixed_date});
-  const auto drawn = outcome ? drawing(*outcome, made) : std::nullopt;
-  if (!drawn) std::filesystem::remove(pdf);  // it shows other data
+      {"rsvg-convert", "--format=pdf", svg.filename().string()}, svg.parent_path(), {fixed_date});
+  const std::string fault =
+      outcome ? fault_of("rsvg-convert", *outcome, pdf, "%PDF-", "%%EOF") : "";
+  if (!outcome || !fault.empty()) std::filesystem::remove(pdf);  // it shows other data
+  if (!fault.empty()) throw AnalysisError(fault);
   if (!outcome) return std::nullopt;
-  if (!drawn) {
-    throw AnalysisError("rsvg-convert could not read " + svg.string() + ":\n" + outcome->messages);
-  }
-  write_output(pdf, *drawn);
+  write_output(pdf, outcome->output);
   return pdf;
 }
 

@@ -26,16 +26,17 @@ void require_own_files(const FigureTable& table, const std::filesystem::path& fo
 
 /// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` draws it
 /// again). Returns the path of the SVG. The same table gives the same bytes with the same gnuplot.
-/// Drawings are made in a temporary folder, so that several programs may write to one folder and no
-/// cut file is left there.
+/// gnuplot draws into memory, so that several programs may write to one folder and no cut file is
+/// left there.
 ///
-/// Throws AnalysisError if gnuplot is missing (naming the package to install) or fails (with its
-/// message); the script stays, and drawings of other data are deleted.
+/// Throws AnalysisError if gnuplot is missing (naming the package to install), fails (with its
+/// message) or writes a part of the drawing; the script stays, and drawings of other data are
+/// deleted.
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder);
 
 /// The same drawing as PDF beside the SVG, without a date: equal bytes from an equal SVG with the
 /// same librsvg. (gnuplot's own PDF contains the time.) Returns nothing if rsvg-convert (Debian
-/// package librsvg2-bin) is not installed. Throws AnalysisError if it fails.
+/// package librsvg2-bin) is not installed. Throws AnalysisError if it fails or writes a part.
 std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path& svg);
 
 }  // namespace shearcell

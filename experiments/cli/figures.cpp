@@ -37,7 +37,10 @@ void complain(const FigureSummary& result, std::set<std::string>& told, Context&
                  result.experiment, result.experiment.empty() ? "" : "/", result.name,
                  fmt::join(result.empty, ", "));
   }
-  if (!result.plot_error.empty()) print_stderr("no plot: {}\n", result.plot_error);
+  for (const std::string& why : result.undrawn) {
+    print_stderr("no plot: {}{}{}: {}\n", result.experiment, result.experiment.empty() ? "" : "/",
+                 result.name, why);
+  }
 }
 
 nlohmann::json facts(const FigureSummary& result) {
@@ -50,6 +53,7 @@ nlohmann::json facts(const FigureSummary& result) {
           {"files", json_list(result.files, [](const auto& file) { return file.string(); })},
           {"notes", result.notes},
           {"empty", result.empty},
+          {"undrawn", result.undrawn},
           {"damage", result.damage},
           {"pruned", result.pruned},
           {"changed", result.changed},
@@ -67,7 +71,7 @@ void print_verdicts(const FigureSummary& result) {
 
 /// Adds the figure's summary to the list, and prints it unless --json is given.
 void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
-  if (!result.plot_error.empty()) fail(context, kOtherError);
+  if (!result.undrawn.empty()) fail(context, kOtherError);
   list.push_back(facts(result));
   if (context.json) return;
   print_text("{}{}{} ({} scale): {}, {}, {} of them newly measured\n", result.experiment,

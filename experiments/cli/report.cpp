@@ -40,7 +40,9 @@ void report(ReportCommand& command, Context& context) {
   const std::string html = report_page(made);
   write_output(command.out, html);
   if (!made.damage.empty()) fail(context, kStoreDamaged);
+  if (!made.undrawn.empty()) fail(context, kOtherError);
   for (const std::string& line : made.damage) print_stderr("left out: {}\n", line);
+  for (const std::string& line : made.undrawn) print_stderr("no drawing: {}\n", line);
   for (const std::string& line : made.notes) print_stderr("{}\n", line);
   if (!has_front_end() && options.interactive) {
     print_stderr(
@@ -58,6 +60,7 @@ void report(ReportCommand& command, Context& context) {
                        {"packings", packings},
                        {"checkpoints", made.packings.frames},
                        {"damage", made.damage},
+                       {"undrawn", made.undrawn},
                        {"notes", made.notes}});
   }
   print_text("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(html.size())),

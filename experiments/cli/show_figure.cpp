@@ -20,7 +20,7 @@ namespace {
 
 // Escapes a recorded text and cuts it to the rest of the terminal's line; in a pipe it stays whole.
 std::string cut(const std::string& text, std::size_t used) {
-  const std::string shown = printable(text, std::string::npos);
+  const std::string shown = without_controls(text);
   const std::size_t width = terminal_columns(stdout).value_or(std::string::npos);
   const std::size_t left = width > used + 3 ? width - used : 4;
   if (characters(shown) <= left) return shown;

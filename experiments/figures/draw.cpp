@@ -16,6 +16,7 @@
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/host.hpp"
+#include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/words.hpp"
@@ -279,7 +280,7 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
       result.files.push_back(svg);
       if (auto pdf = convert_to_pdf(svg)) result.files.push_back(std::move(*pdf));
     } catch (const AnalysisError& error) {
-      result.plot_error = error.what();
+      result.undrawn.emplace_back(error.what());
     }
   }
   const bool drawn = !made.tables.empty() && !made.tables.front().chart.series.empty();
@@ -293,7 +294,7 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
   }
   write(".lineage.json", lineage_text(facts));
 
-  record(store, wanted.path(), facts);
+  if (result.undrawn.empty() || !find_program("gnuplot")) record(store, wanted.path(), facts);
   return std::move(computed.summary);
 }
 

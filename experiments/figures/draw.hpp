@@ -30,7 +30,7 @@ struct FigureSummary : MeasureOutcome {
   std::vector<Verdict> verdicts;             ///< on the supplement's claims
   std::vector<std::string> notes;            ///< as CollectedRuns::notes
   std::vector<std::string> empty;            ///< names of tables without a value to draw
-  std::string plot_error;                    ///< why there is no SVG; "" if there is one
+  std::vector<std::string> undrawn;          ///< why drawings are missing, one line each
 };
 
 /// A figure before it is written.
@@ -53,8 +53,8 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
 /// PANEL.csv, .svg and, with librsvg, .pdf of each panel, NAME.caption.txt if something is drawn,
 /// NAME.verdict.json if there are claims, and NAME.lineage.json. Deletes a caption or verdict that
 /// an older figure left. Records a FigureGenerated event with host and build, unless the newest
-/// event of this figure says the same. The same checkpoints give the same bytes. Throws as
-/// compute_figure() and require_own_files().
+/// event of this figure says the same, or a drawing failed (gnuplot may be missing). The same
+/// checkpoints give the same bytes. Throws as compute_figure() and require_own_files().
 FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options);
 
 }  // namespace shearcell

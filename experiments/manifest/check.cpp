@@ -201,15 +201,25 @@ void check_scale_against_sweep(const Scale& scale, const Sweep& sweep, ProblemLi
   }
 }
 
-/// Each label must name a variant of some scale; variants of one scale must have different names.
+/// Each label must name a variant of some scale and show something; names of variants of one scale
+/// must look different.
 void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                   ProblemList& problems) {
+  for (const VariantLabel& label : manifest.labels) {
+    if (!as_seen(label.name).empty()) continue;
+    problems.add(label.at, "labels", "gives a variant a name with nothing to see",
+                 fmt::format("\"{}\"", printable(label.name)), "Write a name.");
+  }
   std::set<const VariantLabel*> used;
   for (const Scale& scale : scales) {
     std::vector<nlohmann::json> variants;
     for (const Variant& variant : variants_of(scale)) variants.push_back(variant.swept_values());
     const auto names = variant_names(variants, manifest.labels);
-    std::map<string, const VariantLabel*> named;  // the label behind a name; null: none
+    struct Named {
+      string name;
+      const VariantLabel* label;  // null: none
+    };
+    std::map<string, Named> named;  // by what a reader sees
     for (const nlohmann::json& variant : variants) {
       const string& name = names.at(variant);
       const VariantLabel* chosen = nullptr;
@@ -218,11 +228,17 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
         used.insert(&label);
         chosen = &label;
       }
-      const auto [earlier, first] = named.try_emplace(name, chosen);
-      const VariantLabel* label = chosen != nullptr ? chosen : earlier->second;
+      const auto [earlier, first] = named.try_emplace(as_seen(name), Named{name, chosen});
+      const auto& [other, label_of_other] = earlier->second;
+      const VariantLabel* label = chosen != nullptr ? chosen : label_of_other;
       if (first || label == nullptr) continue;
-      return problems.add(label->at, "labels", "gives two variants the same name, '" + name + "'",
-                          label->name, "Give each its own.");
+      string problem = fmt::format("gives two variants the same name, '{}'", printable(name));
+      if (other != name) {
+        problem = fmt::format("gives two variants names that look the same, '{}' and '{}'",
+                              printable(other), printable(name));
+      }
+      return problems.add(label->at, "labels", problem, printable(label->name),
+                          "Give each its own.");
     }
   }
   for (const VariantLabel& label : manifest.labels) {

@@ -51,6 +51,45 @@ bool is_control(char32_t c) {
          (c >= 0x2028 && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
 }
 
+// Blanks other than the space, which look like it.
+bool is_odd_blank(char32_t c) {
+  return c == 0xA0 || c == 0x1680 || (c >= 0x2000 && c <= 0x200A) || c == 0x202F || c == 0x205F ||
+         c == 0x2800 || c == 0x3000;
+}
+
+// Characters that take no room (Default_Ignorable_Code_Point in Unicode).
+bool is_invisible(char32_t c) {
+  constexpr std::pair<char32_t, char32_t> ranges[] = {
+      {0xAD, 0xAD},       {0x34F, 0x34F},    {0x61C, 0x61C},   {0x115F, 0x1160}, {0x17B4, 0x17B5},
+      {0x180B, 0x180F},   {0x200B, 0x200F},  {0x202A, 0x202E}, {0x2060, 0x206F}, {0x3164, 0x3164},
+      {0xFE00, 0xFE0F},   {0xFEFF, 0xFEFF},  {0xFFA0, 0xFFA0}, {0xFFF0, 0xFFFB}, {0x1BCA0, 0x1BCA3},
+      {0x1D173, 0x1D17A}, {0xE0000, 0xE0FFF}};
+  return std::ranges::any_of(
+      ranges, [c](const auto& range) { return c >= range.first && c <= range.second; });
+}
+
+// Code points that are no characters; XML does not allow the last two.
+bool is_noncharacter(char32_t c) {
+  return (c >= 0xFDD0 && c <= 0xFDEF) || (c & 0xFFFE) == 0xFFFE;
+}
+
+std::string escaped(string_view text, std::size_t longest, bool (*escapes)(char32_t)) {
+  std::string result;
+  while (!text.empty()) {
+    if (result.size() >= longest) return result + "...";
+    auto [length, c] = decode(text);
+    if (length == 0) c = static_cast<unsigned char>(text.front());
+    if (length == 0 || escapes(c)) {
+      result += c < 0x100 ? fmt::format("\\x{:02x}", static_cast<unsigned>(c))
+                          : fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+    } else {
+      result += text.substr(0, length);
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return result;
+}
+
 // yaml-cpp silently replaces bad bytes and stops reading at U+0004.
 void check_characters(string_view text, string_view file) {
   Position at{1, 1};
@@ -96,6 +135,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                 const std::string& value) override {
     check_tag(mark, tag);
+    check_text(mark, value);
     add({.kind = Node::Kind::scalar, .at = position(mark), .text = value, .quoted = tag == "!"});
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
@@ -123,6 +163,26 @@ class TreeBuilder : public YAML::EventHandler {
     if (tag == "?" || tag == "!" || tag.empty()) return;  // no tag was written
     refuse(file_, position(mark), "", fmt::format("the tag {} is not read", printable(tag)), "",
            "Remove the tag; the key decides the type.");
+  }
+
+  // A text that is kept must be plain: it reaches JSON, XML and terminals. Escapes in double quotes
+  // can name any character, and yaml-cpp reads \_ and \N as bytes that are not UTF-8.
+  void check_text(const YAML::Mark& mark, string_view text) {
+    for (string_view rest = text; !rest.empty();) {
+      const auto [length, c] = decode(rest);
+      const char* remedy = "Remove it.";
+      std::string problem;
+      if (length == 0) {
+        problem = "the escapes \\_ and \\N are not read";
+        remedy = "Write _ without the backslash, or the text in single quotes.";
+      } else if (is_control(c) && c != '\n') {
+        problem = fmt::format("holds the control character U+{:04X}", static_cast<unsigned>(c));
+      } else if (is_noncharacter(c)) {
+        problem = fmt::format("holds U+{:04X}, which is not a character", static_cast<unsigned>(c));
+      }
+      if (!problem.empty()) refuse(file_, position(mark), "", problem, printable(text), remedy);
+      rest.remove_prefix(length);
+    }
   }
 
   void open(Node node) {
@@ -181,6 +241,9 @@ std::string syntax_remedy(string_view text, const YAML::Exception& error) {
   if (const int line = tab_indented_line(text, position(error.mark).line); line != 0) {
     return fmt::format("Line {} is indented with a tab; use spaces.", line);
   }
+  if (error.msg.find("unicode") != std::string::npos) {
+    return "This escape names no character; write the character itself.";
+  }
   if (error.msg.find("flow") != std::string::npos) {
     return "A { or [ of this line, or of one above it, is not closed.";
   }
@@ -217,20 +280,26 @@ Node read_document(string_view text, string_view file) {
 }
 
 std::string printable(string_view text, std::size_t longest) {
-  std::string result;
+  return escaped(text, longest, [](char32_t c) {
+    return is_control(c) || is_odd_blank(c) || is_invisible(c) || is_noncharacter(c);
+  });
+}
+
+std::string without_controls(string_view text) {
+  return escaped(text, std::string::npos, is_control);
+}
+
+std::string as_seen(string_view text) {
+  std::string seen;
   while (!text.empty()) {
-    if (result.size() >= longest) return result + "...";
-    auto [length, c] = decode(text);
-    if (length == 0) c = static_cast<unsigned char>(text.front());
-    if (length == 0 || is_control(c)) {
-      result += c < 0x100 ? fmt::format("\\x{:02x}", static_cast<unsigned>(c))
-                          : fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-    } else {
-      result += text.substr(0, length);
-    }
+    const auto [length, c] = decode(text);
+    const bool blank = c == ' ' || is_odd_blank(c);
+    if (blank && !seen.empty() && seen.back() != ' ') seen += ' ';
+    if (!blank && !is_invisible(c)) seen += text.substr(0, length);
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
-  return result;
+  if (seen.ends_with(' ')) seen.pop_back();
+  return seen;
 }
 
 }  // namespace shearcell

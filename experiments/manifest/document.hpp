@@ -23,12 +23,23 @@ struct Node {
   std::vector<std::pair<Node, Node>> entries = {};  ///< of a map; keys are different scalars
 };
 
-/// One YAML document without anchors, aliases, tags or repeated keys, within ManifestLimits.
-/// Throws ManifestError.
+/// One YAML document without anchors, aliases, tags or repeated keys, within ManifestLimits. Its
+/// texts are UTF-8, without control characters other than line feeds, without characters that
+/// change the direction of text, and without code points that are no characters. Throws
+/// ManifestError.
 Node read_document(std::string_view text, std::string_view file);
 
 /// Makes a text fit for a one-line message. Escapes control characters, characters that change the
-/// direction of text, and bytes that are not UTF-8, as \x1b or \u202e. Cuts it to `longest` bytes.
+/// direction of text, bytes that are not UTF-8, code points that are no characters, invisible ones,
+/// and blanks that look like a space, as \x1b or \u202e. Cuts it to `longest` bytes.
 std::string printable(std::string_view text, std::size_t longest = 60);
+
+/// Makes a text fit for a terminal: like printable(), but keeps blanks and invisible characters,
+/// which some scripts need.
+std::string without_controls(std::string_view text);
+
+/// The text as a reader sees it, to compare names: without invisible characters, blanks of any kind
+/// and number as one space, none at the ends. "" if there is nothing to see.
+std::string as_seen(std::string_view text);
 
 }  // namespace shearcell

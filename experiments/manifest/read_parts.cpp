@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -140,11 +139,8 @@ std::optional<std::uint64_t> read_count(const Entry& in, std::uint64_t largest) 
 }
 
 bool is_text(const Node& node, std::size_t longest, bool lines) {
-  const auto controls = [&](unsigned char c) {
-    return std::iscntrl(c) != 0 && !(lines && c == '\n');
-  };
   return node.kind == Node::Kind::scalar && node.text.size() <= longest &&
-         std::ranges::none_of(node.text, controls);
+         (lines || node.text.find('\n') == node.text.npos);
 }
 
 std::vector<Entry> read_list(const Entry& in, string_view example) {

@@ -41,8 +41,7 @@ std::optional<std::uint64_t> read_count(const Entry& in, std::uint64_t largest);
 /// Reads a text that is_name(); "" after a problem.
 std::string read_name(const Entry& in);
 
-/// Whether the node is a text of at most `longest` bytes without control characters; line ends are
-/// allowed if `lines`.
+/// Whether the node is a text of at most `longest` bytes; it has one line unless `lines`.
 bool is_text(const Node& node, std::size_t longest, bool lines);
 
 /// The items of a list; empty after a problem, as with an empty or too long list.

@@ -174,8 +174,7 @@ std::string panel_html(const ReportData& data, const ReportPanel& panel) {
   } else if (!panel.text.rows.empty()) {
     plot = table_html(panel);
   } else if (!data.interactive) {
-    plot =
-        fmt::format("<p class=\"warning\">No drawing: {}</p>", escape_html(data.drawing_trouble));
+    plot = fmt::format("<p class=\"warning\">No drawing: {}</p>", escape_html(panel.trouble));
   }
   return fmt::format(
       "<figure id=\"panel-{3}\"{4}>\n{1}\n<figcaption>{0} <button type=\"button\" hidden "

@@ -52,7 +52,9 @@ std::vector<ReportExperiment> experiments_of(const Store& store,
 std::string draw(const FigureTable& table) {
   const TemporaryFolder folder("shearcell-report-");
   constexpr std::size_t most = 64'000'000;
-  return read_plain(draw_svg(table, folder.path()), most).value_or("");
+  std::optional<std::string> svg = read_plain(draw_svg(table, folder.path()), most);
+  if (!svg) throw AnalysisError(fmt::format("{}.svg is larger than {} bytes", table.name, most));
+  return std::move(*svg);
 }
 
 /// The newest record of the figure with the same scale, inputs and analysis version.
@@ -88,7 +90,8 @@ ReportFigure figure_of(const Store& store, const WantedFigure& wanted, const Rep
     try {
       if (!data.interactive && table.text.rows.empty()) panel.drawing = draw(table);
     } catch (const AnalysisError& error) {
-      data.drawing_trouble = error.what();
+      panel.trouble = error.what();
+      data.undrawn.insert(fmt::format("figure {}: {}", wanted.path(), error.what()));
     }
     made.panels.push_back(std::move(panel));
   }
@@ -233,7 +236,6 @@ ReportData collect_report(const Store& store, const ReportOptions& options) {
                                      options.encoded);
     data.notes.insert(data.notes.end(), data.packings.notes.begin(), data.packings.notes.end());
   }
-  if (!data.drawing_trouble.empty()) data.notes.push_back(data.drawing_trouble);
   return data;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ struct ReportPanel {
   nlohmann::json chart;  ///< for the front end; null if there is none
   std::string csv;
   TextTable text;       ///< if the panel is a table
-  std::string drawing;  ///< SVG, if the page is not interactive and gnuplot is installed
+  std::string drawing;  ///< SVG, if the page is not interactive
+  std::string trouble;  ///< why there is no drawing, if there should be one
 };
 
 struct ReportFigure {
@@ -71,7 +73,7 @@ struct ReportData {
   std::map<std::string, ManifestText> manifests;
   Packings packings;
   bool interactive = false;
-  std::string drawing_trouble;      ///< why a figure has no drawing
+  std::set<std::string> undrawn;    ///< which drawings failed and why, one line each
   std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each
   std::vector<std::string> notes;   ///< about runs, figures and tables, one line each
 };

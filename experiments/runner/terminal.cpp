@@ -46,7 +46,7 @@ std::string for_terminal(std::string_view text) {
   std::string shown;
   for (;;) {
     const std::size_t end = text.find('\n');
-    shown += printable(text.substr(0, end), std::string::npos);
+    shown += without_controls(text.substr(0, end));
     if (end == std::string_view::npos) return shown;
     shown += '\n';
     text.remove_prefix(end + 1);

@@ -81,7 +81,8 @@ TEST(GnuplotScript, StatesEverySeriesLineAndLabel) {
   for (const char* part :
        {"set xlabel 'shear cycle  {/:Italic n}'\n", "set xtics 1\n", "set ylabel 'a\\_b  [%]'\n",
         "set yrange [0:0.1<*]\n", "$series0 << EOD\n1,0.5,,0.1\nEOD\n",
-        "$series1 << EOD\n1.5,0.25,,\nEOD\n", "$series0 every 1 using 1:2:4 with yerrorbars",
+        "$series1 << EOD\n1.5,0.25,,\nEOD\n",
+        "$series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads",
         "title '{/:Italic ϕ}_{u}'", "$series1 every 1 using 1:2 with points lc rgb '#654321'",
         "keyentry with points lc rgb '#000000' lw 1.2 pt 4", "first 0.1 to graph 1, first 0.1",
         "from 2, graph 0 to 2, graph 0.06"}) {

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Figures of made-up runs, the bytes of a CSV file, and gnuplot's drawing.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <optional>
+#include <regex>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -174,6 +180,21 @@ TEST(Csv, QuotingAndNumbers) {
   EXPECT_EQ(to_csv(table), "a b,\"c,d\"\n\"say \"\"x\"\"\",-3\n0.333333333,\n1e-20,\n0,\n");
 }
 
+/// The texts of an SVG in their order, as a reader sees them.
+std::vector<std::string> texts_of(const std::string& svg) {
+  static const std::regex element("<text[^>]*>(.*?)</text>"), tag("<[^>]*>");
+  std::vector<std::string> texts;
+  for (std::sregex_iterator found(svg.begin(), svg.end(), element), none; found != none; ++found) {
+    std::string text = std::regex_replace(found->str(1), tag, "");
+    for (const auto& [name, character] :
+         {std::pair("&lt;", "<"), {"&gt;", ">"}, {"&quot;", "\""}, {"&amp;", "&"}}) {
+      text = std::regex_replace(text, std::regex(name), character);
+    }
+    texts.push_back(std::move(text));
+  }
+  return texts;
+}
+
 /// Draws into a folder whose name has characters that are special in shell and gnuplot.
 class Plot : public ::testing::Test {
  protected:
@@ -228,6 +249,174 @@ TEST_F(Plot, EveryFigureIsDrawnWithFewRunsAndWithoutRuns) {
         EXPECT_GT(fs::file_size(draw(table)), 1000U) << table.name;
       }
     }
+  }
+}
+
+// Every pair of characters that are special in gnuplot's strings, its enhanced text, a shell, or
+// XML.
+TEST_F(Plot, AnyTextIsDrawnAsItIs) {
+  std::vector<std::string> texts = {
+      "'",         "''",  "'a",         "a''b",       "'''",       "it's",      "a'",
+      "\\",        "a\\", "\\U+0041 b", "\\101",      "\\n",       "&#x41;",    "&amp;",
+      "a]]>b",     "]]>", "`echo hi`",  "$HOME",      "{/Bold x}", "@home",     "%s %d",
+      "a_{b}^{c}", "#1",  "a,b",        "\"quoted\"", "ϕ ⟨δ⟩ €",   "a \u00a0 b"};
+  const std::string special = "'\"\\_^@&{}~$#%`<>]U+;0x ";
+  FigureTable table{.name = "t", .columns = {}, .rows = {}, .chart = {}, .text = {.widths = {300}}};
+  for (const std::string& text : texts) table.chart.series.push_back({.title = text});
+  const std::string keys = read_bytes(draw(table));
+  for (const std::string& title : texts) {
+    EXPECT_EQ(std::ranges::count(texts_of(keys), title), 1) << title;
+  }
+  EXPECT_NO_THROW(convert_to_pdf(folder_.path() / "t.svg")) << "a reader of XML";
+  for (const char a : special) {
+    for (const char b : special) texts.push_back({'(', a, b, ')'});
+  }
+  for (const std::string& text : texts) table.text.rows.push_back({{text}});
+  table.text.note = "'the end'";
+  const std::vector<std::string> drawn = texts_of(read_bytes(draw(table)));
+  texts.emplace_back("'the end'");
+  ASSERT_EQ(drawn.size(), texts.size());
+  for (std::size_t k = 0; k < texts.size(); ++k) EXPECT_EQ(drawn[k], texts[k]);
+  EXPECT_NO_THROW(convert_to_pdf(folder_.path() / "t.svg"));
+}
+
+/// Points of several series at each abscissa, whose error bars overlap; the range is that of the
+/// data unless the axis ends before.
+FigureTable crowded(const Axis& y, bool x_errors) {
+  FigureTable table{.name = "t", .columns = {}, .rows = {}, .chart = {.y = y}};
+  table.chart.x = {.low = 0, .high = 6, .clip = true};
+  table.chart.y.clip = true;
+  for (int k = 0; k < 3; ++k) {
+    Series& series = table.chart.series.emplace_back();
+    series.title = fmt::format("series {}", k);
+    series.colour = std::array{"#0072b2", "#d55e00", "#009e73"}.at(static_cast<std::size_t>(k));
+    for (int x = 1; x <= 5; ++x) {
+      const double at = x + 0.02 * k;
+      series.points.push_back({at, 2 + 0.05 * k + 0.01 * x, std::nullopt, 0.12 + 0.17 * k});
+      if (x_errors) series.points.back().x_error = 0.3 + 0.1 * k;
+    }
+  }
+  return table;
+}
+
+// gnuplot 5.4 paints a white disc behind each point of `yerrorbars`. A reaching bar of zero length,
+// a point without a bar, and a bar that ends beyond the frame change nothing for the others.
+TEST_F(Plot, EveryPointAndEndOfAnErrorBarIsVisible) {
+  const Axis plain{.low = 1, .high = 3}, cut{.low = 1.8, .high = 2.5},
+      logarithmic{.log = true, .low = 1.3, .high = 3.3};
+  std::vector<FigureTable> tables = {crowded(plain, false), crowded(plain, true),
+                                     crowded(cut, false),   crowded(logarithmic, false),
+                                     crowded(plain, false), crowded(plain, false)};
+  for (Series& series : tables[4].chart.series) series.points[2].y_error.reset();
+  tables[4].chart.series[1].points[3].y_error = 0;
+  tables[5].chart.wide = true;
+  tables[5].chart.series[0].join = Join::line;
+  for (const FigureTable& table : tables) {
+    const std::string svg = draw(table);
+    EXPECT_FALSE(has(read_bytes(svg), "color='#FFFFFF'"));
+    const auto seen =
+        run_program({"/usr/bin/python3", SHEARCELL_TEST_DATA "/../analysis/visible_points.py", svg,
+                     fs::path(svg).replace_extension(".gp")},
+                    folder_.path());
+    if (!seen || seen->code == 77) GTEST_SKIP() << "needs rsvg-convert and python3-pil";
+    EXPECT_EQ(seen->code, 0) << seen->output << seen->messages;
+    std::printf("%s", seen->output.c_str());
+  }
+}
+
+// A logarithmic axis cannot show the end of such a bar; the other end is where it was.
+TEST_F(Plot, AnErrorBarThatReachesZeroIsDrawnOnALogarithmicAxis) {
+  FigureTable table = crowded({.log = true, .low = 1.3, .high = 3.3}, false);
+  ChartPoint &one = table.chart.series[1].points[1], &other = table.chart.series[2].points[3];
+  one.y = 1.5, one.y_error = 1.5;
+  other.y = 1.6, other.y_error = 1.7;
+  const std::string svg = draw(table);
+  const auto seen =
+      run_program({"/usr/bin/python3", SHEARCELL_TEST_DATA "/../analysis/visible_points.py", svg,
+                   fs::path(svg).replace_extension(".gp")},
+                  folder_.path());
+  if (!seen || seen->code == 77) GTEST_SKIP() << "needs rsvg-convert and python3-pil";
+  EXPECT_EQ(seen->code, 0) << seen->output << seen->messages;
+}
+
+/// Programs of the test's own that stand before the real ones.
+class FakeDrawing : public Plot {
+ protected:
+  /// `text` of sh may call "$real".
+  void fake(const std::string& program, const std::string& text) {
+    const auto real = find_program(program);
+    if (!real) GTEST_SKIP() << program << " is not installed";
+    fs::create_directories(programs_);
+    write_script(programs_ / program, "#!/bin/sh\nreal=" + real->string() + "\n" + text);
+    path_.emplace("PATH", programs_.string() + ":" + std::getenv("PATH"));
+  }
+
+  const fs::path programs_ = folder_.path() / "programs";
+  std::optional<Variable> path_;
+};
+
+/// Draws into a file of its own and passes on what `filter` leaves of it.
+std::string filtered(const std::string& filter) {
+  return "sed \"s/^set output '.*/set output 'whole'/\" \"$2\" > own.gp; \"$real\" -d own.gp\n" +
+         filter + " < whole > \"${2%.gp}.svg\"\n";
+}
+
+TEST_F(FakeDrawing, WhatGnuplotLeavesUnfinishedIsNoDrawing) {
+  const FigureTable table = s2(two_variants())[0];
+  struct Case {
+    std::string script;
+    std::vector<std::string> says;
+  };
+  for (const auto& [script, says] : std::vector<Case>{
+           {"echo no paper >&2; exit 3\n", {"ended with code 3", "no paper"}},
+           {"kill -KILL $$\n", {"was ended by signal 9"}},
+           {filtered("head -c 3000") + "kill -SEGV $$\n", {"was ended by signal 11"}},
+           {"exit 0\n", {"wrote 0 bytes"}},
+           {filtered("head -c 0"), {"wrote 0 bytes"}},
+           {filtered("head -c 3000"), {"wrote 3000 bytes", "</svg>"}},
+           {filtered("head -c -8"), {"</svg>"}},
+           {filtered("tail -n +3"), {"<?xml"}},
+           {"echo '<?xml version=\"1.0\"?><html>full</html>' > \"${2%.gp}.svg\"\n", {"</svg>"}},
+           {filtered("cat") + "echo late >&2; exit 1\n", {"ended with code 1", "late"}}}) {
+    path_.reset();
+    draw(table);
+    convert_to_pdf(folder_.path() / "S2a.svg");
+    fake("gnuplot", script);
+    const std::string message = trouble_with(table);
+    EXPECT_TRUE(has(message, "gnuplot could not draw S2a.svg: it ")) << script;
+    for (const std::string& part : says) EXPECT_TRUE(has(message, part)) << message;
+    EXPECT_FALSE(fs::exists(folder_.path() / "S2a.pdf")) << "it shows other data";
+  }
+}
+
+TEST_F(FakeDrawing, AWarningIsNoFailure) {
+  const FigureTable table = s2(two_variants())[0];
+  const std::string whole = read_bytes(draw(table));
+  fake("gnuplot", "echo 'warning: odd' >&2; exec \"$real\" \"$@\"\n");
+  EXPECT_EQ(read_bytes(draw(table)), whole);
+}
+
+TEST_F(FakeDrawing, WhatLibrsvgLeavesUnfinishedIsNoDrawing) {
+  const FigureTable table = s2(two_variants())[0];
+  struct Case {
+    std::string script, says;
+  };
+  for (const auto& [script, says] :
+       std::vector<Case>{{"echo no fonts >&2; exit 1\n", "ended with code 1:\nno fonts"},
+                         {"kill -KILL $$\n", "was ended by signal 9"},
+                         {"exit 0\n", "wrote 0 bytes"},
+                         {"\"$real\" \"$@\" | head -c 2000\n", "wrote 2000 bytes"},
+                         {"\"$real\" \"$@\" | head -c -4\n", "%%EOF"},
+                         {"\"$real\" --format=png \"$2\"\n", "%PDF-"}}) {
+    path_.reset();
+    const fs::path svg = draw(table);
+    convert_to_pdf(svg);
+    fake("rsvg-convert", script);
+    const std::string message = message_of<AnalysisError>([&] { convert_to_pdf(svg); });
+    EXPECT_TRUE(has(message, "rsvg-convert could not draw S2a.pdf: it ")) << script;
+    EXPECT_TRUE(has(message, says)) << message;
+    EXPECT_FALSE(fs::exists(folder_.path() / "S2a.pdf"));
+    EXPECT_TRUE(fs::exists(svg));
   }
 }
 

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <set>
+#include <tuple>
 
 #include "experiments/figures/collect.hpp"
 #include "experiments/figures/more_measures.hpp"
@@ -14,9 +16,11 @@
 #include "experiments/manifest/identity.hpp"
 #include "protocols/rest.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/io/child_process.hpp"
 #include "provenance/sha256.hpp"
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -301,6 +305,58 @@ TEST_F(DrawFigure, VerdictsAndLineageAreWrittenAndRecorded) {
   for (const char* name : {"S2a.csv", "S2b.csv", "S2.verdict.json"}) {
     EXPECT_EQ(lineage.at("outputs").at(name), sha256_hex(files.at(name))) << name;
   }
+}
+
+/// A program of this name stands before the real one on PATH; its script may call "$real".
+class FakeProgram {
+ public:
+  FakeProgram(const std::string& name, const std::string& script)
+      : path_("PATH", folder_.path().string() + ":" + std::getenv("PATH")) {
+    const auto real = find_program(name);
+    const std::string text = "#!/bin/sh\nreal=" + real.value_or("none").string() + "\n" + script;
+    write_script(folder_.path() / name, text);
+  }
+
+ private:
+  const TemporaryFolder folder_;
+  const Variable path_;
+};
+
+// Tables and their drawings are recorded together, or not at all.
+TEST_F(DrawFigure, RecordsNothingIfADrawingFails) {
+  if (!find_program("gnuplot") || !find_program("rsvg-convert")) GTEST_SKIP();
+  compute(store_, tiny_manifest("", kBothFluids));
+  const std::string half =
+      "sed \"s/^set output '.*/set output 'whole'/\" $2 > own.gp\n"
+      "\"$real\" -d own.gp; head -c 4000 whole > ${2%.gp}.svg\n";
+  const std::string second = "case $2 in S2b.gp) exit 3;; *) exec \"$real\" \"$@\";; esac\n";
+  for (const auto& [name, script, failed] :
+       {std::tuple("gnuplot", half, "gnuplot could not draw S2a.svg: it wrote 4000 bytes"),
+        {"gnuplot", std::string("kill -9 $$\n"), "S2a.svg: it was ended by signal 9"},
+        {"gnuplot", second, "gnuplot could not draw S2b.svg: it ended with code 3"},
+        {"rsvg-convert", std::string("\"$real\" \"$@\" | head -c 3000\n"),
+         "rsvg-convert could not draw S2a.pdf: it wrote 3000 bytes"},
+        {"rsvg-convert", std::string("echo no >&2; exit 1\n"), "it ended with code 1:\nno"}}) {
+    const FakeProgram fake(name, script);
+    const FigureSummary summary = draw("out");
+    ASSERT_FALSE(summary.undrawn.empty()) << script;
+    EXPECT_TRUE(has(summary.undrawn.front(), failed)) << summary.undrawn.front();
+    EXPECT_EQ(summary.undrawn.size(), script == second ? 1U : 2U);
+    EXPECT_EQ(count_events(store_, "FigureGenerated"), 0U);
+    EXPECT_TRUE(contents("out").contains("S2a.csv")) << "the data stay";
+  }
+  EXPECT_TRUE(draw("out").undrawn.empty());
+  EXPECT_EQ(count_events(store_, "FigureGenerated"), 1U);
+}
+
+TEST_F(DrawFigure, WithoutGnuplotRecordsTheTables) {
+  compute(store_, tiny_manifest("", kBothFluids));
+  const Variable nowhere("PATH", "/nonexistent");
+  EXPECT_EQ(draw("out").undrawn.size(), 2U);
+  ASSERT_EQ(count_events(store_, "FigureGenerated"), 1U);
+  const nlohmann::json outputs = store_.figures().at(0).provenance.at("outputs");
+  EXPECT_TRUE(outputs.contains("S2a.csv"));
+  EXPECT_FALSE(outputs.contains("S2a.svg"));
 }
 
 TEST_F(DrawFigure, DeletesVerdictAndCaptionOfAnOlderFigure) {

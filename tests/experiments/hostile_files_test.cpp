@@ -7,12 +7,15 @@
 #include <unistd.h>
 
 #include <array>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 
 #include "core/machine.hpp"
 #include "tests/experiments/damage.hpp"
 #include "tests/experiments/program.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -147,6 +150,59 @@ TEST_F(Outputs, NamesOfAForgedStoreAreQuotedForGnuplot) {
   expect(0, {"export", id_, "--to", "ro-crate", "--out", "crate"});
   EXPECT_FALSE(has(run({"status"}).out, "\r"));
   for (const std::string& file : listing()) EXPECT_FALSE(has(file, "owned"));
+}
+
+/// Labels that gnuplot, XML or a shell could misread, through every program that draws.
+TEST_F(Outputs, LabelsAreDrawnAsTheyAre) {
+  write("q.yaml",
+        tiny_manifest("", kBothFluids +
+                              "labels: {\"fluid=still\": \"'at ''rest'']]>\", \"fluid=cell\": "
+                              "'a`touch owned`{b}^c\\U+0041 $HOME \"d\"'}\n"));
+  expect(0, {"run", "q.yaml", "-q", "--store", "labelled"});
+  expect(0, {"figures", "S2", "--out", "drawn", "--store", "labelled"});
+  const std::string svg = read_bytes(path("drawn/tiny/S2a.svg"));
+  EXPECT_TRUE(has(svg, ">'at ''rest'']]&gt;<"));
+  EXPECT_TRUE(has(svg, ">a`touch owned`{b}^c\\</tspan>"));
+  EXPECT_TRUE(fs::exists(path("drawn/tiny/S2a.pdf")));
+  expect(0, {"report", "--out", "l.html", "--drawings", "--store", "labelled"});
+  for (const std::string& file : listing()) EXPECT_FALSE(has(file, "owned"));
+}
+
+TEST_F(Outputs, AFailedDrawingIsReported) {
+  write("gnuplot", "#!/bin/sh\necho no paper >&2\nexit 3\n");
+  fs::permissions(path("gnuplot"), fs::perms::owner_all);
+  const Variable before("PATH", path("").string() + ":" + std::getenv("PATH"));
+  for (const Arguments& command : {Arguments{"figures", "S2", "--out", "out"},
+                                   Arguments{"report", "--out", "r.html", "--drawings"}}) {
+    expect(1, command,
+           {"tiny/S2: gnuplot could not draw S2a.svg: it ended with code 3", "no paper"});
+  }
+  EXPECT_TRUE(has(read_bytes(path("r.html")), "No drawing: gnuplot could not draw S2a.svg"));
+  const auto facts = expect(1, {"report", "--out", "r.html", "--drawings", "--json"}).out;
+  EXPECT_EQ(nlohmann::json::parse(facts).at("undrawn").size(), 2U);
+  EXPECT_FALSE(has(expect(0, {"log"}).out, "FigureGenerated"));
+}
+
+/// gnuplot ends with code 0 even if it could not write the drawing.
+TEST_F(Outputs, AFullFolderForTemporaryFilesLeavesNoCutDrawing) {
+  for (const char* size : {"4k", "8k", "12k", "16k"}) {
+    fs::create_directory(path(size));
+    const Outcome drawn =
+        shell(std::string("export size=") + size +
+              " program=\"$0\"\nunshare -m true || exit 77\nexec unshare -m sh -c '"
+              "mount -t tmpfs -o size=$size none $size || exit 77; export TMPDIR=$PWD/$size; "
+              "exec \"$program\" figures S2 --out of-$size'");
+    if (drawn.code == 77) GTEST_SKIP() << "only root mounts";
+    std::printf("%s: code %d %s\n", size, drawn.code, drawn.err.c_str());
+    const std::string svg = read_bytes(path(std::string("of-") + size + "/tiny/S2a.svg"));
+    if (drawn.code == 0) {
+      EXPECT_TRUE(has(svg, "</svg>"));
+    } else {
+      EXPECT_EQ(drawn.code, 1);
+      EXPECT_TRUE(has(drawn.err, "No space left on device"));
+      EXPECT_FALSE(has(expect(0, {"log"}).out, "FigureGenerated"));
+    }
+  }
 }
 
 class HostileMachine : public ProgramTest {};

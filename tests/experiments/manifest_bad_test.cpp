@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every bad manifest is rejected with a message that says where it is wrong and how to correct it.
 // Any bytes give a Manifest or a ManifestError, nothing else.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -86,6 +90,32 @@ TEST(BadText, HoldsControlCharacters) {
   EXPECT_EQ(message_for_text(nul),
             "text.yaml:1:14: holds the control character 0x00. A manifest is plain text.");
   EXPECT_NE(message_for_text("experiment: a\n\x04"), "");
+}
+
+// An escape in double quotes can name any character. What is kept must be fit for JSON and XML.
+TEST(BadText, EveryTextThatIsKeptIsPlain) {
+  std::size_t kept = 0, refused = 0;
+  const auto take = [&](const std::string& escape) {
+    try {
+      const std::string text =
+          read_manifest("experiment: a\nquestion: \"x" + escape + "y\"\n", "text.yaml").question;
+      EXPECT_NO_THROW(nlohmann::json(text).dump()) << escape;
+      for (const char* bad : {"\xEF\xBF\xBE", "\xEF\xBF\xBF", "\xC2\x85", "\xE2\x80\xAE"}) {
+        EXPECT_FALSE(has(text, bad)) << escape;
+      }
+      for (const char c : text) EXPECT_TRUE(c == '\n' || std::iscntrl(c) == 0) << escape;
+      ++kept;
+    } catch (const ManifestError&) {
+      ++refused;
+    }
+  };
+  for (char c = ' '; c <= '~'; ++c) take({'\\', c});
+  for (std::uint32_t c = 0; c < 0x110000; c += c < 0x800 || (c & 0xFFFF) > 0xFDC0 ? 1 : 61) {
+    take(fmt::format("\\U{:08X}", c));
+  }
+  std::printf("%zu kept, %zu refused\n", kept, refused);
+  EXPECT_GT(kept, 20'000U);
+  EXPECT_GT(refused, 150U);
 }
 
 TEST(BadText, HasTooManyValues) {

@@ -5,12 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 
 #include "experiments/figures/run_table.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/text.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -178,6 +181,18 @@ TEST_F(ReportOfRuns, AllowsOnlyItsOwnScriptAndHasNoneWithDrawings) {
   EXPECT_EQ(count(drawn, "<script"), 0U);
   EXPECT_EQ(count(drawn, "<img alt=\"S2"), 2U)
       << (report.notes.empty() ? "" : report.notes.front());
+}
+
+TEST_F(ReportOfRuns, SaysWhichDrawingsFailed) {
+  const TemporaryFolder programs;
+  write_script(programs.path() / "gnuplot", "#!/bin/sh\nkill -KILL $$\n");
+  const Variable first("PATH", programs.path().string() + ":" + std::getenv("PATH"));
+  const ReportData report = collect(drawings());
+  ASSERT_EQ(report.undrawn.size(), 2U);
+  EXPECT_EQ(*report.undrawn.begin(),
+            "figure tiny/S2: gnuplot could not draw S2a.svg: it was ended by signal 9");
+  EXPECT_EQ(count(report_page(report), "No drawing: gnuplot could not draw S2b.svg"), 1U);
+  EXPECT_TRUE(collect().undrawn.empty() || !has_front_end());
 }
 
 TEST_F(ReportOfRuns, NamesDamagedCheckpoints) {
