@@ -23,9 +23,11 @@ FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 enum class Lengths { diameters, metres };
 
 /// Extended XYZ in one file; the comment line of each frame holds the run, its parameters and the
-/// scalars. Readers require chemical symbols: species H is a grain, He a wall grain; `type` is the
-/// wall. Lengths in metres, or in grain diameters, since OVITO and ASE expect numbers of order 1
-/// (the radius is 0.5); d_m is then d in metres.
+/// scalars. Readers require chemical symbols: species H is a grain, He a wall grain. The column
+/// `wall_side` is Frame::type, which OVITO would take for a second species if it were called
+/// `type`. A text that ASE or OVITO would read as a number or a logical value is in single quotes:
+/// the experiment T is 'T'. Lengths in metres, or in grain diameters, since OVITO and ASE expect
+/// numbers of order 1 (the radius is 0.5); d_m is then d in metres.
 FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths);
 
 /// A folder with grains_CYCLE.vtp (points with their data; scalars as field data) and

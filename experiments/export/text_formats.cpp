@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <string_view>
 
 #include "experiments/export/formats.hpp"
 #include "provenance/io/file.hpp"
@@ -13,13 +16,28 @@
 namespace shearcell {
 namespace {
 
-// Quotes a text as ASE and OVITO read it. Replaces characters that would end the quotes or the
-// line.
+/// Whether ASE or OVITO may read a quoted text as a number, a logical value or JSON. Both ignore
+/// the quotes; ASE takes lists apart at spaces and commas, so the first item decides.
+bool looks_like_a_value(std::string_view text) {
+  std::string word;
+  for (const char c : text.substr(0, text.find_first_of(" ,"))) {
+    word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  const auto of_a_name = [](char c) { return c >= 'a' && c <= 'z' && c != 'd' && c != 'e'; };
+  const bool number = std::ranges::none_of(word, of_a_name);  // "1e3", also Fortran's "1d3"
+  word.erase(0, word.find_first_not_of("+-"));
+  constexpr std::string_view kValues[] = {"t",   "f",   "true",     "false",
+                                          "nan", "inf", "infinity", "_json"};
+  return number || std::ranges::find(kValues, word) != std::end(kValues);
+}
+
+// Quotes a text such that ASE and OVITO read text, in single quotes if need be. Replaces characters
+// that would end the quotes or the line.
 std::string quoted(std::string text) {
   for (char& c : text) {
     if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) c = '_';
   }
-  return '"' + text + '"';
+  return looks_like_a_value(text) ? "\"'" + text + "'\"" : '"' + text + '"';
 }
 
 std::string xyz_comment(const Frame& f, Lengths lengths) {
@@ -29,7 +47,7 @@ std::string xyz_comment(const Frame& f, Lengths lengths) {
   const Eigen::Vector3d o = f.origin / (si ? 1 : d);
   std::string line = fmt::format(
       "Lattice=\"{:.17g}\" Origin=\"{:.17g}\" pbc=\"F F T\" Time={:.17g} step={} cycle={:.17g} "
-      "theta={:.17g} Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:radius:R:1:type:I:1",
+      "theta={:.17g} Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:radius:R:1:wall_side:I:1",
       fmt::join(e.reshaped(), " "), fmt::join(o, " "), f.time_s, f.step, f.cycle, f.theta);
   for (const FrameColumn& column : f.columns) {
     line += fmt::format(":{}:{}:1", column.name, column.values.index() == 0 ? 'R' : 'I');

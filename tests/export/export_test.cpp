@@ -210,6 +210,33 @@ nlohmann::json truth(const Checkpoint& c) {
       {"periods", periods}};
 }
 
+/// Writes a frame for each of many names. Readers may take those of the first list for numbers,
+/// logical values, lists or JSON.
+void write_texts(const fs::path& at) {
+  nlohmann::ordered_json texts;
+  for (const char* name :
+       {"T",     "F",   "True", "false", "1e3",    "1E3", "1d3",    "007",  "7",
+        "-1",    "+5",  ".5",   "1_0",   "nan",    "NaN", "inf",    "-inf", "infinity",
+        "1 2 3", "T F", "T,F",  "nan x", "[1, 2]", "{1}", "_JSON 1"}) {
+    texts[name] = fmt::format("'{}'", name);
+  }
+  for (const char* name : {"amplitude", "Tilt", "drag_2", "2_drag", "1e3_grains", "True-or-not",
+                           "nano", "0x10", "{a}", "fluid=T", "_JSON_1"}) {
+    texts[name] = name;
+  }
+  const FrameWriter xyz = extxyz_writer(at / "texts.xyz", Lengths::diameters);
+  Frame frame = frame_of(checkpoints().front(), {}, about());
+  std::size_t k = 0;
+  for (const auto& [name, as_text] : texts.items()) {
+    for (auto& [key, value] : frame.run) {
+      if (key == "experiment" || key == "scale") value = name;
+    }
+    xyz(frame);
+    h5md_writer(at / fmt::format("texts_{}.h5md", k++), 1)(frame);
+  }
+  std::ofstream(at / "texts.json") << texts;
+}
+
 TEST(Export, OtherProgramsReadEveryNumber) {
   const TemporaryFolder folder;
   const fs::path at = folder.path();
@@ -233,6 +260,7 @@ TEST(Export, OtherProgramsReadEveryNumber) {
       for (const FrameWriter& write : writers) write(frame);
     }
     std::ofstream(at / "truth.json") << frames;
+    write_texts(at);
   }
   const std::string python = "/usr/bin/python3 ";
   if (std::system((python + "-c 'import ase, h5py, MDAnalysis, vtk' 2>/dev/null").c_str()) != 0) {

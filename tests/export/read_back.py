@@ -4,11 +4,13 @@
 
     python3 read_back.py FOLDER
 
-FOLDER holds run.h5md, run.xyz (in diameters), metres.xyz, vtk/, lammps/ and truth.json, a list of frames.
+FOLDER holds run.h5md, run.xyz (in diameters), metres.xyz, vtk/, lammps/ and truth.json, a list of frames; also
+texts.json, names and how they are read from extended XYZ, with a frame of texts.xyz and a file texts_N.h5md for each.
 Readers: h5py and MDAnalysis for H5MD, ASE and MDAnalysis for extended XYZ, VTK, MDAnalysis for LAMMPS data.
 """
 import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -110,11 +112,49 @@ def check_extxyz(name, unit):
         equal("xyz time", atoms.info["Time"], f["time"])
         equal("xyz theta", atoms.info["theta"], f["theta"])
         equal("xyz symbols", atoms.numbers, np.where(f["type"] == 0, 1, 2))
-        for column in REAL + INTEGER + ["type", "id"]:
+        for column in REAL + INTEGER + ["id"]:
             equal("xyz " + column, atoms.arrays[column], f[column])
+        equal("xyz wall_side", atoms.arrays["wall_side"], f["type"])
     universe = MDAnalysis.Universe(str(folder / name))
     assert len(universe.trajectory) == len(frames)
     equal("MDAnalysis xyz", universe.atoms.positions * scale, frames[0]["position"], 1e-6)
+
+
+# OVITO's XYZImporter gives these columns one property, "Particle Type"; the last one overwrites the others.
+OVITO_TYPE = {"type", "element", "atom_types", "species"}
+
+
+def ovito_attributes(line):
+    """The attributes of a comment line by the rules of OVITO's XYZImporter: double quotes; int, double, else text."""
+    found = {}
+    for key, quoted, plain in re.findall(r'([^=\s]+)=(?:"([^"]*)"|(\S*))', line):
+        assert key not in found, f"two keys {key}"
+        found[key] = quoted or plain
+        for kind in (int, float):
+            try:
+                found[key] = kind(found[key])
+                break
+            except ValueError:
+                pass
+    return found
+
+
+def check_texts():
+    names = json.loads((folder / "texts.json").read_text())
+    read = ase.io.read(folder / "texts.xyz", ":")
+    lines = [line for line in (folder / "texts.xyz").read_text().splitlines() if line.startswith("Lattice=")]
+    assert len(read) == len(lines) == len(names) > 20
+    for k, ((name, as_text), atoms, line) in enumerate(zip(names.items(), read, lines)):
+        ovito = ovito_attributes(line)
+        columns = [column.lower() for column in ovito["Properties"].split(":")[::3]]
+        same("OVITO types", len(OVITO_TYPE.intersection(columns)), 1)
+        for info in (atoms.info, ovito):
+            same("xyz experiment", info["experiment"], as_text)
+            same("xyz scale", info["scale"], as_text)
+            same("xyz variant", info["variant"], "fluid=still,amplitude_rad=0.0833")
+            same("xyz seed", info["seed"], 7)
+        with h5py.File(folder / f"texts_{k}.h5md") as file:
+            same("h5 text", file["parameters"].attrs["experiment"].decode(), name)
 
 
 def check_facts():
@@ -225,6 +265,7 @@ run 0
 check_h5md()
 check_extxyz("run.xyz", "d")
 check_extxyz("metres.xyz", "m")
+check_texts()
 check_facts()
 check_vtk()
 check_lammps()

@@ -1,15 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Python package against the program, on a small store: python3 test_shearcell.py PROGRAM SOURCE"""
+import csv
+import functools
 import hashlib
+import importlib.util
+import io
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+import warnings
 
 program, source = sys.argv[1:3]
 del sys.argv[1:3]
@@ -46,10 +52,48 @@ def unknown(state):
     return np.nan
 
 
+def times(factor):
+    return lambda state: factor * state.cycle
+
+
+def with_default(factor):
+    def scaled(state, factor=factor):
+        return factor * state.cycle
+    return scaled
+
+
+def module_constant(state):
+    return FACTOR * state.cycle
+
+
+class Scale:
+    def __init__(self, factor):
+        self.factor = factor
+
+    def __call__(self, state):
+        return self.factor * state.cycle
+
+    def method(self, state):
+        return self.factor * state.cycle
+
+
 def bytes_of(folder):
     """Every file of the record; derived.sqlite is the program's cache."""
     files = sorted(p for p in folder.rglob("*") if p.is_file() and p.name != "derived.sqlite")
     return {str(p): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
+
+
+def multiplied(factor, state):
+    return factor * state.cycle
+
+
+def compute(store, *manifests, cycles=2, seeds=1):
+    subprocess.run([program, "run", *manifests, "--scale", "smoke", "-q", "--seeds", str(seeds),
+                    "--cycles", str(cycles), "--store", store], check=True)
+
+
+def same_tables(one, other):
+    pandas.testing.assert_frame_equal(one, other, check_exact=True)
 
 
 class Package(unittest.TestCase):
@@ -58,14 +102,31 @@ class Package(unittest.TestCase):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temporary.name)
         cls.path = cls.folder / "shearcell-store"
-        subprocess.run([program, "run", f"{source}/experiments/drag.yaml", "--scale", "smoke", "-q",
-                        "--seeds", "1", "--cycles", "2", "--store", str(cls.path)], check=True)
+        compute(cls.path, f"{source}/experiments/drag.yaml")
         cls.before = bytes_of(cls.path)
         cls.store = Store(cls.path)
 
     @classmethod
     def tearDownClass(cls):
         cls.temporary.cleanup()
+
+    def setUp(self):
+        shutil.rmtree(self.folder / "shearcell-store.measures", ignore_errors=True)
+        warnings.simplefilter("ignore", UserWarning)
+
+    def drag(self, experiment, *replaced):
+        """A copy of drag.yaml under another name, with pairs of old and new texts."""
+        text = pathlib.Path(source, "experiments/drag.yaml").read_text(encoding="utf-8")
+        for old, new in (("experiment: drag", f"experiment: {experiment}"), *replaced):
+            self.assertEqual(text.count(old), 1)
+            text = text.replace(old, new)
+        file = self.folder / f"{experiment}.yaml"
+        file.write_text(text, encoding="utf-8")
+        return file
+
+    def copy(self, name):
+        shutil.copytree(self.path, self.folder / name)
+        return self.folder / name
 
     def tearDown(self):
         self.assertEqual(bytes_of(self.path), self.before, "something wrote into the store")
@@ -79,6 +140,14 @@ class Package(unittest.TestCase):
             for row, expected in zip(table.to_dict("records"), printed):
                 for key, value in expected.items():
                     same = pandas.isna(row[key]) if value in (None, "") else row[key] == value
+                    self.assertTrue(same, f"{key}: {row[key]!r}, not {value!r}")
+                    self.assertEqual(isinstance(row[key], str), isinstance(value, str), key)
+            # As text, with the CSV's digits.
+            lines = list(csv.DictReader(io.StringIO(self.store.call("table", "--per", per))))
+            self.assertEqual(list(table), list(lines[0]))
+            for row, expected in zip(table.to_dict("records"), lines):
+                for key, value in expected.items():
+                    same = pandas.isna(row[key]) if value == "" else type(row[key])(value) == row[key]
                     self.assertTrue(same, f"{key}: {row[key]!r}, not {value!r}")
         self.assertEqual(set(self.store.table(variant="fluid=cell")["fluid"]), {"cell"})
         g = self.store.table(curve="pair_correlation")
@@ -102,7 +171,7 @@ class Package(unittest.TestCase):
             self.assertEqual(state.position.shape, (600, 3))
             velocity = own.arrays["velo"]
             self.assertLess(np.max(np.abs(exported.arrays["velo"] - velocity)), 1e-14 * np.max(velocity))
-            for name in ("type", *GRAIN_MEASURES):
+            for name in ("wall_side", *GRAIN_MEASURES):
                 self.assertTrue(np.array_equal(exported.arrays[name], own.arrays[name]), name)
             moved = state.position - run.checkpoint(0).position  # both upright
             self.assertLess(np.max(np.abs(state.displacement - np.linalg.norm(moved, axis=1))), 1e-12)
@@ -116,13 +185,8 @@ class Package(unittest.TestCase):
             self.assertEqual([c.cycle for c in run.checkpoints()], run.cycles)
 
     def test_a_shared_run_has_the_cycles_of_its_experiment(self):
-        copy = self.folder / "shared"
-        shutil.copytree(self.path, copy)
-        text = pathlib.Path(source, "experiments/drag.yaml").read_text()
-        other = self.folder / "other.yaml"
-        other.write_text(text.replace("experiment: drag", "experiment: other"))
-        subprocess.run([program, "run", str(other), "--scale", "smoke", "-q", "--seeds", "1", "--cycles", "3",
-                        "--store", str(copy)], check=True)
+        copy = self.copy("shared")
+        compute(copy, self.drag("other"), cycles=3)
         store = Store(copy)
         for experiment, cycles in (("drag", [0, 1, 2]), ("other", [0, 1, 2, 3])):
             run = store.runs(experiment=experiment)[0]
@@ -139,40 +203,256 @@ class Package(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "at cycle 1 was pruned; `shearcell regenerate [0-9a-f]+`"):
             run.checkpoint(1)
 
-    def test_own_measure_is_kept_beside_the_store(self):
+    def test_own_measure_is_kept_under_a_key(self):
         global calls
         calls = 0
-        first = self.store.measure(spread)
+        first = self.store.measure(spread, key="spread")
         self.assertEqual((len(first), calls), (6, 6))
         self.assertEqual(first["y_d"][0], self.store.run(first["run"][0]).checkpoint(0).position[:, 1].mean())
         kept = json.loads((self.folder / "shearcell-store.measures/spread.json").read_text())
-        self.assertEqual(hashlib.sha256(kept["source"].encode()).hexdigest(), kept["source_sha256"])
         self.assertEqual(set(kept["checkpoints"]), set(first["checkpoint"]))
-        self.assertTrue(first.equals(self.store.measure(spread)))
+        same_tables(first, self.store.measure(spread, key="spread"))
         self.assertEqual(calls, 6, "nothing is computed twice")
-        seed = self.store.measure(spread, fresh=True, seed=first["seed"][0])
+        seed = self.store.measure(spread, key="spread", fresh=True, seed=first["seed"][0])
         self.assertEqual(calls, 6 + len(seed))
-        self.assertTrue(first.equals(self.store.measure(spread)))
+        same_tables(first, self.store.measure(spread, key="spread"))
         self.assertEqual(calls, 6 + len(seed), "those of other runs stay")
         calls = 0
-        for times in (1, 2):
-            self.assertTrue(self.store.measure(unknown)["unknown"].isna().all())
-            self.assertEqual(calls, 6 * times, "it may become known")
+        for time in (1, 2):
+            self.assertTrue(self.store.measure(unknown, key="unknown")["unknown"].isna().all())
+            self.assertEqual(calls, 6 * time, "it may become known")
+        # A key is a promise, and names the column. A build of the program starts anew.
+        self.assertEqual(list(self.store.measure(times(2), key="y-2.0")["y-2.0"]), [0, 2, 4] * 2)
+        self.assertEqual(list(self.store.measure(times(3), key="y-2.0")["y-2.0"]), [0, 2, 4] * 2)
+        self.assertEqual(list(self.store.measure(times(3), key="y-2.0", fresh=True)["y-2.0"]), [0, 3, 6] * 2)
+        file = self.folder / "shearcell-store.measures/y-2.0.json"
+        file.write_text(file.read_text().replace(self.store.version(), "shearcell 0.0"))
+        self.assertEqual(list(self.store.measure(times(4), key="y-2.0")["y-2.0"]), [0, 4, 8] * 2)
+        file.write_text(file.read_text()[:-3])
+        with self.assertRaisesRegex(ValueError, "y-2.0.json is damaged; delete it"):
+            self.store.measure(times(4), key="y-2.0")
+        # Results of an earlier version of this package may be those of another function.
+        earlier = {sha256: {"y": 9.0} for sha256 in first["checkpoint"]}
+        file.write_text(json.dumps({"measure": "y", "source": "", "checkpoints": earlier}))
+        self.assertEqual(list(self.store.measure(times(5), key="y-2.0")["y-2.0"]), [0, 5, 10] * 2)
+        for key in ("", "a/b", "../a", ".hidden", "a b", "-x", "ä", "x" * 101, 1):
+            with self.assertRaisesRegex(ValueError, "cannot be a key"):
+                self.store.measure(times(1), key=key)
 
-        # Another function of that name.
-        other = self.folder / "other.py"
-        other.write_text("def spread(state):\n    return 2\n")
-        sys.path.insert(0, str(self.folder))
-        import other as changed
+    def test_nothing_is_kept_without_a_key(self):
+        global FACTOR
+        FACTOR = 2
+        one, two = Scale(2), Scale(3)
+        pairs = [(times(2), times(3), "<lambda>"), (with_default(2), with_default(3), "scaled"),
+                 (one, two, "Scale"), (one.method, two.method, "method"),
+                 (functools.partial(multiplied, 2), functools.partial(multiplied, 3), "multiplied"),
+                 (functools.partial(functools.partial(multiplied), 2), functools.partial(Scale(3)), None)]
+        for first, second, name in pairs:
+            for function, factor in ((first, 2), (second, 3)):
+                frame = self.store.measure(function)
+                self.assertEqual(list(frame.iloc[:, -1]), [0, factor, 2 * factor] * 2, name)
+                self.assertEqual(frame.columns[-1], name or frame.columns[-1])
+        self.assertEqual(list(self.store.measure(module_constant)["module_constant"]), [0, 2, 4] * 2)
+        FACTOR = 3
+        self.assertEqual(list(self.store.measure(module_constant)["module_constant"]), [0, 3, 6] * 2)
+        two.factor = 4  # the state of a callable
+        self.assertEqual(list(self.store.measure(two)["Scale"]), [0, 4, 8] * 2)
+        exec(compile("def module_constant(state): return 5 * state.cycle", "<input>", "exec"), scope := {})
+        self.assertEqual(list(self.store.measure(scope["module_constant"])["module_constant"]), [0, 5, 10] * 2)
+        self.assertFalse((self.folder / "shearcell-store.measures").exists())
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            store = Store(self.path)
+            for _ in range(3):
+                store.measure(module_constant)
+            store.measure(module_constant, key="said")
+        self.assertEqual(len(said), 1)
+        self.assertRegex(str(said[0].message), "module_constant are not kept.*key=")
 
-        self.assertEqual(list(self.store.measure(changed.spread)["spread"]), [2.0] * 6)
+    def test_measure_has_the_rows_and_columns_of_the_table(self):
+        copy = self.copy("swept")
+        compute(copy, self.drag("again"), self.drag("swept", ("fluid: [still, cell]", "amplitude_rad: [0.05, 0.0833]")))
+        store = Store(copy)
+
+        def cycle_and_place(state):
+            return {"own_cycle": state.cycle, "own_seed": state.run.seed, "own_drag": state.run.experiment == "drag"}
+
+        whole = store.table()
+        self.assertEqual(len(whole), 18)
+        for select, table in (({}, whole), ({"state": "completed"}, whole), ({"state": ["failed", "completed"]}, whole),
+                              ({"experiment": "drag"}, store.table(experiment="drag")),
+                              ({"fluid": iter(["cell"])}, store.table(fluid="cell")),
+                              ({"amplitude_rad": 0.05, "seed": 1}, store.table(amplitude_rad=0.05)),
+                              ({"all_versions": True}, store.table(all_versions=True))):
+            frame = store.measure(cycle_and_place, **select)
+            same_tables(frame[list(table)], table)
+            self.assertEqual(list(frame["own_cycle"]), list(frame["cycle"]))
+            self.assertEqual(list(frame["own_seed"]), list(frame["seed"]))
+            self.assertEqual(list(frame["own_drag"] == 1), list(frame["experiment"] == "drag"))
+            self.assertTrue({"grains", "phi", "coordination", "time_s"} < set(frame))
+        self.assertEqual(set(whole["amplitude_rad"]), {0.05, 0.0833})
+        self.assertEqual(store.measure(times(1), experiment="drag", variant="fluid=still")["phi"].isna().sum(), 0)
+        self.assertEqual(len(store.measure(times(1), key="none", state="failed")), 0)
+        for name in ("phi", "cycle", "fluid", "experiment", "msd_1_cycle_d2"):
+            with self.assertRaisesRegex(ValueError, f"has a column {name} already"):
+                store.measure(lambda state: {name: 1.0})
+            with self.assertRaisesRegex(ValueError, f"has a column {name} already"):
+                store.measure(lambda state: 1.0, key=name)
+
+    def test_a_pruned_checkpoint_has_its_kept_measures(self):
+        copy = self.copy("pruned")
+        store = Store(copy)
+        before = store.measure(spread, key="spread")
+        pruned = before["cycle"] == 1
+        store.call("prune", "--keep-every", "2", "--yes")
+        self.assertEqual(store.runs()[0].cycles, [0, 2])
+        own = store.measure(times(2), key="new")
+        same_tables(own[list(store.table())], store.table())
+        self.assertEqual(list(own["phi"]), list(before["phi"]))
+        self.assertEqual(list(own["new"].isna()), list(pruned))
+        self.assertEqual(list(own["new"][~pruned]), [0, 4] * 2)
+        for fresh in (False, True):  # nothing can compute it again
+            kept = store.measure(spread, key="spread", fresh=fresh)
+            same_tables(kept, before)
+        file = self.folder / "pruned.measures/spread.json"
+        file.write_text(file.read_text().replace(store.version(), "shearcell 0.0"))
+        same_tables(store.measure(spread, key="spread"), before)
+        same_tables(store.measure(spread, key="spread"), before)
+        self.assertEqual(file.read_text().count("shearcell 0.0"), 2, "those of the pruned checkpoints alone")
+        mixed = store.measure(lambda state: {"a": 1} if state.cycle == 0 else {"b": 2})
+        self.assertEqual(list(mixed["a"].notna()), list(mixed["cycle"] == 0))
+        self.assertEqual(list(mixed["b"].notna()), list(mixed["cycle"] == 2))
+        # A function that needs a pruned checkpoint says so.
+        with self.assertRaisesRegex(KeyError, "at cycle 1 was pruned"):
+            store.measure(lambda state: state.run.checkpoint(1).cycle)
+        store.call("regenerate", before["checkpoint"][1])
+        self.assertEqual(store.measure(times(2), key="new")["new"].isna().sum(), 1)
+
+    def test_text_stays_text(self):
+        copy = self.copy("names")
+        names = ["007", "1e3", "F", "NA", "None", "True", "inf", "nan", "off"]
+        files = [self.drag(name) for name in names]
+        with open(files[0], "a", encoding="utf-8") as manifest:
+            manifest.write('labels: {"fluid=still": "12", "fluid=cell": "Öl φ"}\n')
+        compute(copy, *files)
+        store = Store(copy)
+        every = sorted([*names, "drag"])
+        for table in (store.table(), store.table(per="run"), store.measure(times(1)),
+                      store.table(curve="pair_correlation")):
+            self.assertEqual(sorted(table.groupby("experiment").size().index), every)
+            for column in ("experiment", "scale", "variant", "run", "fluid", "checkpoint"):
+                self.assertTrue(table[column].map(lambda value: isinstance(value, str)).all(), column)
+            self.assertEqual(set(table[table["experiment"] == "007"]["variant"]), {"12", "Öl φ"})
+        for name in every:
+            self.assertEqual(set(store.table(experiment=name)["experiment"]), {name})
+            self.assertEqual(store.table(experiment=name)["cycle"].dtype, float)
+        self.assertEqual(len(store.table(experiment=names, seed=1)), 6 * len(names))
+        # Whatever Python takes for the encoding of the locale.
+        code = ("import shearcell, sys; table = shearcell.Store(sys.argv[1]).table(experiment='007'); "
+                "print(ascii(sorted(set(table['variant']))), len(table))")
+        for variables in ({"LC_ALL": "C"}, {"LC_ALL": "", "LANG": "C"},
+                          {"LC_ALL": "POSIX", "PYTHONIOENCODING": "ascii"},
+                          {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+                          {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONIOENCODING": "latin-1"}):
+            done = subprocess.run([sys.executable, "-B", "-c", code, str(copy)], capture_output=True, text=True,
+                                  env={**os.environ, **variables}, check=False)
+            self.assertEqual((done.stdout, done.returncode), ("['12', '\\xd6l \\u03c6'] 6\n", 0), done.stderr)
+
+    def test_an_empty_table_has_its_columns(self):
+        copy = self.copy("empty")
+        compute(copy, self.drag("one"), seeds=2, cycles=0)
+        store = Store(copy)
+        none = store.table(experiment="drag", seed=2)
+        self.assertEqual(len(none), 0)
+        # No selected run sweeps a parameter.
+        self.assertEqual(list(none), [name for name in store.table(experiment="drag") if name != "fluid"])
+        self.assertEqual(list(store.measure(times(1), key="y", experiment="drag", seed=2))[-1], "y")
+
+    def test_runs_are_selected_by_swept_parameters(self):
+        copy = self.copy("sweep")
+        grid = "fluid: [still, cell]"
+        compute(copy, self.drag("sweep", (grid, grid + "\n    amplitude_rad: [0.03, 0.05, 0.1]")), cycles=0)
+        store = Store(copy)
+
+        def chosen(**select):
+            return sorted((run.parameters["amplitude_rad"], run.parameters["fluid"]) for run in
+                          store.runs(experiment="sweep", **select))
+
+        both = ("cell", "still")
+        for value in (0.03, "0.03", 3e-2, np.float64(0.03), "3e-2", np.float32(0.03)):
+            self.assertEqual(chosen(amplitude_rad=value), [(0.03, fluid) for fluid in both], value)
+        for values in ([0.03, 0.1], (0.1, 0.03), {0.03, 0.1}, np.array([0.03, 0.1]), iter([0.03, 0.1])):
+            self.assertEqual(chosen(amplitude_rad=values), [(a, fluid) for a in (0.03, 0.1) for fluid in both])
+        self.assertEqual(chosen(amplitude_rad=[0.03, 0.05], fluid="cell"), [(0.03, "cell"), (0.05, "cell")])
+        self.assertEqual(chosen(amplitude_rad=0.1, variant="fluid=still", state="completed"), [(0.1, "still")])
+        table = store.table(amplitude_rad=0.05)
+        self.assertEqual(set(table["amplitude_rad"]), {0.05})
+        self.assertEqual(len(store.measure(times(1), key="y", amplitude_rad=0.05)), len(table))
+        for wrong in ({"amplitude_rad": 0.031}, {"amplitude_rad": 0.0300001}, {"gravity_m_per_s2": 9.81}, {"seeds": 1},
+                      {"fluid": "cel"}):
+            with self.assertRaisesRegex(ShearcellError, f"no run of the store has variant {next(iter(wrong))}="):
+                store.runs(**wrong)
+
+    def test_cycles_are_found_as_near_as_a_time_step(self):
+        copy = self.copy("phases")
+        every = "every_cycles: 1"
+        compute(copy, self.drag("phases", (every, every + "\n  phases: [0.3, 0.33333, 0.7]")), cycles=1)
+        run = Store(copy).runs(experiment="phases")[0]
+        third = run.cycles[2]
+        self.assertEqual(len(run.cycles), 5)
+        for asked, found in ((0.1 + 0.2, 0.3), (1 - 0.7, 0.3), (0.3, 0.3), (0.1 * 7, 0.7), (np.float32(0.7), 0.7),
+                             (1 - 0.1 * 3, 0.7), (0.1 * 3 - 0.3, 0), (1 + 1e-12, 1), (sum([0.1] * 10), 1),
+                             (third, third)):
+            self.assertAlmostEqual(run.checkpoint(asked).cycle, found, 9, asked)
+        for asked, near in ((0.31, "0, 0.3, 0.333"), (0.30001, "0, 0.3, 0.333"), (0.9, "0.333.*, 0.7, 1"),
+                            (17, "0.7, 1, 2"), (-1, "0, 0.3, 0.333"), (1 + 1 / 45600, "0.333.*, 0.7, 1"), (np.nan, "")):
+            with self.assertRaisesRegex(KeyError, f"has no checkpoint at cycle .*; next to it, .* of cycles {near}"):
+                run.checkpoint(asked)
+
+    def test_the_working_directory_may_change(self):
+        here = os.getcwd()
+        try:
+            os.chdir(self.folder)
+            os.symlink(program, self.folder / "linked")
+            store = Store("shearcell-store", program="./linked")
+            run = store.runs()[0]
+            os.chdir("/")
+            self.assertEqual(store.path, self.path)
+            same_tables(store.table(), self.store.table())
+            self.assertEqual(run.checkpoint(1).q6.shape, (600,))
+            store.measure(times(1), key="moved")
+            self.assertTrue((self.folder / "shearcell-store.measures/moved.json").is_file())
+            os.chdir(self.path)
+            self.assertEqual(Store(".").path, self.path)
+            self.assertEqual(Store("../shearcell-store").runs()[0].id, run.id)
+        finally:
+            os.chdir(here)
+
+    def test_pip_installs_it_from_a_clone(self):
+        clone, there = self.folder / "clone", self.folder / "there"
+        shutil.copytree(f"{source}/experiments/python", clone / "experiments/python",
+                        ignore=shutil.ignore_patterns("build", "*.egg-info"))
+        shutil.copy(f"{source}/CMakeLists.txt", clone)
+        environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+        if not all(map(importlib.util.find_spec, ("pip", "setuptools", "wheel"))):
+            self.skipTest("needs python3-pip, python3-setuptools and python3-wheel")
+        done = subprocess.run([sys.executable, "-m", "pip", "install", "--no-index", "--no-build-isolation",
+                               "--no-deps", "--quiet", "--break-system-packages", "--target", str(there),
+                               str(clone / "experiments/python")],
+                              capture_output=True, text=True, env=environment, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        code = ("import importlib.metadata, shearcell, sys; print(importlib.metadata.version('shearcell'), "
+                "len(shearcell.Store(sys.argv[1]).runs()), shearcell.__file__)")
+        done = subprocess.run([sys.executable, "-B", "-c", code, str(self.path)], capture_output=True, text=True,
+                              cwd="/", env={**environment, "PYTHONPATH": str(there)}, check=False)
+        version = self.store.version().split()[1]
+        self.assertEqual(done.stdout, f"{version} 2 {there}/shearcell/__init__.py\n", done.stderr)
 
     def test_results_that_cannot_be_kept_are_returned(self):
-        copy = self.folder / "full"
-        shutil.copytree(self.path, copy)
+        copy = self.copy("full")
         (self.folder / "full.measures").write_text("a file in the place of the folder")
         with self.assertWarnsRegex(UserWarning, "unknown are not kept"):
-            self.assertEqual(len(Store(copy).measure(unknown)), 6)
+            self.assertEqual(len(Store(copy).measure(times(2), key="unknown")), 6)
 
     def test_errors_say_what_is_wrong(self):
         run = self.store.runs()[0]
@@ -188,10 +468,7 @@ class Package(unittest.TestCase):
                          len(self.store.runs(seed=run.seed)))
         with self.assertRaisesRegex(ValueError, "seed: no value is given"):
             self.store.runs(seed=[])
-        with self.assertRaisesRegex(ValueError, "cannot name a measure"):
-            self.store.measure(lambda state: 1.0)
-        copy = self.folder / "damaged"
-        shutil.copytree(self.path, copy)
+        copy = self.copy("damaged")
         file = copy / run.records()[-1]["file"]
         file.write_bytes(file.read_bytes()[:-1] + b"?")
         with self.assertRaisesRegex(ValueError, "is damaged"):

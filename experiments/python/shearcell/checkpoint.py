@@ -92,7 +92,7 @@ class Checkpoint:
         with tempfile.TemporaryDirectory(prefix="shearcell-python-") as folder:
             file = Path(folder) / "checkpoint.h5"
             self.run.store.call("export", self.run.id, "--to", "h5md", "--cycles",
-                                repr(self.cycle), "--out", str(file))
+                                repr(self.cycle), "--out", file)
             with h5py.File(file, "r") as exported:
                 every = exported["particles/all"]
                 found = {name: every[name + "/value"][0, : self.grains] for name in GRAIN_MEASURES}
@@ -121,8 +121,8 @@ class Checkpoint:
         """ase.Atoms of the N grains and M wall grains; needs ASE.
 
         Lengths are in grain diameters (`info["d_m"]` is d [m]), velocities (array "velo") in d/s.
-        H is a grain, He a wall grain. Arrays "type" and those of GRAIN_MEASURES are as in the
-        program's export to extxyz.
+        H is a grain, He a wall grain. Arrays "wall_side" (0 for a grain) and those of
+        GRAIN_MEASURES are as in the program's export to extxyz.
         """
         import ase
 
@@ -138,7 +138,7 @@ class Checkpoint:
                   "cycle": self.cycle, "Time": self.time_s, "Origin": self.origin,
                   "d_m": self.diameter_m},
         )
-        atoms.set_array("type", np.concatenate([np.zeros(self.grains, int), self.wall_side]))
+        atoms.set_array("wall_side", np.concatenate([np.zeros(self.grains, int), self.wall_side]))
         atoms.set_array("velo", np.concatenate([self.velocity, self.wall_velocity]))
         for name in GRAIN_MEASURES:
             missing = -1 if name in ("structure", "lattice", "crystallite") else 0

@@ -2,18 +2,15 @@
 """Stores and runs, by the program's own commands."""
 from __future__ import annotations
 
-import hashlib
-import inspect
-import io
+import functools
 import json
 import math
 import numbers
 import os
+import re
 import shutil
 import subprocess
-import textwrap
 import warnings
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Mapping, Union
 
@@ -33,32 +30,38 @@ class Store:
     """A store, read only.
 
     Args:
-        path: folder of the store.
+        path: folder of the store. A relative path is of the working directory at this call.
         program: the program shearcell; default $SHEARCELL, or that in PATH.
     """
 
     def __init__(self, path: str | os.PathLike[str] = "shearcell-store",
                  program: str | os.PathLike[str] | None = None) -> None:
-        self.path = Path(path)
-        self.program = str(program or os.environ.get("SHEARCELL") or "shearcell")
-        if shutil.which(self.program) is None:
-            raise ShearcellError(f"there is no program {self.program}: add its folder to PATH, or "
+        self.path = Path(path).absolute()
+        self._not_kept: set[str] = set()  # measures of which measure() has said so
+        name = str(program or os.environ.get("SHEARCELL") or "shearcell")
+        found = shutil.which(name)
+        if found is None:
+            raise ShearcellError(f"there is no program {name}: add its folder to PATH, or "
                                  "name it in $SHEARCELL")
+        self.program = os.path.abspath(found)
         if not (self.path / "store.sqlite").is_file():
             raise FileNotFoundError(f"{self.path} is not a store")
 
-    def call(self, *arguments: str) -> str:
+    def call(self, *arguments: str | os.PathLike[str]) -> str:
         """Output of `shearcell ARGUMENTS --store PATH`. Raises ShearcellError."""
-        done = subprocess.run([self.program, *arguments, "--store", str(self.path)],
-                              capture_output=True, text=True, check=False)
+        # The program reads and writes UTF-8 whatever Python takes for the locale's encoding.
+        given = [argument.encode("utf-8", "surrogateescape") if isinstance(argument, str)
+                 else os.fsencode(argument) for argument in (*arguments, "--store", self.path)]
+        done = subprocess.run([self.program, *given], capture_output=True, check=False)
         if done.returncode != 0:
-            raise ShearcellError(done.stderr.strip() or f"exit code {done.returncode}")
-        return done.stdout
+            raise ShearcellError(done.stderr.decode(errors="replace").strip()
+                                 or f"exit code {done.returncode}")
+        return done.stdout.decode()
 
     def version(self) -> str:
         """The first line of `shearcell --version`."""
-        done = subprocess.run([self.program, "--version"], capture_output=True, text=True, check=True)
-        return done.stdout.splitlines()[0]
+        done = subprocess.run([self.program, "--version"], capture_output=True, check=True)
+        return done.stdout.decode().splitlines()[0]
 
     def runs(self, *, all_versions: bool = False, **select: Any) -> list["Run"]:
         """Runs in the order of their declaration, without the packings that they start from; a run
@@ -66,7 +69,9 @@ class Store:
 
         Args:
             all_versions: those of older versions of a manifest too, as `shearcell table` has them.
-            select: experiment, scale, variant, seed or state, each a value or a list of values.
+            select: experiment, scale, variant, seed, state or a swept parameter, such as
+                amplitude_rad=0.05, each a value or a list of values. The program compares them,
+                as with `--variant amplitude_rad=0.05`: numbers must be equal.
         """
         listed = json.loads(self.call("status", "--json", *_filters(select)))["runs"]
         return [Run(self, {**facts, **place})
@@ -88,12 +93,13 @@ class Store:
         value of a curve at each checkpoint (curve="pair_correlation"); needs pandas.
 
         Columns have their unit in the name; `shearcell table --help` lists them and the curves.
+        Text stays text, even "NA", "007" or "1e3"; what is unknown or does not apply is missing.
 
         Args:
             per: "checkpoint" or "run".
             curve: name of a curve, or "".
             all_versions: runs of older versions of a manifest too, with a column `manifest`.
-            select: experiment, scale, variant or seed, each a value or a list of values.
+            select: experiment, scale, variant, seed or a swept parameter, as for runs().
         """
         import pandas
 
@@ -101,42 +107,77 @@ class Store:
             raise ValueError("a curve has a row for each value at each checkpoint; leave out `per`")
         rows = ("--curve", curve) if curve else ("--per", per)
         more = ("--all-versions",) if all_versions else ()
-        text = self.call("table", *rows, *more, *_filters(select))
-        return pandas.read_csv(io.StringIO(text), float_precision="round_trip")
+        asked = ("table", *rows, *more, *_filters(select))
+        found = json.loads(self.call(*asked, "--json"))["rows"]
+        if not found:
+            return pandas.DataFrame(columns=self.call(*asked).splitlines()[0].split(","))
+        table = pandas.DataFrame(found)
+        empty = [name for name in table if table[name].isna().all()]
+        return table.astype(dict.fromkeys(empty, float))
 
-    def measure(self, function: Measure, *, fresh: bool = False, all_versions: bool = False,
-                **select: Any) -> "pandas.DataFrame":
-        """A measure of your own for every checkpoint that figures and tables use: experiment, scale,
-        variant, run, seed, cycle, checkpoint and what the function returns, in a column of its name
-        or one for each key; needs pandas.
+    def measure(self, function: Measure, *, key: str | None = None, fresh: bool = False,
+                all_versions: bool = False, **select: Any) -> "pandas.DataFrame":
+        """A measure of your own: the rows and columns of table(), and what the function returns
+        for each checkpoint; needs pandas.
 
-        Results are kept beside the store, in PATH.measures/NAME.json, with the SHA-256 of the
-        function's source, that of each checkpoint and the program's version, and are computed
-        again when one of these changes; results that are not finite are not kept. Only the
-        function's own source is looked at: after a change in a function that it calls, use
-        fresh=True.
+        A number goes into a column named as the key, or else as the function; a mapping into one
+        column for each of its names. They are missing where the checkpoint's file is pruned.
+
+        With a key, results are kept beside the store, in PATH.measures/KEY.json: a checkpoint is
+        computed once, and its results stay when its file is pruned. The key is your promise that
+        the function is always the same and depends on the checkpoint alone. Nothing of the
+        function is compared: after a change to the function, its arguments or what it reads, use
+        another key or fresh=True. Results by another build of the program are computed again.
+        Results that are not finite are not kept, since an earlier checkpoint that they need may
+        come back.
 
         Args:
             function: from a Checkpoint to a number, or to a mapping of names to numbers.
-            fresh: computes everything again.
+            key: name of the measure: letters, digits and _ . + = -
+            fresh: computes every stored checkpoint again.
             all_versions: of runs of older versions of a manifest too.
-            select: experiment, scale, variant, seed or state, each a value or a list of values.
+            select: experiment, scale, variant, seed, state or a swept parameter, as for runs().
         """
         import pandas
 
-        kept = _KeptMeasure(self, function, fresh)
-        rows = []
+        name = key or _name_of(function)
+        if key is None and name not in self._not_kept:
+            self._not_kept.add(name)
+            warnings.warn(f"the results of {name} are not kept: every call computes them again. "
+                          "measure(function, key=...) keeps them under a name of yours",
+                          stacklevel=2)
+        kept = _Kept(self, key)
+        select = {what: _texts(values) for what, values in select.items()}
+        table = self.table(all_versions=all_versions,
+                           **{what: value for what, value in select.items() if what != "state"})
+        runs: dict[tuple[str, str, str], list[Run]] = {}
+        for run in self.runs(all_versions=True, **select):
+            runs.setdefault((run.experiment, run.scale, run.id), []).append(run)
+        places = list(zip(table["experiment"], table["scale"], table["run"]))
+        if "state" in select:
+            chosen = [n for n, place in enumerate(places) if place in runs]
+            table, places = table.iloc[chosen].reset_index(drop=True), [places[n] for n in chosen]
+        results = []
         try:
-            for run in self.runs(all_versions=all_versions, **select):
-                for record in run._of_experiment():
-                    result = kept.of(record["sha256"], lambda: Checkpoint(run, record))
-                    rows.append({"experiment": run.experiment, "scale": run.scale,
-                                 "variant": run.facts["name"], "run": run.id, "seed": run.seed,
-                                 "cycle": record["cycle"], "checkpoint": record["sha256"],
-                                 **result})
+            for place, variant, sha256 in zip(places, table["variant"], table["checkpoint"]):
+                run = next((run for run in runs[place] if run.facts["name"] == variant),
+                           runs[place][0])
+                record = run._by_sha256[sha256]
+                stored = record["state"] == "recorded"
+                found = None if fresh and stored else kept.get(sha256, stored)
+                if found is None and stored:
+                    result = function(Checkpoint(run, record))
+                    named = result if isinstance(result, Mapping) else {name: result}
+                    found = {str(column): float(value) for column, value in named.items()}
+                    if taken := set(found).intersection(table.columns):
+                        raise ValueError(f"the table has a column {min(taken)} already; "
+                                         "give the measure another name")
+                    kept.add(sha256, found)
+                results.append(found or {})
         finally:
             kept.save()
-        return pandas.DataFrame(rows)
+        own = pandas.DataFrame(results, index=table.index, dtype=float)
+        return table.join(own if len(own.columns) > 0 else own.assign(**{name: math.nan}))
 
     def __repr__(self) -> str:
         return f"Store({str(self.path)!r})"
@@ -164,11 +205,11 @@ class Run:
         self.seed: int = facts["seed"]
         self.state: str = facts["state"]
 
-    @cached_property
+    @functools.cached_property
     def _shown(self) -> dict[str, Any]:
         return json.loads(self.store.call("show", self.id, "--json"))
 
-    @cached_property
+    @functools.cached_property
     def _place(self) -> int:
         """Of its experiment in the run's memberships."""
         keys = ("experiment", "scale", "variant", "seed", "manifest")
@@ -185,6 +226,11 @@ class Run:
         empty for those that no experiment has in its figures."""
         return [c for c in self._shown["checkpoints"] if c["state"] == "recorded"]
 
+    @functools.cached_property
+    def _by_sha256(self) -> dict[str, dict[str, Any]]:
+        # The last record of a file wins.
+        return {c["sha256"]: c for c in self._shown["checkpoints"] if c["state"] != "rejected"}
+
     def _of_experiment(self) -> list[dict[str, Any]]:
         return [record for record in self.records() if self._place in record["asked_by"]]
 
@@ -195,21 +241,25 @@ class Run:
 
     def checkpoint(self, cycle: float | None = None) -> Checkpoint:
         """The checkpoint at that cycle, which may be any of `records()`, or the newest of `cycles`.
-        Raises KeyError if there is none."""
-        if cycle is not None and not isinstance(cycle, numbers.Real):
+        A cycle is found to within 1e-6, but never that of another time step. Raises KeyError if
+        there is none."""
+        if cycle is None:
+            if not self._of_experiment():
+                raise KeyError(f"run {self.id[:12]} has no stored checkpoint of {self.experiment}")
+            return Checkpoint(self, self._of_experiment()[-1])
+        if not isinstance(cycle, numbers.Real):
             raise TypeError(f"a cycle is a number, not {cycle!r}")
-        found = (self._of_experiment() if cycle is None
-                 else [c for c in self.records() if c["cycle"] == cycle])
+        known = sorted(self._by_sha256.values(), key=lambda c: abs(c["cycle"] - cycle))
+        step = min((c["cycle"] / c["step"] for c in known if c["step"] > 0), default=1)  # [cycles]
+        found = [c for c in known if abs(c["cycle"] - cycle) <= min(1e-6, step / 2)][:1]
+        if found and found[0]["state"] == "recorded":
+            return Checkpoint(self, found[0])
         if found:
-            return Checkpoint(self, found[-1])
-        pruned = [c["sha256"][:12] for c in self._shown["checkpoints"]
-                  if c["state"] == "pruned" and c["cycle"] == cycle]
-        if pruned:
             raise KeyError(f"the checkpoint of run {self.id[:12]} at cycle {cycle:g} was pruned; "
-                           f"`shearcell regenerate {pruned[-1]}` brings it back")
-        which = "" if cycle is None else f" at cycle {cycle:g}"
-        raise KeyError(f"run {self.id[:12]} has no checkpoint{which}; it has those of cycles "
-                       f"{self.cycles}")
+                           f"`shearcell regenerate {found[0]['sha256'][:12]}` brings it back")
+        near = sorted(c["cycle"] for c in [c for c in known if c["state"] == "recorded"][:3])
+        raise KeyError(f"run {self.id[:12]} has no checkpoint at cycle {cycle:.12g}; next to it, "
+                       f"it has those of cycles {', '.join(f'{c:.12g}' for c in near)}")
 
     def checkpoints(self) -> Iterator[Checkpoint]:
         """The checkpoints at `cycles`, read one after the other."""
@@ -219,71 +269,81 @@ class Run:
         return f"<Run {self.id[:12]} {self.experiment} {self.variant} seed {self.seed}>"
 
 
-class _KeptMeasure:
-    """Results of one function, in a file beside the store."""
+class _Kept:
+    """Results under a user's key, in a file beside the store. Without a key nothing is kept."""
 
-    def __init__(self, store: Store, function: Measure, fresh: bool) -> None:
-        self.function = function
-        self.fresh = fresh
-        self.name: str = function.__name__
+    def __init__(self, store: Store, key: str | None) -> None:
+        fits = isinstance(key, str) and re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.+=-]{0,99}", key)
+        if key is not None and not fits:
+            raise ValueError(f"{key!r} cannot be a key: a key has at most 100 letters, digits and "
+                             "_ . + = - and begins with a letter, a digit or _")
+        self.key = key
+        self.known: dict[str, dict[str, Any]] = {}  # by checkpoint: `program` and `results`
+        self.new: dict[str, dict[str, Any]] = {}
+        if key is not None:
+            folder = store.path.resolve()
+            self.file = folder.with_name(folder.name + ".measures") / f"{key}.json"
+            self.program = store.version()
+            self.known = self._read()
+
+    def _read(self) -> dict[str, dict[str, Any]]:
         try:
-            source = textwrap.dedent(inspect.getsource(function))
-        except (OSError, TypeError) as problem:
-            raise ValueError(f"the source of {self.name} is not known; define it in a file or a "
-                             "notebook's cell") from problem
-        if not self.name.isidentifier():
-            raise ValueError(f"{self.name} cannot name a measure; define a function with `def`")
-        self.facts: dict[str, Any] = {
-            "measure": self.name, "source": source,
-            "source_sha256": hashlib.sha256(source.encode()).hexdigest(),
-            "program": store.version()}
-        folder = store.path.resolve()
-        self.file = folder.with_name(folder.name + ".measures") / f"{self.name}.json"
-        self.values: dict[str, dict[str, float]] = {}
-        if self.file.is_file():
-            known = json.loads(self.file.read_text())
-            if all(known.get(key) == self.facts[key] for key in ("source_sha256", "program")):
-                self.values = known["checkpoints"]
-        self.done: set[str] = set()
-        self.changed = False
+            entries = json.loads(self.file.read_text(encoding="utf-8"))["checkpoints"]
+            # Files of earlier versions have other entries, maybe of another function.
+            return {sha256: entry for sha256, entry in entries.items() if "program" in entry}
+        except (FileNotFoundError, NotADirectoryError):
+            return {}
+        except (ValueError, LookupError, AttributeError) as problem:
+            raise ValueError(f"{self.file} is damaged; delete it or choose another key") from problem
 
-    def of(self, sha256: str, load: Callable[[], Checkpoint]) -> dict[str, float]:
-        if sha256 in self.values and (not self.fresh or sha256 in self.done):
-            return self.values[sha256]
-        result = self.function(load())
-        named = result if isinstance(result, Mapping) else {self.name: result}
-        found = {str(key): float(value) for key, value in named.items()}
-        # A measure over two checkpoints is not a number where the earlier one is missing, which
-        # may be made later.
-        self.values.pop(sha256, None)
-        if all(math.isfinite(value) for value in found.values()):
-            self.values[sha256] = found
-        self.done.add(sha256)
-        self.changed = True
-        return found
+    def get(self, sha256: str, stored: bool) -> dict[str, float] | None:
+        """Results by this build of the program; where nothing is stored, those of any build."""
+        entry = self.known.get(sha256)
+        known = entry is not None and (entry["program"] == self.program or not stored)
+        return entry["results"] if known else None
+
+    def add(self, sha256: str, results: dict[str, float]) -> None:
+        if self.key is not None:
+            self.new[sha256] = {"program": self.program, "results": results}
 
     def save(self) -> None:
-        if not self.changed:
+        if not self.new:
             return
+        # Another process may have added results. A measure over two checkpoints is not a number
+        # where the earlier one is missing, which may come back.
+        entries = {sha256: entry for sha256, entry in {**self._read(), **self.new}.items()
+                   if all(map(math.isfinite, entry["results"].values()))}
         part = self.file.with_suffix(f".{os.getpid()}.tmp")
         try:
             self.file.parent.mkdir(exist_ok=True)
-            part.write_text(json.dumps({**self.facts, "checkpoints": self.values}, indent=1) + "\n")
+            part.write_text(json.dumps({"key": self.key, "checkpoints": entries}, indent=1) + "\n",
+                            encoding="utf-8")
             part.replace(self.file)
         except OSError as problem:
-            warnings.warn(f"the results of {self.name} are not kept: {problem}", stacklevel=3)
+            warnings.warn(f"the results of {self.key} are not kept: {problem}", stacklevel=3)
+
+
+def _name_of(function: Measure) -> str:
+    """As pandas names it."""
+    while isinstance(function, functools.partial):
+        function = function.func
+    return getattr(function, "__name__", type(function).__name__)
+
+
+def _texts(values: Any) -> list[str]:
+    several = isinstance(values, Iterable) and not isinstance(values, str)
+    return [str(value) for value in values] if several else [str(values)]
 
 
 def _filters(select: Mapping[str, Any]) -> list[str]:
     arguments = []
-    known = ("experiment", "scale", "variant", "seed", "state")
     for key, values in select.items():
-        if key not in known:
-            raise TypeError(f"runs are not selected by {key}, but by {', '.join(known)}")
-        several = isinstance(values, Iterable) and not isinstance(values, str)
-        chosen = [str(value) for value in values] if several else [str(values)]
+        chosen = _texts(values)
         if not chosen:
             raise ValueError(f"{key}: no value is given; leave it out to select all")
         for value in chosen:
-            arguments += [f"--{key}", value]
+            if key in ("experiment", "scale", "variant", "seed", "state"):
+                arguments += [f"--{key}", value]
+            else:
+                arguments += ["--variant", f"{key}={value}"]
     return arguments
