@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "provenance/sqlite.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "provenance/errors.hpp"
@@ -100,8 +104,27 @@ void Database::require_in_place() const {
   require_plain_files(full_name_);
 }
 
+void Database::require_journal_can_be_played_back(int code) const {
+  const int kind = code & 0xff;
+  if (kind != SQLITE_READONLY && kind != SQLITE_CANTOPEN && kind != SQLITE_IOERR) return;
+  const std::filesystem::path file = full_name_, journal = full_name_ + "-journal";
+  if (!std::filesystem::exists(journal)) return;
+  for (const std::filesystem::path& path : {journal, file, file.parent_path()}) {
+    if (faccessat(AT_FDCWD, path.c_str(), R_OK | W_OK, AT_EACCESS) == 0) continue;
+    throw MachineError(fmt::format(
+        "{}: a program was writing to this store when it was killed or the disk became read-only. "
+        "Its last write is rolled back from {} by the next program that opens the store, but this "
+        "user cannot write to {} ({}). Nothing that was recorded is lost: copy the whole folder to "
+        "a disk where you can write (`cp -r`) and use the copy, or open it once as a user who can "
+        "write to it",
+        name_, journal.filename().string(), path.string(),
+        std::generic_category().message(errno)));
+  }
+}
+
 void Database::fail(int code, std::string_view doing) const {
   require_same_file();  // SQLite would call it an I/O error
+  require_journal_can_be_played_back(code);
   const char* reason = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(code);
   switch (code & 0xff) {
     case SQLITE_NOTADB:

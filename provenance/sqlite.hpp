@@ -65,6 +65,9 @@ class Database {
  private:
   friend class Statement;
   void require_same_file() const;
+  /// Throws MachineError if this error of SQLite comes from a journal that a killed program left
+  /// and that this user cannot play back.
+  void require_journal_can_be_played_back(int code) const;
   using Prepared = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
   std::string name_;
   std::string full_name_;  ///< "" in memory

@@ -45,46 +45,19 @@ std::function<void()> tried(std::function<void()> action, seconds interval) {
   };
 }
 
-/// The task's store, or a copy on the node's disk that is merged back into it.
-class WorkStore {
- public:
-  WorkStore(const fs::path& task, const std::string& scratch) : task_(task) {
-    if (scratch.empty()) {
-      store_.emplace(task, Access::write);
-      return;
-    }
-    const Store sound(task, Access::write);  // throws if it cannot be used, before it is copied
-    // Named after submission and task, so that a restarted task continues its copy.
-    const fs::path whole = fs::absolute(task);
-    copy_ =
-        fs::path(scratch) / fmt::format("shearcell-{}-{}", whole.parent_path().filename().string(),
-                                        whole.filename().string());
-    store_.emplace(copy_, Access::create);
-    merge_stores(*store_, {task});
-    for (const RunRecord& run : store_->runs()) runs_.insert(run.id);
-  }
-
-  Store& store() { return *store_; }
-  bool is_copy() const { return !copy_.empty(); }
-
-  void save() const {
-    Store task(task_, Access::write);
-    merge_stores(task, {copy_}, runs_);
-  }
-
-  /// Merges the copy back and removes it.
-  void finish() {
-    if (!is_copy()) return;
-    save();
-    store_.reset();
-    fs::remove_all(copy_);
-  }
-
- private:
-  fs::path task_, copy_;
-  std::set<std::string> runs_;  // those of the task, which alone are merged back
-  std::optional<Store> store_;
-};
+/// Where the task works: its own store, or with `scratch` a copy on the node's disk. It is named
+/// after submission and task, so that a restarted task continues its copy.
+fs::path working_folder(const fs::path& task, const std::string& scratch) {
+  if (scratch.empty()) return task;
+  const Store sound(task, Access::write);  // throws if it cannot be used, before it is copied
+  const fs::path whole = fs::absolute(task);
+  const fs::path copy = scratch_here(scratch) / fmt::format("shearcell-{}-{}",
+                                                            whole.parent_path().filename().string(),
+                                                            whole.filename().string());
+  Store store(copy, Access::create);
+  merge_stores(store, {task});
+  return copy;
+}
 
 /// Removes the jobs that failed and those that depend on them. Returns whether there were any.
 bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
@@ -101,23 +74,34 @@ void work(const WorkOptions& options, Context& context) {
   catch_batch_signals();
   // Without a slash at the end, since the names of the files beside it are derived from it.
   const fs::path task = (fs::path(context.store) / "").parent_path();
-  WorkStore place(task, options.scratch);
-  Store& store = place.store();
-  const auto report_task = [&] { write_task_report(task, store.runs()); };
+  const fs::path folder = working_folder(task, options.scratch);
+  const bool is_copy = folder != task;
+  std::optional<Store> store(std::in_place, folder, Access::write);
+  std::set<std::string> runs;  // of the task, which alone are merged back
+  for (const RunRecord& run : store->runs()) runs.insert(run.id);
+  const auto report = [&] { write_task_report(task, store->runs()); };
+  const auto save = [&] {
+    Store own(task, Access::write);
+    merge_stores(own, {folder}, runs);
+  };
   CampaignResult result;
   bool failed_before = false;
   {
-    report_task();
-    const Repeated reports(kReportEvery, tried(report_task, kReportEvery));
+    report();
+    const Repeated reports(kReportEvery, tried(report, kReportEvery));
     std::optional<Repeated> saves;
-    if (place.is_copy()) saves.emplace(kSaveEvery, tried([&] { place.save(); }, kSaveEvery));
-    std::vector<StageJob> jobs = unfinished(store, {});
-    if (options.leave_failed) failed_before = leave_failed(store, jobs);
+    if (is_copy) saves.emplace(kSaveEvery, tried(save, kSaveEvery));
+    std::vector<StageJob> jobs = unfinished(*store, {});
+    if (options.leave_failed) failed_before = leave_failed(*store, jobs);
     Progress progress(jobs.size());
-    result = run_campaign(store, jobs, options.jobs, progress, {options.threads, 1});
+    result = run_campaign(*store, jobs, options.jobs, progress, {options.threads, 1});
   }
-  report_task();
-  place.finish();
+  report();
+  if (is_copy) {
+    save();
+    store.reset();
+    fs::remove_all(folder);
+  }
   print_result(result, context);
   if (stop_requested()) {
     // If work is left, the task continues later, whatever else happened.
@@ -139,7 +123,8 @@ void add_work(CLI::App& app, Context& context) {
   add_threads_option(*command, options->threads, "Threads inside each run (default: 1)");
   command
       ->add_option("--scratch", options->scratch,
-                   "Work on a copy of the store in this folder, on the node's own disk")
+                   "Work on a copy of the store in this folder, on the node's own disk; $NAME and "
+                   "${NAME} are variables of the node")
       ->type_name("DIR");
   command->add_flag("--leave-failed", options->leave_failed, "Do not try failed runs again");
   add_common_options(*command, context);

@@ -6,95 +6,55 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
+#include <regex>
 #include <sstream>
 
 #include "experiments/manifest/suggest.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/io/read_number.hpp"
 
 namespace shearcell {
 namespace {
 
-// Slurm sends USR1 some time before the limit (to the shell alone: B) and TERM to all processes
-// when a job is cancelled or preempted. Both make the program record its states and end with 85.
-// After USR1 the task is queued again by its own number, because the number of its job may be that
-// of the whole array. A program that was killed (out of memory) is started again here.
-constexpr std::string_view kTaskBody = R"sh(
-again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
-pass_on() {
-  signalled=$1
-  [ -n "$program" ] || return 0
-  # More than once: one that is just beginning is still a copy of this shell, which ignores it.
-  for pause in 1 2 4; do kill -"$1" "$program" 2>/dev/null || break; sleep "$pause"; done
-}
-trap 'again=yes; pass_on USR1' USR1
-trap 'again= stopped=yes; pass_on TERM' TERM
-for start in 1 2 3 4; do
-  program=
-  "$shearcell" work --store "$store" --jobs @JOBS@ --threads @THREADS@@SCRATCH@ $leave &
-  program=$!
-  [ -z "$signalled" ] || pass_on "$signalled"  # it came before the number was known
-  wait "$program"; code=$?
-  while [ -n "$signalled" ]; do signalled=; wait "$program"; code=$?; done
-  [ "$code" -gt 128 ] && [ -z "$again$stopped" ] || break
-  echo "The program was killed (code $code), start $start."
-  leave=--leave-failed
-done
-if [ -n "$again" ] && [ "$code" -ge 85 ]; then
-  echo "The time is over; the task is queued again."
-  scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
-fi
-exit "$code"
-)sh";
+namespace fs = std::filesystem;
 
-constexpr std::string_view kMergeBody = R"sh(
-code=0
-for task in $(seq @TASKS@); do
-  "$shearcell" merge "$tasks$task" --store "$store" || code=$?
-done
-exit "$code"
-)sh";
-
-std::string replaced(std::string text, std::string_view what, std::string_view by) {
-  text.replace(text.find(what), what.size(), by);
-  return text;
-}
-
-std::string directives(const JobOptions& options, const std::vector<std::string>& own) {
-  std::string text;
-  // The user's options come first: of two equal options Slurm takes the last.
-  for (const std::string& option : options.sbatch) text += "#SBATCH " + option + "\n";
-  if (!options.partition.empty()) text += "#SBATCH --partition=" + options.partition + "\n";
-  if (!options.account.empty()) text += "#SBATCH --account=" + options.account + "\n";
-  if (!options.time.empty()) text += "#SBATCH --time=" + options.time + "\n";
-  for (const std::string& option : own) text += "#SBATCH " + option + "\n";
-  return text +
-         "#SBATCH --nodes=1\n#SBATCH --ntasks=1\n#SBATCH --requeue\n"
-         "#SBATCH --open-mode=append\n";
-}
+// Variables that do not reach Slurm's programs and the jobs, because they hide lines of the queue,
+// name another cluster, change what the options of sbatch below say (of one job or of both), or
+// describe the job in which `submit` itself runs. Others stay: SLURM_CONF, and what a site needs,
+// as SBATCH_ACCOUNT, SBATCH_PARTITION, SBATCH_QOS, SBATCH_CONSTRAINT and SBATCH_MEM_PER_CPU.
+const std::vector<std::string> kRemoved = {
+    "SQUEUE_*",           "SLURM_CLUSTERS",      "SBATCH_CLUSTERS",
+    "SBATCH_ARRAY_INX",   "SBATCH_CPUS_PER_GPU", "SBATCH_ERROR",
+    "SBATCH_EXPORT",      "SBATCH_GET_USER_ENV", "SBATCH_INPUT",
+    "SBATCH_JOB_NAME",    "SBATCH_NO_KILL",      "SBATCH_NO_REQUEUE",
+    "SBATCH_OPEN_MODE",   "SBATCH_OUTPUT",       "SBATCH_OVERCOMMIT",
+    "SBATCH_REQUEUE",     "SBATCH_SIGNAL",       "SBATCH_TIMELIMIT",
+    "SBATCH_WAIT",        "SLURM_ARRAY_*",       "SLURM_MEM_PER_*",
+    "SLURM_NTASKS_PER_*", "SLURM_RESTART_COUNT", "SLURM_TRES_PER_TASK"};
 
 // Slurm waits 10 s for an answer of its controller.
 constexpr double kAnswerSeconds = 15;
 
-// Only queries may have a time limit: sbatch may queue a job and not answer in time.
-std::string ask(const std::vector<std::string>& words, const std::filesystem::path& folder,
-                std::optional<double> seconds = std::nullopt) {
-  const auto outcome = run_program(words, folder, {}, seconds);
+const std::string kVariable = R"(\$(?:([A-Za-z_]\w*)|\{([A-Za-z_]\w*)\}))";
+
+std::string ask(const std::vector<std::string>& words) {
+  const auto outcome = run_program(words, "/", kRemoved, kAnswerSeconds);
   if (!outcome) {
     throw ProgramError(fmt::format(
         "{} is not installed here (Debian package slurm-client); submit from a machine of the "
         "cluster, or see what would be submitted with --dry-run",
         words.front()));
   }
-  if (outcome->code != 0) {
-    throw ProgramError(fmt::format("{} failed: {}", words.front(), trimmed(outcome->messages)));
-  }
-  return outcome->output;
+  if (outcome->code == 0) return outcome->output;
+  throw ProgramError(fmt::format("{} failed: {}", words.front(), trimmed(outcome->messages)));
 }
 
 }  // namespace
 
-std::string unfit_path(const std::filesystem::path& path) {
+std::string unfit_path(const fs::path& path) {
   const std::string text = path.string();
   const bool fit =
       std::ranges::none_of(text, [](unsigned char c) { return c == '\\' || std::iscntrl(c) != 0; });
@@ -112,92 +72,112 @@ std::string unfit_value(std::string_view text) {
   return fmt::format("'{}' is not a value for Slurm; give one word without spaces or quotes", text);
 }
 
-std::optional<double> slurm_seconds(std::string_view time) {
-  std::optional<unsigned> days = 0;
-  const auto dash = time.find('-');
-  if (dash != std::string_view::npos) {
-    days = read_number<unsigned>(time.substr(0, dash));
-    time.remove_prefix(dash + 1);
+std::string unfit_scratch(const std::string& text) {
+  static const std::regex fit("(/|" + kVariable + ")([^$`]|" + kVariable + ")*");
+  if (const std::string why = unfit_path(text); !why.empty()) return why;
+  if (std::regex_match(text, fit)) return "";
+  return fmt::format(
+      "'{}' does not name a folder on a node's own disk: write an absolute path, which may have "
+      "variables of the node, as '/scratch', '$TMPDIR' or '/scratch/${{USER}}/x'. Commands, ~ and "
+      "other expansions of a shell are not done",
+      text);
+}
+
+fs::path scratch_here(const std::string& text) {
+  static const std::regex variable(kVariable);
+  std::string folder;
+  auto rest = text.begin();
+  for (std::sregex_iterator found(text.begin(), text.end(), variable), end; found != end; ++found) {
+    const std::string name = (*found)[1].str() + (*found)[2].str();
+    const char* value = std::getenv(name.c_str());
+    if (value == nullptr || *value == '\0') {
+      throw UsageError(fmt::format(
+          "--scratch {}: the variable {} is not set on this node; `submit` with another --scratch",
+          text, name));
+    }
+    folder.append(rest, (*found)[0].first).append(value);
+    rest = (*found)[0].second;
   }
-  std::vector<std::optional<unsigned>> parts;
-  for (std::size_t from = 0, end = 0; from <= time.size(); from = end + 1) {
-    end = std::min(time.find(':', from), time.size());
-    parts.push_back(read_number<unsigned>(time.substr(from, end - from)));
-  }
-  if (!days || parts.empty() || parts.size() > 3 ||
-      std::ranges::any_of(parts, [](const auto& part) { return !part; })) {
-    return std::nullopt;
-  }
+  folder.append(rest, text.end());
+  if (fs::path(folder).is_absolute()) return folder;
+  throw UsageError(fmt::format("--scratch {}: '{}' is not an absolute path", text, folder));
+}
+
+std::optional<double> slurm_seconds(const std::string& time) {
   // After days the first number is hours; else a lone number is minutes, and two are minutes and
   // seconds.
-  if (dash == std::string_view::npos && parts.size() < 3) parts.insert(parts.begin(), 0);
-  parts.resize(3, 0);
-  return ((*days * 24.0 + *parts[0]) * 60 + *parts[1]) * 60 + *parts[2];
+  static const std::regex forms[] = {std::regex(R"((\d+)-(\d+)(?::(\d+))?(?::(\d+))?)"),
+                                     std::regex(R"(()(\d+):(\d+):(\d+))"),
+                                     std::regex(R"(()()(\d+)(?::(\d+))?)")};
+  std::smatch found;
+  for (const std::regex& form : forms) {
+    if (!std::regex_match(time, found, form)) continue;
+    double sum = 0;
+    for (const auto& [part, seconds] : {std::pair(1, 86400), {2, 3600}, {3, 60}, {4, 1}}) {
+      if (found.length(part) == 0) continue;
+      const auto number = read_number<unsigned>(found.str(static_cast<std::size_t>(part)));
+      if (!number) return std::nullopt;
+      sum += static_cast<double>(seconds) * *number;
+    }
+    return sum;
+  }
+  return std::nullopt;
 }
 
-std::string array_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks) {
-  const std::size_t jobs = std::max<std::size_t>(1, options.cpus / options.threads);
-  std::string body = replaced(std::string(kTaskBody), "@JOBS@", fmt::to_string(jobs));
-  body = replaced(std::move(body), "@THREADS@", fmt::to_string(options.threads));
-  body = replaced(std::move(body), "@SCRATCH@",
-                  options.scratch.empty() ? "" : " --scratch " + shell_quoted(options.scratch));
-  return "#!/bin/bash\n" +
-         directives(options, {fmt::format("--array=1-{}", tasks),
-                              fmt::format("--cpus-per-task={}", options.cpus),
-                              fmt::format("--signal=B:USR1@{}", options.warn_seconds)}) +
-         fmt::format("\nshearcell={}\nstore={}$SLURM_ARRAY_TASK_ID",
-                     shell_quoted(places.program.string()),
-                     shell_quoted((places.folder / "task-").string())) +
-         body;
-}
-
-std::string merge_script(const JobOptions& options, const JobPlaces& places, std::size_t tasks) {
-  return "#!/bin/bash\n" + directives(options, {}) +
-         fmt::format("\nshearcell={}\nstore={}\ntasks={}", shell_quoted(places.program.string()),
-                     shell_quoted(places.store.string()),
-                     shell_quoted((places.folder / "task-").string())) +
-         replaced(std::string(kMergeBody), "@TASKS@", fmt::to_string(tasks));
-}
-
-std::string output_pattern(const std::filesystem::path& folder, std::string_view file) {
+std::string output_pattern(const fs::path& folder, std::string_view file) {
   std::string pattern;
   for (const char c : folder.string()) pattern += c == '%' ? "%%" : std::string(1, c);
   return pattern + "/" + std::string(file);
 }
 
 void require_slurm() {
-  ask({"sbatch", "--version"}, "/", kAnswerSeconds);
+  ask({"sbatch", "--version"});
 }
 
-std::string queue_job(const std::filesystem::path& folder, const std::string& script,
-                      const std::string& name, const std::vector<std::string>& options) {
-  std::vector<std::string> words = {"sbatch", "--parsable", "--job-name=" + name};
-  words.insert(words.end(), options.begin(), options.end());
-  words.push_back(script);
-  const std::string answer = ask(words, folder);
-  std::string job(trimmed(answer.substr(0, answer.find(';'))));  // the name of the cluster follows
-  if (!read_number<std::uint64_t>(job)) {
-    throw ProgramError(fmt::format("sbatch gave no job number but '{}'", trimmed(answer)));
+std::string queue_job(const Job& job, const fs::path& folder) {
+  static const std::regex number(R"(\s*(\d+)(;\S+)?\s*)");  // the name of the cluster may follow
+  write_output(folder / job.file, job.script);
+  // Without a time limit: sbatch may queue a job and not answer in time.
+  const ProgramOutcome sbatch = run_program(job.command, folder, kRemoved).value();
+  std::smatch found;
+  if (sbatch.code == 0 && std::regex_match(sbatch.output, found, number)) return found[1];
+  // It failed, perhaps after the job was queued, or a site's own text is around the number.
+  const std::string failure = fmt::format("sbatch failed: {}", trimmed(sbatch.messages));
+  std::optional<std::vector<QueuedTask>> tasks;
+  std::string queue = "no job of this name is in the queue";
+  try {
+    tasks = ask_queue({job.name});
+  } catch (const ProgramError& error) {
+    queue = error.what();
   }
-  return job;
+  if (tasks && !tasks->empty()) return tasks->front().job;
+  if (tasks && sbatch.code != 0) throw ProgramError(failure);
+  std::string last;
+  std::istringstream lines(sbatch.output);
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_match(line, found, number)) last = found[1];
+  }
+  if (sbatch.code == 0 && !last.empty()) return last;
+  throw MachineError(fmt::format(
+      "{}, and {}. So it is not known whether the job {} is queued. `submit` again looks for it "
+      "before it queues anything; to see or cancel it: squeue --name={} or scancel --name={}",
+      sbatch.code != 0 ? failure
+                       : fmt::format("sbatch gave no job number but '{}'", trimmed(sbatch.output)),
+      queue, job.name, job.name, job.name));
 }
 
 std::vector<QueuedTask> ask_queue(const std::vector<std::string>& names) {
-  if (names.empty()) return {};
-  return read_queue(ask({"squeue", "--noheader", "--array", "--format=%j|%F|%K|%T|%r|%N",
-                         fmt::format("--name={}", fmt::join(names, ","))},
-                        "/", kAnswerSeconds));
-}
-
-std::vector<QueuedTask> read_queue(const std::string& output) {
   std::vector<QueuedTask> tasks;
-  std::istringstream lines(output);
+  if (names.empty()) return tasks;
+  std::istringstream lines(ask(
+      {"squeue", "--noheader", "--array", "--all", "--states=PENDING,RUNNING,SUSPENDED,COMPLETING",
+       "--format=%j|%F|%K|%T|%r|%N", fmt::format("--name={}", fmt::join(names, ","))}));
   for (std::string line; std::getline(lines, line);) {
     std::vector<std::string> fields;
     std::istringstream rest(line);
     for (std::string field; std::getline(rest, field, '|');) fields.emplace_back(trimmed(field));
     fields.resize(std::max<std::size_t>(6, fields.size()));
-    if (!read_number<std::uint64_t>(fields[1])) continue;
+    if (!std::ranges::count(names, fields[0]) || !read_number<std::uint64_t>(fields[1])) continue;
     tasks.push_back({.name = fields[0],
                      .job = fields[1],
                      .task = read_number<std::uint64_t>(fields[2]),

@@ -2,14 +2,18 @@
 #include "experiments/cluster/submission.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <algorithm>
+#include <functional>
 #include <random>
 #include <system_error>
+#include <utility>
 
+#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/runner/asks.hpp"
 #include "experiments/runner/audit.hpp"
+#include "experiments/runner/cost.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
@@ -22,7 +26,73 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr std::size_t kMostCpus = 16;
 constexpr std::size_t kIdDigits = 12;
+
+// task.sh PROGRAM FOLDER ARGUMENT...
+//
+// Slurm sends USR1 some time before the limit (to the shell alone: B) and TERM to all processes
+// when a job is cancelled or preempted. Both make the program record its states and end with 85.
+// After USR1 the task is queued again by its own number, because the number of its job may be that
+// of the whole array. A program that was killed (out of memory) is started again here.
+constexpr const char* kTaskScript = R"sh(#!/bin/bash
+again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
+pass_on() {
+  signalled=$1
+  [ -n "$program" ] || return 0
+  # More than once: one that is just beginning is still a copy of this shell, which ignores it.
+  for pause in 1 2 4; do kill -"$1" "$program" 2>/dev/null || break; sleep "$pause"; done
+}
+trap 'again=yes; pass_on USR1' USR1
+trap 'again= stopped=yes; pass_on TERM' TERM
+for start in 1 2 3 4; do
+  program=
+  "$1" work --store "$2/task-$SLURM_ARRAY_TASK_ID" "${@:3}" $leave &
+  program=$!
+  [ -z "$signalled" ] || pass_on "$signalled"  # it came before the number was known
+  wait "$program"; code=$?
+  while [ -n "$signalled" ]; do signalled=; wait "$program"; code=$?; done
+  [ "$code" -gt 128 ] && [ -z "$again$stopped" ] || break
+  echo "The program was killed (code $code), start $start."
+  leave=--leave-failed
+done
+if [ -n "$again" ] && [ "$code" -ge 85 ]; then
+  echo "The time is over; the task is queued again."
+  env -u SLURM_CLUSTERS scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
+fi
+exit "$code"
+)sh";
+
+// fold.sh PROGRAM FOLDER TASKS STORE
+constexpr const char* kMergeScript = R"sh(#!/bin/bash
+code=0
+for ((task = 1; task <= $3; ++task)); do
+  "$1" merge "$2/task-$task" --store "$4" || code=$?
+done
+exit "$code"
+)sh";
+
+/// All that this program decides is on the command line, which overrides the variables of sbatch.
+/// Of two equal options sbatch takes the last: only --export gives way to the user's.
+Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
+             const std::vector<std::string>& own, const std::vector<std::string>& arguments) {
+  std::vector<std::string>& words = job.command;
+  const auto append = [&](const auto& more) {
+    words.insert(words.end(), more.begin(), more.end());
+  };
+  words = {"sbatch", "--parsable", "--export=ALL"};
+  append(options.sbatch);
+  if (!options.partition.empty()) words.push_back("--partition=" + options.partition);
+  if (!options.account.empty()) words.push_back("--account=" + options.account);
+  if (!options.time.empty()) words.push_back("--time=" + options.time);
+  append(std::vector<std::string>{"--nodes=1", "--ntasks=1", "--requeue", "--open-mode=append",
+                                  "--job-name=" + job.name,
+                                  "--output=" + output_pattern(folder, log)});
+  append(own);
+  append(std::vector<std::string>{job.file, fs::read_symlink("/proc/self/exe"), folder});
+  append(arguments);
+  return job;
+}
 
 std::string fresh_id() {
   std::random_device random;
@@ -51,6 +121,14 @@ void apply(std::vector<Submission>& known, const Event& event) {
   }
 }
 
+/// The runs, and the packings that they start from.
+std::set<std::string> with_packings(const Store& store, const std::vector<std::string>& runs) {
+  std::set<std::string> stages(runs.begin(), runs.end());
+  for (const std::string& run : runs) stages.insert(store.run(run).parent);
+  stages.erase("");  // of a packing
+  return stages;
+}
+
 fs::path report_file(fs::path folder) {
   return folder += ".progress.json";
 }
@@ -67,6 +145,130 @@ QueuedTask task_of(const Submission& submission, std::size_t task) {
 
 }  // namespace
 
+void Share::add(const Share& other) {
+  packings.insert(packings.end(), other.packings.begin(), other.packings.end());
+  runs.insert(runs.end(), other.runs.begin(), other.runs.end());
+  particle_steps += other.particle_steps;
+  core_seconds += other.core_seconds;
+}
+
+std::vector<Share> work_left(const std::vector<Plan>& plans, const Store* store) {
+  const auto runs = store == nullptr ? std::vector<RunRecord>{} : store->runs();
+  const Rates rates(runs);
+  std::map<std::string, const RunRecord*> known;
+  for (const RunRecord& run : runs) known.emplace(run.id, &run);
+  // Adds what is left of a stage; false when it is done.
+  const auto add = [&](const PlannedRun& run, const StageSpec& stage, Share& share) {
+    const auto cycle = cycle_to_continue(run, stage, known[stage.key], store);
+    if (!cycle) return false;
+    const double steps = stage_cost(run, stage, *cycle).particle_steps;
+    const Rate rate =
+        rates.of(engine_of(stage.resolved), static_cast<double>(run.parameters.grains));
+    share.particle_steps += steps;
+    share.core_seconds += steps / rate.particle_steps_per_second;
+    return true;
+  };
+  std::vector<Share> shares;
+  std::map<std::string, std::size_t> places;  // of each packing in shares
+  Plan all = joined(plans);
+  take_longer_targets(runs, all);
+  for (const PlannedRun& run : all.runs) {
+    Share left;
+    if (!add(run, run.last, left)) continue;
+    left.runs = {run.last.key};
+    const auto [place, fresh] = places.try_emplace(run.prepare.key, shares.size());
+    if (fresh) {
+      shares.emplace_back().packings = {run.prepare.key};
+      add(run, run.prepare, shares.back());
+    }
+    shares[place->second].add(left);
+  }
+  return shares;
+}
+
+std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks) {
+  std::ranges::stable_sort(packings, std::greater(), &Share::core_seconds);
+  std::vector<Share> shares(std::min(tasks, packings.size()));
+  for (const Share& packing : packings) {
+    // The number of packings decides between equal costs, so that no share stays empty.
+    const auto load = [](const Share& share) {
+      return std::pair(share.core_seconds, share.packings.size());
+    };
+    std::ranges::min_element(shares, std::less(), load)->add(packing);
+  }
+  return shares;
+}
+
+Proposal propose(const std::vector<Plan>& plans, const Store* store,
+                 const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job) {
+  Proposal made;
+  std::vector<Share> packings = work_left(plans, store);
+  std::erase_if(packings, [&](const Share& packing) {
+    const auto is_busy = [&](const std::string& id) { return busy.contains(id); };
+    const bool taken = std::ranges::any_of(packing.packings, is_busy) ||
+                       std::ranges::any_of(packing.runs, is_busy);
+    if (taken) made.left_out += packing.runs.size();
+    return taken;
+  });
+  made.shares = share_out(std::move(packings), most_tasks);
+  if (job.cpus == 0) {
+    std::size_t most = 1;
+    for (const Share& share : made.shares) most = std::max(most, share.runs.size());
+    job.cpus = std::max(std::min(kMostCpus, most * job.threads), job.threads);
+  }
+  made.job = std::move(job);
+  return made;
+}
+
+double Proposal::seconds(const Share& share) const {
+  const std::size_t busy = std::min(job.cpus, share.runs.size() * job.threads);
+  return share.core_seconds / static_cast<double>(busy);
+}
+
+Job array_job(const Submission& submission, const fs::path& store, const JobOptions& options) {
+  const std::size_t jobs = std::max<std::size_t>(1, options.cpus / options.threads);
+  std::vector<std::string> arguments = {"--jobs", fmt::to_string(jobs), "--threads",
+                                        fmt::to_string(options.threads)};
+  // `work` on the node replaces its variables.
+  if (!options.scratch.empty()) arguments.push_back("--scratch=" + options.scratch);
+  return complete({submission.name(), "job.sh", kTaskScript, {}}, options, submission.folder(store),
+                  "task-%a.log",
+                  {fmt::format("--array=1-{}", submission.tasks.size()),
+                   fmt::format("--cpus-per-task={}", options.cpus),
+                   fmt::format("--signal=B:USR1@{}", options.warn_seconds)},
+                  arguments);
+}
+
+Job merge_job(const Submission& submission, const fs::path& store, const JobOptions& options,
+              const std::string& array) {
+  return complete({submission.merge_name(), "fold.sh", kMergeScript, {}}, options,
+                  submission.folder(store), "fold.log", {"--dependency=afterany:" + array},
+                  {fmt::to_string(submission.tasks.size()), store});
+}
+
+Submission prepare_submission(Store& store, const Proposal& proposal, json facts,
+                              std::size_t seen) {
+  Submission made;
+  made.id = fresh_id();
+  facts["submission"] = made.id;
+  facts["tasks"] = json::array();
+  try {
+    for (const Share& share : proposal.shares) {
+      made.tasks.push_back(share.runs);
+      facts["tasks"].push_back({{"runs", share.runs}});
+      Store own(made.task_store(store.folder(), made.tasks.size()), Access::create);
+      merge_stores(own, {store.folder()}, with_packings(store, share.runs));
+    }
+    facts["command"] = array_job(made, store.folder(), proposal.job).command;
+    store.record_submission("CampaignSubmitted", facts, seen);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(made.folder(store.folder()), ignored);
+    throw;
+  }
+  return made;
+}
+
 std::vector<Submission> read_submissions(const Store& store) {
   std::vector<Submission> known;
   for (const Event& event : store.events(kSubmissions)) {
@@ -81,94 +283,39 @@ std::vector<Submission> read_submissions(const Store& store) {
 
 std::vector<Submission> unfinished_submissions(const Store& store) {
   std::vector<Submission> open = read_submissions(store);
-  // Submissions without a folder were merged from other stores.
-  std::erase_if(open, [&](const Submission& s) { return !fs::exists(s.folder(store.folder())); });
-  if (open.empty()) return open;
-  std::map<std::string, RunRecord> runs;
-  for (RunRecord& run : store.runs()) runs.emplace(run.id, std::move(run));
-  std::map<std::string, bool> done;  // by run; has_work_left() reads the log
-  const auto is_done = [&](const std::string& id) {
-    const auto [known, fresh] = done.try_emplace(id, false);
-    const auto run = fresh ? runs.find(id) : runs.end();
-    if (run != runs.end()) known->second = !has_work_left(store, run->second);
-    return known->second;
-  };
+  const auto is_done = [&](const std::string& id) { return !has_work_left(store, store.run(id)); };
   std::erase_if(open, [&](const Submission& submission) {
-    return std::ranges::all_of(
-        submission.tasks, [&](const auto& task) { return std::ranges::all_of(task, is_done); });
+    // Submissions without a folder were merged from other stores.
+    return !fs::exists(submission.folder(store.folder())) ||
+           std::ranges::all_of(submission.tasks, [&](const auto& task) {
+             return std::ranges::all_of(task, is_done);
+           });
   });
   return open;
 }
 
-void ask_queue(std::vector<Submission>& submissions) {
-  std::vector<std::string> names;
-  for (const Submission& s : submissions) {
-    names.push_back(s.name());
-    names.push_back(s.merge_name());
-  }
-  for (QueuedTask& task : ask_queue(names)) {
-    for (Submission& s : submissions) {
-      if (task.name != s.name() && task.name != s.merge_name()) continue;
-      s.queue.push_back(std::move(task));
-      break;
-    }
-  }
-}
-
-std::vector<MergeReport> merge_tasks(Store& store, const Submission& submission) {
-  std::vector<MergeReport> reports;
+std::uint64_t merge_tasks(Store& store, const Submission& submission) {
+  std::uint64_t checkpoints = 0;
   for (std::size_t task = 1; task <= submission.tasks.size(); ++task) {
     const fs::path folder = submission.task_store(store.folder(), task);
     if (!fs::exists(folder / "store.sqlite")) continue;
-    for (MergeReport& report : merge_stores(store, {folder})) reports.push_back(std::move(report));
+    for (const auto& report : merge_stores(store, {folder})) checkpoints += report.checkpoints;
   }
-  return reports;
+  return checkpoints;
 }
 
 std::set<std::string> busy_runs(const Store& store, const std::vector<Submission>& open) {
-  std::set<std::string> busy;
+  std::vector<std::string> runs;
   for (const Submission& submission : open) {
     if (submission.queue.empty()) continue;
-    for (const auto& task : submission.tasks) busy.insert(task.begin(), task.end());
+    for (const auto& task : submission.tasks) runs.insert(runs.end(), task.begin(), task.end());
   }
-  for (const Lease& lease : store.leases()) busy.insert(lease.run);
-  // Also their packings that are not settled yet.
-  const std::vector<RunRecord> runs = store.runs();
-  std::set<std::string> parents;
-  for (const RunRecord& run : runs) {
-    if (busy.contains(run.id)) parents.insert(run.parent);
-  }
-  for (const RunRecord& run : runs) {
-    if (parents.contains(run.id) && run.state != RunState::completed) busy.insert(run.id);
+  for (const Lease& lease : store.leases()) runs.push_back(lease.run);
+  std::set<std::string> busy = with_packings(store, runs);
+  for (const RunRecord& run : store.runs()) {
+    if (run.kind == name_of(Stage::prepare) && run.state == RunState::completed) busy.erase(run.id);
   }
   return busy;
-}
-
-Submission prepare_submission(Store& store, const std::vector<Share>& shares, json facts,
-                              std::size_t seen) {
-  Submission made;
-  made.id = fresh_id();
-  facts["submission"] = made.id;
-  facts["tasks"] = json::array();
-  for (const Share& share : shares) {
-    made.tasks.push_back(share.runs);
-    facts["tasks"].push_back({{"runs", share.runs}});
-  }
-  try {
-    for (std::size_t task = 1; task <= shares.size(); ++task) {
-      const std::vector<std::string>& runs = made.tasks[task - 1];
-      std::set<std::string> stages(runs.begin(), runs.end());
-      for (const std::string& run : runs) stages.insert(store.run(run).parent);  // the packings
-      Store own(made.task_store(store.folder(), task), Access::create);
-      merge_stores(own, {store.folder()}, stages);
-    }
-    store.record_submission("CampaignSubmitted", facts, seen);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(made.folder(store.folder()), ignored);
-    throw;
-  }
-  return made;
 }
 
 void write_task_report(const fs::path& folder, const std::vector<RunRecord>& runs) {
@@ -183,15 +330,17 @@ void write_task_report(const fs::path& folder, const std::vector<RunRecord>& run
   }
 }
 
-std::map<std::string, ReportedRun> read_task_report(const fs::path& folder) {
-  std::map<std::string, ReportedRun> reported;
+std::map<std::string, RunRecord> read_task_report(const fs::path& folder) {
+  std::map<std::string, RunRecord> reported;
   const json facts =
       parse_json(read_plain(report_file(folder), StoreLimits::value_bytes).value_or(""));
   try {
     for (const json& run : facts.at("runs")) {
       const auto state = value_of<RunState>(run.at("state").get_ref<const std::string&>());
       if (!state) continue;
-      reported[run.at("id").get<std::string>()] = {*state, run.at("cycle").get<double>()};
+      RunRecord& record = reported[run.at("id").get<std::string>()];
+      record.state = *state;
+      record.cycle = run.at("cycle").get<double>();
     }
   } catch (const json::exception&) {
     reported.clear();  // it is for information only
@@ -199,27 +348,28 @@ std::map<std::string, ReportedRun> read_task_report(const fs::path& folder) {
   return reported;
 }
 
-bool QueueView::busy() const {
-  return std::ranges::any_of(submissions, [](const auto& open) { return !open.queue.empty(); });
-}
-
 QueueView view_queue(const Store& store) {
   QueueView view;
   view.submissions = unfinished_submissions(store);
+  std::vector<std::string> names;
+  for (const Submission& open : view.submissions) {
+    names.push_back(open.name());
+    names.push_back(open.merge_name());
+  }
   try {
-    ask_queue(view.submissions);
+    for (const QueuedTask& task : ask_queue(names)) {
+      for (Submission& open : view.submissions) {
+        if (task.name == open.name() || task.name == open.merge_name()) open.queue.push_back(task);
+      }
+    }
   } catch (const ProgramError& error) {
     view.problem = error.what();
   }
-  std::map<std::string, std::string> packing_of;
-  for (const RunRecord& run : store.runs()) packing_of[run.id] = run.parent;
   for (const Submission& open : view.submissions) {
     for (std::size_t task = 1; task <= open.tasks.size(); ++task) {
       const auto reports = read_task_report(open.task_store(store.folder(), task));
       const QueuedTask queued = task_of(open, task);
-      std::vector<std::string> ids = open.tasks[task - 1];
-      for (const std::string& run : open.tasks[task - 1]) ids.push_back(packing_of[run]);
-      for (const std::string& id : ids) {
+      for (const std::string& id : with_packings(store, open.tasks[task - 1])) {
         QueuedRun& run = view.runs[id] = {queued, {}};  // of the newest submission that has it
         const auto reported = reports.find(id);
         if (reported != reports.end()) run.reported = reported->second;
@@ -240,13 +390,12 @@ std::string describe(const Submission& s) {
     if (task.name == s.name()) ++count[lower(task.state)];
     if (task.name == s.merge_name()) merge_job = task.job;
   }
-  std::string states;
-  for (const auto& [state, tasks] : count) {
-    states += fmt::format("{}{} {}", states.empty() ? "" : ", ", tasks, state);
-  }
+  std::vector<std::string> states;
+  for (const auto& [state, tasks] : count) states.push_back(fmt::format("{} {}", tasks, state));
   return fmt::format(
       "submission {}: job {}, {} of {} tasks in the queue{}", s.id,
-      s.job.empty() ? s.queue.front().job : s.job, states.empty() ? "none" : states, s.tasks.size(),
+      s.job.empty() ? s.queue.front().job : s.job,
+      states.empty() ? "none" : fmt::format("{}", fmt::join(states, ", ")), s.tasks.size(),
       merge_job.empty() ? "" : fmt::format("; job {} will merge their stores", merge_job));
 }
 

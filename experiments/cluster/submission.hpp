@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Submissions to a cluster, as recorded in the store's log, and their state.
+// A submission: work that is neither done nor being computed, shared out among the tasks of an
+// array job, each with a store of its own, and a job that merges these stores.
 //
-// CampaignSubmitted is recorded before the jobs are queued, and JobQueued afterwards. The jobs have
-// the submission's name, so they are found in the queue even after a crash between the two events.
+// CampaignSubmitted is recorded in the log before the jobs are queued, and JobQueued afterwards.
+// The jobs have the submission's name, so they are found in the queue even after a crash between
+// the two events.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -13,18 +16,64 @@
 #include <string>
 #include <vector>
 
-#include "experiments/cluster/proposal.hpp"
 #include "experiments/cluster/slurm.hpp"
+#include "experiments/manifest/expand.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
+
+/// Work for one task. Runs that start from one packing stay together, so that it is settled once.
+struct Share {
+  std::vector<std::string> packings;  ///< ids of the `prepare` stages
+  std::vector<std::string> runs;      ///< ids of the unfinished stages that start from them
+  double particle_steps = 0;          ///< left, including those of the packings
+  double core_seconds = 0;            ///< for these, at the rates of the engines
+
+  void add(const Share& other);
+};
+
+/// The runs of the plans that are not done in the store (which may be null), each once. One share
+/// for each packing, in the order of the plans.
+std::vector<Share> work_left(const std::vector<Plan>& plans, const Store* store);
+
+/// Distributes the shares of packings, the longest first, each to the task with the least core
+/// time; equal ones in turn. At most `tasks` shares, none empty. The same input gives the same
+/// shares.
+std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks);
+
+/// Options for Slurm. Empty texts leave the choice to the cluster.
+struct JobOptions {
+  std::string partition;
+  std::string account;
+  std::string time;                 ///< limit of one start of a task, in Slurm's own form
+  std::size_t cpus = 0;             ///< of a task; 0 if not chosen yet
+  std::size_t threads = 1;          ///< inside each run
+  std::size_t warn_seconds = 120;   ///< before the limit
+  std::vector<std::string> sbatch;  ///< further options, as "--qos=long"
+  std::string scratch;              ///< see unfit_scratch()
+};
+
+struct Proposal {
+  std::vector<Share> shares;
+  std::size_t left_out = 0;  ///< runs that are already queued or being computed
+  JobOptions job;            ///< with the number of cores chosen
+
+  /// Expected wall time [s] of one task with all its cores busy.
+  double seconds(const Share& share) const;
+};
+
+/// Leaves out every packing that is busy or has a busy run, with its runs. If `job.cpus` is 0, a
+/// task gets one core for each thread of each of its runs, but at most 16, and at least the cores
+/// of one run.
+Proposal propose(const std::vector<Plan>& plans, const Store* store,
+                 const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 
 struct Submission {
   std::string id;                               ///< 12 hex digits
   std::vector<std::vector<std::string>> tasks;  ///< runs of task 1, 2, ...
   std::string job;                              ///< "" when it was not queued
-  std::string merge_job;  ///< "fold_job" in the log, for submissions that are queued already
-  std::vector<QueuedTask> queue;  ///< its lines of the queue, by ask_queue()
+  std::string merge_job;          ///< "fold_job" in the log, as submissions of earlier versions
+  std::vector<QueuedTask> queue;  ///< its lines of the queue, by view_queue()
 
   std::string name() const { return "shearcell-" + id; }  ///< of the array job
   std::string merge_name() const { return name() + "-fold"; }
@@ -36,55 +85,59 @@ struct Submission {
   }
 };
 
+/// The array job: task n works on its store, ends with the program's exit code, and is queued again
+/// when its time is over.
+Job array_job(const Submission& submission, const std::filesystem::path& store,
+              const JobOptions& options);
+
+/// Merges the store of every task into `store`, one after the other, when the job of number `array`
+/// has ended. Ends with the last exit code that was not 0.
+Job merge_job(const Submission& submission, const std::filesystem::path& store,
+              const JobOptions& options, const std::string& array);
+
+/// Makes a store for each task with copies of all records of its runs, and records the submission:
+/// `facts`, the runs of each task and the command. Throws ConcurrencyConflict when another program
+/// submitted since `seen` such events were read.
+Submission prepare_submission(Store& store, const Proposal& proposal, nlohmann::json facts,
+                              std::size_t seen);
+
 /// Oldest first. Throws StoreDamaged when the payload of an event is invalid.
 std::vector<Submission> read_submissions(const Store& store);
 
 /// Submissions with a folder in this store and with runs for which has_work_left().
 std::vector<Submission> unfinished_submissions(const Store& store);
 
-/// Adds to each its lines of the queue. Asks Slurm only if there are submissions. Throws
-/// ProgramError.
-void ask_queue(std::vector<Submission>& submissions);
+/// Merges the stores of a submission's tasks that still exist into the store. Returns the number of
+/// new checkpoints.
+std::uint64_t merge_tasks(Store& store, const Submission& submission);
 
 /// Runs that are queued or being computed: those of submissions in the queue, those that programs
 /// on this machine hold, and the packings of both that are not settled yet.
 std::set<std::string> busy_runs(const Store& store, const std::vector<Submission>& open);
 
-/// Merges the stores of a submission's tasks into the store. Task stores that no longer exist are
-/// skipped.
-std::vector<MergeReport> merge_tasks(Store& store, const Submission& submission);
-
-/// Records a submission of these shares and makes a store for each task with copies of all records
-/// of its runs. `facts` is added to the event. Throws ConcurrencyConflict when another program
-/// submitted since `seen` such events were read.
-Submission prepare_submission(Store& store, const std::vector<Share>& shares, nlohmann::json facts,
-                              std::size_t seen);
-
-/// The progress of one run, from a small file beside the store of its task. No other machine opens
-/// that store while the task runs, because SQLite's locks may not work between machines.
-struct ReportedRun {
-  RunState state = RunState::declared;
-  double cycle = 0;
-};
-
-/// Writes `FOLDER.progress.json`, whole or not at all, for the task's store FOLDER.
+/// Writes `FOLDER.progress.json`, whole or not at all, for the task's store FOLDER. No other
+/// machine opens that store while the task runs, because SQLite's locks may not work between
+/// machines.
 void write_task_report(const std::filesystem::path& folder, const std::vector<RunRecord>& runs);
 
-/// By run id; empty when the file is missing or invalid.
-std::map<std::string, ReportedRun> read_task_report(const std::filesystem::path& folder);
+/// The id, state and cycle of each run, by id; empty when the file is missing or invalid.
+std::map<std::string, RunRecord> read_task_report(const std::filesystem::path& folder);
 
 struct QueuedRun {
   /// Its job is "17_3" for task 3 of array job 17, or "" if it was never queued. Its state is
   /// "pending", "running", ..., or "ended" after it left the queue.
   QueuedTask task;
-  std::optional<ReportedRun> reported;
+  std::optional<RunRecord> reported;  ///< by its task
 };
 
 struct QueueView {
-  std::map<std::string, QueuedRun> runs;  ///< by id: runs of open submissions, and their packings
-  std::vector<Submission> submissions;    ///< the open ones
+  std::vector<Submission> submissions;    ///< the unfinished ones
+  std::map<std::string, QueuedRun> runs;  ///< by id: their runs and packings
   std::string problem;                    ///< why the queue could not be asked; "" if it was
-  bool busy() const;                      ///< whether anything is in the queue
+
+  bool busy() const {  ///< whether anything is in the queue
+    return std::ranges::any_of(submissions, [](const auto& open) { return !open.queue.empty(); });
+  }
 };
 
 /// Asks Slurm only if the store has unfinished submissions.

@@ -29,14 +29,18 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<std::string> environment_with(const std::vector<std::string>& variables) {
-  const auto name_of = [](std::string_view variable) {
-    return variable.substr(0, variable.find('='));
-  };
-  std::vector<std::string> all = variables;
+  std::vector<std::string> all;
+  for (const std::string& variable : variables) {
+    if (variable.find('=') != variable.npos) all.push_back(variable);
+  }
   for (char** variable = environ; *variable != nullptr; ++variable) {
-    if (std::ranges::count(variables, name_of(*variable), name_of) == 0) {
-      all.emplace_back(*variable);
-    }
+    const std::string_view own = *variable, name = own.substr(0, own.find('='));
+    const auto replaces = [&](std::string_view other) {
+      const std::string_view pattern = other.substr(0, other.find('='));
+      return pattern.ends_with('*') ? name.starts_with(pattern.substr(0, pattern.size() - 1))
+                                    : name == pattern;
+    };
+    if (std::ranges::none_of(variables, replaces)) all.emplace_back(own);
   }
   return all;
 }

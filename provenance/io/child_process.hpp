@@ -32,11 +32,13 @@ std::string shell_word(std::string_view text);
 std::optional<std::filesystem::path> find_program(const std::string& name);
 
 struct Command {
-  std::vector<std::string> words;      ///< the program (a path or a name on PATH) and arguments
-  std::filesystem::path folder;        ///< working folder
-  std::vector<std::string> variables;  ///< "NAME=value", added to the environment
-  int output = -1;                     ///< descriptor for its standard output
-  int messages = -1;                   ///< descriptor for its standard error
+  std::vector<std::string> words;  ///< the program (a path or a name on PATH) and arguments
+  std::filesystem::path folder;    ///< working folder
+  /// Changes of the environment: "NAME=value" sets a variable, "NAME" removes it, and "NAME*"
+  /// removes all whose names begin with NAME.
+  std::vector<std::string> variables;
+  int output = -1;    ///< descriptor for its standard output
+  int messages = -1;  ///< descriptor for its standard error
 };
 
 /// A running program. Its standard input is empty. It has its own process group, so Ctrl-C on a

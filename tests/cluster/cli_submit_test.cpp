@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 
 #include <csignal>
+#include <functional>
+#include <memory>
 
 #include "tests/experiments/program.hpp"
 #include "tests/support/variable.hpp"
@@ -20,16 +22,26 @@ class Submit : public ProgramTest {
     write_script(programs_.path() / name, "#!/bin/sh\n" + body);
   }
 
-  /// Jobs get the numbers 100, 101, ...; the queue holds what is in `queue`.
-  void slurm_that_works() const {
+  /// Jobs get the numbers 100, 101, ..., and sbatch prints this; the queue holds what is in
+  /// `queue`.
+  void slurm_that_works(const std::string& answer = "echo $number") const {
     const std::string folder = programs_.path().string();
     program("sbatch", "[ \"$1\" = --version ] && exit 0\ncd '" + folder + R"('
 echo x >> jobs
-for word; do echo "$word" >> words; done
-echo $((99 + $(/usr/bin/wc -l < jobs)))
+for word; do
+  echo "$word" >> words
+  case $word in --job-name=*) name=${word#--job-name=};; esac
+done
+number=$((99 + $(/usr/bin/wc -l < jobs)))
+/usr/bin/env > "environment-$number"
+)" + answer + "\n");
+    program("squeue", "cd '" + folder + R"('
+for word; do echo "$word" >> asked; done
+/usr/bin/env > environment-squeue
+/bin/cat queue 2>/dev/null; exit 0
 )");
-    program("squeue", "/bin/cat '" + folder + "/queue' 2>/dev/null; exit 0\n");
   }
+  std::string said(const std::string& file) const { return read_bytes(programs_.path() / file); }
   /// Submits the manifest, and returns the folder of the submission.
   std::string submitted(const Arguments& options = {}) {
     slurm_that_works();
@@ -45,12 +57,11 @@ echo $((99 + $(/usr/bin/wc -l < jobs)))
 
 TEST_F(Submit, ADryRunNeedsNoSlurmAndWritesNothing) {
   const auto before = listing();
-  expect(
-      0, {"submit", manifest_, "--seeds", "3", "--time", "2:00:00", "--dry-run"},
-      {"6 runs in 3 tasks; cores of each: 2", "#SBATCH --array=1-3\n", "#SBATCH --time=2:00:00\n",
-       "store='" + path("shearcell-store/submissions/SUBMISSION/task-").string() + "'"});
+  expect(0, {"submit", manifest_, "--seeds", "3", "--time", "2:00:00", "--dry-run"},
+         {"6 runs in 3 tasks; cores of each: 2", " --array=1-3 ", " --time=2:00:00 ",
+          path("shearcell-store/submissions/SUBMISSION").string() + "/task-%a.log"});
   expect(0, {"submit", "--sbatch=--mem=2G", "--sbatch", "--qos=low", manifest_, "--dry-run"},
-         {"#SBATCH --mem=2G\n#SBATCH --qos=low\n"});
+         {" --mem=2G --qos=low "});
   const auto facts =
       json({"submit", manifest_, "--seeds", "5", "--array-size", "2", "--dry-run", "--json"});
   EXPECT_EQ(facts.at("tasks").size(), 2U);
@@ -79,7 +90,11 @@ TEST_F(Submit, RejectsPathsThatSlurmWouldMisread) {
        {Arguments{"--partition", "a b"}, Arguments{"--account", "x\n#SBATCH --uid=0"},
         Arguments{"--time", "soon"}, Arguments{"--time", "2", "--warn", "90"},
         Arguments{"--sbatch=qos"}, Arguments{"--sbatch=--wrap=a b"}, Arguments{"--engine", "slurm"},
-        Arguments{"--scratch", "/a\nb"}, Arguments{"--array-size", "0"},
+        Arguments{"--scratch", "/a\nb"}, Arguments{"--scratch", "~/x"},
+        Arguments{"--scratch", "$(rm -rf x)"}, Arguments{"--array-size", "0"},
+        Arguments{"--sbatch=--array=1-2"}, Arguments{"--sbatch=--arr=1"},
+        Arguments{"--sbatch=--clusters=b"}, Arguments{"--sbatch=--wait"},
+        Arguments{"--sbatch=--test-only"}, Arguments{"--sbatch=--wrap=x"},
         Arguments{"--cpus-per-task", "-1"}}) {
     expect(2, joined({"submit", manifest_, "--dry-run"}, words));
   }
@@ -109,6 +124,117 @@ TEST_F(Submit, QueuesBothJobsOnceAndRecordsThem) {
   const auto more = json({"submit", manifest_, "--seeds", "3", "--json"});
   EXPECT_EQ(more.at("tasks").size(), 1U);
   EXPECT_EQ(more.at("left_out"), 4);
+}
+
+// Variables of Slurm's programs that the user, a site, or the job in which `submit` runs has set.
+TEST_F(Submit, RemovesVariablesThatWouldChangeWhatItAsksForAndNoOthers) {
+  slurm_that_works();
+  const std::vector<std::string> removed = {
+      "SQUEUE_PARTITION",    "SQUEUE_USERS",          "SQUEUE_STATES",       "SQUEUE_FORMAT",
+      "SQUEUE_FORMAT2",      "SQUEUE_ACCOUNT",        "SQUEUE_NAMES",        "SQUEUE_QOS",
+      "SQUEUE_LOCAL",        "SQUEUE_NOT_YET_KNOWN",  "SLURM_CLUSTERS",      "SBATCH_CLUSTERS",
+      "SBATCH_ARRAY_INX",    "SBATCH_NO_REQUEUE",     "SBATCH_REQUEUE",      "SBATCH_TIMELIMIT",
+      "SBATCH_SIGNAL",       "SBATCH_OUTPUT",         "SBATCH_ERROR",        "SBATCH_INPUT",
+      "SBATCH_OPEN_MODE",    "SBATCH_JOB_NAME",       "SBATCH_WAIT",         "SBATCH_EXPORT",
+      "SBATCH_GET_USER_ENV", "SBATCH_OVERCOMMIT",     "SBATCH_CPUS_PER_GPU", "SBATCH_NO_KILL",
+      "SLURM_RESTART_COUNT", "SLURM_ARRAY_TASK_ID",   "SLURM_ARRAY_JOB_ID",  "SLURM_MEM_PER_CPU",
+      "SLURM_MEM_PER_NODE",  "SLURM_NTASKS_PER_NODE", "SLURM_TRES_PER_TASK"};
+  const std::vector<std::string> kept = {
+      "SLURM_CONF",         "SLURM_JWT",         "SBATCH_ACCOUNT",     "SBATCH_PARTITION",
+      "SBATCH_QOS",         "SBATCH_CONSTRAINT", "SBATCH_RESERVATION", "SBATCH_MEM_PER_CPU",
+      "SBATCH_GRES",        "SBATCH_WCKEY",      "MODULEPATH",         "LOADEDMODULES",
+      "OMPI_MCA_btl",       "OMP_NUM_THREADS",   "LD_LIBRARY_PATH",    "SQUEUE",
+      "MY_SQUEUE_PARTITION"};
+  std::vector<std::unique_ptr<Variable>> set;
+  for (const auto& names : {removed, kept}) {
+    for (const std::string& name : names) {
+      set.push_back(std::make_unique<Variable>(name.c_str(), "hostile"));
+    }
+  }
+  submitted();
+  expect(0, {"status"});
+  for (const char* file : {"environment-100", "environment-101", "environment-squeue"}) {
+    const std::string environment = "\n" + said(file);
+    for (const std::string& name : removed) {
+      EXPECT_FALSE(has(environment, "\n" + name + "=")) << file;
+    }
+    for (const std::string& name : kept) EXPECT_TRUE(has(environment, "\n" + name + "=hostile\n"));
+  }
+  for (const char* word :
+       {"--noheader\n", "--array\n", "--all\n", "--states=PENDING,RUNNING,SUSPENDED,COMPLETING\n",
+        "--format=%j|%F|%K|%T|%r|%N\n"}) {
+    EXPECT_TRUE(has(said("asked"), word));
+  }
+}
+
+// A site's wrapper prints its own lines, or sbatch ends with an error after it queued the job.
+TEST_F(Submit, KnowsTheNumberOfAJobWhateverIsPrintedWithIt) {
+  const std::string queued = "echo \"$name|$number|1|PENDING|Priority|\" >> queue\n";
+  for (const std::string& answer :
+       {std::string("echo $number"), std::string("echo; echo \" $number \"; echo"),
+        std::string("echo \"$number;cluster\""),
+        std::string("echo 'Welcome! 3 nodes are down.'; echo 7; echo $number"),
+        std::string(
+            "echo 'sbatch: warning: quota' >&2; echo \"$number;cluster\"; echo 'Good luck'"),
+        queued + "echo \"Submitted batch job $number\"", queued + "echo $number; echo 7",
+        queued + "echo thanks", queued,
+        queued + "echo 'sbatch: error: Socket timed out on send/recv operation' >&2; exit 1"}) {
+    slurm_that_works(answer);
+    const std::string store = "store " + std::to_string(std::hash<std::string>()(answer));
+    for (const char* file : {"jobs", "queue"}) fs::remove(programs_.path() / file);
+    const auto first = json({"submit", manifest_, "--json", "--store", store});
+    EXPECT_EQ(first.at("job"), "100") << answer;
+    EXPECT_EQ(first.at("fold_job"), "101") << answer;
+    const std::string name = "shearcell-" + first.at("submission").get<std::string>();
+    EXPECT_TRUE(has(words(), "--dependency=afterany:100\n"));
+    queue(name + "|100|1|RUNNING|None|n1\n");
+    const auto second = json({"submit", manifest_, "--json", "--store", store});
+    EXPECT_TRUE(second.at("submission").is_null()) << answer;
+    EXPECT_EQ(second.at("left_out"), 2);
+    fs::remove(programs_.path() / "words");
+  }
+}
+
+TEST_F(Submit, NeverQueuesTwiceWhatItMayHaveQueued) {
+  const std::string hides = "echo \"$name|$number|1|PENDING|Priority|\" >> hidden\n";
+  for (const auto& [answer, says] :
+       {std::pair(hides + "echo thanks", "no job number but 'thanks'"),
+        {hides + "echo 'sbatch: error: Socket timed out' >&2; exit 1", "Socket timed out"},
+        {hides + "exit 0", "no job number but ''"}}) {
+    slurm_that_works(answer);
+    program("squeue", "echo 'slurm_load_jobs error: Unable to contact controller' >&2; exit 1\n");
+    const std::string store = "store " + std::string(says);
+    fs::remove(programs_.path() / "jobs");
+    const Outcome first = expect(1, {"submit", manifest_, "--store", store},
+                                 {says, "Unable to contact controller", "scancel --name=shearcell-",
+                                  "squeue --name=shearcell-"});
+    EXPECT_EQ(said("jobs"), "x\n") << "no merge job without a number to wait for";
+    // While nobody knows, nothing is queued.
+    expect(1, {"submit", manifest_, "--store", store}, {"Unable to contact controller"});
+    slurm_that_works(answer);
+    fs::rename(programs_.path() / "hidden", programs_.path() / "queue");
+    const auto second = json({"submit", manifest_, "--json", "--store", store});
+    EXPECT_TRUE(second.at("submission").is_null());
+    EXPECT_EQ(second.at("left_out"), 2);
+    EXPECT_EQ(said("jobs"), "x\n");
+    // The job has ended without its merge job.
+    fs::remove(programs_.path() / "queue");
+    slurm_that_works();
+    for (const auto& task : fs::recursive_directory_iterator(path(store) / "submissions")) {
+      if (task.path().filename() == "task-1") expect(0, {"work", "--store", task.path().string()});
+    }
+    EXPECT_TRUE(json({"submit", manifest_, "--json", "--store", store}).at("submission").is_null());
+    EXPECT_EQ(hashes(store).size(), 3U);
+  }
+}
+
+TEST_F(Submit, SaysSoIfNoJobIsQueuedThoughSlurmDidNotRefuse) {
+  slurm_that_works("echo 'sbatch: Job would start tomorrow'");
+  expect(1, {"submit", manifest_},
+         {"no job number but 'sbatch: Job would start tomorrow'",
+          "no job of this name is in the queue", "scancel --name="});
+  slurm_that_works();
+  EXPECT_FALSE(json({"submit", manifest_, "--json"}).at("submission").is_null()) << "and goes on";
 }
 
 TEST_F(Submit, LeavesNothingOfARejectedSubmission) {
@@ -187,6 +313,21 @@ TEST_F(Submit, WorkOnScratchCopiesEverythingBack) {
   expect(0, words);
   expect(0, {"run", manifest_, "--cycles", "16", "-q", "--store", "here"});
   EXPECT_EQ(hashes(task), hashes("here"));
+}
+
+TEST_F(Submit, WorkReplacesTheVariablesOfScratch) {
+  const std::string task = submitted() + "/task-1";
+  fs::create_directory(path("node disk"));
+  const Variable disk("NODE_DISK", path("node disk")), relative("RELATIVE", "node disk");
+  const auto before = listing();
+  expect(2, {"work", "--store", task, "--scratch", "$NO_SUCH_VARIABLE/x"},
+         {"the variable NO_SUCH_VARIABLE is not set on this node"});
+  expect(2, {"work", "--store", task, "--scratch", "$RELATIVE"}, {"not an absolute path"});
+  EXPECT_EQ(listing(), before) << "something was written";
+  expect(0, {"work", "--store", task, "-j", "2", "--scratch", "${NODE_DISK}/my $(touch x)"});
+  EXPECT_TRUE(fs::is_empty(path("node disk/my $(touch x)"))) << "used, and emptied";
+  EXPECT_FALSE(fs::exists(path("x")));
+  EXPECT_EQ(hashes(task).size(), 3U);
 }
 
 TEST_F(Submit, WorkDoesNotRepeatFailedRuns) {

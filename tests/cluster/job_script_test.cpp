@@ -3,12 +3,15 @@
 // and paths that a shell could misread.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
-#include "experiments/cluster/slurm.hpp"
+#include "experiments/cluster/submission.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -62,6 +65,63 @@ TEST(Values, CannotEndADirective) {
   }
 }
 
+TEST(Scratch, IsAnAbsolutePathThatMayHaveVariables) {
+  for (const char* text :
+       {"/scratch", "/", "/my scratch", "/it's", "/a\"b", "/a;b&c", "/~x", "/*", "$TMPDIR",
+        "${TMPDIR}", "$SLURM_TMPDIR/x", "${A_1}/$B/${C}d", "/scratch/$USER/${SLURM_JOB_ID}"}) {
+    EXPECT_EQ(unfit_scratch(text), "");
+  }
+  for (const char* text : {"",
+                           "scratch",
+                           "./x",
+                           "~",
+                           "~/x",
+                           "~me",
+                           "$(rm -rf /)",
+                           "`id`",
+                           "/tmp/`id`",
+                           "/tmp/$(id)",
+                           "$((1+1))",
+                           "$[1]",
+                           "$",
+                           "/a$",
+                           "/$/b",
+                           "$1",
+                           "$$",
+                           "/$?",
+                           "$@",
+                           "${}",
+                           "${1}",
+                           "${A",
+                           "$A$",
+                           "${TMPDIR:-/tmp}",
+                           "${A:-$(id)}",
+                           "${A[0]}",
+                           "'$TMPDIR'",
+                           "\"$TMPDIR\"",
+                           " $TMPDIR",
+                           "\\$TMPDIR",
+                           "$TMPDIR\n#SBATCH",
+                           "$TMPDIR`id`"}) {
+    EXPECT_NE(unfit_scratch(text), "") << text;
+  }
+}
+
+TEST(Scratch, HasTheValuesOfVariablesHereAndRunsNothing) {
+  const Variable disk("NODE_DISK", "/node's \"disk\" $(touch x)`id`/$HOME"), user("ME", "me");
+  const std::string value = "/node's \"disk\" $(touch x)`id`/$HOME";
+  const auto here = [](const char* text) { return scratch_here(text).string(); };
+  EXPECT_EQ(here("/a b/'c'"), "/a b/'c'");
+  EXPECT_EQ(here("$NODE_DISK"), value);
+  EXPECT_EQ(here("${NODE_DISK}/x y"), value + "/x y");
+  EXPECT_EQ(here("/tmp/$ME/${ME}2"), "/tmp/me/me2");
+  const Variable empty("EMPTY", "");
+  for (const char* text : {"$NODE_DISK_2/x", "/tmp/${NO_SUCH_VARIABLE}", "$EMPTY", "/a/$EMPTY/b"}) {
+    expect_refused<UsageError>([&] { scratch_here(text); }, {text, "is not set on this node"});
+  }
+  expect_refused<UsageError>([&] { scratch_here("$ME/x"); }, {"'me/x' is not an absolute path"});
+}
+
 TEST(TimeLimit, IsReadAsBySlurm) {
   EXPECT_EQ(slurm_seconds("90"), 5400);
   EXPECT_EQ(slurm_seconds("1:30"), 90);
@@ -90,41 +150,45 @@ class JobScript : public testing::Test {
 
   /// Runs an array task whose program does this; returns its exit code.
   int run_task(const std::string& program, const std::string& restarts = "") {
-    return run_script(task_of(program), restarts);
+    return run_job(task_of(program), restarts);
   }
 
-  std::string task_of(const std::string& program) {
+  Job task_of(const std::string& program) {
     executable("shearcell", "echo \"shearcell $*\" >> \"$SAID\"\n" + program);
     JobOptions options;
     options.cpus = 6;
     options.threads = 2;
-    return array_script(options, places(), 4);
+    return array_job(submission_, root_ / "store", options);
   }
 
-  int run_script(const std::string& text, const std::string& restarts = "") {
-    const fs::path script = root_ / "job.sh";
-    std::ofstream(script) << text;
+  /// As Slurm runs the script, but for another program.
+  int run_job(const Job& job, const std::string& restarts = "") {
+    const fs::path script = root_ / job.file;
+    std::ofstream(script) << job.script;
     fs::remove(said());
     const char* path = getenv("PATH");
     std::vector<std::string> variables = {"SAID=" + said().string(), "SLURM_ARRAY_JOB_ID=17",
                                           "SLURM_ARRAY_TASK_ID=3", "SLURM_JOB_ID=17",
                                           "PATH=" + (root_ / "bin").string() + ":" + path};
     if (!restarts.empty()) variables.push_back("SLURM_RESTART_COUNT=" + restarts);
-    const auto outcome = run_program({"bash", script.string()}, "/", variables);
+    const auto file = std::ranges::find(job.command, job.file);
+    std::vector<std::string> words = {"bash", script, root_ / "bin" / "shearcell"};
+    words.insert(words.end(), file + 2, job.command.end());
+    const auto outcome = run_program(words, "/", variables);
     messages_ = outcome->output + outcome->messages;
     return outcome->code;
   }
 
-  JobPlaces places() const {
-    return {root_ / "bin" / "shearcell", root_ / "store", root_ / "jobs"};
+  std::string store_of_task(std::size_t task) const {
+    return submission_.task_store(root_ / "store", task).string();
   }
   fs::path said() const { return folder_.path() / "said"; }
   std::string calls() const { return fs::exists(said()) ? read_bytes(said()) : ""; }
   std::string work(const std::string& more = "") const {
-    return "shearcell work --store " + (root_ / "jobs" / "task-3").string() +
-           " --jobs 3 --threads 2" + more + "\n";
+    return "shearcell work --store " + store_of_task(3) + " --jobs 3 --threads 2" + more + "\n";
   }
 
+  Submission submission_{"0123456789ab", {{}, {}, {}, {}}, "", "", {}};
   TemporaryFolder folder_;
   fs::path root_;
   std::string messages_;
@@ -157,12 +221,12 @@ TEST_F(JobScript, RequeuesItsTaskOnlyAfterATimeoutWithWorkLeft) {
 
 TEST_F(JobScript, ForwardsASignalWhileTheProgramStarts) {
   for (const char* signal : {"USR1", "TERM"}) {
-    std::string script = task_of("trap 'exit 85' USR1 TERM; while :; do sleep 0.05; done");
+    Job job = task_of("trap 'exit 85' USR1 TERM; while :; do sleep 0.05; done");
     const std::string start = "  program=$!\n";
-    ASSERT_NE(script.find(start), script.npos);
-    script.insert(script.find(start), "  kill -" + std::string(signal) + " $$\n");
+    ASSERT_NE(job.script.find(start), std::string::npos);
+    job.script.insert(job.script.find(start), "  kill -" + std::string(signal) + " $$\n");
     // Killed, where the program had not come to its own trap.
-    EXPECT_GE(run_script(script), 85) << messages_;
+    EXPECT_GE(run_job(job), 85) << messages_;
     EXPECT_EQ(calls().find("scontrol requeue 17_3\n") != std::string::npos,
               signal == std::string("USR1"))
         << calls();
@@ -181,40 +245,71 @@ TEST_F(JobScript, DoesNotRepeatFailedRunsAfterARequeue) {
   EXPECT_EQ(calls(), work(" --leave-failed"));
 }
 
-TEST_F(JobScript, WorksOnScratch) {
-  JobOptions options;
-  options.cpus = 1;
-  options.scratch = (root_ / "scratch").string();
+// The program on the node replaces its variables; no shell reads it.
+TEST_F(JobScript, GivesTheProgramScratchAsItIs) {
   executable("shearcell", "printf '%s\\n' \"$@\" >> \"$SAID\"\n");
-  EXPECT_EQ(run_script(array_script(options, places(), 1)), 0);
-  EXPECT_TRUE(has(calls(), "--scratch\n" + options.scratch + "\n"));
+  for (const std::string& text : kHostileNames) {
+    JobOptions options;
+    options.cpus = 1;
+    options.scratch = "/" + text;
+    EXPECT_EQ(run_job(array_job(submission_, root_ / "store", options)), 0);
+    EXPECT_TRUE(has(calls(), "--scratch=" + options.scratch + "\n"));
+  }
 }
 
 TEST_F(JobScript, MergesTheOtherTasksIfOneCannotBeMerged) {
   executable("shearcell", "echo \"shearcell $*\" >> \"$SAID\"\n[[ $2 != *task-2 ]] || exit 4\n");
-  EXPECT_EQ(run_script(merge_script({}, places(), 3)), 4);
+  EXPECT_EQ(run_job(merge_job(submission_, root_ / "store", {}, "17")), 4);
   std::string expected;
-  for (const char* task : {"task-1", "task-2", "task-3"}) {
-    expected += "shearcell merge " + (root_ / "jobs" / task).string() + " --store " +
-                (root_ / "store").string() + "\n";
+  for (const std::size_t task : {1U, 2U, 3U, 4U}) {
+    expected +=
+        "shearcell merge " + store_of_task(task) + " --store " + (root_ / "store").string() + "\n";
   }
   EXPECT_EQ(calls(), expected);
 }
 
-TEST(Directives, HaveTheRequestedValues) {
+// A word on the command line overrides the variable of sbatch, and of two equal words the last one
+// counts.
+TEST_F(JobScript, IsQueuedWithWordsThatNothingOverrides) {
   JobOptions options;
   options.partition = "long";
   options.account = "group";
   options.time = "12:00:00";
   options.cpus = 4;
-  options.sbatch = {"--qos=low"};
-  const std::string script = array_script(options, {"/bin/shearcell", "/s", "/s/x"}, 9);
-  for (const char* line :
-       {"--partition=long", "--account=group", "--time=12:00:00", "--qos=low", "--array=1-9",
-        "--cpus-per-task=4", "--signal=B:USR1@120", "--requeue", "--open-mode=append"}) {
-    EXPECT_TRUE(has(script, std::string("\n#SBATCH ") + line + "\n"));
-  }
-  EXPECT_EQ(script.find("#!/bin/bash\n"), 0U);
+  options.sbatch = {"--qos=low",     "--no-requeue",       "--time=1",
+                    "--partition=x", "--account=y",        "--open-mode=truncate",
+                    "--nodes=2",     "--ntasks=3",         "--cpus-per-task=9",
+                    "--job-name=z",  "--output=/dev/null", "--signal=KILL@10",
+                    "--export=NONE"};
+  const Job array = array_job(submission_, "/s", options);
+  const Job merging = merge_job(submission_, "/s", options, "17");
+  const std::string folder = "/s/submissions/0123456789ab";
+  const std::vector<std::string> both = {"--partition=long",  "--account=group", "--time=12:00:00",
+                                         "--nodes=1",         "--ntasks=1",      "--requeue",
+                                         "--open-mode=append"};
+  const auto expect_last = [](const Job& job, const std::vector<std::string>& words) {
+    const auto file = std::ranges::find(job.command, job.file);
+    for (const std::string& word : words) {
+      const auto own = std::find(job.command.begin(), file, word);
+      EXPECT_NE(own, file) << word;
+      const std::string name = word.substr(0, word.find('='));
+      for (auto later = own; later != file; ++later) {
+        EXPECT_TRUE(later == own || !later->starts_with(name)) << *later << " after " << word;
+        EXPECT_FALSE(own->starts_with("--requeue") && *later == "--no-requeue");
+      }
+    }
+  };
+  expect_last(array, both);
+  expect_last(merging, both);
+  expect_last(array, {"--array=1-4", "--cpus-per-task=4", "--signal=B:USR1@120",
+                      "--job-name=shearcell-0123456789ab", "--output=" + folder + "/task-%a.log",
+                      "--qos=low"});
+  expect_last(merging, {"--dependency=afterany:17", "--job-name=shearcell-0123456789ab-fold",
+                        "--output=" + folder + "/fold.log", "--qos=low"});
+  // The user's --export counts, and otherwise not that of the environment.
+  const auto exported = std::ranges::find(array.command, "--export=ALL");
+  EXPECT_NE(std::find(exported, array.command.end(), "--export=NONE"), array.command.end());
+  EXPECT_FALSE(has(array.script + merging.script, "#SBATCH"));
 }
 
 }  // namespace

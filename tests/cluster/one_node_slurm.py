@@ -53,6 +53,7 @@ BatchStartTimeout=1
 KillWait=10
 NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus}
 PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
+PartitionName=other Nodes={host} MaxTime=INFINITE State=UP Hidden=YES
 """
 
 
@@ -153,9 +154,10 @@ class OneNodeSlurm:
         # No job is limited by cgroups, and a container need not have them.
         with open(f"{folder}/cgroup.conf", "w") as file:
             file.write("CgroupPlugin=cgroup/v1\n")
-        self.environment = dict(os.environ, SLURM_CONF=f"{folder}/slurm.conf")
-        for name in [name for name in self.environment if name.startswith("SBATCH_")]:
-            del self.environment[name]
+        # Of the daemons and of ask(). The tested program gets its own, with hostile variables.
+        self.environment = {name: value for name, value in os.environ.items()
+                            if not name.startswith(("SBATCH_", "SQUEUE_", "SLURM_"))}
+        self.environment["SLURM_CONF"] = f"{folder}/slurm.conf"
 
     def __enter__(self):
         try:

@@ -24,6 +24,19 @@ from one_node_slurm import MISSED_AFTER, OneNodeSlurm, missing, processes, wait_
 PROGRAM, MANIFEST = sys.argv[1:3]
 KEEP = len(sys.argv) > 3
 CYCLES, MORE_CYCLES = 5, 7
+# Variables of Slurm's programs that would break a campaign if they reached them: its jobs would not be
+# seen, begun in part only, ended early, not queued again, not named, or sent to another cluster.
+HOSTILE = {
+    "SQUEUE_PARTITION": "gpu", "SQUEUE_USERS": "nobody", "SQUEUE_STATES": "COMPLETED",
+    "SQUEUE_FORMAT": "%i", "SQUEUE_FORMAT2": "jobid", "SQUEUE_ACCOUNT": "none",
+    "SBATCH_TIMELIMIT": "1", "SBATCH_ARRAY_INX": "1", "SBATCH_NO_REQUEUE": "1",
+    "SBATCH_SIGNAL": "KILL@600", "SBATCH_OUTPUT": "/dev/null", "SBATCH_ERROR": "/dev/null",
+    "SBATCH_INPUT": "/nowhere", "SBATCH_JOB_NAME": "mine", "SBATCH_OPEN_MODE": "truncate",
+    "SBATCH_EXPORT": "NONE", "SBATCH_WAIT": "1", "SLURM_CLUSTERS": "elsewhere",
+    "SBATCH_CLUSTERS": "elsewhere", "SLURM_RESTART_COUNT": "1", "SLURM_ARRAY_TASK_ID": "7",
+    "SLURM_MEM_PER_CPU": "1", "SLURM_MEM_PER_NODE": "1",
+    # This one is kept: jobs run in the partition that it names.
+    "SBATCH_PARTITION": "other"}
 STARTED = time.monotonic()
 
 
@@ -49,7 +62,7 @@ class Campaign:
     def shearcell(self, *words, store=None, code=0):
         done = subprocess.run(
             [PROGRAM, *words, "--store", str(store or self.store)], cwd=self.place,
-            env=self.slurm.environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            env={**self.slurm.environment, **HOSTILE}, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             check=False)
         require(done.returncode == code, f"{words}: code {done.returncode}\n{done.stdout}{done.stderr}")
         return done.stdout
@@ -185,6 +198,8 @@ def interrupted_in_every_way(campaign):
     again = campaign.submit(CYCLES)
     require(again["submission"] is None and again["left_out"] == 4, f"{again}")
     require(len(campaign.slurm.queue()) == 3, f"{campaign.slurm.queue()}")
+    partitions = campaign.slurm.ask("squeue", "--noheader", "--format=%P").split()
+    require(set(partitions) == {"other"}, f"{partitions}")
     kill_a_task(campaign)
     lose_the_node(campaign, begun)
     let_time_be_over(campaign, pause(campaign))

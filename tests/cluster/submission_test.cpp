@@ -8,11 +8,12 @@
 #include <fstream>
 #include <map>
 
-#include "experiments/cluster/proposal.hpp"
 #include "experiments/cluster/submission.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/variable.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -29,7 +30,7 @@ class Submitted : public StoreTest {
   }
 
   Submission submit(const std::vector<Share>& parts) {
-    return prepare_submission(store_, parts, {{"engine", "test"}},
+    return prepare_submission(store_, {parts, 0, {}}, {{"engine", "test"}},
                               store_.events(kSubmissions).size());
   }
 
@@ -50,7 +51,7 @@ TEST_F(Submitted, TasksComputeTheirSharesAndTheirStoresMergeIntoTheWhole) {
     EXPECT_EQ(resume(own).completed, 3U);
     EXPECT_TRUE(own.verify().ok());
   }
-  EXPECT_EQ(merge_tasks(store_, made).size(), 2U);
+  EXPECT_EQ(merge_tasks(store_, made), 14U) << "checkpoints";
   EXPECT_EQ(final_hashes(store_), computed_here(2));
   EXPECT_TRUE(store_.verify().ok());
   const Head head = store_.head();
@@ -164,8 +165,8 @@ TEST(Proposed, LeavesOutBundlesThatAreBusyAndGivesACoreToEachRun) {
 TEST_F(Submitted, TwoAtOnceAreDistinguished) {
   const auto parts = shares();
   const std::size_t seen = store_.events(kSubmissions).size();
-  const Submission one = prepare_submission(store_, parts, nlohmann::json::object(), seen);
-  EXPECT_THROW(prepare_submission(store_, parts, nlohmann::json::object(), seen),
+  const Submission one = prepare_submission(store_, {parts, 0, {}}, nlohmann::json::object(), seen);
+  EXPECT_THROW(prepare_submission(store_, {parts, 0, {}}, nlohmann::json::object(), seen),
                ConcurrencyConflict);
   EXPECT_EQ(std::distance(fs::directory_iterator(store_.folder() / "submissions"), {}), 1)
       << "the late one left nothing";
@@ -196,12 +197,18 @@ TEST_F(Submitted, RejectsAnEventThatNamesAPathOrHasNoTasks) {
 }
 
 TEST(Queue, IsReadLineByLine) {
-  const auto queue = read_queue(
-      "shearcell-0123456789ab|17|3|RUNNING|None|node7\n"
-      "shearcell-0123456789ab|17|4|PENDING|Priority|\n"
-      "shearcell-0123456789ab-fold|18|N/A|PENDING|Dependency|\n"
-      "slurm_load_jobs error: nothing of this is a job\n"
-      "a|b|c\n\n|||||\n");
+  const TemporaryFolder folder;
+  const std::string name = "shearcell-0123456789ab";
+  write_script(folder.path() / "squeue", "#!/bin/sh\n/bin/cat << END\nWelcome to the cluster!\n" +
+                                             name + "|17|3|RUNNING|None|node7\n" + name +
+                                             "|17|4|PENDING|Priority|\n" + name +
+                                             "-fold|18|N/A|PENDING|Dependency|\n"
+                                             "slurm_load_jobs error: nothing of this is a job\n"
+                                             "other|19|1|RUNNING|None|node7\n"
+                                             "a|b|c\n\n|||||\nEND\n");
+  const Variable path("PATH", folder.path());
+  EXPECT_TRUE(ask_queue({}).empty());
+  const auto queue = ask_queue({name, name + "-fold"});
   ASSERT_EQ(queue.size(), 3U);
   EXPECT_EQ(queue[0].task, 3U);
   EXPECT_EQ(queue[0].node, "node7");
@@ -312,7 +319,7 @@ TEST(Proposed, UsesTheRateOfEachStagesEngine) {
   const auto seconds = [](const std::string& engine) {
     const auto made =
         propose(plans(tiny_manifest("  engine: " + engine + "\n"), of(1)), nullptr, {}, 1, {});
-    return seconds_of(made.shares.at(0), made);
+    return made.seconds(made.shares.at(0));
   };
   const auto shear = [](EngineKind engine) {
     return 2.0 * kStepsPerCycle * kGrains / Rates({}).of(engine, kGrains).particle_steps_per_second;

@@ -3,6 +3,7 @@
 #include "provenance/event_log.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "provenance/errors.hpp"
 #include "tests/provenance/samples.hpp"
@@ -130,6 +131,79 @@ TEST(Clock, FormatsTimesBefore1970) {
   EXPECT_EQ(utc_text(-1), "1969-12-31T23:59:59.999Z");
   EXPECT_EQ(utc_text(-86'400'850), "1969-12-30T23:59:59.150Z");
   EXPECT_EQ(utc_text(1'795'341'345'123), "2026-11-22T09:55:45.123Z");
+}
+
+/// Files that are not root's are protected also when root runs the tests.
+class AsNobody {
+ public:
+  AsNobody() { root_ = geteuid() == 0 && seteuid(65534) == 0; }
+  ~AsNobody() { EXPECT_TRUE(!root_ || seteuid(0) == 0); }
+
+ private:
+  bool root_ = false;
+};
+
+TEST_F(EventLogTest, SaysHowToRecoverWhatAKilledWriterLeftOnAReadOnlyDisk) {
+  namespace fs = std::filesystem;
+  fs::permissions(folder_.path(), fs::perms{0755});
+  const auto head_of = [](const fs::path& folder) {
+    sqlite::Database database = open_database(folder / "store.sqlite", Access::read);
+    return EventLog(database).head().hash;
+  };
+  const std::string head = head_of(folder_.path());
+  struct Case {
+    std::string name;
+    unsigned log, journal, folder;
+    std::string unwritable;
+  };
+  const std::vector<Case> cases = {{"all", 0444, 0444, 0555, "store.sqlite-journal"},
+                                   {"log", 0444, 0666, 0777, "store.sqlite ("},
+                                   {"journal", 0666, 0444, 0777, "store.sqlite-journal ("},
+                                   {"unreadable", 0666, 0600, 0777, "store.sqlite-journal ("},
+                                   {"folder", 0666, 0666, 0555, "/folder ("}};
+  {
+    sqlite::Database killed = open();
+    killed.execute(
+        "PRAGMA cache_size=1; BEGIN IMMEDIATE; CREATE TABLE half_written(x); WITH RECURSIVE "
+        "n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 200) INSERT INTO half_written "
+        "SELECT randomblob(1000) FROM n;");
+    for (const Case& c : cases) {
+      for (const char* file : {"store.sqlite", "store.sqlite-journal"}) {
+        fs::create_directories(folder_.path() / c.name);
+        fs::copy(folder_.path() / file, folder_.path() / c.name / file);
+      }
+    }
+    killed.execute("ROLLBACK");
+  }
+  for (const Case& c : cases) {
+    const testing::ScopedTrace trace(__FILE__, __LINE__, c.name);
+    const fs::path folder = folder_.path() / c.name, log = folder / "store.sqlite";
+    fs::permissions(log, fs::perms{c.log});
+    fs::permissions(log.string() + "-journal", fs::perms{c.journal});
+    fs::permissions(folder, fs::perms{c.folder});
+    try {
+      const AsNobody nobody;
+      if (access(folder_.path().c_str(), X_OK) != 0) GTEST_SKIP() << "others cannot come here";
+      open_database(log, Access::read);
+      ADD_FAILURE() << "opened";
+    } catch (const MachineError& error) {
+      for (const std::string& part :
+           {log.string() + ": a program was writing to this store when it was killed",
+            "cannot write to " + folder_.path().string(), c.unwritable,
+            std::string("copy the whole folder to a disk where you can write")}) {
+        EXPECT_TRUE(has(error.what(), part)) << part << "\n" << error.what();
+      }
+    }
+    // As the message says.
+    const fs::path copy = folder_.path() / (c.name + " copy");
+    fs::copy(folder, copy);
+    for (const fs::path& path : {copy, copy / "store.sqlite", copy / "store.sqlite-journal"}) {
+      fs::permissions(path, fs::perms{0755});
+    }
+    EXPECT_EQ(head_of(copy), head);
+    EXPECT_FALSE(fs::exists(copy / "store.sqlite-journal"));
+    fs::permissions(folder, fs::perms{0755});
+  }
 }
 
 }  // namespace
