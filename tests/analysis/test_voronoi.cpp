@@ -155,7 +155,7 @@ TEST(Voronoi, CoplanarAndCollinearSites) {
 }
 
 TEST(Voronoi, SitesOnOneSphereAroundAGrain) {
-  for (const int sites : {200, 5000}) {
+  for (const int sites : {200, 1000}) {
     Packing p = empty_cell(8, 8, 8);
     p.grains.resize(3, sites + 1);
     p.grains.col(0) << 4, 4, 4;
@@ -204,10 +204,10 @@ TEST(Voronoi, AWallGrainCutsOffAnEdgeOfTheBox) {
   }
 }
 
-// The bisector touches the cell along a whole wall, an edge of the box, or a corner of the cell.
+// The bisector touches the cell along a whole wall, along an edge of the box, or not at all.
 TEST(Voronoi, WallGrainsThatOnlyTouchAddNoFace) {
   const std::vector<Eigen::Vector3d> offsets = {{2, 0, 0}, {-2, 0, 0}, {0, 2, 0}, {0, -2, 0},
-                                                {2, 2, 0}, {-2, 2, 0}, {2, 2, 1}, {3, 3, 1}};
+                                                {2, 2, 0}, {-2, 2, 0}, {3, 3, 1}};
   for (const Eigen::Vector3d& offset : offsets) {
     SCOPED_TRACE(testing::PrintToString(offset));
     const VoronoiDiagram d = voronoi(cube_with_wall_grain(offset).cell, empty_cell(2, 2, 2).pose,
@@ -251,10 +251,11 @@ TEST(Voronoi, GrainsCloseToAWall) {
     for (const double theta : {0.0, 0.2}) {
       Packing p = empty_cell(5, 5, 5, theta);
       scatter(p, 100, 31);
-      for (int i = 0; i < 30; ++i) p.grains(1, i) = distance;
-      for (int i = 30; i < 60; ++i) {
-        const double in_pose = (p.grains(1, i) - p.pose.top) * p.pose.tan_theta;
-        p.grains(0, i) = in_pose + (i < 45 ? distance : 5 - distance);
+      for (int i = 0; i < 60; ++i) {
+        if (i < 20) p.grains(1, i) = distance;
+        const double shift = (p.grains(1, i) - p.pose.top) * p.pose.tan_theta;
+        if (i < 40) p.grains(0, i) = 0.07 * (i + 1) + shift;
+        if (i >= 20) p.grains(0, i) = (i < 40 ? distance : 5 - distance) + shift;
       }
       expect_sound(p);
     }
