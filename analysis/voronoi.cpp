@@ -236,7 +236,13 @@ class Tessellation {
     }
   }
 
-  Eigen::Vector3d circumcentre(const std::array<std::int32_t, 4>& vertices) const {
+  Eigen::Vector3d circumcentre(std::array<std::int32_t, 4> vertices) const {
+    // The origin is near the other sites, so that only edges to guards are long.
+    if (!is_measured(vertices[0])) {
+      std::iter_swap(vertices.begin(), std::ranges::find_if(vertices, [&](std::int32_t vertex) {
+                       return is_measured(vertex);
+                     }));
+    }
     const Eigen::Vector3d origin = point(vertices[0]);
     const Eigen::Vector3d a = point(vertices[1]) - origin;
     const Eigen::Vector3d b = point(vertices[2]) - origin;
@@ -249,14 +255,15 @@ class Tessellation {
     const Eigen::Vector3d v = (aa * bc + bb * c.cross(a) + cc * a.cross(b)) / (2 * determinant);
 
     // Forward error of Cramer's rule: numerator and determinant each lose a few roundoffs of the
-    // products of the edges' lengths, none above the longest. 32 covers the operations counted one
-    // by one.
+    // sum of the sizes of their terms. 32 covers the operations counted one by one.
     constexpr double roundoff = std::numeric_limits<double>::epsilon() / 2;
-    const double longest2 = std::max({aa, bb, cc});
     const double radius = v.norm();
-    const double terms = longest2 * (longest2 + std::sqrt(longest2) * radius);
+    const double la = std::sqrt(aa);
+    const double lb = std::sqrt(bb);
+    const double lc = std::sqrt(cc);
+    const double terms = la * lb * lc * ((la + lb + lc) / 2 + radius);
     const double allowed = worst_centre_error * std::max(1.0, radius);
-    if (32 * roundoff * terms < allowed * determinant) return origin + v;
+    if (32 * roundoff * terms < allowed * std::abs(determinant)) return origin + v;
 
     using Rational = CGAL::Simple_cartesian<CGAL::Exact_rational>;
     const auto exact = [&](std::size_t k) {
