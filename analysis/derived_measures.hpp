@@ -17,7 +17,7 @@ namespace shearcell {
 
 /// Raise it with every change that may alter a bit of any result: results that were stored with
 /// another version are computed again. tests/analysis/test_derived_measures.cpp pins results to it.
-inline constexpr std::uint64_t analysis_version = 1;
+inline constexpr std::uint64_t analysis_version = 2;
 
 /// What a result is computed from.
 struct MeasureInput {

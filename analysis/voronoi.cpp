@@ -1,58 +1,400 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/voronoi.hpp"
 
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Delaunay_triangulation_cell_base_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Spatial_sort_traits_adapter_3.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
+
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
+#include <limits>
+#include <numeric>
 #include <string>
-#include <tuple>
+#include <type_traits>
 #include <utility>
 
-#include "analysis/clip.hpp"
-#include "analysis/delaunay.hpp"
 #include "analysis/error.hpp"
 
 namespace shearcell {
 namespace {
 
-constexpr double smallest_face = 1e-13;  // [d^2]
+constexpr double smallest_face = 1e-13;         // [d^2]
+constexpr double coincidence_distance = 1e-10;  // Sites closer than this count as one [d].
 // In a dense packing, images farther away touch no cell. Other packings need a second pass.
 constexpr double first_margin_spacings = 2.1;
+// A circumcentre is computed exactly if its error may be larger than this, relative to the larger
+// of 1 d and the radius of the sphere.
+constexpr double worst_centre_error = 1e-12;
 
 constexpr std::array<const char*, 4> side_names = {"left", "right", "bottom", "top"};
 
-/// The diagram of one packing from its triangulation.
-class Dual {
+/// A site moved by a whole number of periods in z; image 0 is the site itself.
+struct SiteImage {
+  std::int32_t site;  // -1: a guard
+  std::int32_t image;
+
+  auto operator<=>(const SiteImage&) const = default;
+};
+
+/// One cache line, since walks around edges visit tetrahedra in no order.
+struct alignas(64) Tetrahedron {
+  std::array<std::int32_t, 4> vertex;     // below the number of sites: that site; -1: at infinity
+  std::array<std::int32_t, 4> neighbour;  // across the face opposite to each vertex
+  Eigen::Vector3d centre;                 // of its sphere, if one vertex is a measured site
+  std::uint8_t beyond;                    // a bit for each wall that the centre is not inside of
+  std::uint8_t edges_done;                // a bit for each edge
+};
+
+/// The edges of a tetrahedron by the numbers of its corners.
+constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {
+    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+/// The bit of the edge between two corners.
+constexpr std::array<std::array<std::uint8_t, 4>, 4> edge_bit = {
+    {{0, 1, 2, 4}, {1, 0, 8, 16}, {2, 8, 0, 32}, {4, 16, 32, 0}}};
+
+/// Number of the corner that is `vertex`, which must be one of the four.
+std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
+  return (t.vertex[1] == vertex ? 1U : 0U) + (t.vertex[2] == vertex ? 2U : 0U) +
+         (t.vertex[3] == vertex ? 3U : 0U);
+}
+
+/// The Voronoi cells of the first `measured` sites as the dual of a Delaunay triangulation.
+///
+/// Predicates are exact, so this is the true triangulation of the positions as they are stored,
+/// however many of them share a plane or a sphere, and no bounded tetrahedron is flat.
+/// Circumcentres are computed in doubles where a forward error bound allows, and else in exact
+/// arithmetic. So tetrahedra on one sphere have one centre, and the faces between them no area but
+/// rounding.
+///
+/// A face is the polygon of the circumcentres around an edge, clipped by the walls. All faces that
+/// meet in a circumcentre use the same coordinates and the same decision whether it is inside a
+/// wall, so cells fit together without gaps. The sides of the polygons that lie on a wall bound the
+/// cells' faces on that wall.
+///
+/// Eight guards, the corners of a large cube, make every cell bounded. They are farther away in z
+/// than any image that a cell may need, so no cell that passes the test in measure() touches them.
+class Tessellation {
  public:
-  Dual(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites, std::int32_t grains)
+  Tessellation(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites,
+               std::int32_t grains, std::int32_t measured)
       : cell_(cell),
-        pose_(pose),
+        walls_(wall_planes(cell, pose)),
         sites_(sites),
         grains_(grains),
-        delaunay_(sites, grains, cell.depth, first_margin_spacings * spacing()) {}
+        measured_(measured) {
+    const double height = pose.top - pose.bottom;
+    for (std::int32_t i = 0; i < sites.cols(); ++i) add_point({i, 0});
+    const Eigen::Vector3d centre(cell.width / 2, pose.top - height / 2, cell.depth / 2);
+    double size = cell.width + height * (1 + std::abs(pose.tan_theta)) + cell.depth;
+    for (const auto& site : sites.colwise()) {
+      size = std::max(size, 2 * (site - centre).lpNorm<1>());
+    }
+    for (unsigned k = 0; k < 8; ++k) {
+      const Eigen::Vector3d corner((k & 1U) != 0 ? 1 : -1, (k & 2U) != 0 ? 1 : -1,
+                                   (k & 4U) != 0 ? 1 : -1);
+      image_.push_back({-1, 0});
+      point_.emplace_back(centre + 4 * size * corner);
+    }
+    const double spacing = std::cbrt(cell.width * cell.depth * height /
+                                     std::max(static_cast<double>(sites.cols()), 1.0));
+    widen(first_margin_spacings * spacing);
+  }
 
-  /// Measures all cells. A cell is right if the sphere around each of its corners, through the
-  /// site, lies within the margin. More images can only make cells smaller, so the reach of the
-  /// first pass is enough for the second.
-  VoronoiDiagram measure(WallGrainCells wall_grain_cells) {
+  /// A cell is right if the sphere around each of its corners, through the site, lies within the
+  /// margin. More images can only make cells smaller, so a margin as wide as those spheres reach is
+  /// enough. Twice the margin is tried first, since a guard may bound a cell that lacks images.
+  VoronoiDiagram measure() {
     while (true) {
       reach_ = 0;
-      VoronoiDiagram diagram = measure_all(wall_grain_cells);
-      if (reach_ <= delaunay_.margin()) return diagram;
-      delaunay_.widen((1 + 1e-9) * reach_);
+      copy_tetrahedra();
+      measure_faces();
+      if (reach_ <= margin_) return collect();
+      widen(std::min((1 + 1e-9) * reach_, 2 * margin_));
     }
   }
 
  private:
-  /// A face as seen from one of its grains.
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  struct Number {
+    std::int32_t value = -1;
+  };
+  using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<Number, Kernel>;
+  // A number fits into the padding of CGAL's cell; a centre would not. The smaller cells take a
+  // tenth less time.
+  using CellBase =
+      CGAL::Triangulation_cell_base_with_info_3<Number, Kernel,
+                                                CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+  using Triangulation =
+      CGAL::Delaunay_triangulation_3<Kernel,
+                                     CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
+
+  /// A face as seen from one of its sites.
   struct Side {
     SiteImage to;
     double area;
   };
 
-  VoronoiDiagram measure_all(WallGrainCells wall_grain_cells) {
-    find_bulk();
-    collect_sides();
+  /// A corner of a polygon, and on which wall the side to the next corner lies.
+  struct Corner {
+    Eigen::Vector3d at;
+    std::size_t wall;
+  };
+  static constexpr std::size_t no_wall = 4;
+
+  const Eigen::Vector3d& point(std::int32_t vertex) const {
+    return point_[static_cast<std::size_t>(vertex)];
+  }
+
+  /// Adds the images in z whose distance from [0, depth) is less than `margin`.
+  void widen(double margin) {
+    const auto is_new = [&](double distance) { return distance >= margin_ && distance < margin; };
+    for (std::int32_t k = 1; (k - 1) * cell_.depth < margin; ++k) {
+      for (std::int32_t i = 0; i < sites_.cols(); ++i) {
+        if (is_new(sites_(2, i) + (k - 1) * cell_.depth)) add_point({i, k});
+        if (is_new(k * cell_.depth - sites_(2, i))) add_point({i, -k});
+      }
+    }
+    margin_ = margin;
+    insert_points();
+  }
+
+  void add_point(SiteImage image) {
+    image_.push_back(image);
+    point_.push_back(sites_.col(image.site));
+    point_.back().z() += image.image * cell_.depth;
+  }
+
+  void insert_points() {
+    std::vector<Kernel::Point_3> points;
+    points.reserve(point_.size());
+    for (const Eigen::Vector3d& p : point_) points.emplace_back(p.x(), p.y(), p.z());
+    std::vector<std::size_t> order(point_.size() - inserted_);
+    std::iota(order.begin(), order.end(), inserted_);
+    const auto position = CGAL::make_property_map(points);
+    CGAL::spatial_sort(
+        order.begin(), order.end(),
+        CGAL::Spatial_sort_traits_adapter_3<Kernel, std::decay_t<decltype(position)>>(position));
+
+    Triangulation::Cell_handle hint;
+    for (const std::size_t k : order) {
+      const Triangulation::Vertex_handle vertex = triangulation_.insert(points[k], hint);
+      std::int32_t& number = vertex->info().value;
+      if (number >= 0) throw_same_place(number, static_cast<std::int32_t>(k));
+      number = static_cast<std::int32_t>(k);
+      hint = vertex->cell();
+    }
+    inserted_ = point_.size();
+  }
+
+  [[noreturn]] void throw_same_place(std::int32_t a, std::int32_t b) const {
+    const auto name = [&](std::int32_t site) {
+      return site < grains_ ? "grain " + std::to_string(site)
+                            : "wall grain " + std::to_string(site - grains_);
+    };
+    const auto [first, second] = std::minmax(image_[static_cast<std::size_t>(a)].site,
+                                             image_[static_cast<std::size_t>(b)].site);
+    throw AnalysisError(name(first) + " and " + name(second) + " lie at the same place");
+  }
+
+  bool is_measured(std::int32_t vertex) const { return vertex >= 0 && vertex < measured_; }
+
+  void copy_tetrahedra() {
+    std::int32_t count = 0;
+    for (const auto cell : triangulation_.all_cell_handles()) cell->info().value = count++;
+    tetrahedra_.resize(static_cast<std::size_t>(count));
+    auto copy = tetrahedra_.begin();
+    for (const auto cell : triangulation_.all_cell_handles()) {
+      bool any_measured = false;
+      for (int k = 0; k < 4; ++k) {
+        const std::int32_t vertex = cell->vertex(k)->info().value;
+        any_measured = any_measured || is_measured(vertex);
+        copy->vertex[static_cast<std::size_t>(k)] = vertex;
+        copy->neighbour[static_cast<std::size_t>(k)] = cell->neighbor(k)->info().value;
+      }
+      copy->edges_done = 0;
+      copy->beyond = 0;
+      if (any_measured) {
+        copy->centre = circumcentre(copy->vertex);
+        for (std::size_t wall = 0; wall < 4; ++wall) {
+          if (!(distance_to(wall, copy->centre) > 0)) {
+            copy->beyond = static_cast<std::uint8_t>(copy->beyond | (1U << wall));
+          }
+        }
+        if (copy->beyond == 0) note_reach(copy->centre, copy->vertex[0]);
+      }
+      ++copy;
+    }
+  }
+
+  Eigen::Vector3d circumcentre(std::array<std::int32_t, 4> vertices) const {
+    // The origin is near the other sites, so that only edges to guards are long.
+    if (!is_measured(vertices[0])) {
+      std::iter_swap(vertices.begin(), std::ranges::find_if(vertices, [&](std::int32_t vertex) {
+                       return is_measured(vertex);
+                     }));
+    }
+    const Eigen::Vector3d origin = point(vertices[0]);
+    const Eigen::Vector3d a = point(vertices[1]) - origin;
+    const Eigen::Vector3d b = point(vertices[2]) - origin;
+    const Eigen::Vector3d c = point(vertices[3]) - origin;
+    const Eigen::Vector3d bc = b.cross(c);
+    const double aa = a.squaredNorm();
+    const double bb = b.squaredNorm();
+    const double cc = c.squaredNorm();
+    const double determinant = a.dot(bc);
+    const Eigen::Vector3d v = (aa * bc + bb * c.cross(a) + cc * a.cross(b)) / (2 * determinant);
+
+    // Forward error of Cramer's rule: numerator and determinant each lose a few roundoffs of the
+    // sum of the sizes of their terms. 32 covers the operations counted one by one.
+    constexpr double roundoff = std::numeric_limits<double>::epsilon() / 2;
+    const double radius = v.norm();
+    const double la = std::sqrt(aa);
+    const double lb = std::sqrt(bb);
+    const double lc = std::sqrt(cc);
+    const double terms = la * lb * lc * ((la + lb + lc) / 2 + radius);
+    const double allowed = worst_centre_error * std::max(1.0, radius);
+    if (32 * roundoff * terms < allowed * std::abs(determinant)) return origin + v;
+
+    using Rational = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+    const auto exact = [&](std::size_t k) {
+      const Eigen::Vector3d& p = point(vertices[k]);
+      return Rational::Point_3(p.x(), p.y(), p.z());
+    };
+    const Rational::Point_3 centre = CGAL::circumcenter(exact(0), exact(1), exact(2), exact(3));
+    return {CGAL::to_double(centre.x()), CGAL::to_double(centre.y()), CGAL::to_double(centre.z())};
+  }
+
+  double distance_to(std::size_t wall, const Eigen::Vector3d& p) const {
+    return shearcell::distance_to(walls_[wall], p.x(), p.y());
+  }
+
+  Eigen::Vector3d outwards(std::size_t wall) const {
+    return {-walls_[wall].normal[0], -walls_[wall].normal[1], 0};
+  }
+
+  /// Notes how far the sphere around a cell's corner, through a site, reaches beyond the period.
+  void note_reach(const Eigen::Vector3d& corner, std::int32_t vertex) {
+    const double radius = (corner - point(vertex)).norm();
+    reach_ = std::max({reach_, corner.z() + radius - cell_.depth, radius - corner.z()});
+  }
+
+  void measure_faces() {
+    sides_.assign(static_cast<std::size_t>(measured_), {});
+    for (std::vector<Side>& sides : sides_) sides.reserve(20);  // few grains have more neighbours
+    wall_area_.assign(static_cast<std::size_t>(measured_), {0, 0, 0, 0});
+    for (std::size_t k = 0; k < tetrahedra_.size(); ++k) {
+      const Tetrahedron& t = tetrahedra_[k];
+      for (const auto [i, j] : edges) {
+        if ((t.edges_done & edge_bit[i][j]) != 0) continue;
+        if (is_measured(t.vertex[i]) || is_measured(t.vertex[j])) measure_face(k, i, j);
+      }
+    }
+  }
+
+  /// Measures the face between the sites at corners i and j of a tetrahedron.
+  void measure_face(std::size_t start, std::size_t i, std::size_t j) {
+    const std::int32_t a = tetrahedra_[start].vertex[i];
+    const std::int32_t b = tetrahedra_[start].vertex[j];
+    const Eigen::Vector3d edge = point(b) - point(a);
+    const double length = edge.norm();
+    if (length < coincidence_distance) throw_same_place(a, b);
+
+    Eigen::Vector3d twice = Eigen::Vector3d::Zero();
+    Eigen::Vector3d arm = Eigen::Vector3d::Zero();
+    unsigned beyond = 0;
+    walk_around(start, a, b, [&](Tetrahedron& t, std::uint8_t bit) {
+      t.edges_done = static_cast<std::uint8_t>(t.edges_done | bit);
+      beyond |= t.beyond;
+      const Eigen::Vector3d next = t.centre - tetrahedra_[start].centre;
+      twice += arm.cross(next);
+      arm = next;
+    });
+    if (beyond != 0) twice = clip(start, a, b, beyond);
+    const double area = edge.dot(twice) / (2 * length);
+    if (area <= smallest_face) return;
+    const auto note = [&](std::int32_t from, std::int32_t to) {
+      if (!is_measured(from)) return;
+      sides_[static_cast<std::size_t>(from)].push_back(
+          {image_[static_cast<std::size_t>(to)], area});
+    };
+    note(a, b);
+    note(b, a);
+  }
+
+  /// Calls visit(tetrahedron, bit of its edge) for the tetrahedra around the edge from a to b.
+  template <class Visit>
+  void walk_around(std::size_t start, std::int32_t a, std::int32_t b, const Visit& visit) {
+    std::size_t k = start;
+    do {
+      Tetrahedron& t = tetrahedra_[k];
+      const std::size_t i = corner_of(t, a);
+      const std::size_t j = corner_of(t, b);
+      visit(t, edge_bit[i][j]);
+      const int across = Triangulation::next_around_edge(static_cast<int>(i), static_cast<int>(j));
+      k = static_cast<std::size_t>(t.neighbour[static_cast<std::size_t>(across)]);
+    } while (k != start);
+  }
+
+  /// Twice the vector area of what the walls in `beyond` leave of a face. The sides that lie on
+  /// walls are added to the boundaries of the wall faces of the two cells. A wall face has the area
+  /// of the integral of -z du around it, where u is horizontal; its sides along the edges of the
+  /// box add nothing, since u is constant there.
+  Eigen::Vector3d clip(std::size_t start, std::int32_t a, std::int32_t b, unsigned beyond) {
+    polygon_.clear();
+    walk_around(start, a, b, [&](const Tetrahedron& t, std::uint8_t) {
+      polygon_.push_back({t.centre, no_wall});
+    });
+    for (std::size_t wall = 0; wall < 4; ++wall) {
+      if ((beyond & (1U << wall)) != 0) clip(wall);
+    }
+    Eigen::Vector3d twice = Eigen::Vector3d::Zero();
+    for_each_side(polygon_, [&](const Corner& p, const Corner& q) {
+      note_reach(p.at, a);
+      twice += (p.at - polygon_[0].at).cross(q.at - polygon_[0].at);
+      if (p.wall == no_wall) return;
+      const double du = (q.at - p.at).dot(Eigen::Vector3d::UnitZ().cross(outwards(p.wall)));
+      const double z = (p.at.z() + q.at.z()) / 2;
+      const auto note = [&](std::int32_t from, double area) {
+        if (is_measured(from)) wall_area_[static_cast<std::size_t>(from)][p.wall] += area;
+      };
+      note(a, (z - point(a).z()) * du);
+      note(b, (point(b).z() - z) * du);
+    });
+    return twice;
+  }
+
+  /// Cuts off what is not inside a wall (Sutherland and Hodgman, Commun. ACM 17, 32 (1974)).
+  void clip(std::size_t wall) {
+    clipped_.clear();
+    for_each_side(polygon_, [&](const Corner& p, const Corner& q) {
+      const double to_p = distance_to(wall, p.at);
+      const double to_q = distance_to(wall, q.at);
+      if (to_p > 0) clipped_.push_back(p);
+      if ((to_p > 0) == (to_q > 0)) return;
+      const Eigen::Vector3d crossing = p.at + to_p / (to_p - to_q) * (q.at - p.at);
+      clipped_.push_back({crossing, to_p > 0 ? wall : p.wall});
+    });
+    polygon_.swap(clipped_);
+  }
+
+  template <class Visit>
+  static void for_each_side(const std::vector<Corner>& polygon, const Visit& visit) {
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      visit(polygon[k], polygon[k + 1 < polygon.size() ? k + 1 : 0]);
+    }
+  }
+
+  VoronoiDiagram collect() {
     VoronoiDiagram diagram;
     const auto count = static_cast<std::size_t>(grains_);
     diagram.volume.reserve(count);
@@ -61,163 +403,61 @@ class Dual {
     diagram.faces.reserve(16 * count);  // a little more than a dense packing has
     diagram.first.push_back(0);
     for (std::int32_t i = 0; i < grains_; ++i) {
-      if (bulk_[static_cast<std::size_t>(i)] != 0) {
-        measure_bulk(i, diagram);
-      } else {
-        measure_clipped(i, diagram);
-      }
+      const std::size_t first = diagram.faces.size();
+      diagram.volume.push_back(collect_cell(i, diagram.faces));
+      double surface = 0;
+      for (std::size_t f = first; f < diagram.faces.size(); ++f) surface += diagram.faces[f].area;
+      diagram.surface.push_back(surface);
       diagram.first.push_back(diagram.faces.size());
     }
-    if (wall_grain_cells == WallGrainCells::measure) {
-      for (auto w = grains_; w < sites_.cols(); ++w) {
-        diagram.wall_grain_volume.push_back(clip(w));
-      }
+    std::vector<VoronoiFace> unused;
+    for (std::int32_t i = grains_; i < measured_; ++i) {
+      diagram.wall_grain_volume.push_back(collect_cell(i, unused));
     }
     return diagram;
   }
 
-  double spacing() const {
-    const double volume = cell_.width * cell_.depth * (pose_.top - pose_.bottom);
-    return std::cbrt(volume / std::max(static_cast<double>(sites_.cols()), 1.0));
-  }
-
-  void note_reach(double z, double radius) {
-    reach_ = std::max({reach_, z + radius - cell_.depth, radius - z});
-  }
-
-  /// Whether a cell's corner may be here: inside the walls, and within the distance in z at which a
-  /// grain's own images bound its cell. With too few images, spheres may be centred anywhere.
-  bool may_be_corner(const Eigen::Vector3d& centre) const {
-    return std::abs(centre.z() - cell_.depth / 2) <= cell_.depth &&
-           wall_distances(cell_, pose_, centre).minCoeff() >= 0;
-  }
-
-  void find_bulk() {
-    bulk_.assign(static_cast<std::size_t>(sites_.cols()), 0);
-    if (!delaunay_.tetrahedra().empty()) std::fill_n(bulk_.begin(), grains_, std::uint8_t{1});
-    const auto is_grain = [&](std::int32_t vertex) { return vertex >= 0 && vertex < grains_; };
-    for (const Tetrahedron& t : delaunay_.tetrahedra()) {
-      if (std::none_of(t.vertex.begin(), t.vertex.end(), is_grain)) continue;
-      if (t.bounded() && may_be_corner(t.centre)) {
-        note_reach(t.centre.z(), (t.centre - delaunay_.point(t.vertex[0])).norm());
-        continue;
-      }
-      for (const std::int32_t vertex : t.vertex) {
-        if (is_grain(vertex)) bulk_[static_cast<std::size_t>(vertex)] = 0;
-      }
-    }
-  }
-
-  void collect_sides() {
-    sides_.assign(static_cast<std::size_t>(grains_), {});
-    const auto note = [&](const SiteImage& from, const SiteImage& to, double area) {
-      const auto grain = static_cast<std::size_t>(from.site);
-      if (from.image != 0 || bulk_[grain] == 0) return;
-      if (sides_[grain].empty()) sides_[grain].reserve(20);  // few grains have more neighbours
-      sides_[grain].push_back({to, area});
-    };
-    for (const DualFace& face : delaunay_.faces(bulk_)) {
-      note(face.a, face.b, face.area);
-      note(face.b, face.a, face.area);
-    }
-  }
-
-  void measure_bulk(std::int32_t site, VoronoiDiagram& diagram) {
+  /// Appends the faces of a cell and returns its volume [d^3].
+  double collect_cell(std::int32_t site, std::vector<VoronoiFace>& faces) {
+    double volume = 0;
     std::vector<Side>& sides = sides_[static_cast<std::size_t>(site)];
     std::ranges::sort(sides, {}, &Side::to);
-    double surface = 0;
-    double volume = 0;
-    for (const Side& side : sides) {
-      if (side.area <= smallest_face) continue;
-      diagram.faces.push_back(face_to(site, side.to, side.area));
-      surface += side.area;
-      volume += side.area * diagram.faces.back().to_neighbour.norm() / 6;
+    for (const auto& [to, area] : sides) {
+      const bool grain = to.site < grains_;
+      Eigen::Vector3d offset = sites_.col(to.site) - sites_.col(site);
+      offset.z() += to.image * cell_.depth;
+      volume += area * offset.norm() / 6;
+      faces.push_back({offset, area, grain ? to.site : to.site - grains_,
+                       grain ? NeighbourKind::grain : NeighbourKind::wall_grain});
     }
-    diagram.volume.push_back(volume);
-    diagram.surface.push_back(surface);
-  }
-
-  std::array<HalfSpace, 6> box_around(const Eigen::Vector3d& point) const {
-    const Eigen::Vector4d distance = wall_distances(cell_, pose_, point);
-    const double c = pose_.cos_theta;
-    const double s = pose_.sin_theta;
-    const Eigen::Vector3d period(0, 0, cell_.depth);
-    return {plane_at({-c, s, 0}, distance[0]),
-            plane_at({c, -s, 0}, distance[1]),
-            plane_at({0, -1, 0}, distance[2]),
-            plane_at({0, 1, 0}, distance[3]),
-            bisector_to(-period),
-            bisector_to(period)};
-  }
-
-  /// Cuts the box by the bisectors to the neighbours and leaves the cell in polyhedron_ and areas_.
-  /// Returns its volume [d^3].
-  double clip(std::int32_t site) {
-    // Near ones first, so that most later planes do not cut. The order is unique.
-    std::vector<std::pair<double, SiteImage>> ranks;
-    for (const SiteImage& other : delaunay_.neighbours(site)) {
-      ranks.emplace_back(delaunay_.offset(site, other).squaredNorm(), other);
-    }
-    std::ranges::sort(ranks);
-
-    polyhedron_.reset(box_around(sites_.col(site)));
-    plane_site_.clear();
-    for (const auto& [distance2, other] : ranks) {
-      if (distance2 < coincidence_distance * coincidence_distance)
-        throw_same_place(site, other.site, grains_);
-      if (other.site == site && std::abs(other.image) == 1) continue;  // a plane of the box already
-      if (polyhedron_.clip(bisector_to(delaunay_.offset(site, other))))
-        plane_site_.push_back(other);
-    }
-    for (std::size_t k = 0; k < polyhedron_.corners(); ++k) {
-      const Eigen::Vector3d corner = polyhedron_.corner(k);
-      note_reach(sites_(2, site) + corner.z(), corner.norm());
-    }
-    return polyhedron_.measure(areas_);
-  }
-
-  void measure_clipped(std::int32_t site, VoronoiDiagram& diagram) {
-    diagram.volume.push_back(clip(site));
-    const std::size_t begin = diagram.faces.size();
-    double surface = 0;
-    for (std::size_t plane = 0; plane < areas_.size(); ++plane) {
-      const double area = areas_[plane];
+    for (std::size_t wall = 0; wall < 4; ++wall) {
+      const double area = wall_area_[static_cast<std::size_t>(site)][wall];
       if (area <= smallest_face) continue;
-      surface += area;
-      if (plane < 4) {
-        const HalfSpace& wall = polyhedron_.plane(plane);
-        diagram.faces.push_back({2 * wall.offset * wall.normal, area,
-                                 static_cast<std::int32_t>(plane), NeighbourKind::wall_plane});
-      } else if (plane < 6) {
-        diagram.faces.push_back(face_to(site, {site, plane == 4 ? -1 : 1}, area));
-      } else {
-        diagram.faces.push_back(face_to(site, plane_site_[plane - 6], area));
-      }
+      const double distance = distance_to(wall, sites_.col(site));
+      volume += area * distance / 3;
+      faces.push_back({2 * distance * outwards(wall), area, static_cast<std::int32_t>(wall),
+                       NeighbourKind::wall_plane});
     }
-    diagram.surface.push_back(surface);
-    std::ranges::sort(std::span(diagram.faces).subspan(begin), {}, [](const VoronoiFace& face) {
-      return std::tuple(face.kind, face.neighbour, face.to_neighbour.z());
-    });
-  }
-
-  VoronoiFace face_to(std::int32_t site, SiteImage other, double area) const {
-    const bool grain = other.site < grains_;
-    return {delaunay_.offset(site, other), area, grain ? other.site : other.site - grains_,
-            grain ? NeighbourKind::grain : NeighbourKind::wall_grain};
+    return volume;
   }
 
   const Cell& cell_;
-  const WallPose& pose_;
+  std::array<WallPlane, 4> walls_;
   const Eigen::Matrix3Xd& sites_;
   std::int32_t grains_;
-  Delaunay delaunay_;
-  double reach_ = 0;                // of all spheres around corners, beyond the period in z [d]
-  std::vector<std::uint8_t> bulk_;  // by site: a grain whose cell meets no wall plane
-  std::vector<std::vector<Side>> sides_;  // by grain; of those in the bulk
-
-  ConvexCell polyhedron_;
-  std::vector<SiteImage> plane_site_;  // by plane index - 6
-  std::vector<double> areas_;
+  std::int32_t measured_;
+  double margin_ = 0;
+  Triangulation triangulation_;
+  // By vertex: the sites, the guards, then images.
+  std::vector<SiteImage> image_;
+  std::vector<Eigen::Vector3d> point_;
+  std::size_t inserted_ = 0;  // so many of them are in the triangulation
+  std::vector<Tetrahedron> tetrahedra_;
+  double reach_ = 0;  // of all spheres around corners, beyond the period in z [d]
+  std::vector<std::vector<Side>> sides_;          // by measured site
+  std::vector<std::array<double, 4>> wall_area_;  // by measured site and wall
+  std::vector<Corner> polygon_;                   // the face at hand
+  std::vector<Corner> clipped_;
 };
 
 void require_inside(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains) {
@@ -265,8 +505,10 @@ VoronoiDiagram voronoi(const Cell& cell, const WallPose& pose, const Eigen::Matr
   require_inside(cell, pose, grains);
   const Eigen::Matrix3Xd sites = wrapped_sites(cell, pose, grains);
   if (!sites.allFinite()) throw AnalysisError("a wall grain has no finite position");
-  return Dual(cell, pose, sites, static_cast<std::int32_t>(grains.cols()))
-      .measure(wall_grain_cells);
+  const auto measured = wall_grain_cells == WallGrainCells::measure ? sites.cols() : grains.cols();
+  return Tessellation(cell, pose, sites, static_cast<std::int32_t>(grains.cols()),
+                      static_cast<std::int32_t>(measured))
+      .measure();
 }
 
 }  // namespace shearcell

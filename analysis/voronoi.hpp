@@ -44,10 +44,8 @@ enum class WallGrainCells : std::uint8_t { skip, measure };
 /// given pose. With WallGrainCells::measure all volumes together are the volume of the sheared box.
 ///
 /// Cells are the dual of CGAL's Delaunay triangulation of sites and images: polygons of
-/// circumcentres for a grain whose cell meets no wall plane, the box cut by the bisectors to the
-/// Delaunay neighbours for the others. The faces of a grain are in ascending order of kind,
-/// neighbour and image.
-/// Faces no larger than 1e-13 d^2 are rounding and left out.
+/// circumcentres, clipped by the walls. The faces of a grain are in ascending order of kind,
+/// neighbour and image. Faces no larger than 1e-13 d^2 are rounding and left out.
 ///
 /// Throws AnalysisError, naming the grains, when two sites coincide or a grain lies on or outside a
 /// wall plane, and when the cell has no volume.

@@ -81,9 +81,9 @@ struct Found {
   }
 };
 
-using Runs = std::vector<const FigureRun*>;
+using RunList = std::vector<const FigureRun*>;
 
-Found found_in(const Runs& runs, const Parameter& parameter) {
+Found found_in(const RunList& runs, const Parameter& parameter) {
   Found found;
   for (const FigureRun* run : runs) {
     const double value =
@@ -142,7 +142,7 @@ const char* colour_of(std::string_view comparison) {
 }  // namespace
 
 FigureResult figure_table1(std::span<const FigureRun> runs) {
-  std::map<std::string, Runs> experiments;
+  std::map<std::string, RunList> experiments;
   for (const FigureRun& run : runs) {
     if (!run.checkpoints.empty()) experiments[run.experiment].push_back(&run);
   }

@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <random>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "analysis/crystal.hpp"
 #include "analysis/error.hpp"
@@ -153,17 +155,127 @@ TEST(Voronoi, CoplanarAndCollinearSites) {
 }
 
 TEST(Voronoi, SitesOnOneSphereAroundAGrain) {
-  Packing p = empty_cell(8, 8, 8);
-  p.grains.resize(3, 201);
-  p.grains.col(0) << 4, 4, 4;
-  std::mt19937_64 random(19);
-  std::normal_distribution<double> normal;
-  for (int i = 1; i < 201; ++i) {
-    const Eigen::Vector3d direction(normal(random), normal(random), normal(random));
-    p.grains.col(i) = p.grains.col(0) + 2 * direction.normalized();
+  for (const int sites : {200, 1000}) {
+    Packing p = empty_cell(8, 8, 8);
+    p.grains.resize(3, sites + 1);
+    p.grains.col(0) << 4, 4, 4;
+    std::mt19937_64 random(19);
+    std::normal_distribution<double> normal;
+    for (int i = 1; i <= sites; ++i) {
+      const Eigen::Vector3d direction(normal(random), normal(random), normal(random));
+      p.grains.col(i) = p.grains.col(0) + 2 * direction.normalized();
+    }
+    expect_sound(p, 1e-10);
+    EXPECT_EQ(voronoi(p.cell, p.pose, p.grains).faces_of(0).size(),
+              static_cast<std::size_t>(sites));
   }
-  expect_sound(p, 1e-10);
-  EXPECT_EQ(voronoi(p.cell, p.pose, p.grains).faces_of(0).size(), 200U);
+}
+
+/// A cube of 2 d with a grain in its centre and a wall grain at `offset` from the grain.
+Packing cube_with_wall_grain(const Eigen::Vector3d& offset) {
+  Packing p = empty_cell(2, 2, 2);
+  p.grains = Eigen::Vector3d(1, 1, 1);
+  p.cell.wall_grains.push_back({WallSide::right, p.grains.col(0) + offset});
+  return p;
+}
+
+TEST(Voronoi, AWallGrainCutsOffAnEdgeOfTheBox) {
+  for (const double x : {-1.5, 1.5}) {
+    for (const double y : {-1.5, 1.5}) {
+      const Packing p = cube_with_wall_grain({x, y, 0});
+      const VoronoiDiagram d = all_cells(p);
+      EXPECT_NEAR(d.volume[0], 7.75, 1e-14);
+      EXPECT_NEAR(d.wall_grain_volume[0], 0.25, 1e-14);
+      const auto faces = d.faces_of(0);
+      ASSERT_EQ(faces.size(), 7U);  // two images, the wall grain, four walls
+      EXPECT_NEAR(faces[0].area, 3.875, 1e-14);
+      EXPECT_NEAR(faces[1].area, 3.875, 1e-14);
+      EXPECT_EQ(faces[2].kind, NeighbourKind::wall_grain);
+      EXPECT_NEAR(faces[2].area, std::sqrt(2.0), 1e-14);
+      const std::array<bool, 4> cut = {x<0, x> 0, y<0, y> 0};
+      for (std::size_t wall = 0; wall < 4; ++wall) {
+        const VoronoiFace& face = faces[3 + wall];
+        EXPECT_EQ(face.kind, NeighbourKind::wall_plane);
+        EXPECT_EQ(face.neighbour, static_cast<int>(wall));
+        EXPECT_NEAR(face.area, cut[wall] ? 3 : 4, 1e-14);
+        EXPECT_DOUBLE_EQ(face.to_neighbour.norm(), 2);
+      }
+    }
+  }
+}
+
+// The bisector touches the cell along a whole wall, along an edge of the box, or not at all.
+TEST(Voronoi, WallGrainsThatOnlyTouchAddNoFace) {
+  const std::vector<Eigen::Vector3d> offsets = {{2, 0, 0}, {-2, 0, 0}, {0, 2, 0}, {0, -2, 0},
+                                                {2, 2, 0}, {-2, 2, 0}, {3, 3, 1}};
+  for (const Eigen::Vector3d& offset : offsets) {
+    SCOPED_TRACE(testing::PrintToString(offset));
+    const VoronoiDiagram d = voronoi(cube_with_wall_grain(offset).cell, empty_cell(2, 2, 2).pose,
+                                     Eigen::Vector3d(1, 1, 1));
+    EXPECT_NEAR(d.volume[0], 8, 1e-14);
+    ASSERT_EQ(d.faces.size(), 6U);
+    for (std::size_t f = 2; f < 6; ++f) EXPECT_EQ(d.faces[f].kind, NeighbourKind::wall_plane);
+  }
+}
+
+/// `count` grains anywhere between the walls.
+void scatter(Packing& p, int count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> share(0, 1);
+  p.grains.resize(3, count);
+  for (auto grain : p.grains.colwise()) {
+    grain.y() = p.pose.bottom + share(random) * (p.pose.top - p.pose.bottom);
+    grain.x() = share(random) * p.cell.width + (grain.y() - p.pose.top) * p.pose.tan_theta;
+    grain.z() = share(random) * p.cell.depth;
+  }
+}
+
+TEST(Voronoi, FewGrainsInFlatAndLongCells) {
+  const std::vector<Eigen::Vector3d> sizes = {{6, 0.01, 6}, {0.01, 6, 6}, {6, 6, 0.05},
+                                              {300, 3, 2},  {3, 300, 2},  {2, 3, 300}};
+  for (const Eigen::Vector3d& size : sizes) {
+    for (const double theta : {0.0, 0.4}) {
+      for (const int grains : {1, 2, 4, 40}) {
+        SCOPED_TRACE(testing::PrintToString(size) + " theta " + std::to_string(theta) + " grains " +
+                     std::to_string(grains));
+        Packing p = empty_cell(size.x(), size.y(), size.z(), theta);
+        scatter(p, grains, 29);
+        expect_sound(p, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Voronoi, GrainsCloseToAWall) {
+  for (const double distance : {1e-3, 1e-6, 1e-9, 1e-13}) {
+    for (const double theta : {0.0, 0.2}) {
+      Packing p = empty_cell(5, 5, 5, theta);
+      scatter(p, 100, 31);
+      for (int i = 0; i < 60; ++i) {
+        if (i < 20) p.grains(1, i) = distance;
+        const double shift = (p.grains(1, i) - p.pose.top) * p.pose.tan_theta;
+        if (i < 40) p.grains(0, i) = 0.07 * (i + 1) + shift;
+        if (i >= 20) p.grains(0, i) = (i < 40 ? distance : 5 - distance) + shift;
+      }
+      expect_sound(p);
+    }
+  }
+}
+
+TEST(Voronoi, TheOrderOfGrainsDoesNotMatter) {
+  Packing p = jammed(300, true, 0.2, 3);
+  const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains);
+  std::vector<int> order(300);
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(7));
+  const VoronoiDiagram shuffled =
+      voronoi(p.cell, p.pose, Eigen::Matrix3Xd(p.grains(Eigen::all, order)));
+  for (std::size_t i = 0; i < 300; ++i) {
+    const auto from = static_cast<std::size_t>(order[i]);
+    EXPECT_NEAR(shuffled.volume[i], d.volume[from], 1e-13);
+    EXPECT_NEAR(shuffled.surface[i], d.surface[from], 1e-12);
+    EXPECT_EQ(shuffled.faces_of(i).size(), d.faces_of(from).size());
+  }
 }
 
 TEST(Voronoi, AShallowCellSeesItsOwnImages) {
