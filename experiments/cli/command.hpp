@@ -55,7 +55,7 @@ void print_problems(const MeasureOutcome& outcome, const char* left_out, Context
 using AddCommand = void(CLI::App& app, Context& context);
 AddCommand add_plan, add_run, add_status, add_log, add_show, add_verify, add_rebuild, add_prune,
     add_regenerate, add_submit, add_work, add_merge, add_table, add_figures, add_report, add_export,
-    add_bench, add_new, add_doctor, add_completion, add_manual;
+    add_bench, add_new, add_doctor, add_manual;
 
 /// Prints the result of a campaign and sets the exit code.
 void print_result(const CampaignResult& result, Context& context);

@@ -134,7 +134,7 @@ int run(int argc, char** argv) {
   for (const auto add :
        {add_plan,   add_run,        add_status, add_log,  add_show,   add_verify,     add_rebuild,
         add_prune,  add_regenerate, add_submit, add_work, add_merge,  add_table,      add_figures,
-        add_report, add_export,     add_bench,  add_new,  add_doctor, add_completion, add_manual}) {
+        add_report, add_export,     add_bench,  add_new,  add_doctor, add_manual}) {
     add(app, context);
   }
   try {

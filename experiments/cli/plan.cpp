@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
@@ -17,7 +18,6 @@
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/engine.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
-#include "experiments/runner/novelty.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/words.hpp"
 
@@ -34,12 +34,10 @@ struct Line {
   StageCost left = {};
   std::optional<double> left_until = 0;       // particle-steps; nothing when it is not known
   std::vector<std::string> shared_with = {};  // other experiments that contain it
-  nlohmann::json novelty = nullptr;           // null when the store knows it, or none like it
 };
 
-// "also in twin", "new: amplitude_rad 0.1 (store has 0.0833)".
+// "also in twin".
 std::string remark(const Line& line) {
-  if (!line.novelty.is_null()) return "new: " + describe_novelty(line.novelty);
   return line.shared_with.empty() ? ""
                                   : fmt::format("also in {}", fmt::join(line.shared_with, ", "));
 }
@@ -157,7 +155,9 @@ void print_until(const std::vector<Line>& lines, double at_most) {
 }
 
 std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
-                           const KnownRuns& known) {
+                           const std::vector<RunRecord>& runs) {
+  std::map<std::string_view, const RunRecord*> known;
+  for (const RunRecord& run : runs) known.emplace(run.id, &run);
   ExpectedEnds ends;
   std::vector<Line> lines;
   std::set<std::string> seen;
@@ -165,7 +165,8 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
     for (const StageSpec* stage : {&run.prepare, &run.last}) {
       if (!seen.insert(stage->key).second) continue;
       Line line{.run = &run, .stage = stage};
-      if (const RunRecord* record = known.find(stage->key)) {
+      if (const auto found = known.find(stage->key); found != known.end()) {
+        const RunRecord* record = found->second;
         line.cycle = record->cycle;
         add_shares(*record, run.experiment, line);
         const auto from = cycle_to_continue(run, *stage, record, &*store);
@@ -174,8 +175,6 @@ std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
         // Short of checkpoints that were asked for later, or of cycles.
         const bool replayed = line.from < line.cycle;
         if (line.state == "completed") line.state = replayed ? "to replay" : "to extend";
-      } else {
-        line.novelty = known.novelty(*stage);
       }
       if (line.state != "done") {
         line.left = stage_cost(run, *stage, line.from);
@@ -226,7 +225,6 @@ nlohmann::json facts(const Line& line) {
           {"shared_with", line.shared_with},
           {"time_step", facts(time_step_of(line))},
           {"expected_overlap_d", expected_overlap(line.run->parameters)},
-          {"new", line.novelty},
           {"particle_steps_left", line.left.particle_steps},
           {"bytes_left", line.left.bytes},
           {"memory_bytes", run_bytes(geometry(line.run->parameters))}};
@@ -256,9 +254,8 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
   Plan expanded = joined(plans);
   const std::optional<Store> store = open_if_there(context.store);
   const auto runs = store ? store->runs() : std::vector<RunRecord>{};
-  const KnownRuns known(runs);
   const std::size_t longer = take_longer_targets(runs, expanded);
-  const std::vector<Line> lines = lines_of(expanded, store, known);
+  const std::vector<Line> lines = lines_of(expanded, store, runs);
   const Left left = left_of(lines, runs);
   std::set<const PlannedRun*> unfinished;  // each is computed by one core
   for (const Line& line : lines) {

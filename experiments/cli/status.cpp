@@ -4,14 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
-#include <thread>
 #include <tuple>
 
 #include "core/machine.hpp"
@@ -21,9 +19,7 @@
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/run_end.hpp"
-#include "experiments/runner/stop.hpp"
 #include "provenance/io/clock.hpp"
-#include "provenance/io/read_number.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell::cli {
@@ -311,46 +307,6 @@ void print_facts(const View& view) {
        {"queue_problem", problem.empty() ? nlohmann::json() : nlohmann::json(problem)}});
 }
 
-// A stage begins within milliseconds after the one before it. If no program has held a stage for
-// this long, the campaign has ended.
-constexpr std::chrono::seconds kIdle{10};
-
-bool stages_remain(const View& view) {
-  return std::ranges::any_of(view.runs, [&](const SelectedRun& selected) {
-    return !has_ended(selected.run.state) && !view.waiting.contains(selected.run.id);
-  });
-}
-
-/// Sleeps, or returns true as soon as a signal asks to stop.
-bool sleep_or_stop(double seconds) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  while (!stop_requested() && std::chrono::steady_clock::now() < end) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  return stop_requested();
-}
-
-/// Prints the status every `interval` seconds until the campaign has ended or a signal comes.
-void watch(const RunSelection& selection, const Context& context, double interval) {
-  catch_stop_signals();
-  auto busy_at = std::chrono::steady_clock::now();
-  while (true) {
-    const View view(selection, context);
-    if (moves_cursor(stdout)) fmt::print("\x1b[H\x1b[2J");
-    print(view);
-    std::fflush(stdout);
-    const auto now = std::chrono::steady_clock::now();
-    if (!view.holders.empty() || view.queue.busy()) {
-      busy_at = now;
-    } else if (!stages_remain(view) || now - busy_at > kIdle) {
-      return;
-    }
-    // Many users share the queue of a cluster, so query it at most every 10 s.
-    const bool asks = !view.queue.submissions.empty();
-    if (sleep_or_stop(asks ? std::max(interval, 10.0) : interval)) return;
-  }
-}
-
 }  // namespace
 
 void add_status(CLI::App& app, Context& context) {
@@ -358,28 +314,16 @@ void add_status(CLI::App& app, Context& context) {
   add_common_options(*command, context);
   auto selection = std::make_shared<RunSelection>(RunSelection{.packings = true});
   add_selection_options(*command, *selection, true);
-  auto interval = std::make_shared<std::string>();
-  CLI::Option* watched = command->add_option("--watch", *interval, "Repeat every so many seconds")
-                             ->type_name("SECONDS=2")
-                             ->expected(0, 1)
-                             ->check([](const std::string& text) {
-                               return text.empty() ? "" : unfit(text, 0.1, 86400.0);
-                             })
-                             ->excludes("--json");
   command->footer(
       R"(M/s is million particle-steps per second over all recorded work. A run that is `running` but
-that no program holds was killed; `resume` continues it. --watch ends when no stage is left, or
-when no program has worked for 10 s and nothing is queued. Runs on a cluster show their place
-in its queue and the progress of their tasks. The time left is estimated from the speed so far.
+that no program holds was killed; `resume` continues it. Runs on a cluster show their place in its
+queue and the progress of their tasks. The time left is estimated from the speed so far.
 Examples:
   shearcell status
-  shearcell status --watch
+  watch -n 10 shearcell status
   shearcell status --json
   shearcell status --experiment drag --state failed)");
-  command->callback([watched, interval, selection, &context] {
-    if (watched->count() > 0) {
-      return watch(*selection, context, read_number<double>(*interval).value_or(2));
-    }
+  command->callback([selection, &context] {
     const View view(*selection, context);
     context.json ? print_facts(view) : print(view);
   });

@@ -170,7 +170,6 @@ TEST_F(Commands, NamesIncludeValuesThatARecordLeavesOut) {
       expect(0, {"status"}, {"packing moving_wall=bottom ", "packing moving_wall=top "}).out;
   EXPECT_EQ(status.find("pressure_at"), status.npos) << status;
   write("lighter.yaml", swept("moving_wall: [bottom], pressure_at: [moving_wall]"));
-  expect(0, {"plan", "lighter.yaml"}, {"new: pressure_at moving_wall (store has top)"});
   expect(0, {"run", "lighter.yaml", "--cycles", "0", "-q"});
   expect(0, {"show", last_run()}, {"\npressure_at                      \"moving_wall\"\n"});
   write("draws.yaml", renamed(swept("wall_grain_draw: [0, 1]"), "draws"));
@@ -178,7 +177,7 @@ TEST_F(Commands, NamesIncludeValuesThatARecordLeavesOut) {
   expect(0, {"status"}, {"packing wall_grain_draw=0 ", "packing wall_grain_draw=1 "});
 }
 
-TEST_F(Commands, PlanShowsWhatIsDoneSharedAndNew) {
+TEST_F(Commands, PlanShowsWhatIsDoneAndShared) {
   campaign(manifest_, {"--cycles", "1"});
   const auto stage = [](const nlohmann::json& plan, const std::string& kind,
                         std::uint64_t seed) -> nlohmann::json {
@@ -188,11 +187,10 @@ TEST_F(Commands, PlanShowsWhatIsDoneSharedAndNew) {
     ADD_FAILURE() << "no such stage: " << plan.dump(1);
     return {};
   };
-  // The same again: done. Longer: to extend. More seeds: new, and only because of the seed.
+  // The same again: done. Longer: to extend. More seeds: to do.
   const auto again = json({"plan", "m.yaml", "--cycles", "1", "--json"});
   for (const auto& line : again.at("stages")) {
     EXPECT_EQ(line.at("state"), "done");
-    EXPECT_TRUE(line.at("new").is_null());
     EXPECT_TRUE(line.at("shared_with").empty());
   }
   expect(0, {"plan", "m.yaml", "--cycles", "1"}, {"\nleft: nothing\n"});
@@ -204,8 +202,6 @@ TEST_F(Commands, PlanShowsWhatIsDoneSharedAndNew) {
   EXPECT_EQ(stage(more, "shear", 2).at("state"), "to do");
   EXPECT_EQ(stage(more, "shear", 2).at("particle_steps_left"), 300.0 * 3 * 10000);
   EXPECT_GE(stage(more, "shear", 2).at("memory_bytes"), 300.0 * 100);
-  EXPECT_EQ(stage(more, "shear", 2).at("new").at("fields"),
-            nlohmann::json::parse(R"([{"field": "seed", "value": 2, "store_has": 1}])"));
 
   // A run that ended early is complete for every manifest with that `until`.
   const std::string early = tiny_manifest("", "until: {phi: 0.1}\n");
@@ -225,11 +221,9 @@ TEST_F(Commands, PlanShowsWhatIsDoneSharedAndNew) {
   const auto other = json({"plan", "twin.yaml", "--cycles", "1", "--json"});
   EXPECT_EQ(stage(other, "shear", 1).at("state"), "done");
   EXPECT_EQ(stage(other, "shear", 1).at("shared_with"), nlohmann::json::parse(R"(["tiny"])"));
-  const auto fields = other.at("stages").at(2).at("new").at("fields");
-  EXPECT_EQ(fields, nlohmann::json::parse(
-                        R"([{"field": "amplitude_rad", "value": 0.1, "store_has": 0.0833}])"));
+  EXPECT_EQ(other.at("stages").at(2).at("state"), "to do");
   expect(0, {"plan", "twin.yaml", "--cycles", "1"},
-         {"also in tiny", "new: amplitude_rad 0.1 (store has 0.0833)"});
+         {"also in tiny"});
 
   // Both: the shared run counts once, as long as the one that asks for more of it.
   write("twin.yaml", twin("  cycles: 4\n"));

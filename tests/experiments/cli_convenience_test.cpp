@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `new`, completion, the manual page, `doctor`, and tables that fit a terminal and have colours
+// `new`, the manual page, `doctor`, and tables that fit a terminal and have colours
 // only there.
 #include <gtest/gtest.h>
 
@@ -23,18 +23,6 @@ class Convenience : public ProgramTest {
     const Outcome outcome = shell(script);
     EXPECT_EQ(outcome.code, 0) << script << "\n" << outcome.out << outcome.err;
     return outcome.out;
-  }
-
-  /// What bash offers after these words, the last of which is being typed.
-  std::string completed(const std::string& shell_name, const std::vector<std::string>& words) {
-    std::string typed;
-    for (const std::string& word : words) typed += " '" + word + "'";
-    write("try",
-          (shell_name == "zsh" ? "autoload -U +X compinit && compinit -u -D\nsetopt ksharrays\n"
-                               : "") +
-              std::string("source ./script\nCOMP_WORDS=(") + typed + ")\nCOMP_CWORD=" +
-              std::to_string(words.size() - 1) + "\n_shearcell\necho \"${COMPREPLY[@]}\"\n");
-    return shell_output(shell_name + " ./try");
   }
 
   /// Its output on a terminal of that width.
@@ -99,29 +87,6 @@ TEST_F(Convenience, TheManualDoesNotDependOnTheEnvironment) {
   }
 }
 
-TEST_F(Convenience, ShellsCompleteCommandsAndOptions) {
-  write("script", run({"completion", "bash"}).out);
-  EXPECT_EQ(completed("bash", {"shearcell", "ru"}), "run\n");
-  EXPECT_EQ(completed("bash", {"shearcell", "bench", "sp"}), "speed\n");
-  EXPECT_EQ(completed("bash", {"shearcell", "run", "x.yaml", "--sc"}), "--scale\n");
-  EXPECT_EQ(completed("bash", {"shearcell", "verify", "--rep"}), "--replay\n");
-  if (find_program("zsh")) {  // which chooses among the words itself
-    write("script", run({"completion", "zsh"}).out);
-    EXPECT_TRUE(has(completed("zsh", {"shearcell", "ru"}), " run "));
-    EXPECT_TRUE(has(completed("zsh", {"shearcell", "bench", "sp"}), "speed"));
-    EXPECT_TRUE(has(completed("zsh", {"shearcell", "run", "--sc"}), " --scale "));
-  }
-  write("script", run({"completion", "fish"}).out);
-  if (find_program("fish")) {
-    const std::string sourced = "fish -c 'source script; ";
-    EXPECT_EQ(shell_output(sourced + "complete -C \"shearcell bench sp\"'").substr(0, 6),
-              "speed\t");
-    EXPECT_EQ(shell_output(sourced + "complete -C \"shearcell run --sc\"'").substr(0, 8),
-              "--scale\t");
-  }
-  expect_refused({"completion", "tcsh"}, {});
-}
-
 TEST_F(Convenience, TheManualHasEveryCommand) {
   const std::string page = run({"manual"}).out;
   for (const std::string& command : commands()) {
@@ -163,7 +128,7 @@ TEST_F(Convenience, TablesHaveColoursOnlyOnATerminal) {
   EXPECT_FALSE(has(on_terminal(80, "NO_COLOR=1", "status"), "\x1b"));
   // Long enough that progress is drawn.
   EXPECT_TRUE(has(on_terminal(80, "NO_COLOR=1", "run m.yaml --cycles 60"), "\x1b[2K"));
-  for (const char* words : {"status", "status --watch 0.1", "run m.yaml --cycles 80"}) {
+  for (const char* words : {"status", "run m.yaml --cycles 80"}) {
     EXPECT_FALSE(has(on_terminal(80, "TERM=dumb", words), "\x1b")) << words;
   }
 }
@@ -208,12 +173,6 @@ TEST_F(Convenience, ExportsTheRequestedCycles) {
     expect_refused(joined({"export", id, "--out", "other", "--to"}, split(line)),
                    {"has no effect with --to " + line.substr(0, line.find(' '))});
   }
-}
-
-TEST_F(Convenience, WatchEndsWhenNoProgramWorks) {
-  campaign(tiny_manifest());
-  EXPECT_EQ(expect(0, {"status", "--watch", "0.1"}).out, run({"status"}).out);
-  expect_refused({"status", "--watch", "0"}, {"from 0.1 to 86400"});
 }
 
 class TimeSteps : public ProgramTest {};

@@ -266,7 +266,6 @@ TEST_F(UnusualStore, AFolderMayHaveAnyName) {
   expect_refused({"run", "m.yaml", "--store", longer}, {"bytes"});
 }
 
-// The nearest known run is looked for among all of them.
 TEST_F(UnusualStore, HasTenThousandRuns) {
   campaign(tiny_manifest("  grains: 200\n"), {"--cycles", "1"});
   sql("WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 10000) INSERT INTO "
@@ -282,7 +281,7 @@ TEST_F(UnusualStore, HasTenThousandRuns) {
   const double seconds = watch.seconds();
   std::printf("plan of 10,000 stages beside 10,001 known ones: %.2f s\n", seconds);
   EXPECT_EQ(plan.at("stages").size(), 10'000U);
-  EXPECT_EQ(plan.at("stages").back().at("new").at("fields").size(), 1U);
+  EXPECT_EQ(plan.at("stages").back().at("state"), "to do");
   EXPECT_LT(seconds, 30) << "it took minutes when each pair was compared as JSON";
 }
 

@@ -70,7 +70,6 @@ TEST_F(Streams, LostOutputIsAnError) {
                             "figures S2 --json --out out",
                             "run m.yaml --cycles 1 --json -q",
                             "run m.yaml --cycles 1 -q",
-                            "completion bash",
                             "--help",
                             "run --help",
                             "--version",

@@ -9,7 +9,7 @@ trap 'rm -rf "$folder"' EXIT
 
 cmake --install "$build" --prefix "$folder/prefix" > "$folder/log" || { cat "$folder/log"; exit 1; }
 for file in bin/shearcell share/man/man1/shearcell.1 share/shearcell/experiments/drag.yaml \
-            share/shearcell/shearcell.cdx.json share/bash-completion/completions/shearcell \
+            share/shearcell/shearcell.cdx.json \
             lib/python3/dist-packages/shearcell/store.py include/shearcell/core/simulation.hpp; do
   [ -s "$folder/prefix/$file" ] || { echo "not installed: $file"; exit 1; }
 done
