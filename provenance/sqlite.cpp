@@ -115,10 +115,10 @@ void Database::require_journal_can_be_played_back(int code) const {
         "{}: a program was writing to this store when it was killed or the disk became read-only. "
         "Its last write is rolled back from {} by the next program that opens the store, but this "
         "user cannot write to {} ({}). Nothing that was recorded is lost: copy the whole folder to "
-        "a disk where you can write (`cp -r`) and use the copy, or open it once as a user who can "
-        "write to it",
-        name_, journal.filename().string(), path.string(),
-        std::generic_category().message(errno)));
+        "a disk where you can write (`cp -r`, then `chmod -R u+w` on the copy) and use the copy, "
+        "or "
+        "open it once as a user who can write to it",
+        name_, journal.filename().string(), path.string(), std::generic_category().message(errno)));
   }
 }
 

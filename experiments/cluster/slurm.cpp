@@ -113,11 +113,12 @@ std::optional<double> slurm_seconds(const std::string& time) {
   for (const std::regex& form : forms) {
     if (!std::regex_match(time, found, form)) continue;
     double sum = 0;
-    for (const auto& [part, seconds] : {std::pair(1, 86400), {2, 3600}, {3, 60}, {4, 1}}) {
+    for (const auto& [part, seconds] :
+         {std::pair<std::size_t, double>(1, 86400), {2, 3600}, {3, 60}, {4, 1}}) {
       if (found.length(part) == 0) continue;
-      const auto number = read_number<unsigned>(found.str(static_cast<std::size_t>(part)));
+      const auto number = read_number<unsigned>(found.str(part));
       if (!number) return std::nullopt;
-      sum += static_cast<double>(seconds) * *number;
+      sum += seconds * *number;
     }
     return sum;
   }
