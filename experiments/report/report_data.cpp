@@ -85,7 +85,7 @@ ReportFigure figure_of(const Store& store, const WantedFigure& wanted, const Rep
   made.recorded = record_of(records, wanted.figure.name, computed.lineage);
   made.lineage = figure_lineage(store, {wanted.path(), 0, "", computed.lineage});
   for (const FigureTable& table : computed.result.tables) {
-    ReportPanel panel{table.name, prefix + table.name, {}, to_csv(table), table.text, ""};
+    ReportPanel panel{table.name, prefix + table.name, {}, to_csv(table), table.text, "", ""};
     if (!table.chart.series.empty()) panel.chart = chart_json(table);
     try {
       if (!data.interactive && table.text.rows.empty()) panel.drawing = draw(table);
