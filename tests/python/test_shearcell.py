@@ -406,7 +406,7 @@ class Package(unittest.TestCase):
             self.assertAlmostEqual(run.checkpoint(asked).cycle, found, 9, asked)
         for asked, near in ((0.31, "0, 0.3, 0.333"), (0.30001, "0, 0.3, 0.333"), (0.9, "0.333.*, 0.7, 1"),
                             (17, "0.7, 1, 2"), (-1, "0, 0.3, 0.333"), (1 + 1 / 45600, "0.333.*, 0.7, 1"), (np.nan, "")):
-            with self.assertRaisesRegex(KeyError, f"has no checkpoint at cycle .*; next to it, .* of cycles {near}"):
+            with self.assertRaisesRegex(KeyError, f"has no checkpoint at cycle .*; nearest to it, .* of cycles {near}"):
                 run.checkpoint(asked)
 
     def test_the_working_directory_may_change(self):

@@ -228,7 +228,6 @@ class Run:
 
     @functools.cached_property
     def _by_sha256(self) -> dict[str, dict[str, Any]]:
-        # The last record of a file wins.
         return {c["sha256"]: c for c in self._shown["checkpoints"] if c["state"] != "rejected"}
 
     def _of_experiment(self) -> list[dict[str, Any]]:
@@ -258,8 +257,8 @@ class Run:
             raise KeyError(f"the checkpoint of run {self.id[:12]} at cycle {cycle:g} was pruned; "
                            f"`shearcell regenerate {found[0]['sha256'][:12]}` brings it back")
         near = sorted(c["cycle"] for c in [c for c in known if c["state"] == "recorded"][:3])
-        raise KeyError(f"run {self.id[:12]} has no checkpoint at cycle {cycle:.12g}; next to it, "
-                       f"it has those of cycles {', '.join(f'{c:.12g}' for c in near)}")
+        raise KeyError(f"run {self.id[:12]} has no checkpoint at cycle {cycle:.12g}; nearest to "
+                       f"it, it has those of cycles {', '.join(f'{c:.12g}' for c in near)}")
 
     def checkpoints(self) -> Iterator[Checkpoint]:
         """The checkpoints at `cycles`, read one after the other."""
