@@ -80,7 +80,7 @@ Suggestion suggest_name(string_view unknown, std::span<const string_view> candid
   return best;
 }
 
-std::string with_nearest(std::string problem, string_view unknown,
+std::string with_nearest(const std::string& problem, string_view unknown,
                          std::span<const string_view> candidates) {
   const std::string near = suggest_name(unknown, candidates).name;
   return near.empty() ? problem : problem + ", the nearest is " + near;

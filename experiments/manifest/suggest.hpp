@@ -31,7 +31,7 @@ std::string lower(std::string_view text);
 std::string_view trimmed(std::string_view text);
 
 /// "PROBLEM, the nearest is NAME"; "PROBLEM" if no name is near.
-std::string with_nearest(std::string problem, std::string_view unknown,
+std::string with_nearest(const std::string& problem, std::string_view unknown,
                          std::span<const std::string_view> candidates);
 
 /// "did you mean NAME?"; "known are A, B, C" if no name is near.

@@ -28,7 +28,7 @@ class Convenience : public ProgramTest {
   /// Its output on a terminal of that width.
   std::string on_terminal(int columns, const std::string& environment, const std::string& words) {
     return shell_output("script -qec 'stty cols " + std::to_string(columns) + "; TERM=xterm " +
-                        environment + " " SHEARCELL_PROGRAM " " + words + "' /dev/null");
+                        environment + " " + SHEARCELL_PROGRAM + " " + words + "' /dev/null");
   }
 };
 

@@ -47,9 +47,8 @@ class Crate : public testing::Test {
 
 // Python is a second reader. Debian's modules belong to the Python in /usr/bin.
 TEST_F(Crate, MeetsItsSpecificationsAndHoldsItsFiles) {
-  const std::string command = "PATH=/usr/bin:$PATH python3 " SHEARCELL_TEST_DATA
-                              "/../provenance/check_crate.py '" +
-                              crate_.string() + "'";
+  const std::string command = std::string("PATH=/usr/bin:$PATH python3 ") + SHEARCELL_TEST_DATA +
+                              "/../provenance/check_crate.py '" + crate_.string() + "'";
   EXPECT_EQ(std::system(command.c_str()), 0);
   EXPECT_EQ(files_.size(), of_type("File").size() + 1);
   EXPECT_EQ(entities_.at("./").at("datePublished"), store_.run(history_.sheared).updated_at);
