@@ -7,7 +7,6 @@
 // the two events.
 #pragma once
 
-#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -134,10 +133,6 @@ struct QueueView {
   std::vector<Submission> submissions;    ///< the unfinished ones
   std::map<std::string, QueuedRun> runs;  ///< by id: their runs and packings
   std::string problem;                    ///< why the queue could not be asked; "" if it was
-
-  bool busy() const {  ///< whether anything is in the queue
-    return std::ranges::any_of(submissions, [](const auto& open) { return !open.queue.empty(); });
-  }
 };
 
 /// Asks Slurm only if the store has unfinished submissions.
