@@ -4,12 +4,14 @@
 // accuracy.sh runs it and writes the tables. Only the costs depend on the machine.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
 #include "analysis/plot.hpp"
+#include "analysis/statistics.hpp"
 #include "experiments/bench/speed.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
