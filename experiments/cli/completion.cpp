@@ -8,6 +8,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/command_tree.hpp"
+#include "provenance/io/child_process.hpp"
 
 namespace shearcell::cli {
 namespace {
