@@ -169,7 +169,7 @@ std::string report_page(const ReportData& data) {
     html += experiment_html(data, experiment);
   }
   html += across_html(data) + compare_html(data) + packings_html(data) + runs_html(data) +
-          + about_html(data);
+          about_html(data);
   return html + "</main>\n" + data_html(data) + "</body>\n</html>\n";
 }
 

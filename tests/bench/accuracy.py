@@ -26,7 +26,8 @@ def table(name, heading, rows):
 
 
 def number(text, digits=2):
-    return f"{float(text):.{digits}g}".replace("e-0", "e-") if text else ""
+    value = float(text)
+    return f"{value:.0f}" if value >= 100 else f"{value:.{digits}g}".replace("e-0", "e-")
 
 
 errors = read("accuracy/accuracy-order.csv")
@@ -70,7 +71,7 @@ for folder, claim in claims:
     if folder == "paper" and ("percentage" in claim["claim"] or claim["claim"] in decided):
         continue
     low, high = claim["interval"]
-    rows.append([claim["claim"].split("steps of ")[1].split(" and")[0], claim["quantity"],
+    rows.append([claim["claim"].split("steps of ")[1].split(" and")[0], claim["quantity"].replace("difference in ", ""),
                  f"{claim['estimate']:+.2g} ({low:+.2g} to {high:+.2g})", str(claim["margin"]), str(claim["runs"]),
                  claim["verdict"]])
 table("pairs", ["time step [s]", "difference from 4.4e-5 s", "estimate (90 %)", "margin", "pairs", "verdict"],
@@ -79,7 +80,7 @@ table("pairs", ["time step [s]", "difference from 4.4e-5 s", "estimate (90 %)", 
 stiffness = read("decide/spring_constant/S1.csv")
 hardest = stiffness[-1]
 table("stiffness", ["k", "cost", "mean overlap [d]", "bias of phi_u", "bias of phi, Eq. (S4)"],
-      ([f"{factor:g} k_0", f"{factor ** 0.5:.2g}", f"{float(row['overlap_mean_d']):.2e}",
+      ([f"{factor:.3g} k_0", f"{factor ** 0.5:.2g}", number(row["overlap_mean_d"], 3),
         f"{float(row['phi_u_mean']) - float(hardest['phi_mean']):+.4f}",
         f"{float(row['phi_mean']) - float(hardest['phi_mean']):+.4f}"]
        for row in stiffness for factor in [10 ** float(row["log10_k_over_k0"])] if float(row["log10_k_over_k0"]) in (0, 0.5, 1)))

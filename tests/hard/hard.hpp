@@ -83,14 +83,13 @@ Answer expect_stop(const Packing& packing, std::uint64_t steps, const std::strin
 Answer expect_near(const std::string& what, double got, double right, double tolerance);
 Answer expect_at_most(const std::string& what, double got, double most);
 
-/// Expects the run to end, within `tolerance` [d], as by step_over_all_pairs().
-Answer expect_as_all_pairs(const Packing& packing, const State& end, const Drive& drive,
-                           double tolerance);
+/// Expects the run to end with the positions of step_over_all_pairs(), to the last bit.
+Answer expect_as_all_pairs(const Packing& packing, const State& end, const Drive& drive);
 
 /// Expects no net force over `most` P d^2 on any grain.
 Answer expect_balance(const Packing& packing, const State& state, double most);
 
-/// As expected if all parts are as expected.
+/// As expected if all parts are as expected. Equal results in a row are printed once.
 Answer all_of(const std::vector<Answer>& parts);
 
 /// Adds one case.
