@@ -107,7 +107,7 @@ FigureTable error_table(double ours, double lammps) {
       .columns = {"motion", "method", "curve", "time_step_s", "time_step_over_contact_time",
                   "time_step_over_stability_limit", "core_seconds_per_cycle", "relative_error",
                   "local_order", "fitted_order"}};
-  for (const ClosedForm& form : closed_forms(shear_scene(Parameters{}), 16)) {
+  for (const ClosedForm& form : closed_forms(shear_scene(Parameters{}), 256)) {
     fmt::print(stderr, "{}\n", form.title);
     for (const Method& method : methods()) add_curve(form, method, ours, table.rows);
   }
@@ -172,7 +172,7 @@ FigureTable energy_table() {
       .columns = {"method", "time_step_s", "time_step_over_stability_limit", "speed_error",
                   "mean_energy_change", "local_order", "energy_lost_by_drag_in_a_collision"}};
   for (const Method& method : methods()) {
-    const auto at = [&](double dt) { return collide(scene, method, dt, 32); };
+    const auto at = [&](double dt) { return collide(scene, method, dt, 4096); };
     for (int n = -2; n <= 2; ++n) {
       const double dt = scene.time_step * std::exp2(-0.5 * n);
       const Collision here = at(dt), finer = at(dt / std::sqrt(2.0));

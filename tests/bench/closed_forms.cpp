@@ -124,14 +124,16 @@ double contact_time(const Scene& scene) {
 // While the grains touch, the overlap is
 //   (u/w) exp(-b t/2m) sin(w t),   w^2 = 2 k/m - (b/2m)^2;
 // before and after, drag slows them down exponentially. The stiffness sets the contact time, and so
-// the part of a step in which a contact ends.
-Collision collide(const Scene& scene, const Method& method, double dt, int parts) {
+// the part of a step in which a contact ends. Both parts are those of a golden lattice, which fills
+// the square evenly.
+Collision collide(const Scene& scene, const Method& method, double dt, int samples) {
   const double u = 10, b = scene.drag_rate;
   const Eigen::Vector3d n = Eigen::Vector3d(2, 3, 6) / 7;  // oblique to the axes
   const Eigen::Vector3d middle(10, 10, 10);
   Collision mean;
-  for (int k = 0; k < parts * parts; ++k) {
-    const double begins = (k % parts + 0.5) / parts, ends = (k / parts + 0.5) / parts;
+  for (int k = 0; k < samples; ++k) {
+    const double begins = (k + 0.5) / samples;
+    const double ends = std::fmod((k + 0.5) * (std::numbers::phi - 1), 1);
     const double lasts = contact_time(scene) + (ends - 0.5) * dt;
     const double omega = pi / lasts;
     Packing box =
@@ -152,8 +154,8 @@ Collision collide(const Scene& scene, const Method& method, double dt, int parts
     const Eigen::Vector3d apart = end.position.col(1) - end.position.col(0);
     const double speed = (end.velocity.col(1) - end.velocity.col(0)).dot(apart.normalized());
     const double right = leave_with * std::exp(-b * (t - leave_at));
-    mean.speed_error += std::pow((speed - right) / u, 2) / (parts * parts);
-    mean.energy_change += ((speed / right) * (speed / right) - 1) / (parts * parts);
+    mean.speed_error += std::pow((speed - right) / u, 2) / samples;
+    mean.energy_change += ((speed / right) * (speed / right) - 1) / samples;
   }
   mean.speed_error = std::sqrt(mean.speed_error);
   return mean;
@@ -187,9 +189,9 @@ double row_frequency(const Scene& scene, const Method& method, double dt, int gr
   return std::acos(both / (2 * square)) / dt;
 }
 
-std::vector<ClosedForm> closed_forms(const Scene& scene, int parts) {
+std::vector<ClosedForm> closed_forms(const Scene& scene, int samples) {
   const auto collision = [=](const Method& m, double dt) {
-    return collide(scene, m, dt, parts).speed_error;
+    return collide(scene, m, dt, samples).speed_error;
   };
   const auto wall = [=](const Method& m, double dt) { return wall_error(scene, m, dt, 10); };
   const auto wave = [=](const Method& m, double dt) {  // neighbours against each other

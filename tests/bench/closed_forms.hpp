@@ -29,12 +29,12 @@ const std::vector<Method>& methods();
 double contact_time(const Scene& scene);
 
 /// Errors of a head-on collision with the drag of `scene`, over collisions that begin and end at
-/// any part of a time step: `parts` starts, and `parts` contact times within one step.
+/// any part of a time step: `samples` of them, with contact times that differ by up to a step.
 struct Collision {
   double speed_error = 0;    ///< root mean square error of the speed after it, over that before
   double energy_change = 0;  ///< mean of the energy after it, over the right one, less 1
 };
-Collision collide(const Scene& scene, const Method& method, double dt, int parts);
+Collision collide(const Scene& scene, const Method& method, double dt, int samples);
 
 /// Angular frequency [rad/s] of the longitudinal wave with n periods in a row of touching grains
 /// without drag. The exact one is 2 sqrt(k/m) sin(pi n / grains).
@@ -47,8 +47,8 @@ struct ClosedForm {
   std::function<double(const Method& method, double dt)> error;
 };
 
-/// `parts` of a step in which collisions begin and end.
-std::vector<ClosedForm> closed_forms(const Scene& scene, int parts);
+/// Collisions are averaged over so many.
+std::vector<ClosedForm> closed_forms(const Scene& scene, int samples);
 
 /// Order of convergence: the slope of log(error) against log(step), by least squares.
 double order_of(std::span<const double> steps, std::span<const double> errors);

@@ -22,7 +22,7 @@ const double kStep = kScene.time_step;  // Table I's
 // A contact that opens or closes bends the force, and a step over that bend has an error of dt^2 in
 // the velocity: every method is then of second order.
 TEST(Accuracy, OrderIsThatOfTheoryForEveryClosedForm) {
-  for (const ClosedForm& form : closed_forms(kScene, 8)) {
+  for (const ClosedForm& form : closed_forms(kScene, 256)) {
     for (const Method& m : methods()) {
       std::vector<double> steps, errors;
       for (int n = 0; n <= 6; ++n) {
@@ -41,8 +41,8 @@ TEST(Accuracy, OrderIsThatOfTheoryForEveryClosedForm) {
 // after them is a hundredth as wrong as the speed after one.
 TEST(Accuracy, MeanEnergyOfCollisionsIsMoreAccurateThanTheSpeedAfterOne) {
   for (const Method& m : methods()) {
-    const Collision coarse = collide(kScene, m, 1.4 * kStep, 16),
-                    fine = collide(kScene, m, kStep, 16);
+    const Collision coarse = collide(kScene, m, 1.4 * kStep, 1024),
+                    fine = collide(kScene, m, kStep, 1024);
     std::printf("%s: speed %.2g, energy %.2g, at 1.4 dt %.2g\n", m.name.c_str(), fine.speed_error,
                 fine.energy_change, coarse.energy_change);
     EXPECT_LT(std::fabs(fine.energy_change), 0.2 * fine.speed_error) << m.name;

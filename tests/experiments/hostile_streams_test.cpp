@@ -216,25 +216,13 @@ TEST_F(Signals, AKillOfOneOfTwoProgramsKeepsTheEndByUntil) {
 class Messages : public ProgramTest {};
 
 TEST_F(Messages, NumbersOfOptionsAreDecimal) {
-  for (const char* words : {"bench speed --size 010",
-                            "bench speed --size 0x10",
-                            "bench speed --threads 0x2",
-                            "bench speed --threads 02",
-                            "bench speed --repeats 07",
-                            "bench speed --repeats 1e1",
-                            "bench speed --seconds 0x1",
-                            "bench speed --seconds nan",
-                            "report --frames 010",
-                            "report --runs-per-experiment 0x1",
-                            "report --packings-mb 0x9",
-                            "report --packings-mb -1",
-                            "run m.yaml --cycles 010",
-                            "run m.yaml --seeds 0x2",
-                            "run m.yaml -j 01",
-                            "run m.yaml -t +2",
-                            "work -j 0x1",
-                            "prune --keep-every 010",
-                            "verify --replay 0x1"}) {
+  for (const char* words :
+       {"bench speed --size 010", "bench speed --size 0x10", "bench speed --threads 0x2",
+        "bench speed --threads 02", "bench speed --repeats 07", "bench speed --repeats 1e1",
+        "bench speed --seconds 0x1", "bench speed --seconds nan", "report --frames 010",
+        "report --runs-per-experiment 0x1", "report --packings-mb 0x9", "report --packings-mb -1",
+        "run m.yaml --cycles 010", "run m.yaml --seeds 0x2", "run m.yaml -j 01", "run m.yaml -t +2",
+        "work -j 0x1", "prune --keep-every 010", "verify --replay 0x1"}) {
     expect_refused(split(words), {"decimal digits"});
   }
 }
