@@ -268,7 +268,7 @@ Node read_document(string_view text, string_view file) {
     }
     parser.HandleNextDocument(builder);
   } catch (const YAML::Exception& error) {
-    // The parser's own messages for them vary.
+    // The messages of yaml-cpp for anchors and aliases depend on its version.
     if (error.msg.find("anchor") != std::string::npos ||
         error.msg.find("alias") != std::string::npos) {
       builder.refuse_reference(error.mark, "");
