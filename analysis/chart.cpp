@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "analysis/error.hpp"
 #include "provenance/io/file.hpp"
@@ -135,15 +136,35 @@ std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series
   const std::size_t filter = number(series.filter.column);
   const std::size_t x = number(from.x), y = number(from.y), x_high = number(from.x_high);
   const std::size_t x_error = number(from.x_error), y_error = number(from.y_error);
+  const std::size_t runs = number(from.runs);
   std::vector<ChartPoint> points;
   for (const TableRow& row : table.rows) {
     if (filter > 0 && row.at(filter - 1) != series.filter.value) continue;
     const auto at = number_in(row, x), value = number_in(row, y);
     if (!at || !value) continue;
     const double middle = (*at + number_in(row, x_high).value_or(*at)) / 2;
-    points.push_back({middle, *value, number_in(row, x_error), number_in(row, y_error)});
+    points.push_back(
+        {middle, *value, number_in(row, x_error), number_in(row, y_error), number_in(row, runs)});
   }
   return points;
+}
+
+void name_run_counts(FigureTable& table) {
+  for (Series& series : table.chart.series) {
+    double fewest = std::numeric_limits<double>::infinity(), most = 0;
+    for (const ChartPoint& point : points_of(table, series)) {
+      if (!point.runs) continue;
+      fewest = std::min(fewest, *point.runs);
+      most = std::max(most, *point.runs);
+    }
+    const auto all = std::max(static_cast<double>(series.runs), most);
+    if (fewest >= all) continue;  // also without points
+    std::string counts = fmt::format("{}", fewest);
+    if (fewest < most) counts += fmt::format(" to {}", most);
+    if (most < all) counts += fmt::format(" of {}", all);
+    series.title = series.title.empty() ? Text(counts + " runs")
+                                        : series.title + Text(" (" + counts + " runs)");
+  }
 }
 
 std::string plain_text(const Text& text) {

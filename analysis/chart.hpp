@@ -68,16 +68,18 @@ struct ChartPoint {
   double y = 0;
   std::optional<double> x_error = std::nullopt;  ///< standard error, one sided
   std::optional<double> y_error = std::nullopt;
+  std::optional<double> runs = std::nullopt;  ///< over which y is a mean
 };
 
-/// Names of columns; an empty name of an error means that there is none. With `x_high`, x is the
-/// middle of both.
+/// Names of columns; an empty name of an error, or of `runs`, means that there is none. With
+/// `x_high`, x is the middle of both.
 struct SeriesColumns {
   std::string x = {};
   std::string y = {};
   std::string x_error = {};
   std::string y_error = {};
   std::string x_high = {};
+  std::string runs = {};  ///< over which y is a mean
 };
 
 /// The rows that have `value` in that column; every row when `column` is empty.
@@ -99,6 +101,8 @@ struct Series {
   SeriesColumns columns = {};
   RowFilter filter = {};
   std::vector<ChartPoint> points = {};  ///< used where `columns` names no x
+  /// Of a curve with the same runs at each point: how many there are. 0 for other series.
+  std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that equal x do not hide each other
 };
 
@@ -157,6 +161,11 @@ std::filesystem::path write_csv(const FigureTable& table, const std::filesystem:
 /// The points of one series, without its shift. Rows in which x or y is not a finite number are
 /// left out.
 std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series);
+
+/// Adds to the title of each series how many runs its points are means of, as "(3 to 5 runs)", if
+/// that differs between the points or is less than Series::runs. A mean over other runs may differ
+/// for that reason alone.
+void name_run_counts(FigureTable& table);
 
 /// Nine significant digits, as in the CSV.
 std::string digits(double value);

@@ -246,6 +246,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
   for (std::size_t k = 0; k < curves.size(); ++k) {
     if (of_curve != nullptr) style_without_symbol(k, table.chart.series[k]);
     table.chart.series[k].band = of_curve != nullptr;
+    if (of_curve == nullptr) table.chart.series[k].runs = 0;  // those at each x are others
   }
   if (plot.traces) table.chart.series = std::move(traces);
   for (Series& series : table.chart.series) {

@@ -14,5 +14,5 @@ out=shearcell-figures
 $program run experiments/drag.yaml --scale smoke --store "$store"
 $program figures S2 --scale smoke --store "$store" --out "$out"
 echo
-echo "The figures are in $PWD/$out, the checkpoints they came from in $store."
+echo "The figures are in $PWD/$out/drag/smoke, the checkpoints they came from in $store."
 echo "Next: $program --help, or the table of experiments in experiments/README.md."

@@ -106,7 +106,6 @@ bool same_computation(const auto& a, const auto& b) {
 /// Selects checkpoints to prune; all conditions must hold.
 struct PruneChoice {
   std::vector<std::string> runs;  ///< ids; empty for all
-  std::optional<RunState> state;  ///< only runs in this state
   std::uint64_t keep_every = 0;   ///< K > 0 keeps cycles 0, K, 2K, ...
 };
 

@@ -37,11 +37,6 @@ std::set<std::string> initial_states(const EventLog& log) {
   return found;
 }
 
-bool chosen(const PruneChoice& choice, const RunRecord& run) {
-  return (choice.runs.empty() || std::ranges::count(choice.runs, run.id) > 0) &&
-         (!choice.state || run.state == *choice.state);
-}
-
 /// Settling has no cycles, so of its checkpoints only the first is one of cycle 0.
 bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) {
   return choice.keep_every > 0 && (record.cycle > 0 || record.step == 0) &&
@@ -183,7 +178,7 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   const std::set<std::string> needed = initial_states(log_);
   std::vector<CheckpointRecord> found;
   for (const RunRecord& run : runs()) {
-    if (!chosen(choice, run)) continue;
+    if (!choice.runs.empty() && std::ranges::count(choice.runs, run.id) == 0) continue;
     // The newest is kept, and all back to the newest that can be read: `resume` reports the others.
     std::vector<CheckpointRecord> records = checkpoints(run.id);
     bool kept = false;

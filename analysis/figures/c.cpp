@@ -180,7 +180,8 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
                              .point = 5,
                              .columns = {.x = "amplitude_rad",
                                          .y = "critical_size_grains",
-                                         .y_error = "critical_size_standard_error_grains"}}}};
+                                         .y_error = "critical_size_standard_error_grains",
+                                         .runs = "runs"}}}};
   return table;
 }
 
@@ -208,7 +209,8 @@ FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
                                   .join = Join::line,
                                   .columns = {.x = "cycles_followed",
                                               .y = "critical_size_grains",
-                                              .y_error = "critical_size_standard_error_grains"},
+                                              .y_error = "critical_size_standard_error_grains",
+                                              .runs = "runs"},
                                   .filter = {"amplitude_rad", one.amplitude}});
     table.chart.lines.push_back(critical_line(one));
   }

@@ -125,7 +125,8 @@ bool follow_runs(const Curve& curve, const Quantity& quantity, Series& mean,
     const auto cycle = static_cast<double>(point.cycle);
     const RunStatistics statistics = over(point, quantity);
     if (cycle > first_end || !statistics.mean) continue;
-    mean.points.push_back({cycle, *statistics.mean, std::nullopt, statistics.standard_error});
+    mean.points.push_back({cycle, *statistics.mean, std::nullopt, statistics.standard_error,
+                           static_cast<double>(statistics.runs)});
   }
   for (const FigureRun* run : curve.runs) {
     Series line = thin_line({}, mean.colour);
@@ -156,8 +157,10 @@ void add_values(const RunStatistics& statistics, TableRow& row) {
 }
 
 SeriesColumns columns_against(std::string x, const MeasureColumn& y) {
-  return {
-      .x = std::move(x), .y = column_name(y, "mean"), .y_error = column_name(y, "standard_error")};
+  return {.x = std::move(x),
+          .y = column_name(y, "mean"),
+          .y_error = column_name(y, "standard_error"),
+          .runs = "runs"};
 }
 
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
@@ -273,7 +276,8 @@ std::vector<Series> series_of(std::span<const Curve> curves, const SeriesColumns
                       .join = Join::line,
                       .band = true,
                       .columns = columns,
-                      .filter = {"variant", curve.variant}});
+                      .filter = {"variant", curve.variant},
+                      .runs = curve.runs.size()});
   }
   return series;
 }

@@ -97,7 +97,7 @@ struct MeasureColumn {
 std::string column_name(const MeasureColumn& measure, const char* statistic);
 void add_columns(const MeasureColumn& measure, std::vector<std::string>& columns);
 void add_values(const RunStatistics& statistics, TableRow& row);
-/// Columns of x, by name, and of the measure's mean with its error.
+/// Columns of x, by name, of the measure's mean with its error, and of the number of runs.
 SeriesColumns columns_against(std::string x, const MeasureColumn& y);
 
 /// A row for each variant and cycle. The first measure is drawn.

@@ -40,7 +40,10 @@ Series onset_points(Text title, const char* colour, int point, const char* x,
   return {.title = std::move(title),
           .colour = colour,
           .point = point,
-          .columns = {.x = x, .y = "onset_phi_mean", .y_error = "onset_phi_standard_error"},
+          .columns = {.x = x,
+                      .y = "onset_phi_mean",
+                      .y_error = "onset_phi_standard_error",
+                      .runs = "runs"},
           .filter = std::move(filter)};
 }
 

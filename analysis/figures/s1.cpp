@@ -74,7 +74,8 @@ std::vector<Series> series_under(const Load& load) {
                   .columns = {.x = "overlap_mean_d",
                               .y = column + "_mean",
                               .x_error = "overlap_standard_error_d",
-                              .y_error = column + "_standard_error"},
+                              .y_error = column + "_standard_error",
+                              .runs = "runs"},
                   .filter = {"pressure_at", load.at}};
   };
   return {phi_series(italic("ϕ") + subscript("u") + ", uncorrected", 6, "phi_u"),

@@ -89,6 +89,42 @@ void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
       "KEY=V");
 }
 
+/// First and last of "6-9" or "6".
+std::pair<std::string, std::string> ends_of(const std::string& seeds) {
+  const std::size_t dash = seeds.find('-');
+  const std::string first = seeds.substr(0, dash);
+  return {first, dash == std::string::npos ? first : seeds.substr(dash + 1)};
+}
+
+std::string unfit_seeds(const std::string& text) {
+  const auto [first, last] = ends_of(text);
+  for (const std::string& seed : {first, last}) {
+    if (std::string why = unfit(seed, std::uint64_t{1}, UINT64_MAX); !why.empty()) return why;
+  }
+  const std::uint64_t low = std::stoull(first), high = std::stoull(last);
+  if (high >= low && high - low < ManifestLimits::runs) return "";
+  return fmt::format(
+      "a range of seeds goes from the lower to the higher, and has at most {} (got '{}')",
+      ManifestLimits::runs, text);
+}
+
+void add_seed_option(CLI::App& command, std::vector<std::uint64_t>& seeds) {
+  const auto take = [&seeds](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      const auto [first, last] = ends_of(text);
+      const std::uint64_t count = std::stoull(last) - std::stoull(first) + 1;
+      for (std::uint64_t k = 0; k < count; ++k) seeds.push_back(std::stoull(first) + k);
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--seed", take, "Only runs with these seeds, as 6, 6,8 or 6-9; may be repeated")
+      ->delimiter(',')
+      ->check(unfit_seeds)
+      ->allow_extra_args(false)
+      ->type_name("N");
+}
+
 }  // namespace
 
 std::filesystem::path existing_folder(const std::string& store) {
@@ -105,14 +141,14 @@ void add_expand_options(CLI::App& command, ExpandOptions& options) {
   add_number(command, "--seeds", options.seeds,
              "Number of seeds instead of the manifest's; runs that the store has stay", "N", 1);
   add_variant_option(command, options.variants);
+  add_seed_option(command, options.only_seeds);
 }
 
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states) {
   add_each(command, "--experiment", selection.experiments, "Only runs of this experiment", "NAME");
   add_each(command, "--scale", selection.scales, "Only runs of this scale", "NAME");
   add_variant_option(command, selection.variants);
-  add_each(command, "--seed", selection.seeds, "Only runs with this seed", "N")
-      ->check([](const std::string& text) { return unfit(text, std::uint64_t{1}, UINT64_MAX); });
+  add_seed_option(command, selection.seeds);
   if (!states) return;
   add_each(command, "--state", selection.states, "Only runs in this state", "STATE")
       ->check(one_of<RunState>());

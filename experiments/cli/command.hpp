@@ -77,7 +77,7 @@ void add_json_option(CLI::App& command, Context& context);
 /// --store DIR and --json.
 void add_common_options(CLI::App& command, Context& context);
 
-/// --scale, --cycles, --seeds and --variant, which select runs of a manifest.
+/// --scale, --cycles, --seeds, --variant and --seed, which select runs of a manifest.
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
 struct LoadedManifests {

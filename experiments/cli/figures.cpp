@@ -142,7 +142,7 @@ void add_figures(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand("figures", "Draw figures from stored checkpoints");
   command->add_option("figure", options->names, "Figures, as S2 (default: all)");
   command->add_flag("--all", options->all, "All that the store's manifests list, as without names");
-  command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/NAME.csv, ...")
+  command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/SCALE/NAME.csv, ...")
       ->capture_default_str()
       ->check(unnamed)
       ->type_name("DIR");
@@ -165,8 +165,11 @@ void add_figures(CLI::App& app, Context& context) {
   command->footer(
       R"(Draws each figure once for every experiment that lists it, and the plots and claims of their
 manifests. Writes CSV, SVG, PDF and the gnuplot script of each panel, NAME.caption.txt,
-NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints behind it). Caches
-measures in the store's derived.sqlite, which you may delete at any time.
+NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints behind it) into
+DIR/EXPERIMENT/SCALE; SCALE is `base` for a manifest without scales. A table of all experiments
+goes into DIR/SCALE. Where the number of runs of a mean changes along a curve, the key of the
+drawing names the fewest and the most. Caches measures in the store's derived.sqlite. If you delete
+that file, they are measured again, except those of pruned checkpoints (see `regenerate`).
 Figures and the keys that they compare (some have a curve for each value of other keys too):
 )" + list_of_figures() +
       "Examples:\n  shearcell figures S2 --out figures\n"

@@ -2,16 +2,20 @@
 // `prune`: deletes files of checkpoints that can be recomputed; their records stay.
 // `regenerate`: recomputes such files, and damaged ones, with the same bytes.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <set>
 #include <tuple>
 #include <utility>
 
+#include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
+#include "experiments/figures/keep_measures.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
@@ -22,19 +26,45 @@ namespace {
 
 struct PruneOptions {
   PruneChoice choice;
-  std::string state;
+  RunSelection selection;
   bool yes = false;
 };
 
-PruneChoice choice_of(const PruneOptions& options, const Store& store) {
+/// Whether any filter is given.
+bool selects(const RunSelection& s) {
+  return !(s.experiments.empty() && s.scales.empty() && s.variants.empty() && s.seeds.empty() &&
+           s.states.empty());
+}
+
+/// Ids of the selected runs, settled packings among them.
+std::vector<std::string> selected_ids(const Store& store, RunSelection selection) {
+  selection.packings = true;
+  std::vector<std::string> ids;
+  for (const SelectedRun& one : select_runs(store, selection)) {
+    if (std::ranges::count(ids, one.run.id) == 0) ids.push_back(one.run.id);
+  }
+  return ids;
+}
+
+std::vector<CheckpointRecord> prunable(const PruneOptions& options, const Store& store) {
   PruneChoice choice = options.choice;
-  if (choice.runs.empty() && options.state.empty() && choice.keep_every == 0) {
-    throw CLI::ValidationError(
-        "prune", "choose what to delete: --keep-every K, --state STATE, or runs; see prune --help");
+  const bool filtered = selects(options.selection);
+  if (choice.runs.empty() && !filtered && choice.keep_every == 0) {
+    throw CLI::ValidationError("prune",
+                               "choose what to delete: --keep-every K, --experiment E, --state "
+                               "STATE, or runs; see prune --help");
   }
   for (std::string& run : choice.runs) run = store.find_run(run).id;
-  choice.state = value_of<RunState>(options.state);
-  return choice;
+  if (filtered) {
+    std::vector<std::string> ids = selected_ids(store, options.selection);
+    const bool named = !choice.runs.empty();
+    std::erase_if(ids, [&](const std::string& id) {
+      return named && std::ranges::count(choice.runs, id) == 0;
+    });
+    if (ids.empty()) return {};  // an empty choice would be all runs
+    choice.runs = std::move(ids);
+  }
+  return store.prunable(choice);
 }
 
 double bytes_of(const std::vector<CheckpointRecord>& records) {
@@ -46,10 +76,21 @@ double bytes_of(const std::vector<CheckpointRecord>& records) {
 void print_plan(const Store& store, const std::vector<CheckpointRecord>& records) {
   std::map<std::string, std::vector<CheckpointRecord>> by_run;
   for (const CheckpointRecord& record : records) by_run[record.run].push_back(record);
-  print_table({"run", "state", "to free", "of", "bytes"}, by_run, [&](const auto& freed) -> Row {
+  // All experiments that have the run: they lose its files too.
+  const auto experiments_of = [](const RunRecord& run) {
+    std::set<std::string> names;
+    for (const Membership& m : run.memberships) names.insert(m.experiment);
+    return fmt::format("{}", fmt::join(names, ", "));
+  };
+  const Row header = {"run", "experiment", "state", "to free", "of", "bytes"};
+  print_table(header, by_run, [&](const auto& freed) -> Row {
     const auto& [id, of_run] = freed;
-    return {id.substr(0, 8), std::string(name_of(store.run(id).state)),
-            std::to_string(of_run.size()), std::to_string(store.checkpoints(id).size()),
+    const RunRecord run = store.run(id);
+    return {id.substr(0, 8),
+            experiments_of(run),
+            std::string(name_of(run.state)),
+            std::to_string(of_run.size()),
+            std::to_string(store.checkpoints(id).size()),
             format_bytes(bytes_of(of_run))};
   });
 }
@@ -63,20 +104,41 @@ bool agreed() {
 
 void prune(const PruneOptions& options, Context& context) {
   Store store(context.store, Access::write);
-  std::vector<CheckpointRecord> records = store.prunable(choice_of(options, store));
+  std::vector<CheckpointRecord> records = prunable(options, store);
   const std::size_t kept = std::erase_if(
       records, [&](const CheckpointRecord& c) { return why_not_again(store.run(c.run)); });
   if (!context.json && kept > 0) {
     fmt::print("{} checkpoints of LAMMPS are kept: they cannot be recomputed\n", kept);
   }
-  const std::size_t news = records.size();
-  for (CheckpointRecord& left : store.prune_leftovers()) records.push_back(std::move(left));
+  const std::size_t chosen = records.size();
+  const std::vector<CheckpointRecord> leftovers = store.prune_leftovers();
+  const auto with_leftovers = [&] {
+    std::vector<CheckpointRecord> all = records;
+    all.insert(all.end(), leftovers.begin(), leftovers.end());
+    return all;
+  };
   if (!context.json) {
-    print_plan(store, records);
-    fmt::print("{}, {}\n", counted(records.size(), "checkpoint"), format_bytes(bytes_of(records)));
+    const std::vector<CheckpointRecord> all = with_leftovers();
+    print_plan(store, all);
+    fmt::print("{}, {}\n", counted(all.size(), "checkpoint"), format_bytes(bytes_of(all)));
   }
-  const bool go = !records.empty() && (options.yes || (!context.json && agreed()));
-  const std::uint64_t freed = go ? store.prune(records) : 0;
+  const bool any = chosen + leftovers.size() > 0;
+  const bool go = any && (options.yes || (!context.json && agreed()));
+  MeasureOutcome measuring;
+  if (go) {
+    measuring = keep_measures(store, records,
+                              {.workers = usable_cores(),
+                               .report = terminal_counter("measuring checkpoint before its file is "
+                                                          "deleted")});
+    print_problems(measuring, "not measured", context);
+    if (!measuring.cache_trouble.empty()) fail(context, kOtherError);
+    if (records.size() < chosen) {
+      print_stderr("kept: the files of {} that could not be measured\n",
+                   counted(chosen - records.size(), "checkpoint"));
+    }
+  }
+  const std::vector<CheckpointRecord> all = with_leftovers();
+  const std::uint64_t freed = go ? store.prune(all) : 0;
   if (context.json) {
     const auto checkpoint = [](const CheckpointRecord& record) -> nlohmann::json {
       return {{"run", record.run},
@@ -84,22 +146,26 @@ void prune(const PruneOptions& options, Context& context) {
               {"sha256", record.sha256},
               {"size", record.size}};
     };
-    print_json({{"checkpoints", json_list(records, checkpoint)},
-                {"leftovers", records.size() - news},
+    print_json({{"checkpoints", json_list(all, checkpoint)},
+                {"leftovers", leftovers.size()},
                 {"kept_of_other_engines", kept},
-                {"bytes", bytes_of(records)},
+                {"measured", measuring.measured},
+                {"kept_unmeasured", chosen - records.size()},
+                {"bytes", bytes_of(all)},
                 {"pruned", go},
                 {"bytes_freed", freed}});
   } else if (go) {
-    fmt::print("{} freed; `shearcell regenerate CHECKPOINT` recomputes a file\n",
-               format_bytes(static_cast<double>(freed)));
-  } else if (!records.empty()) {
+    fmt::print("{} measured, {} freed; `shearcell regenerate` recomputes files\n",
+               counted(measuring.measured, "checkpoint"), format_bytes(static_cast<double>(freed)));
+  } else if (any) {
     fmt::print("Nothing was freed. Use --yes to delete these files.\n");
   }
 }
 
 struct RegenerateOptions {
   std::vector<std::string> checkpoints;
+  RunSelection selection;
+  bool all = false;
   std::size_t threads = 1;
 };
 
@@ -144,8 +210,8 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
                          replay.steps));
 }
 
-void regenerate(const RegenerateOptions& options, Context& context) {
-  Store store(context.store, Access::write);
+std::vector<CheckpointRecord> named_checkpoints(const Store& store,
+                                                const RegenerateOptions& options) {
   std::vector<CheckpointRecord> records;
   for (const std::string& prefix : options.checkpoints) {
     const auto found = store.find_checkpoint(prefix);
@@ -155,6 +221,32 @@ void regenerate(const RegenerateOptions& options, Context& context) {
     }
     records.push_back(*found);
   }
+  return records;
+}
+
+/// The checkpoints of the selected runs that have no intact file.
+std::vector<CheckpointRecord> without_file(const Store& store, const RunSelection& selection) {
+  std::vector<CheckpointRecord> records;
+  for (const std::string& run : selected_ids(store, selection)) {
+    for (CheckpointRecord& record : store.checkpoints(run, Listed::all)) {
+      if (record.state == CheckpointState::recorded && store.load_if_readable(record)) continue;
+      records.push_back(std::move(record));
+    }
+  }
+  return records;
+}
+
+void regenerate(const RegenerateOptions& options, Context& context) {
+  const bool named = !options.checkpoints.empty(), filtered = selects(options.selection);
+  if (named == (options.all || filtered)) {
+    throw CLI::ValidationError("regenerate",
+                               "choose what to recompute: either checkpoints, or runs by "
+                               "--experiment E or --all; see regenerate --help");
+  }
+  Store store(context.store, Access::write);
+  std::vector<CheckpointRecord> records =
+      named ? named_checkpoints(store, options) : without_file(store, options.selection);
+  if (records.empty() && !context.json) fmt::print("every file is intact\n");
   // In order of steps, so that each checkpoint of a run can start from the one before it.
   std::ranges::sort(records, {}, [](const auto& c) { return std::tie(c.run, c.step); });
   catch_stop_signals();
@@ -174,22 +266,27 @@ void regenerate(const RegenerateOptions& options, Context& context) {
 void add_prune(CLI::App& app, Context& context) {
   auto options = std::make_shared<PruneOptions>();
   CLI::App* command = app.add_subcommand(
-      "prune", "Delete checkpoint files that can be recomputed; their records stay");
+      "prune", "Delete checkpoint files that can be recomputed; records and measures stay");
   command->add_option("run", options->choice.runs,
                       "Only these runs: ids, or unique beginnings of them");
-  command->add_option("--state", options->state, "Only runs in this state")
-      ->check(one_of<RunState>());
+  add_selection_options(*command, options->selection, true);
   add_number(*command, "--keep-every", options->choice.keep_every, "Keep every K-th cycle", "K", 1,
              1'000'000'000);
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
   add_common_options(*command, context);
   command->footer(
-      "Name runs, or give --state or --keep-every. Lists the files and asks; without a terminal "
-      "it\n"
-      "deletes nothing unless --yes is given. Never deletes the newest checkpoint of a run, those\n"
-      "that other stages started from, or those of LAMMPS. Records stay, and `regenerate`\n"
-      "recomputes a file.\n"
-      "Examples:\n  shearcell prune --keep-every 10\n  shearcell prune --state failed --yes");
+      R"(Name runs, select them, or give --keep-every. Lists the files and asks; without a terminal it
+deletes nothing unless --yes is given. Never deletes the newest checkpoint of a run, those that
+other stages started from, or those of LAMMPS.
+Before it deletes a file it measures what nobody has measured: all that `table` and the curves of
+plots need, and what the figures of the store's manifests simulate. The results are in
+derived.sqlite, so tables and figures stay the same. A checkpoint that cannot be measured keeps its
+file. Cycles that a run adds later lack measures over the pruned ones, as msd_10_cycles_d2.
+Records stay, and `regenerate` recomputes files.
+Examples:
+  shearcell prune --keep-every 10
+  shearcell prune --experiment drag --scale smoke --keep-every 10
+  shearcell prune --state failed --yes)");
   command->callback([options, &context] { prune(*options, context); });
 }
 
@@ -197,17 +294,19 @@ void add_regenerate(CLI::App& app, Context& context) {
   auto options = std::make_shared<RegenerateOptions>();
   CLI::App* command =
       app.add_subcommand("regenerate", "Recompute the files of pruned or damaged checkpoints");
-  command
-      ->add_option("checkpoint", options->checkpoints,
-                   "SHA-256 of checkpoints, or beginnings of them")
-      ->required();
+  command->add_option("checkpoint", options->checkpoints,
+                      "SHA-256 of checkpoints, or beginnings of them");
+  add_selection_options(*command, options->selection, true);
+  command->add_flag("--all", options->all, "All checkpoints of the store without an intact file");
   add_threads_option(*command, options->threads, "Threads, for large cells");
   add_common_options(*command, context);
   command->footer(
       R"(Steps from the nearest earlier checkpoint. If the state or the file does not have the recorded
 hash, writes nothing, records ReplayDiverged and ends with code 4.
 Examples:
-  shearcell regenerate 2a2c47ca)");
+  shearcell regenerate 2a2c47ca
+  shearcell regenerate --experiment drag --scale desk
+  shearcell regenerate --all)");
   command->callback([options, &context] { regenerate(*options, context); });
 }
 

@@ -125,11 +125,13 @@ void add_run(CLI::App& app, Context& context) {
   shearcell run experiments/drag.yaml --scale smoke
   shearcell run experiments/drag.yaml --scale desk --cycles 100   # extend
   shearcell run experiments/critical_size.yaml --scale paper --variant amplitude_rad=0.1
+  shearcell run experiments/drag.yaml --scale desk --seed 4-6     # this machine's part of the seeds
   shearcell run experiments/drag.yaml --scale smoke --engine lammps --mpi 2
 
 Computes only what the store does not hold. Press Ctrl-C to write checkpoints and end with
 code 85; `run` again, or `resume`, continues bit for bit. Start several programs on one
-machine and one store to share the work.)");
+machine and one store to share the work. On several machines, give each its --variant or --seed
+and merge their stores.)");
   command->callback([options, &context] { run(*options, context); });
 
   auto resume_options = std::make_shared<RunOptions>();

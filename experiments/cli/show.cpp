@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `show`: everything the store knows about one run, checkpoint, figure or published file.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
@@ -217,22 +219,26 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
   print(facts_at(store, record, context));
 }
 
-// The newest record of "drag/S2"; also of "S2" if only one experiment has that figure.
+// The newest record of "drag/desk/S2"; also of "drag/S2" and "S2" if no other figure has that name.
 std::optional<FigureRecord> find_record(const Store& store, const std::string& name) {
-  std::vector<FigureRecord> found;
-  std::string names;
+  std::map<std::string, FigureRecord> found;  // by path
   for (FigureRecord& figure : store.figures()) {
-    if (figure.name == name) return {std::move(figure)};
-    if (figure_name(figure) != name) continue;
-    names += (names.empty() ? "" : ", ") + figure.name;
-    found.push_back(std::move(figure));
+    const std::string path = figure_path(figure), last = figure_name(figure);
+    const std::string experiment = path.substr(0, path.find('/') + 1);
+    if (name != path && name != figure.name && name != experiment + last && name != last) continue;
+    const auto [known, first] = found.try_emplace(path, figure);
+    if (!first && known->second.seq < figure.seq) known->second = std::move(figure);
   }
-  if (found.size() > 1) throw NotFound("several figures are called " + name + ": " + names);
-  if (found.empty()) return std::nullopt;
-  return std::move(found.front());
+  std::vector<std::string> paths;
+  for (const auto& [path, figure] : found) paths.push_back(path);
+  if (paths.size() > 1) {
+    throw NotFound(fmt::format("several figures are called {}: {}", name, fmt::join(paths, ", ")));
+  }
+  if (paths.empty()) return std::nullopt;
+  return std::move(found.begin()->second);
 }
 
-// Throws if the name, as "S4" or "drag/S4", is that of a figure without a record.
+// Throws if the name, as "S4" or "drag/desk/S4", is that of a figure without a record.
 void require_not_undrawn(const std::string& name) {
   const std::string figure = std::filesystem::path(name).filename().string();
   if (find_figure(figure) == nullptr || std::filesystem::exists(name)) return;
@@ -281,8 +287,8 @@ With --json, `parameters` of a run are those that affect it; `resolved` is the s
 whose hash is the run's id, and has fixed values for some that do not (max_overlap_diameters).
 Examples:
   shearcell show 3f9a
-  shearcell show drag/S2
-  shearcell show figures/drag/S2a.csv)");
+  shearcell show drag/smoke/S2
+  shearcell show figures/drag/smoke/S2a.csv)");
   command->callback([name, &context] { show(*name, context); });
 }
 

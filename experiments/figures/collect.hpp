@@ -20,7 +20,7 @@ struct WantedFigure {
   /// Derived measures that other figures of the experiment need: MeasureOptions::also.
   std::vector<std::string> also = {};
 
-  /// "drag/S2": the name of its record, and the path of its files in the folder for figures.
+  /// "drag/S2", for messages.
   std::string path() const;
 };
 

@@ -139,14 +139,17 @@ void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>
           : "give each an experiment of its own, or state a plot in the manifest (`plots`)"));
 }
 
-/// The experiment's folder. Checks the name, since the store is not trusted.
-std::filesystem::path folder_of(const WantedFigure& wanted, const FigureOptions& options) {
-  if (wanted.experiment.empty()) return options.folder;
-  if (!is_name(wanted.experiment)) {
-    throw StoreDamaged("an experiment of the store is called '" + wanted.experiment +
-                       "', which cannot name a folder; run `verify`");
+/// "drag/desk", or "desk" for a figure of all experiments: the path of its files in the folder for
+/// figures, and of its record. Checks both names, since the store is not trusted.
+std::string place_of(const FigureSummary& figure) {
+  const std::string scale = scale_name(figure.scale);
+  for (const auto& [what, name] :
+       {std::pair("an experiment", figure.experiment), {"a scale", scale}}) {
+    if (name.empty() || is_name(name)) continue;
+    throw StoreDamaged(fmt::format(
+        "{} of the store is called '{}', which cannot name a folder; run `verify`", what, name));
   }
-  return options.folder / wanted.experiment;
+  return figure.experiment.empty() ? scale : figure.experiment + "/" + scale;
 }
 
 /// Gives the panels of a figure letters.
@@ -237,6 +240,7 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
     ++computed.runs_by_variant[run.name];
   }
   computed.result = figure.make(runs);
+  for (FigureTable& table : computed.result.tables) name_run_counts(table);
   summary.verdicts = computed.result.verdicts;
   for (const FigureTable& table : computed.result.tables) {
     if (has_no_value(table)) summary.empty.push_back(table.name);
@@ -246,9 +250,10 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
 }
 
 FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options) {
-  const std::filesystem::path folder = folder_of(wanted, options);
   ComputedFigure computed = compute_figure(store, wanted, options);
   FigureSummary& result = computed.summary;
+  const std::string place = place_of(result);
+  const std::filesystem::path folder = options.folder / place;
   FigureResult& made = computed.result;
   lay_out(made.tables, options.wide);
   if (std::error_code failed; !std::filesystem::create_directories(folder, failed) && failed) {
@@ -294,7 +299,9 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
   }
   write(".lineage.json", lineage_text(facts));
 
-  if (result.undrawn.empty() || !find_program("gnuplot")) record(store, wanted.path(), facts);
+  if (result.undrawn.empty() || !find_program("gnuplot")) {
+    record(store, place + "/" + result.name, facts);
+  }
   return std::move(computed.summary);
 }
 

@@ -14,7 +14,7 @@
 namespace shearcell {
 
 struct FigureOptions : MeasureOptions {
-  std::filesystem::path folder;  ///< files go into FOLDER/EXPERIMENT, created if missing
+  std::filesystem::path folder;  ///< files go into FOLDER/EXPERIMENT/SCALE, created if missing
   RunSelection runs = {};
   bool wide = false;  ///< drawn as wide as two columns of a journal
 };
@@ -49,8 +49,8 @@ struct ComputedFigure {
 ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
                               const FigureOptions& options);
 
-/// Computes the figure and writes into FOLDER/EXPERIMENT (FOLDER for a figure of all experiments):
-/// PANEL.csv, .svg and, with librsvg, .pdf of each panel, NAME.caption.txt if something is drawn,
+/// Computes the figure and writes into FOLDER/EXPERIMENT/SCALE (FOLDER/SCALE for a figure of all
+/// experiments), where SCALE is scale_name(): PANEL.csv, .svg and, with librsvg, .pdf of each panel, NAME.caption.txt if something is drawn,
 /// NAME.verdict.json if there are claims, and NAME.lineage.json. Deletes a caption or verdict that
 /// an older figure left. Records a FigureGenerated event with host and build, unless the newest
 /// event of this figure says the same, or a drawing failed (gnuplot may be missing). The same

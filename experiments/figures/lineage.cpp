@@ -125,6 +125,14 @@ std::string figure_name(const FigureRecord& record) {
   return record.name.substr(record.name.rfind('/') + 1);
 }
 
+std::string figure_path(const FigureRecord& record) {
+  const json experiment = member_of(record.provenance, "experiment");
+  const json scale = member_of(record.provenance, "scale");
+  if (!scale.is_string()) return record.name;
+  const std::string path = scale_name(scale) + "/" + figure_name(record);
+  return experiment.is_string() ? experiment.get<std::string>() + "/" + path : path;
+}
+
 std::string lineage_text(json provenance) {
   if (provenance.is_object()) provenance.erase("made");
   return provenance.dump(1) + '\n';

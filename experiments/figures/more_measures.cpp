@@ -75,7 +75,7 @@ void add_simulated(const Store& store, const DerivedMeasure& measure, const Orig
 std::vector<DerivedMeasure> derived_among(std::span<const std::string> names) {
   std::vector<DerivedMeasure> measures;
   for (const std::string& name : names) {
-    if (name == "drive" || name == "ledger" || name == "at_rest") continue;
+    if (name == "drive" || is_simulated(name)) continue;
     if (std::ranges::find(measures, name, &DerivedMeasure::name) == measures.end()) {
       measures.push_back(derived_measure(name));
     }
@@ -158,6 +158,10 @@ void add_phi_at_rest(const Store& store, std::span<const CheckpointRecord> recor
 }
 
 }  // namespace
+
+bool is_simulated(const std::string& name) {
+  return name == "ledger" || name == "at_rest";
+}
 
 MeasuredPackings measures_of(const Store& store, std::span<const CheckpointRecord> records,
                              std::span<const std::string> names, const MeasureOptions& options) {

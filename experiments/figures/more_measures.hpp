@@ -17,6 +17,10 @@ struct MeasuredPackings : MeasureOutcome {
   std::vector<std::optional<Measures>> measures;
 };
 
+/// Whether a measure is computed by a simulation that begins at the checkpoint: "ledger",
+/// "at_rest".
+bool is_simulated(const std::string& name);
+
 /// Measures checkpoints. `names` are derived measures (derived_measures.hpp), "drive", "ledger" or
 /// "at_rest" (phi_at_rest of cycles 1 to early_cycles). Units and drive of the runs are always
 /// added. "ledger" and "at_rest" are simulated; results are cached. They are left out where the

@@ -109,9 +109,8 @@ Membership first_membership(const RunRecord& run) {
 }
 
 std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& selection) {
-  std::vector<std::string> seeds;
-  for (const std::uint64_t seed : selection.seeds) seeds.push_back(std::to_string(seed));
-  Filter experiment(selection.experiments), scale(selection.scales), seed(seeds);
+  Filter experiment(selection.experiments), scale(selection.scales);
+  Filter seed(texts_of(selection.seeds));
   Filter variant(selection.variants, has_values, keys_of);
   std::vector<SelectedRun> selected;
   Versions versions = versions_of(store);

@@ -238,7 +238,15 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
                              .checkpoint_every = scale.checkpoints->every_cycles,
                              .checkpoint_phases = scale.checkpoints->phases};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
-  Filter wanted(options.variants, has_values, keys_of);
+  Filter wanted(options.variants, has_values, keys_of), seed_filter(texts_of(options.only_seeds));
+  std::vector<std::uint64_t> chosen_seeds;
+  std::ranges::copy_if(seeds, std::back_inserter(chosen_seeds), [&](std::uint64_t seed) {
+    return seed_filter.passes(std::to_string(seed));
+  });
+  if (const std::string* missing = seed_filter.unfound()) {
+    refuse(manifest.file, {}, "seed", "the manifest has no such seed", *missing,
+           fmt::format("It has {} (--seeds states how many).", some_of(seed_filter.seen(), 8)));
+  }
   std::vector<Variant> chosen;
   for (const Variant& variant : variants) {
     if (!wanted.passes(variant.name())) continue;
@@ -248,10 +256,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       refuse(manifest.file, {}, "engine", why, "lammps",
              "Leave out `--engine`, or what LAMMPS cannot do in this manifest.");
     }
-    for (const std::uint64_t seed : seeds) {
+    for (const std::uint64_t seed : chosen_seeds) {
       const PlannedRun& run = plan.runs.emplace_back(planned_run(common, scale, variant, seed));
       const std::string& same = variant_of.emplace(run.last.key, run.variant).first->second;
-      if (same == run.variant || seed != seeds.front()) continue;
+      if (same == run.variant || seed != chosen_seeds.front()) continue;
       plan.warnings.push_back(fmt::format("{}: variants {} and {} are the same runs, computed once",
                                           manifest.file, same, run.variant));
     }

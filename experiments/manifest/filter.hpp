@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
@@ -51,5 +52,12 @@ class Filter {
   std::vector<std::string> seen_;
   std::set<std::string> known_;  ///< those of seen_
 };
+
+/// Numbers as a Filter takes them.
+inline std::vector<std::string> texts_of(const std::vector<std::uint64_t>& numbers) {
+  std::vector<std::string> texts;
+  for (const std::uint64_t number : numbers) texts.push_back(std::to_string(number));
+  return texts;
+}
 
 }  // namespace shearcell

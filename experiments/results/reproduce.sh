@@ -23,25 +23,24 @@ if [ -z "${SHEARCELL:-}" ]; then
 fi
 new=$(mktemp -d)
 trap 'rm -rf "$new"' EXIT
-out=$new
-if [ -n "$write" ]; then
-  out=$here/$(dirname "$folder")
-else
-  export SHEARCELL_STORE="$new/store"
-fi
+[ -n "$write" ] || export SHEARCELL_STORE="$new/store"
 name=$(basename "$folder")
 # shellcheck disable=SC2046  # one word an option
 {
   "$SHEARCELL" run experiments/$(column 2) $(column 3) $(column 4)
-  "$SHEARCELL" figures $(column 5) --experiment "$name" $(column 3) --out "$out"
+  "$SHEARCELL" figures $(column 5) --experiment "$name" $(column 3) --out "$new/figures"
 }
+made=$(echo "$new/figures/$name"/*)  # of one scale
 if [ -n "$write" ]; then
+  rm -f "$made"/*.pdf
+  mkdir -p "$here/$folder"
+  find "$here/$folder" -maxdepth 1 -type f -delete  # also what a figure has no more
+  cp "$made"/* "$here/$folder"
   # shellcheck disable=SC2046
   "$SHEARCELL" table --per run --experiment "$name" $(column 3) --out "$here/$folder/runs.csv"
-  rm "$here/$folder"/*.pdf
   exit
 fi
-for file in "$new/$name"/*.csv; do
+for file in "$made"/*.csv; do
   cmp "$file" "$here/$folder/$(basename "$file")"
   echo "$folder/$(basename "$file"): the published bytes"
 done

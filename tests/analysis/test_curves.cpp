@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,6 +56,115 @@ TEST(Curves, AreNamedAndStyledByWhatVaries) {
   EXPECT_EQ(find_figure("S2")->make(two_parameters()).verdicts.at(0).note,
             "there are no such runs, or they differ in another swept parameter too")
       << "three variants have fluid=still";
+}
+
+/// The key of a drawing: the titles of its series.
+std::vector<std::string> key_of(FigureTable table) {
+  const std::string numbers = to_csv(table);
+  name_run_counts(table);
+  EXPECT_EQ(to_csv(table), numbers);
+  std::vector<std::string> titles;
+  for (const Series& one : table.chart.series) titles.push_back(plain_text(one.title));
+  return titles;
+}
+using Key = std::vector<std::string>;
+
+/// Five runs of ten cycles in each fluid.
+std::vector<FigureRun> ten_runs() {
+  std::vector<FigureRun> runs;
+  for (const char* fluid : {"cell", "still"}) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      runs.push_back(rising_run(fluid, seed, 10, 0.0001 * static_cast<double>(seed)));
+    }
+  }
+  return runs;
+}
+
+/// Removes checkpoints of the run, as if nobody had measured them before a prune.
+void remove_where(FigureRun& run, const std::function<bool(double cycle)>& removed) {
+  std::erase_if(run.checkpoints, [&](const auto& c) { return removed(c.cycle); });
+}
+
+TEST(Curves, TheKeySaysWhereTheNumberOfRunsChanges) {
+  const std::vector<PlotSpec> plots = {{.name = "own", .y = "phi"},
+                                       {.name = "own", .y = "phi", .x = "mean_overlap_d"},
+                                       {.name = "own", .y = "phi", .x = "cycle", .by = "fluid"}};
+  const auto keys = [&](const std::vector<FigureRun>& runs) {
+    std::vector<Key> found = {key_of(s2(runs).at(0)), key_of(s2(runs).at(1)),
+                              key_of(find_figure("walls")->make(runs).tables.at(0))};
+    for (const PlotSpec& plot : plots) {
+      found.push_back(key_of(plot_figure(plot).make(runs).tables.at(0)));
+    }
+    return found;
+  };
+  std::vector<FigureRun> runs = ten_runs();
+  for (const Key& key : keys(runs)) {
+    for (const std::string& title : key) EXPECT_FALSE(has(title, "runs")) << title;
+  }
+  for (const std::size_t k : {0U, 1U}) {
+    remove_where(runs[k], [](double cycle) { return cycle >= 3 && cycle <= 5; });
+  }
+  for (const Key& key : keys(runs)) {
+    ASSERT_EQ(key.size(), 2U);
+    EXPECT_EQ(std::ranges::count_if(key, [](auto& t) { return has(t, "(3 to 5 runs)"); }), 1);
+    EXPECT_EQ(std::ranges::count_if(key, [](auto& t) { return has(t, "runs"); }), 1);
+  }
+}
+
+TEST(Curves, TheKeySaysWhereDifferentRunsAreAsMany) {
+  std::vector<FigureRun> runs = ten_runs();
+  runs = {runs[0], runs[1]};
+  remove_where(runs[0], [](double cycle) { return std::fmod(cycle, 2) == 1; });
+  remove_where(runs[1], [](double cycle) { return std::fmod(cycle, 2) == 0 && cycle < 10; });
+  EXPECT_TRUE(has(key_of(s2(runs)[0]).at(0), "(1 to 2 runs)")) << "cycle 10 is of both";
+  remove_where(runs[0], [](double cycle) { return cycle == 10; });
+  remove_where(runs[1], [](double cycle) { return cycle > 8; });
+  runs[0].checkpoints.back().cycle = runs[1].checkpoints.back().cycle = 7.5;  // no cycle's end
+  EXPECT_TRUE(has(key_of(s2(runs)[0]).at(0), "(1 of 2 runs)")) << key_of(s2(runs)[0]).at(0);
+}
+
+// Runs that `until` ends: the mean ends with the first of them.
+TEST(Curves, TheKeyIsSilentWhereAMeanEndsWithTheFirstRun) {
+  std::vector<FigureRun> runs = ten_runs();
+  for (std::size_t k = 0; k < 5; ++k) {
+    remove_where(runs[k], [&](double cycle) { return cycle > 5 + static_cast<double>(k); });
+  }
+  for (const std::string& title : key_of(s2(runs)[0])) EXPECT_FALSE(has(title, "runs")) << title;
+  remove_where(runs[4], [](double cycle) { return cycle == 2; });
+  EXPECT_EQ(
+      std::ranges::count_if(key_of(s2(runs)[0]), [](auto& t) { return has(t, "(4 to 5 runs)"); }),
+      1);
+}
+
+TEST(Curves, TheKeyCountsRunsThatHaveTheMeasure) {
+  std::vector<FigureRun> runs = ten_runs();
+  for (CheckpointMeasures& c : runs[0].checkpoints) c.measures.phi = std::nan("");
+  const Key key = key_of(plot_figure({.name = "own", .y = "phi"}).make(runs).tables.at(0));
+  EXPECT_EQ(std::ranges::count_if(key, [](auto& t) { return has(t, "(4 of 5 runs)"); }), 1);
+}
+
+TEST(Curves, TheKeyCountsRunsAtEachParameterAndOfEachCurve) {
+  std::vector<FigureRun> runs = two_parameters();
+  const PlotSpec by_drag = {.name = "own", .y = "phi", .x = "drag_kg_per_s"};
+  const auto key = [&](const PlotSpec& plot) {
+    return key_of(plot_figure(plot).make(runs).tables.at(0));
+  };
+  for (const std::string& title : key(by_drag)) EXPECT_FALSE(has(title, "runs")) << title;
+  runs.erase(runs.begin());  // of three runs with this fluid and drag
+  EXPECT_EQ(std::ranges::count_if(key(by_drag), [](auto& t) { return has(t, "(2 to 3 runs)"); }),
+            1);
+  for (FigureRun& run : runs) {
+    for (CheckpointMeasures& c : run.checkpoints) {
+      c.measures.curves["phi_profile"] = {{0.5, 1.5}, {0.6, 0.6}};
+    }
+  }
+  remove_where(runs[0], [](double cycle) { return cycle == 2; });
+  const PlotSpec profile = {.name = "own", .y = "phi_profile", .cycle = 2};
+  EXPECT_EQ(std::ranges::count_if(key(profile), [](auto& t) { return has(t, "(1 of 2 runs)"); }),
+            1);
+  const std::string variant = runs[0].variant;
+  std::erase_if(runs, [&](const FigureRun& run) { return run.variant != variant; });
+  EXPECT_EQ(key(profile), Key{"1 of 2 runs"}) << "a single curve has no other title";
 }
 
 TEST(Curves, HaveStylesOfTheirOwnWhereManyValuesVary) {

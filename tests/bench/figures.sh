@@ -35,5 +35,5 @@ seconds "$program" figures S2 --store "$folder/store" --out "$folder/again"
 seconds "$program" figures S2 --store "$folder/store" --out "$folder/fresh" --fresh
 diff -r "$folder/first" "$folder/again"
 diff -r "$folder/first" "$folder/fresh"
-seconds "$program" show "$folder/first/many/S2a.csv" --store "$folder/store"
+seconds "$program" show "$folder/first/many/base/S2a.csv" --store "$folder/store"
 du -k "$folder/store/derived.sqlite" | awk '{printf "all the same bytes; derived.sqlite has %d kB\n", $1}'

@@ -73,7 +73,7 @@ TEST_F(EngineRun, IsRecordedBesideOursAndStartsFromTheSamePacking) {
   expect(0, {"show", theirs["id"]}, {"engine   LAMMPS "});
 
   expect(0, {"figures", "S2", "--out", "figures"});
-  EXPECT_TRUE(has(read_bytes(path("figures/tiny/S2a.csv")), "engine=lammps"));
+  EXPECT_TRUE(has(read_bytes(path("figures/tiny/base/S2a.csv")), "engine=lammps"));
 
   // Only our checkpoints are replayed, pruned and regenerated.
   const auto replayed = json({"verify", "--replay", "99", "--json"});

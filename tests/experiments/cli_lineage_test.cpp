@@ -30,7 +30,7 @@ TEST_F(CommandLineLineage, ShowsAFigureUncutInAPipe) {
   }
   const nlohmann::json overrides = {{"cycles", {{"run", 1}, {"manifest", 2}}}};
   const nlohmann::json lineage =
-      nlohmann::json::parse(read_bytes(path("out/tiny/S2.lineage.json")));
+      nlohmann::json::parse(read_bytes(path("out/tiny/base/S2.lineage.json")));
   for (std::size_t i = 0; i < 2; ++i) {
     const nlohmann::json& input = all.at("inputs").at(i);
     EXPECT_EQ(input.at("overrides"), overrides);
@@ -60,15 +60,15 @@ TEST_F(CommandLineLineage, EscapesNamesFromTheLog) {
 }
 
 TEST_F(CommandLineLineage, ChecksAPublishedFile) {
-  expect(0, {"show", "out/tiny/S2a.csv"}, {"matches", "4 checkpoints, all present and right"});
-  const nlohmann::json all = json({"show", "out/tiny/S2a.csv", "--json"});
+  expect(0, {"show", "out/tiny/base/S2a.csv"}, {"matches", "4 checkpoints, all present and right"});
+  const nlohmann::json all = json({"show", "out/tiny/base/S2a.csv", "--json"});
   EXPECT_EQ(all.at("check").at("verdict"), "matches");
   const std::string input = all.at("inputs").at(0).at("checkpoints").at(0).at("file");
   std::filesystem::remove(path("shearcell-store/" + input));
-  expect(4, {"show", "out/tiny/S2a.csv"}, {"3 present and right, 1 missing or changed"});
+  expect(4, {"show", "out/tiny/base/S2a.csv"}, {"3 present and right, 1 missing or changed"});
 
-  write("out/tiny/S2b.csv", read_bytes(path("out/tiny/S2b.csv")) + "x");
-  expect(4, {"show", "out/tiny/S2b.csv"}, {"CHANGED"});
+  write("out/tiny/base/S2b.csv", read_bytes(path("out/tiny/base/S2b.csv")) + "x");
+  expect(4, {"show", "out/tiny/base/S2b.csv"}, {"CHANGED"});
 
   write("other.csv", "a,b\n");
   expect_refused({"show", "other.csv"}, {"unknown to this store"});

@@ -140,7 +140,7 @@ TEST_F(CommandLine, PrintsFactsAsJson) {
 TEST_F(CommandLine, MakesAllFigures) {
   campaign(tiny_manifest("", kBothFluids));
   expect(0, {"figures", "--all", "--out", "all"});
-  EXPECT_TRUE(fs::exists(path("all/tiny/S2a.csv")) && fs::exists(path("all/table1.csv")));
+  EXPECT_TRUE(fs::exists(path("all/tiny/base/S2a.csv")) && fs::exists(path("all/base/table1.csv")));
   EXPECT_EQ(json({"show", "S2", "--json"}).at("figure"), "S2");
 }
 

@@ -46,10 +46,10 @@ TEST_F(DrawFigure, LeavesOutRunsOfOtherExperiments) {
   const FigureSummary other = draw("after", {*find_figure("S2"), "other"});
   EXPECT_EQ(other.runs, 4U) << "two of them are those of tiny, extended";
   EXPECT_EQ(other.checkpoints, 4U * 5U);
-  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "after/other/S2a.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "after/other/base/S2a.csv"));
   std::vector<std::string> names;
   for (const FigureRecord& record : store_.figures()) names.push_back(record.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"other/S2", "tiny/S2"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"other/base/S2", "tiny/base/S2"}));
 }
 
 // Variant and seed of the runs of tiny/S2, each once.

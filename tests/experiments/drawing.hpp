@@ -28,11 +28,12 @@ class DrawingTest : public StoreTest {
     return draw(folder, wanted_figures(store_, {name}).figures.at(0));
   }
 
-  /// File name -> bytes.
+  /// File name -> bytes, of the figures of one scale.
   std::map<std::string, std::string> contents(const std::string& folder) const {
     std::map<std::string, std::string> files;
     for (const auto& entry :
-         std::filesystem::directory_iterator(folder_.path() / folder / "tiny")) {
+         std::filesystem::recursive_directory_iterator(folder_.path() / folder / "tiny")) {
+      if (entry.is_directory()) continue;
       files[entry.path().filename().string()] = read_bytes(entry.path());
     }
     return files;

@@ -67,7 +67,7 @@ class Outputs : public ProgramTest {
   void SetUp() override {
     campaign(tiny_manifest("  grains: 200\n", kBothFluids), {"--cycles", "1"});
     id_ = last_run();
-    fs::create_directories(path("out/tiny"));
+    fs::create_directories(path("out/tiny/base"));
   }
 
   void expect_in_the_way(const Arguments& command, const std::string& file) {
@@ -88,7 +88,7 @@ TEST_F(Outputs, FiguresReplaceOnlyTheirOwnFiles) {
   const std::vector<std::string> figures = {"figures", "S2", "--out", "out"};
   for (const char* file :
        {"S2a.csv", "S2a.gp", "S2b.svg", "S2b.pdf", "S2.verdict.json", "S2.lineage.json"}) {
-    const fs::path place = path(std::string("out/tiny/") + file);
+    const fs::path place = path(std::string("out/tiny/base/") + file);
     write_bytes(place, "{\"mine\": 1}\n");
     expect_in_the_way(figures, file);
     EXPECT_EQ(read_bytes(place), "{\"mine\": 1}\n");
@@ -98,10 +98,10 @@ TEST_F(Outputs, FiguresReplaceOnlyTheirOwnFiles) {
     fs::remove(place);
   }
   expect(0, figures);
-  expect(0, figures);                   // over those of an earlier call
-  fs::remove(path("out/tiny/S2a.gp"));  // killed before it was drawn
-  fs::remove(path("out/tiny/S2a.svg"));
-  fs::remove(path("out/tiny/S2a.pdf"));
+  expect(0, figures);                        // over those of an earlier call
+  fs::remove(path("out/tiny/base/S2a.gp"));  // killed before it was drawn
+  fs::remove(path("out/tiny/base/S2a.svg"));
+  fs::remove(path("out/tiny/base/S2a.pdf"));
   expect(0, figures);
   for (const auto& entry : fs::recursive_directory_iterator(path("out"))) {
     if (entry.is_directory()) continue;
@@ -134,6 +134,22 @@ TEST_F(Outputs, AnExportOverwritesNothing) {
   EXPECT_EQ(read_bytes(path("out/notes")), notes);
 }
 
+TEST_F(Outputs, AScaleOfAForgedStoreNamesNoFolder) {
+  for (const std::string scale : {"../out", "/tmp/out", "a/b", "..", "x\ny"}) {
+    SCOPED_TRACE(scale);
+    fs::remove_all(path("shearcell-store"));
+    campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"});
+    rebuilt(payload("RunDeclared", [&](nlohmann::json& body) {
+      body["membership"]["scale"] = scale;
+    }))(path("shearcell-store"));
+    const auto before = listing();
+    expect(4, {"figures", "S2", "--out", "in"}, {"a scale of the store", "cannot name a folder"});
+    for (const std::string& file : listing()) {
+      EXPECT_TRUE(before.contains(file) || file.ends_with("derived.sqlite")) << file;
+    }
+  }
+}
+
 /// A forged store can name its variants as it likes; the names reach gnuplot's script and the CSV.
 TEST_F(Outputs, NamesOfAForgedStoreAreQuotedForGnuplot) {
   const std::string evil =
@@ -145,7 +161,7 @@ TEST_F(Outputs, NamesOfAForgedStoreAreQuotedForGnuplot) {
   }))(path("shearcell-store"));
   expect(0, {"verify"});
   expect(0, {"figures", "S2", "--out", "out"});
-  EXPECT_TRUE(fs::exists(path("out/tiny/S2a.svg")));
+  EXPECT_TRUE(fs::exists(path("out/tiny/base/S2a.svg")));
   expect(0, {"report", "--out", "r.html", "--drawings"});
   expect(0, {"export", id_, "--to", "ro-crate", "--out", "crate"});
   EXPECT_FALSE(has(run({"status"}).out, "\r"));

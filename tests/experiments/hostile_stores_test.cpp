@@ -87,7 +87,7 @@ std::vector<Case> damaged_events() {
                "is not a JSON object"),
       reported("payload_nested_200000_deep", "verify", 4,
                forged([=](Event& e) { e.payload = deep; }), "nested too deeply"),
-      reported("payload_nested_in_figures", "show tiny/S2a.csv", 4, forged([=](Event& e) {
+      reported("payload_nested_in_figures", "show tiny/base/S2a.csv", 4, forged([=](Event& e) {
                  if (e.type == "FigureGenerated") e.payload = deep;
                }),
                "nested too deeply"),
@@ -107,15 +107,15 @@ std::vector<Case> damaged_events() {
       reported("unknown_parent", "rebuild", 4,
                payload("RunDeclared", [](auto& b) { b["parent"] = std::string(64, 'a'); }),
                "FOREIGN KEY", kBackup),
-      reported("figure_of_an_unknown_run", "show tiny/S2a.csv", 4,
+      reported("figure_of_an_unknown_run", "show tiny/base/S2a.csv", 4,
                payload("FigureGenerated", [](auto& b) { b["inputs"][0]["run"] = "x"; }),
                "the store has no run 'x'"),
-      reported("figure_without_inputs", "show tiny/S2a.csv", 4,
+      reported("figure_without_inputs", "show tiny/base/S2a.csv", 4,
                payload("FigureGenerated", [](auto& b) { b.erase("inputs"); }), "FigureGenerated"),
       reported("manifest_without_facts", "figures --all", 4,
                payload("ManifestRegistered", [](auto& b) { b.erase("info"); }),
                "ManifestRegistered", "info"),
-      reported("manifest_of_another_text", "show tiny/S2a.csv", 4,
+      reported("manifest_of_another_text", "show tiny/base/S2a.csv", 4,
                payload("ManifestRegistered", [](auto& b) { b["text"] = "a: 1"; }),
                "has another SHA-256"),
       reported(

@@ -116,7 +116,7 @@ TEST_F(Streams, SignalsIgnoredByTheCallerAreIgnored) {
     std::signal(ignored, before);
     const Outcome outcome = wait_for(program);
     EXPECT_EQ(outcome.code, 0) << strsignal(ignored) << outcome.err;
-    EXPECT_TRUE(listing().contains("out/tiny/S2a.svg")) << strsignal(ignored);
+    EXPECT_TRUE(listing().contains("out/tiny/base/S2a.svg")) << strsignal(ignored);
   }
 }
 

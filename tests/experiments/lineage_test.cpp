@@ -85,9 +85,9 @@ TEST_F(FigureLineageTest, NamesTheLineOfItsOwnVariant) {
 }
 
 TEST_F(FigureLineageTest, FindsTheRecordOfAFile) {
-  const std::string old = read_bytes(file("out/tiny/S2a.csv"));
-  const std::string old_lineage = read_bytes(file("out/tiny/S2.lineage.json"));
-  for (const char* name : {"out/tiny/S2a.csv", "out/tiny/S2b.csv", "out/tiny/S2.lineage.json"}) {
+  const std::string old = read_bytes(file("out/tiny/base/S2a.csv"));
+  const std::string old_lineage = read_bytes(file("out/tiny/base/S2.lineage.json"));
+  for (const char* name : {"out/tiny/base/S2a.csv", "out/tiny/base/S2b.csv", "out/tiny/base/S2.lineage.json"}) {
     const auto found = find_published(store_, file(name));
     ASSERT_TRUE(found.has_value()) << name;
     EXPECT_TRUE(found->matches()) << name;
@@ -100,27 +100,27 @@ TEST_F(FigureLineageTest, FindsTheRecordOfAFile) {
   const auto found = find_published(store_, file("published.csv"));
   ASSERT_TRUE(found.has_value());
   EXPECT_EQ(found->record.seq, figure_records(store_).at(0).seq);
-  EXPECT_EQ(find_published(store_, file("out/tiny/S2a.csv"))->record.seq,
+  EXPECT_EQ(find_published(store_, file("out/tiny/base/S2a.csv"))->record.seq,
             figure_records(store_).at(1).seq);
 
   // Changed, its name fits both records: the lineage beside it decides.
-  const std::filesystem::path beside = file("out/tiny/S2.lineage.json");
-  std::ofstream(file("out/tiny/S2a.csv"), std::ios::app) << "\n";
+  const std::filesystem::path beside = file("out/tiny/base/S2.lineage.json");
+  std::ofstream(file("out/tiny/base/S2a.csv"), std::ios::app) << "\n";
   std::ofstream(beside, std::ios::binary) << old_lineage;
-  EXPECT_EQ(find_published(store_, file("out/tiny/S2a.csv"))->record.seq,
+  EXPECT_EQ(find_published(store_, file("out/tiny/base/S2a.csv"))->record.seq,
             figure_records(store_).at(0).seq);
   std::filesystem::remove(beside);
-  EXPECT_EQ(find_published(store_, file("out/tiny/S2a.csv"))->record.seq,
+  EXPECT_EQ(find_published(store_, file("out/tiny/base/S2a.csv"))->record.seq,
             figure_records(store_).at(1).seq);
 }
 
 TEST_F(FigureLineageTest, DistinguishesChangedFromUnknownFiles) {
-  const std::string bytes = read_bytes(file("out/tiny/S2a.csv"));
+  const std::string bytes = read_bytes(file("out/tiny/base/S2a.csv"));
   for (const std::size_t at : {std::size_t{0}, bytes.size() / 2, bytes.size() - 1}) {
     std::string changed = bytes;
     changed[at] = static_cast<char>(changed[at] ^ 1);
-    std::ofstream(file("out/tiny/S2a.csv"), std::ios::binary) << changed;
-    const auto found = find_published(store_, file("out/tiny/S2a.csv"));
+    std::ofstream(file("out/tiny/base/S2a.csv"), std::ios::binary) << changed;
+    const auto found = find_published(store_, file("out/tiny/base/S2a.csv"));
     ASSERT_TRUE(found.has_value());
     EXPECT_FALSE(found->matches());
     EXPECT_EQ(found->recorded,

@@ -31,7 +31,7 @@ class Measure : public DrawingTest {
     return draw(name, kS2, options);
   }
   std::string csv(const std::string& name) const {
-    const std::filesystem::path folder = folder_.path() / name / "tiny";
+    const std::filesystem::path folder = folder_.path() / name / "tiny/base";
     return read_bytes(folder / "S2a.csv") + read_bytes(folder / "S2b.csv");
   }
   std::filesystem::path cache() const { return store_.folder() / DerivedCache::kFile; }

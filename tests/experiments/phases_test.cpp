@@ -82,7 +82,7 @@ TEST_F(Phases, AreCheckpointsOfTheSameRun) {
   EXPECT_EQ(collected.runs.at(0).checkpoints.size(), 3U);
   EXPECT_TRUE(collected.notes.empty());
 
-  store_.prune(store_.prunable({.runs = {}, .state = {}, .keep_every = 1}));
+  store_.prune(store_.prunable({.runs = {}, .keep_every = 1}));
   EXPECT_LT(store_.checkpoints(sheared(store_).id).size(), 7U);
   EXPECT_TRUE(missing_checkpoints(store_, sheared(store_)).empty()) << "pruned ones were made";
 }

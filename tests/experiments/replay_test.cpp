@@ -104,7 +104,7 @@ TEST_F(ReplayTest, RecreatesPrunedCheckpoints) {
   const auto records = store_.checkpoints(sheared().id);
   std::map<std::string, std::string> bytes;
   for (const CheckpointRecord& r : records) bytes[r.sha256] = read_bytes(store_.folder() / r.file);
-  store_.prune(store_.prunable({.runs = {sheared().id}, .state = {}, .keep_every = 0}));
+  store_.prune(store_.prunable({.runs = {sheared().id}, .keep_every = 0}));
   EXPECT_EQ(cycles_of(store_, sheared().id), std::vector<double>{4});
 
   // From the packing, across two pruned ones; then from the nearest kept one; then cycle 0 itself.

@@ -57,7 +57,7 @@ void perform(Store& store, const Act& act) {
   if (what == "replay") store.record_replay(id, true, {{"step", act.amount}});
   if (what == "manifest") store.register_manifest("a: " + std::to_string(act.amount), "a.yaml", {});
   if (what == "prune") {
-    store.prune(store.prunable({.runs = {id}, .state = {}, .keep_every = act.amount}));
+    store.prune(store.prunable({.runs = {id}, .keep_every = act.amount}));
   }
   for (const CheckpointRecord& record : store.checkpoints(id, Listed::all)) {
     if (record.step != act.amount) continue;

@@ -46,14 +46,12 @@ class PruneTest : public ::testing::Test {
   std::vector<CheckpointRecord> records_;
 };
 
-TEST_F(PruneTest, ChoosesByCadenceRunAndState) {
+TEST_F(PruneTest, ChoosesByCadenceAndRun) {
   const auto chosen = [this](const PruneChoice& choice) { return cycles(store_.prunable(choice)); };
   // Never the last of a run, nor cycle 3 of run 0, from which run 1 began.
   EXPECT_EQ(chosen({}), (std::vector<double>{0, 1, 2, 4, 5, 0, 1}));
-  EXPECT_EQ(chosen({{}, {}, 2}), (std::vector<double>{1, 5, 1}));
-  EXPECT_EQ(chosen({{run_id(1)}, {}, 0}), (std::vector<double>{0, 1}));
-  EXPECT_EQ(chosen({{}, RunState::failed, 0}), (std::vector<double>{0, 1}));
-  EXPECT_TRUE(chosen({{run_id(0)}, RunState::failed, 0}).empty());
+  EXPECT_EQ(chosen({{}, 2}), (std::vector<double>{1, 5, 1}));
+  EXPECT_EQ(chosen({{run_id(1)}, 0}), (std::vector<double>{0, 1}));
   EXPECT_EQ(store_.events().size(), 16u) << "choosing recorded something";
 }
 
@@ -67,14 +65,14 @@ TEST_F(PruneTest, ACadenceFreesCheckpointsOfSettling) {
     store_.record_checkpoint(run_id(2), checkpoint);
   }
   std::vector<std::uint64_t> steps;
-  for (const CheckpointRecord& record : store_.prunable({{run_id(2)}, {}, 100})) {
+  for (const CheckpointRecord& record : store_.prunable({{run_id(2)}, 100})) {
     steps.push_back(record.step);
   }
   EXPECT_EQ(steps, (std::vector<std::uint64_t>{kCycle, 2 * kCycle}));
 }
 
 TEST_F(PruneTest, FreesTheFilesAndKeepsTheRecords) {
-  const auto chosen = store_.prunable({{}, {}, 3});
+  const auto chosen = store_.prunable({{}, 3});
   ASSERT_EQ(cycles(chosen), (std::vector<double>{1, 2, 4, 5, 1}));
   std::uint64_t bytes = 0;
   for (const CheckpointRecord& record : chosen) bytes += record.size;
@@ -85,7 +83,7 @@ TEST_F(PruneTest, FreesTheFilesAndKeepsTheRecords) {
   EXPECT_EQ(store_.checkpoints(run_id(0), Listed::all).size(), 7u);
   EXPECT_EQ(store_.run(run_id(0)).step, before[0].step);
   EXPECT_EQ(store_.run(run_id(0)).state, RunState::completed);
-  EXPECT_TRUE(store_.prunable({{}, {}, 3}).empty());
+  EXPECT_TRUE(store_.prunable({{}, 3}).empty());
   const VerifyReport report = store_.verify();
   EXPECT_TRUE(report.ok());
   EXPECT_TRUE(report.findings.empty()) << report.findings[0].message;
@@ -102,7 +100,7 @@ TEST_F(PruneTest, FreesTheFilesAndKeepsTheRecords) {
 TEST_F(PruneTest, KeepsTheNewestThatCanBeRead) {
   fs::resize_file(path_ / records_[6].file, 100);
   fs::remove(path_ / records_[5].file);
-  EXPECT_EQ(cycles(store_.prunable({{run_id(0)}, {}, 0})), (std::vector<double>{0, 1, 2}));
+  EXPECT_EQ(cycles(store_.prunable({{run_id(0)}, 0})), (std::vector<double>{0, 1, 2}));
   // The newest is kept even when it is named.
   EXPECT_EQ(store_.prune({records_[6]}), 0u);
   EXPECT_TRUE(there(records_[6]));

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `prune` measures before it deletes, so tables and figures stay as they are; `regenerate` restores
+// the files of whole experiments.
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "tests/experiments/program.hpp"
+
+namespace shearcell::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Prune : public ProgramTest {
+ protected:
+  const std::string plots_ =
+      "plots:\n"
+      "  - {name: heat, y: dissipation_per_cycle_J, x: cycle, cycles: [1, 2], show: traces}\n"
+      "  - {name: pairs, y: pair_correlation, at_cycle: 3}\n";
+
+  void SetUp() override {
+    campaign(tiny_manifest("", kBothFluids + "seeds: 2\n" + plots_), {"--cycles", "5"});
+    keep_a_copy();
+  }
+
+  void keep_a_copy() {
+    fs::remove_all(path("whole"));
+    fs::copy(path("shearcell-store"), path("whole"), fs::copy_options::recursive);
+    shown_ = shown("whole");
+  }
+
+  void start_again() {
+    fs::remove_all(path("shearcell-store"));
+    fs::copy(path("whole"), path("shearcell-store"), fs::copy_options::recursive);
+    fs::remove(path("shearcell-store/derived.sqlite"));  // nobody has measured anything
+  }
+
+  /// Everything that a table and the figures say of a store.
+  std::string shown(const std::string& store) {
+    std::string all = expect(0, {"table", "--store", store}).out +
+                      expect(0, {"table", "--per", "run", "--store", store}).out +
+                      expect(0, {"table", "--curve", "structure_factor", "--store", store}).out;
+    fs::remove_all(path("drawn"));
+    expect(0, {"figures", "--store", store, "--out", "drawn"});
+    for (const std::string& file : listing()) {
+      if (file.starts_with("drawn/") && file.ends_with(".csv")) all += read_bytes(path(file));
+    }
+    return all;
+  }
+
+  std::size_t pruned_events() const {
+    return Store(path("shearcell-store"), Access::read).events("", "CheckpointPruned").size();
+  }
+
+  std::string shown_;
+};
+
+TEST_F(Prune, ChangesNoTableAndNoFigure) {
+  const std::size_t files = objects();
+  for (const Arguments& choice : {Arguments{"--keep-every", "2"},
+                                  {"--keep-every", "3"},
+                                  {"--keep-every", "10"},
+                                  {"--state", "completed"},
+                                  {"--experiment", "tiny"},
+                                  {"--variant", "fluid=cell"},
+                                  {"--scale", "base", "--seed", "2"},
+                                  {last_run()}}) {
+    SCOPED_TRACE(choice.back());
+    start_again();
+    const nlohmann::json done = json(joined({"prune", "--yes", "--json"}, choice));
+    EXPECT_GT(done.at("measured"), 0);
+    EXPECT_EQ(done.at("kept_unmeasured"), 0);
+    EXPECT_GT(done.at("checkpoints").size(), 2U);
+    EXPECT_EQ(objects(), files - done.at("checkpoints").size());
+    EXPECT_EQ(shown("shearcell-store"), shown_);
+  }
+}
+
+TEST_F(Prune, DeletesOnlyWhatIsSelected) {
+  start_again();
+  for (const Arguments& nothing :
+       {Arguments{"--state", "failed"}, {last_run(), "--state", "interrupted"}}) {
+    const std::size_t files = objects();
+    EXPECT_TRUE(json(joined({"prune", "--yes", "--json"}, nothing)).at("checkpoints").empty());
+    EXPECT_EQ(objects(), files);
+  }
+  for (const Arguments& unknown : {Arguments{"--experiment", "tini"},
+                                   {"--scale", "desk"},
+                                   {"--variant", "fluid=oil"},
+                                   {"--seed", "3"}}) {
+    expect_refused(joined({"prune", "--yes"}, unknown), {unknown.back()});
+  }
+  const nlohmann::json cells =
+      json({"prune", "--variant", "fluid=cell", "--seed", "1-2", "--yes", "--json"});
+  EXPECT_EQ(cells.at("checkpoints").size(), 2U * 5U) << "of two runs all but the last";
+  const Store store(path("shearcell-store"), Access::read);
+  for (const auto& one : cells.at("checkpoints")) {
+    EXPECT_EQ(store.run(one.at("run")).memberships.front().variant, "fluid=cell");
+  }
+}
+
+TEST_F(Prune, KeepsTheFileOfACheckpointThatCannotBeMeasured) {
+  start_again();
+  const std::string run = last_run();
+  std::vector<CheckpointRecord> records;
+  {
+    const Store store(path("shearcell-store"), Access::read);
+    records = store.checkpoints(run);
+  }
+  truncate_file(path("shearcell-store/" + records[2].file));
+  expect(4, {"prune", run, "--yes"},
+         {"not measured: ", records[2].sha256.substr(0, 12),
+          "kept: the files of 2 checkpoints that could not be measured", "freed"});
+  for (const std::size_t k :
+       {2U, 3U, 5U}) {  // the motion at cycle 3 is from cycle 2; 5 is the last
+    EXPECT_TRUE(fs::exists(path("shearcell-store/" + records[k].file))) << k;
+  }
+  for (const std::size_t k : {0U, 1U, 4U}) {
+    EXPECT_FALSE(fs::exists(path("shearcell-store/" + records[k].file))) << k;
+  }
+  expect(0, {"regenerate", "--all"}, {"the same bytes"});
+  const nlohmann::json again = json({"prune", run, "--yes", "--json"});
+  EXPECT_EQ(again.at("kept_unmeasured"), 0);
+  EXPECT_EQ(again.at("checkpoints").size(), 5U);
+  EXPECT_EQ(shown("shearcell-store"), shown_);
+}
+
+// A failed run may leave a state that has no Voronoi cells.
+TEST_F(Prune, KeepsAStateThatCannotBeAnalysed) {
+  start_again();
+  const std::string run = last_run();
+  std::string file;
+  {
+    Store store(path("shearcell-store"), Access::write);
+    const std::vector<CheckpointRecord> records = store.checkpoints(run);
+    Checkpoint together = store.load_checkpoint(records[1]);
+    together.state.position.col(1) = together.state.position.col(0);
+    together.step += kStepsPerCycle / 2;
+    together.cycle += 0.5;
+    store.start_run(run, {}, records[1].sha256, "", true);
+    file = store.record_checkpoint(run, together).file;
+    store.complete_run(run);
+  }
+  expect(4, {"prune", run, "--yes"}, {"not measured: ", "kept: the file"});
+  EXPECT_TRUE(fs::exists(path("shearcell-store/" + file)));
+}
+
+TEST_F(Prune, AKillWhileItMeasuresLosesNothing) {
+  for (const int milliseconds : {5, 50, 100, 200, 400}) {
+    SCOPED_TRACE(milliseconds);
+    start_again();
+    const std::size_t files = objects();
+    const Running program = start_beside({"prune", "--keep-every", "5", "--yes"}, "kill");
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    kill(program.pid, SIGKILL);
+    wait_for(program);
+    if (pruned_events() == 0) EXPECT_EQ(objects(), files);
+    EXPECT_EQ(shown("shearcell-store"), shown_);
+    expect(0, {"prune", "--keep-every", "5", "--yes"});
+    EXPECT_LT(objects(), files);
+    EXPECT_EQ(shown("shearcell-store"), shown_);
+  }
+}
+
+TEST_F(Prune, MeasuresForEveryExperimentThatSharesAStage) {
+  const std::string other = renamed(
+      tiny_manifest("", kBothFluids + "seeds: 2\ncheckpoints: {every_cycles: 2}\n"), "other");
+  expect(0, {"run", write("other.yaml", other), "--cycles", "4", "-q"});
+  keep_a_copy();
+  start_again();
+  expect(0, {"prune", "--experiment", "tiny", "--variant", "fluid=still"}, {"other, tiny"});
+  expect(0, {"prune", "--experiment", "other", "--yes"});
+  EXPECT_GT(pruned_events(), 0U);
+  EXPECT_EQ(shown("shearcell-store"), shown_);
+}
+
+// Motion over ten cycles then needs files that are gone; that keeps no other file.
+TEST_F(Prune, PrunesARunThatWasContinued) {
+  start_again();
+  expect(0, {"prune", "--keep-every", "5", "--yes"});
+  expect(0, {"run", "m.yaml", "--cycles", "13", "-q"});
+  fs::copy(path("shearcell-store"), path("continued"), fs::copy_options::recursive);
+  const std::string before = shown("continued");
+  const nlohmann::json done = json({"prune", "--keep-every", "5", "--yes", "--json"});
+  EXPECT_EQ(done.at("kept_unmeasured"), 0);
+  EXPECT_EQ(done.at("checkpoints").size(), 4U * 6U) << "cycles 6 to 9, 11 and 12 of four runs";
+  EXPECT_EQ(shown("shearcell-store"), before);
+}
+
+TEST_F(Prune, DeletesNothingIfMeasuresCannotBeKept) {
+  start_again();
+  fs::create_directories(path("shearcell-store/derived.sqlite/in-the-way"));
+  const std::size_t files = objects();
+  expect(1, {"prune", "--keep-every", "5", "--yes"}, {"measures cannot be cached", "kept: "});
+  EXPECT_EQ(objects(), files);
+  EXPECT_EQ(pruned_events(), 0U);
+}
+
+// As older versions pruned: means are then of fewer runs at some cycles.
+TEST_F(Prune, WithoutMeasuringIsSaidInTheDrawing) {
+  start_again();
+  const auto key_says = [&] {
+    expect(0, {"figures", "S2", "--out", "drawn"});
+    expect(0, {"report", "--out", "r.html"});
+    const std::string words = "(1 to 2 runs)";
+    return std::pair(has(read_bytes(path("drawn/tiny/base/S2a.gp")), words),
+                     has(read_bytes(path("r.html")), words));
+  };
+  EXPECT_EQ(key_says(), std::pair(false, false));
+  fs::remove(path("shearcell-store/derived.sqlite"));
+  {
+    Store store(path("shearcell-store"), Access::write);
+    const std::vector<CheckpointRecord> records = store.checkpoints(last_run());
+    store.prune({records[2], records[3]});
+  }
+  EXPECT_EQ(key_says(), std::pair(true, true));
+  expect(0, {"regenerate", "--all"});
+  EXPECT_EQ(key_says(), std::pair(false, false));
+}
+
+TEST_F(Prune, RegenerateRestoresTheFilesOfSelectedRuns) {
+  start_again();
+  const std::size_t files = objects();
+  expect(0, {"prune", "--experiment", "tiny", "--yes"});
+  const std::size_t left = objects();
+  ASSERT_LT(left, files);
+  expect_refused({"regenerate"}, {"--experiment E or --all"});
+  expect_refused({"regenerate", "--all", "0123abcd"}, {"either checkpoints, or runs"});
+  expect_refused({"regenerate", "--experiment", "tini"}, {"tini"});
+  expect(0, {"regenerate", "--experiment", "tiny", "--variant", "fluid=cell", "--seed", "2"},
+         {"the same bytes"});
+  EXPECT_EQ(objects(), left + 5);
+  expect(0, {"regenerate", "--scale", "base", "--seed", "1"});
+  const std::size_t now = objects();
+  EXPECT_GE(now, left + 15);
+  truncate_file(path(newest_file(last_run())));
+  EXPECT_EQ(json({"regenerate", "--all", "--json"}).at("checkpoints").size(), files - now + 1);
+  EXPECT_EQ(objects(), files);
+  expect(0, {"verify"});
+  expect(0, {"regenerate", "--all"}, {"every file is intact"});
+}
+
+}  // namespace
+}  // namespace shearcell::test

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Each scale of an experiment has its own folder of figures.
+#include <gtest/gtest.h>
+
+#include "tests/experiments/program.hpp"
+
+namespace shearcell::test {
+namespace {
+
+class Scales : public ProgramTest {
+ protected:
+  const std::string scales_ =
+      kBothFluids +
+      "plots: [{name: own, y: phi, x: cycle}]\n"
+      "scales: {small: {cycles: 1}, large: {cycles: 1, seeds: 2}, 2nd_-Large: {cycles: 2}}\n";
+  const Arguments names_ = {"small", "large", "2nd_-Large"};
+
+  /// The bytes of all files of figures, by path.
+  std::map<std::string, std::string> drawn() const {
+    std::map<std::string, std::string> files;
+    for (const std::string& file : listing()) {
+      if (file.starts_with("out/") && std::filesystem::is_regular_file(path(file))) {
+        files[file] = read_bytes(path(file));
+      }
+    }
+    return files;
+  }
+};
+
+TEST_F(Scales, NeverOverwriteEachOther) {
+  const std::string manifest = write("m.yaml", tiny_manifest("", scales_));
+  std::map<std::string, std::string> before;
+  for (const std::string& scale : names_) {
+    expect(0, {"run", manifest, "--scale", scale, "-q"});
+    expect(0, {"figures", "--scale", scale, "--out", "out"});
+    const std::map<std::string, std::string> now = drawn();
+    for (const auto& [file, bytes] : before) EXPECT_EQ(now.at(file), bytes) << file;
+    for (const std::string name : {"S2a.csv", "S2b.svg", "S2.lineage.json", "own.csv"}) {
+      EXPECT_TRUE(now.contains("out/tiny/" + scale + "/" + name)) << scale << " " << name;
+    }
+    EXPECT_TRUE(now.contains("out/" + scale + "/table1.csv")) << "of all experiments";
+    before = now;
+  }
+  for (const std::string& scale : names_) {
+    const std::string record = "tiny/" + scale + "/S2", file = "out/tiny/" + scale + "/S2a.csv";
+    EXPECT_EQ(json({"show", record, "--json"}).at("scale"), scale);
+    expect(0, {"show", file}, {"matches", record, "all present and right"});
+    expect(0, {"show", scale + "/table1"}, {scale + " scale"});
+  }
+  expect(2, {"show", "S2"},
+         {"several figures", "tiny/2nd_-Large/S2, tiny/large/S2, tiny/small/S2"});
+  expect(2, {"show", "tiny/S2"}, {"several figures"});
+  expect(0, {"figures", "--out", "out"}, {"2nd_-Large scale"});  // the last
+  EXPECT_EQ(drawn(), before);
+  EXPECT_EQ(json({"table", "--json"}).at("rows").at(0).at("scale"), "2nd_-Large");
+}
+
+TEST_F(Scales, WithoutScalesTheFolderIsBase) {
+  campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"});
+  expect(0, {"figures", "--out", "out"}, {"out/tiny/base/S2a.csv", "base scale"});
+  EXPECT_TRUE(std::filesystem::exists(path("out/base/table1.csv")));
+  EXPECT_EQ(json({"show", "tiny/base/S2", "--json"}), json({"show", "S2", "--json"}));
+  expect(0, {"status", "--scale", "base"});
+}
+
+// An older version recorded "tiny/S2" for every scale.
+TEST_F(Scales, ShowFindsRecordsOfAnOlderVersion) {
+  campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"});
+  expect(0, {"figures", "S2", "--out", "out"});
+  {
+    Store store(path("shearcell-store"), Access::write);
+    store.record_figure("tiny/S2", store.figures().at(0).provenance);
+  }
+  const auto event = [&](const std::string& name) {
+    return json({"show", name, "--json"}).at("event").get<std::uint64_t>();
+  };
+  const std::uint64_t old = event("tiny/S2");
+  for (const char* name : {"S2", "tiny/base/S2"}) EXPECT_EQ(event(name), old) << "the newest";
+  {
+    Store store(path("shearcell-store"), Access::write);
+    store.record_figure("tiny/base/S2", store.figures().at(0).provenance);
+  }
+  for (const char* name : {"S2", "tiny/S2", "tiny/base/S2"}) EXPECT_GT(event(name), old) << name;
+  expect(0, {"show", "out/tiny/base/S2a.csv"}, {"matches"});
+}
+
+}  // namespace
+}  // namespace shearcell::test
