@@ -294,7 +294,7 @@ FigureTable crowded(const Axis& y, bool x_errors) {
     series.colour = std::array{"#0072b2", "#d55e00", "#009e73"}.at(static_cast<std::size_t>(k));
     for (int x = 1; x <= 5; ++x) {
       const double at = x + 0.02 * k;
-      series.points.push_back({at, 2 + 0.05 * k + 0.01 * x, std::nullopt, 0.12 + 0.17 * k});
+      series.points.push_back({at, 2 + 0.05 * k + 0.01 * x, std::nullopt, 0.2 + 0.14 * k});
       if (x_errors) series.points.back().x_error = 0.3 + 0.1 * k;
     }
   }

@@ -19,6 +19,7 @@ if shutil.which("rsvg-convert") is None:
 
 ZOOM = 8
 CAP = 1.2  # [px] beside the bar, within its cap
+EDGE = 1  # [px] above and below the middle of a point, within its mark
 
 
 def places_of(script, svg):
@@ -57,13 +58,13 @@ def main():
     place, points = places_of(script, svg), points_of(script)
     shown, missing = 0, []
 
-    def look(what, at, offsets, colour):
+    def look(what, at, enough, offsets, colour):
         nonlocal shown
         if place(at) is None:
             return
         (x, y), wanted = place(at), ImageColor.getrgb(colour)
         seen = [image.getpixel((int((x + dx) * ZOOM), int((y + dy) * ZOOM))) for dx, dy in offsets]
-        if any(max(abs(a - b) for a, b in zip(pixel, wanted)) < 40 for pixel in seen):
+        if enough(max(abs(a - b) for a, b in zip(pixel, wanted)) < 40 for pixel in seen):
             shown += 1
         else:
             missing.append(f"{what} of {colour} at {at}: {seen}")
@@ -72,13 +73,13 @@ def main():
             r"(\$series\d+) every (\d+) using \S+ with (\w+).*?lc rgb '(\S+)'", script):
         for x, y, x_error, y_error in points[name][::int(every)]:
             if "points" in style:
-                look("point", (x, y), [(0, 0)], colour)
+                look("point", (x, y), all, [(0, -EDGE), (0, 0), (0, EDGE)], colour)
                 continue
             for end in (-1, 1):
                 if y_error:
-                    look("bar", (x, y + end * y_error), [(-CAP, 0), (CAP, 0)], colour)
+                    look("bar", (x, y + end * y_error), any, [(-CAP, 0), (CAP, 0)], colour)
                 if x_error:
-                    look("bar", (x + end * x_error, y), [(0, -CAP), (0, CAP)], colour)
+                    look("bar", (x + end * x_error, y), any, [(0, -CAP), (0, CAP)], colour)
     print(f"{shown} shown, {len(missing)} missing")
     print("\n".join(missing))
     sys.exit(1 if missing or not shown else 0)
