@@ -179,7 +179,7 @@ TEST_F(Measure, RedrawingEveryExperimentMeasuresNothing) {
   EXPECT_EQ(table.runs, 2U * 2U);
   EXPECT_EQ(table.checkpoints, 2U * 2U) << "the last one of each";
   EXPECT_TRUE(table.verdicts.empty());
-  EXPECT_TRUE(has(read_bytes(folder_.path() / "table" / "table1.csv"), "other,mass_kg,"));
+  EXPECT_TRUE(has(read_bytes(folder_.path() / "table" / "base" / "table1.csv"), "other,mass_kg,"));
 }
 
 TEST_F(Measure, ATableNamesTheExperimentsThatItLeavesOut) {
