@@ -309,21 +309,6 @@ TEST_F(SharedStore, AProgramContinuesTheRunsOfAKilledOne) {
   expect(0, {"verify"});
 }
 
-TEST_F(Commands, BenchStabilityEndsWithCode3IfACaseFails) {
-  const nlohmann::json cases =
-      json({"bench", "stability", "--quick", "--only", "touching", "equal", "--json"}).at("cases");
-  ASSERT_EQ(cases.size(), 4U);
-  for (const nlohmann::json& hard : cases) {
-    EXPECT_TRUE(hard.at("as_expected").get<bool>()) << hard;
-    for (const char* key : {"name", "expected", "outcome"}) {
-      EXPECT_FALSE(hard.at(key).get<std::string>().empty()) << key;
-    }
-  }
-  expect(3, {"bench", "stability", "--only", "1e7-steps-undamped", "--seconds", "0.1"},
-         {"0 of 1 cases ended as expected"});
-  expect(2, {"bench", "stability", "--only", "vacanzy"}, {"the nearest is vacancy"});
-}
-
 class CommandLineStore : public ProgramTest {};
 
 TEST_F(CommandLineStore, NamesATruncatedCheckpointAndContinues) {
